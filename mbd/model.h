@@ -1,0 +1,146 @@
+// The model: what the user described, by name, before anything is compiled or run.
+//
+// Bodies, markers, signals and elements refer to each other by name; every entry remembers the
+// place in the file it came from, so that an error found later can still point at it.
+#pragma once
+
+#include "mbd/diagnostics.h"
+#include "mbd/fields.h"
+#include "mbd/signal.h"
+#include "mbd/types.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+class SystemBuilder;
+
+/// A rigid body. Its frame has the origin `position` and the angle `angle` in the reference pose (the
+/// pose the file gives); its centre of gravity lies at `cg` in that frame.
+struct Body {
+  std::string name;
+  double mass = 0.0;    ///< kg, > 0
+  double inertia = 0.0; ///< kg m², about the centre of gravity, > 0
+  Vec2 position = Vec2::Zero();
+  double angle = 0.0;
+  Vec2 cg = Vec2::Zero();
+  Vec2 velocity = Vec2::Zero(); ///< of the centre of gravity, m/s, ground axes
+  double angular_velocity = 0.0;
+  bool fixed = false;
+  std::string label;
+  std::vector<Vec2> outline; ///< body frame, m; for drawings only
+  Location where;
+
+  /// (x, y, θ) of the centre of gravity in the reference pose.
+  [[nodiscard]] Vec3 reference_pose() const;
+  [[nodiscard]] static const FieldTable& fields();
+};
+
+/// A point fixed in a body (or the ground), with axes turned by `angle` against the body's.
+/// Given either by `point` (body frame) or by `at` (ground frame, reference pose).
+struct Marker {
+  std::string name;
+  std::string body = "ground";
+  std::optional<Vec2> point;
+  std::optional<Vec2> at;
+  double angle = 0.0;
+  Location where;
+
+  [[nodiscard]] static const FieldTable& fields();
+};
+
+/// What an element of any kind has. Kinds derive from it and add their fields.
+struct Element {
+  virtual ~Element() = default;
+  std::string name;
+  Location where;
+};
+
+/// One kind of element: its fields and how it becomes part of a compiled system.
+struct ElementKind {
+  std::string name; ///< as written in a model file, "spring_damper"
+  std::string doc;  ///< a few sentences: what it models, sign convention
+  FieldTable fields;
+  std::shared_ptr<Element> (*create)() = nullptr;
+  /// Adds the element to the system; reports what is wrong through the builder's errors.
+  void (*compile)(const Element& element, SystemBuilder& builder) = nullptr;
+};
+
+struct ElementEntry {
+  const ElementKind* kind = nullptr;
+  std::shared_ptr<Element> element;
+};
+
+/// A named signal: a scalar function of time.
+struct SignalEntry {
+  const SignalKind* kind = nullptr;
+  std::shared_ptr<SignalDefinition> definition;
+};
+
+struct SimulationSettings {
+  double end = 1.0;                     ///< s
+  std::string integrator = "rk4";
+  std::optional<double> step;           ///< s, fixed step methods
+  std::optional<double> tolerance;      ///< relative, adaptive methods
+  std::string initial = "as_given";     ///< "as_given" or "equilibrium"
+  Vec2 velocity = Vec2::Zero();         ///< m/s, added to every body's initial velocity
+  double projection_tolerance = 1e-12;  ///< largest constraint residual left after a step, m or rad
+  long max_events = 100000;
+  Location where;
+
+  [[nodiscard]] static const FieldTable& fields();
+};
+
+struct OutputSettings {
+  double step = 1e-3;                ///< s
+  std::vector<std::string> channels; ///< patterns with * and ?; empty = all
+  Location where;
+
+  [[nodiscard]] static const FieldTable& fields();
+};
+
+/// Top-level scalars of a model file.
+struct ModelHeader {
+  std::string title;
+  std::string source; ///< where the values come from
+  Vec2 gravity{0.0, -9.81};
+  Location where;
+
+  [[nodiscard]] static const FieldTable& fields();
+};
+
+struct Model {
+  ModelHeader header;
+  SimulationSettings simulation;
+  OutputSettings output;
+  std::vector<Body> bodies;
+  std::vector<Marker> markers;
+  std::vector<SignalEntry> signals;
+  std::vector<ElementEntry> elements;
+
+  [[nodiscard]] const Body* find_body(const std::string& name) const;
+};
+
+/// A top-level array of tables that is not the kernel's: handed in by another room (a core's geometry,
+/// say), it reads its own fields and adds bodies, markers or elements to the model.
+struct TableKind {
+  std::string name; ///< as in [[name]]
+  std::string doc;
+  FieldTable fields;
+  std::shared_ptr<Element> (*create)() = nullptr;
+  void (*apply)(const Element& table, Model& model) = nullptr; ///< throws ModelError
+};
+
+/// The kinds a model file may use: the kernel and the reader know none by name.
+struct Catalogue {
+  std::vector<const ElementKind*> elements;
+  std::vector<const SignalKind*> signals;
+  std::vector<const TableKind*> tables;
+
+  [[nodiscard]] const ElementKind* find_element(const std::string& name) const;
+};
+
+} // namespace steplap

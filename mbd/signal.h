@@ -1,0 +1,85 @@
+// Signals: scalar functions of time, with their exact integrals and derivatives.
+//
+// Every signal is a sequence of pieces between breakpoints; a piece is a cubic polynomial plus a sum of
+// harmonics, so value, derivatives and both integrals from t = 0 on are closed forms, and a body driven
+// by an acceleration has position, velocity and acceleration that agree to rounding.
+// Limits: before the first breakpoint a signal is 0; integrals start at t = 0.
+#pragma once
+
+#include "mbd/diagnostics.h"
+#include "mbd/fields.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// Value, first and second derivative of a function of time.
+struct SignalJet {
+  double value = 0.0;
+  double rate = 0.0;
+  double acceleration = 0.0;
+};
+
+/// What a driven coordinate follows: the signal is its position, its velocity or its acceleration.
+enum class DriveLevel { position, velocity, acceleration };
+
+class Signal {
+public:
+  /// amplitude · cos(frequency τ + phase), τ from the start of the piece; frequency in rad/s, ≠ 0.
+  struct Harmonic {
+    double amplitude = 0.0;
+    double frequency = 1.0;
+    double phase = 0.0;
+  };
+  /// c0 + c1 τ + c2 τ² + c3 τ³ + Σ harmonics, for start ≤ t < start of the next piece.
+  struct Piece {
+    double start = 0.0;
+    double c[4] = {0.0, 0.0, 0.0, 0.0};
+    std::vector<Harmonic> harmonics;
+    double integral = 0.0;        ///< ∫ from 0 to start (filled by Signal)
+    double double_integral = 0.0; ///< ∬ from 0 to start (filled by Signal)
+  };
+
+  Signal() = default; ///< identically zero
+  /// Pieces in ascending order of start. Throws std::invalid_argument otherwise.
+  explicit Signal(std::vector<Piece> pieces);
+  static Signal constant(double value);
+
+  [[nodiscard]] double value(double t) const;
+  /// The driven coordinate's increment, its rate and its acceleration at t: of the signal read at
+  /// `level`, starting from zero position and (for acceleration) zero velocity at t = 0.
+  [[nodiscard]] SignalJet drive(double t, DriveLevel level) const;
+  /// Times at which the signal or one of its derivatives may jump, ascending.
+  [[nodiscard]] const std::vector<double>& breakpoints() const { return breakpoints_; }
+  [[nodiscard]] bool is_constant() const;
+  /// True where the value itself jumps at breakpoint k by more than rounding.
+  [[nodiscard]] bool jumps_at(std::size_t k) const;
+
+private:
+  [[nodiscard]] const Piece* piece_at(double t) const;
+  std::vector<Piece> pieces_;
+  std::vector<double> breakpoints_;
+};
+
+/// What any kind of signal has in a model file; kinds derive from it.
+struct SignalDefinition {
+  virtual ~SignalDefinition() = default;
+  std::string name;
+  Location where;
+};
+
+struct SignalKind {
+  std::string name;
+  std::string doc;
+  FieldTable fields;
+  std::shared_ptr<SignalDefinition> (*create)() = nullptr;
+  /// Throws ModelError (at definition.where) for values that make no signal.
+  Signal (*build)(const SignalDefinition& definition) = nullptr;
+};
+
+/// constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics (mbd/io adds `record`).
+[[nodiscard]] const std::vector<const SignalKind*>& signal_kinds();
+
+} // namespace steplap
