@@ -32,6 +32,8 @@ public:
     double amplitude = 0.0;
     double frequency = 1.0;
     double phase = 0.0;
+    double cos_phase = 1.0; ///< filled by Signal
+    double sin_phase = 0.0; ///< filled by Signal
   };
   /// c0 + c1 τ + c2 τ² + c3 τ³ + Σ harmonics, for start ≤ t < start of the next piece.
   struct Piece {
@@ -43,15 +45,16 @@ public:
   };
 
   Signal() = default; ///< identically zero
-  /// Pieces in ascending order of start. Throws std::invalid_argument otherwise.
+  /// Pieces in ascending order of start, every number finite. Throws std::invalid_argument otherwise.
   explicit Signal(std::vector<Piece> pieces);
   static Signal constant(double value);
 
   [[nodiscard]] double value(double t) const;
-  /// The driven coordinate's increment, its rate and its acceleration at t: of the signal read at
-  /// `level`, starting from zero position and (for acceleration) zero velocity at t = 0.
+  /// The driven coordinate's increment since t = 0, its rate and its acceleration at t, the signal
+  /// being read at `level`: position f(t) − f(0), velocity ∫f, acceleration ∬f (from rest at t = 0).
   [[nodiscard]] SignalJet drive(double t, DriveLevel level) const;
-  /// Times at which the signal or one of its derivatives may jump, ascending.
+  /// Times at which the signal or one of its derivatives may jump, ascending: the starts of the
+  /// pieces (none for a constant).
   [[nodiscard]] const std::vector<double>& breakpoints() const { return breakpoints_; }
   [[nodiscard]] bool is_constant() const;
   /// True where the value itself jumps at breakpoint k by more than rounding.
@@ -59,8 +62,10 @@ public:
 
 private:
   [[nodiscard]] const Piece* piece_at(double t) const;
+  void accumulate_integrals();
   std::vector<Piece> pieces_;
   std::vector<double> breakpoints_;
+  double value_at_zero_ = 0.0;
 };
 
 /// What any kind of signal has in a model file; kinds derive from it.

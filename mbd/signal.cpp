@@ -1,0 +1,181 @@
+#include "mbd/signal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace steplap {
+
+namespace {
+
+// A piece's value, first two derivatives and integrals from the piece's start, at τ after it.
+struct PieceJet {
+  double value = 0.0, rate = 0.0, second_rate = 0.0, integral = 0.0, double_integral = 0.0;
+};
+
+// sin x − x without cancellation.
+double sine_minus_argument(double x) {
+  if (std::abs(x) > 0.5) return std::sin(x) - x;
+  const double y = x * x;
+  // Taylor series; the first term left out is x¹⁷/17! < 1e-19 of the first at |x| = 0.5.
+  return x * y * (-1.0 / 6 + y * (1.0 / 120 + y * (-1.0 / 5040 + y * (1.0 / 362880 +
+         y * (-1.0 / 39916800 + y * (1.0 / 6227020800.0 - y / 1307674368000.0))))));
+}
+
+// With x = ωτ: cos(x+φ) = cos φ cos x − sin φ sin x, and
+// ∫ = A/ω [cos φ sin x − sin φ (1−cos x)], ∬ = A/ω² [cos φ (1−cos x) + sin φ (sin x − x)].
+void add_harmonic(const Signal::Harmonic& h, double tau, PieceJet& jet) {
+  const double x = h.frequency * tau;
+  const double s = std::sin(0.5 * x), c = std::cos(0.5 * x);
+  const double sine = 2.0 * s * c, versine = 2.0 * s * s, cosine = 1.0 - versine;
+  const double value = h.amplitude * (h.cos_phase * cosine - h.sin_phase * sine);
+  const double slope = -h.amplitude * (h.sin_phase * cosine + h.cos_phase * sine);
+  const double a1 = h.amplitude / h.frequency;
+  jet.value += value;
+  jet.rate += h.frequency * slope;
+  jet.second_rate -= h.frequency * h.frequency * value;
+  jet.integral += a1 * (h.cos_phase * sine - h.sin_phase * versine);
+  double bracket = h.cos_phase * versine;
+  if (h.sin_phase != 0.0) bracket += h.sin_phase * sine_minus_argument(x);
+  jet.double_integral += a1 / h.frequency * bracket;
+}
+
+PieceJet evaluate(const Signal::Piece& piece, double tau) {
+  const double* c = piece.c;
+  PieceJet jet;
+  jet.value = c[0] + tau * (c[1] + tau * (c[2] + tau * c[3]));
+  jet.rate = c[1] + tau * (2.0 * c[2] + tau * 3.0 * c[3]);
+  jet.second_rate = 2.0 * c[2] + 6.0 * c[3] * tau;
+  jet.integral = tau * (c[0] + tau * (c[1] / 2 + tau * (c[2] / 3 + tau * (c[3] / 4))));
+  jet.double_integral =
+      tau * tau * (c[0] / 2 + tau * (c[1] / 6 + tau * (c[2] / 12 + tau * (c[3] / 20))));
+  for (const Signal::Harmonic& h : piece.harmonics) add_harmonic(h, tau, jet);
+  return jet;
+}
+
+// A bound of the piece's terms up to τ: the scale of its rounding.
+double magnitude(const Signal::Piece& piece, double tau) {
+  double sum = 0.0;
+  for (int i = 3; i >= 0; --i) sum = sum * tau + std::abs(piece.c[i]);
+  for (const Signal::Harmonic& h : piece.harmonics) sum += std::abs(h.amplitude);
+  return sum;
+}
+
+bool is_finite(const Signal::Piece& piece) {
+  double sum = piece.start;
+  for (const double c : piece.c) sum += c;
+  for (const Signal::Harmonic& h : piece.harmonics) sum += h.amplitude + h.frequency + h.phase;
+  return std::isfinite(sum);
+}
+
+void check(const std::vector<Signal::Piece>& pieces) {
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (!is_finite(pieces[k]))
+      throw std::invalid_argument("a piece of a signal holds a number that is not finite");
+    if (k > 0 && !(pieces[k].start > pieces[k - 1].start))
+      throw std::invalid_argument("pieces of a signal must start at ascending times");
+    for (const Signal::Harmonic& h : pieces[k].harmonics)
+      if (h.frequency == 0.0) throw std::invalid_argument("a harmonic of frequency zero");
+  }
+}
+
+} // namespace
+
+Signal::Signal(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
+  check(pieces_);
+  for (Piece& piece : pieces_)
+    for (Harmonic& h : piece.harmonics) {
+      h.cos_phase = std::cos(h.phase);
+      h.sin_phase = std::sin(h.phase);
+    }
+  accumulate_integrals();
+  if (!is_constant())
+    for (const Piece& piece : pieces_) breakpoints_.push_back(piece.start);
+  value_at_zero_ = value(0.0);
+}
+
+Signal Signal::constant(double value) { return Signal({Piece{0.0, {value, 0.0, 0.0, 0.0}, {}}}); }
+
+// The integrals at the starts, forwards and backwards from the piece that holds t = 0, so that
+// pieces long before t = 0 cost those after it no digits.
+void Signal::accumulate_integrals() {
+  if (pieces_.empty()) return;
+  const Piece* at_zero = piece_at(0.0);
+  const std::size_t first = at_zero ? static_cast<std::size_t>(at_zero - pieces_.data()) : 0;
+  if (at_zero) {
+    Piece& p = pieces_[first];
+    const PieceJet jet = evaluate(p, -p.start);
+    p.integral = -jet.integral;
+    p.double_integral = -jet.double_integral + p.integral * p.start;
+  }
+  for (std::size_t k = first; k > 0; --k) {
+    const Piece& next = pieces_[k];
+    Piece& p = pieces_[k - 1];
+    const double length = next.start - p.start;
+    const PieceJet jet = evaluate(p, length);
+    p.integral = next.integral - jet.integral;
+    p.double_integral = next.double_integral - p.integral * length - jet.double_integral;
+  }
+  for (std::size_t k = first + 1; k < pieces_.size(); ++k) {
+    const Piece& last = pieces_[k - 1];
+    const double length = pieces_[k].start - last.start;
+    const PieceJet jet = evaluate(last, length);
+    pieces_[k].integral = last.integral + jet.integral;
+    pieces_[k].double_integral =
+        last.double_integral + last.integral * length + jet.double_integral;
+  }
+}
+
+const Signal::Piece* Signal::piece_at(double t) const {
+  const auto after = std::upper_bound(pieces_.begin(), pieces_.end(), t,
+                                      [](double time, const Piece& p) { return time < p.start; });
+  return after == pieces_.begin() ? nullptr : &*(after - 1);
+}
+
+double Signal::value(double t) const {
+  const Piece* piece = piece_at(t);
+  return piece ? evaluate(*piece, t - piece->start).value : 0.0;
+}
+
+SignalJet Signal::drive(double t, DriveLevel level) const {
+  const Piece* piece = piece_at(t);
+  PieceJet jet;
+  if (piece) {
+    const double tau = t - piece->start;
+    jet = evaluate(*piece, tau);
+    jet.double_integral += piece->double_integral + piece->integral * tau;
+    jet.integral += piece->integral;
+  } else if (!pieces_.empty() && pieces_.front().start < 0.0) {
+    const Piece& p = pieces_.front();
+    jet.integral = p.integral;
+    jet.double_integral = p.double_integral + p.integral * (t - p.start);
+  }
+  switch (level) {
+  case DriveLevel::position: return {jet.value - value_at_zero_, jet.rate, jet.second_rate};
+  case DriveLevel::velocity: return {jet.integral, jet.value, jet.rate};
+  case DriveLevel::acceleration: break;
+  }
+  return {jet.double_integral, jet.integral, jet.value};
+}
+
+bool Signal::is_constant() const {
+  if (pieces_.empty()) return true;
+  const Piece& p = pieces_.front();
+  return pieces_.size() == 1 && p.start <= 0.0 && p.harmonics.empty() && p.c[1] == 0.0 &&
+         p.c[2] == 0.0 && p.c[3] == 0.0;
+}
+
+bool Signal::jumps_at(std::size_t k) const {
+  constexpr double k_rounding = 1e-12;
+  const Piece& right = pieces_.at(k);
+  double before = 0.0, scale = magnitude(right, 0.0);
+  if (k > 0) {
+    const Piece& left = pieces_[k - 1];
+    const double length = right.start - left.start;
+    before = evaluate(left, length).value;
+    scale = std::max(scale, magnitude(left, length));
+  }
+  return std::abs(evaluate(right, 0.0).value - before) > k_rounding * scale;
+}
+
+} // namespace steplap
