@@ -1,0 +1,50 @@
+// Friction over a piece whose centre of rotation is far away, or at infinity (pure translation).
+//
+// With complex r = x + iy from the piece's centroid, the velocity is V = v + iωr and
+//   |V| = |v| Σ_jk b_j b_k qʲ q̄ᵏ rʲ r̄ᵏ,  q = iω/v,  b_j = binomial(1/2, j),
+// so that with κ = ω/|v| and φ the direction of v
+//   h = |v| g(κ, φ),  g = Re Σ_l e^{−ilφ} Σ_n a_{n,l} κⁿ  (n = l, l+2, …),
+//   a_{n,l} = (2 if l > 0, else 1) · iˡ b_j b_k ∬ w rʲ r̄ᵏ dA,  j = (n+l)/2, k = (n−l)/2.
+// The area moments are taken once per piece; g and its derivatives are then six real sums,
+// smooth through ω = 0. Converges for |κ| R < 1, R the piece's radius about its centroid; cut at
+// order k_order and used for |κ| R ≤ 1/k_far_ratio, where what is left out is below 1e-15 of h.
+#pragma once
+
+#include "elements/patch/closed_form.h"
+
+#include <array>
+#include <complex>
+
+namespace steplap {
+
+/// Centres of rotation nearer than this many radii are for the closed form.
+inline constexpr double k_far_ratio = 6.0;
+
+/// Dissipation of one piece for the twist (v at its centroid, ω), and its derivatives.
+struct PieceDissipation {
+  double value = 0;               ///< h [W]
+  double fx = 0, fy = 0, m = 0;   ///< gradient: wrench about the piece's centroid [N, N, N m]
+  double xx = 0, xy = 0, yy = 0;  ///< Hessian
+  double xw = 0, yw = 0, ww = 0;
+};
+
+/// Coefficients a_{n,l} of a piece, in units of its radius.
+class FarField {
+public:
+  static constexpr int k_order = 18;
+
+  FarField() = default;
+  FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius);
+
+  /// Precondition: |ω| radius ≤ |v| / k_far_ratio, v not zero.
+  template <bool WithCurvature>
+  [[nodiscard]] PieceDissipation evaluate(const Vec2& v, double omega) const;
+
+private:
+  static constexpr int k_row = k_order / 2 + 1; // room for one l
+
+  double radius_ = 1;
+  std::array<std::complex<double>, (k_order + 1) * k_row> a_{}; // row l: n = l, l+2, …
+};
+
+} // namespace steplap

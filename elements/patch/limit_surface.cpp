@@ -1,0 +1,203 @@
+#include "elements/patch/limit_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace steplap {
+
+struct PatchAccess {
+  static const FarField* far(const Patch& p, std::size_t i) {
+    return p.far_.empty() ? nullptr : &p.far_[i];
+  }
+};
+
+namespace {
+
+/// Closed form about the centre of rotation c = ẑ×v/ω: h = |ω| ∬w|r−c|, and u = ±ẑ×(r−c)/|r−c|.
+template <bool WithCurvature>
+PieceDissipation evaluate_near(const PatchEdge* edges, const Patch::Piece& piece, const Vec2& v,
+                               double omega) {
+  const Vec2 c(-v.y() / omega, v.x() / omega);
+  const auto k = integrate_about<WithCurvature>(edges, piece.edges, piece.traction, c);
+  const double sign = omega > 0 ? 1.0 : -1.0, size = std::abs(omega);
+  PieceDissipation out;
+  out.value = size * k.distance;
+  out.fx = -sign * k.direction.y();
+  out.fy = sign * k.direction.x();
+  out.m = sign * (k.distance + c.dot(k.direction));
+  if constexpr (WithCurvature) {
+    out.xx = k.yy / size; // ẑ× turns x to y on both sides
+    out.yy = k.xx / size;
+    out.xy = -k.xy / size;
+    const double vx = v.x() / omega, vy = v.y() / omega;
+    out.xw = -(out.xx * vx + out.xy * vy); // Hessian · ν = 0
+    out.yw = -(out.xy * vx + out.yy * vy);
+    out.ww = -(out.xw * vx + out.yw * vy);
+  }
+  return out;
+}
+
+template <bool WithCurvature>
+PieceDissipation evaluate_piece(const Patch& patch, std::size_t i, const Vec2& v, double omega) {
+  const Patch::Piece& piece = patch.pieces()[i];
+  if (v.squaredNorm() <= std::pow(k_far_ratio * piece.radius * omega, 2))
+    return omega == 0 ? PieceDissipation{}
+                      : evaluate_near<WithCurvature>(patch.edges(piece), piece, v, omega);
+  if (const FarField* far = PatchAccess::far(patch, i))
+    return far->evaluate<WithCurvature>(v, omega);
+  return FarField(patch.edges(piece), piece.edges, piece.traction, piece.radius)
+      .evaluate<WithCurvature>(v, omega);
+}
+
+/// Adds a piece whose centroid is at `arm` from the reference: v_piece = v + ω ẑ×arm.
+template <bool WithCurvature>
+void add_shifted(Dissipation& out, const PieceDissipation& p, const Vec2& arm) {
+  const double x = -arm.y(), y = arm.x();
+  out.h += p.value;
+  out.gradient += Vec3(p.fx, p.fy, p.m + x * p.fx + y * p.fy);
+  if constexpr (WithCurvature) {
+    const double hx = p.xx * x + p.xy * y, hy = p.xy * x + p.yy * y;
+    Mat3& k = out.hessian;
+    k(0, 0) += p.xx;
+    k(0, 1) += p.xy;
+    k(1, 1) += p.yy;
+    k(0, 2) += p.xw + hx;
+    k(1, 2) += p.yw + hy;
+    k(2, 2) += p.ww + 2 * (x * p.xw + y * p.yw) + x * hx + y * hy;
+  }
+}
+
+template <bool WithCurvature>
+Dissipation evaluate_all(const Patch& patch, const Vec2& point, const Vec3& nu) {
+  Dissipation out;
+  const double omega = nu[2];
+  for (std::size_t i = 0; i < patch.pieces().size(); ++i) {
+    const Vec2 arm = patch.pieces()[i].centroid - point;
+    const Vec2 v(nu[0] - omega * arm.y(), nu[1] + omega * arm.x());
+    add_shifted<WithCurvature>(out, evaluate_piece<WithCurvature>(patch, i, v, omega), arm);
+  }
+  if constexpr (WithCurvature) {
+    out.hessian(1, 0) = out.hessian(0, 1);
+    out.hessian(2, 0) = out.hessian(0, 2);
+    out.hessian(2, 1) = out.hessian(1, 2);
+  }
+  return out;
+}
+
+/// ∬ w (1, r, |r|²) dA of one piece, r from its centroid.
+struct TractionMoments {
+  double force = 0;
+  Vec2 first{0, 0};
+  double polar = 0;
+};
+
+/// Triangle by triangle (centroid, a, b), with ∬ λ₁ᵖλ₂^q dA = 2·area p! q!/(p+q+2)!.
+TractionMoments moments_of(const PatchEdge* edges, const Patch::Piece& piece) {
+  TractionMoments out;
+  const Vec2& g = piece.traction.gradient;
+  const double w = piece.traction.at_centroid;
+  out.force = w * piece.area;
+  for (std::size_t i = 0; i < piece.edges; ++i) {
+    const PatchEdge& e = edges[i];
+    const Vec2 &a = e.start, b = e.start + e.along * e.length, s = a + b;
+    const double twice_area = cross(e.start, e.along) * e.length;
+    const double aa = a.squaredNorm(), bb = b.squaredNorm(), ab = a.dot(b);
+    const double ga = g.dot(a), gb = g.dot(b);
+    out.polar += twice_area / 24 * w * (s.squaredNorm() + aa + bb);
+    out.first += twice_area / 24 * ((ga + gb) * s + ga * a + gb * b);
+    out.polar += twice_area / 60 * ((ga + gb) * (aa + bb + 2 * ab) + 2 * (ga * aa + gb * bb));
+  }
+  return out;
+}
+
+void require_traction(double w) {
+  if (!(w >= 0) || !std::isfinite(w))
+    throw std::invalid_argument("the traction of a friction patch (interfaces × friction "
+                                "coefficient × pressure) must be a finite number, not negative");
+}
+
+} // namespace
+
+void Patch::clear(const Vec2& reference) {
+  reference_ = reference;
+  pieces_.clear();
+  edges_.clear();
+  far_.clear();
+  area_ = force_ = polar_ = 0;
+  moment_.setZero();
+}
+
+void Patch::add_ring(const Ring& ring, const Vec2& centroid, double& radius) {
+  bool opens = true;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 a = ring[i] - centroid, b = ring[i + 1 == ring.size() ? 0 : i + 1] - centroid;
+    const double length = (b - a).norm();
+    radius = std::max(radius, a.norm());
+    if (length == 0)
+      continue;
+    edges_.push_back({a, (b - a) / length, length, std::exchange(opens, false)});
+  }
+}
+
+void Patch::add(const Polygon& polygon, double traction) { add(polygon, Traction{traction, {0, 0}}); }
+
+void Patch::add(const Region& region, double traction) {
+  for (const Polygon& polygon : region)
+    add(polygon, traction);
+}
+
+void Patch::add(const Polygon& polygon, const Traction& traction) {
+  require_traction(traction.at_centroid);
+  const double a = steplap::area(polygon);
+  if (!(a > 0) || traction.at_centroid == 0)
+    return;
+  Piece piece;
+  piece.centroid = steplap::centroid(polygon);
+  piece.traction = traction;
+  piece.area = a;
+  piece.first_edge = edges_.size();
+  add_ring(polygon.outer, piece.centroid, piece.radius);
+  for (const Ring& hole : polygon.holes)
+    add_ring(hole, piece.centroid, piece.radius);
+  piece.edges = edges_.size() - piece.first_edge;
+
+  if (!traction.gradient.isZero(0))
+    for (std::size_t i = piece.first_edge; i < edges_.size(); ++i)
+      require_traction(traction.at_centroid + traction.gradient.dot(edges_[i].start));
+
+  const TractionMoments moments = moments_of(edges(piece), piece);
+  const Vec2 centre = piece.centroid + moments.first / moments.force;
+  const double polar = moments.polar - moments.first.squaredNorm() / moments.force;
+  const Vec2 apart = centre - (force_ > 0 ? centroid() : centre);
+  polar_ += polar + force_ * moments.force / (force_ + moments.force) * apart.squaredNorm();
+  area_ += a;
+  force_ += moments.force;
+  moment_ += moments.force * centre;
+  if (!far_.empty())
+    far_.emplace_back(edges(piece), piece.edges, traction, piece.radius);
+  pieces_.push_back(piece);
+}
+
+void Patch::prepare() {
+  for (std::size_t i = far_.size(); i < pieces_.size(); ++i)
+    far_.emplace_back(edges(pieces_[i]), pieces_[i].edges, pieces_[i].traction, pieces_[i].radius);
+}
+
+double Patch::gyration() const { return std::sqrt(polar_ / force_); }
+
+Dissipation evaluate(const Patch& patch, const Vec3& nu) {
+  return evaluate_all<true>(patch, patch.reference(), nu);
+}
+Dissipation evaluate_gradient(const Patch& patch, const Vec3& nu) {
+  return evaluate_all<false>(patch, patch.reference(), nu);
+}
+Dissipation evaluate_about(const Patch& patch, const Vec2& point, const Vec3& nu) {
+  return evaluate_all<true>(patch, point, nu);
+}
+Dissipation evaluate_gradient_about(const Patch& patch, const Vec2& point, const Vec3& nu) {
+  return evaluate_all<false>(patch, point, nu);
+}
+
+} // namespace steplap
