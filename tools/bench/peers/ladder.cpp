@@ -1,0 +1,76 @@
+#include "ladder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+namespace steplap::peers {
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+void write_csv(std::FILE* file, const std::vector<Rung>& rungs) {
+  std::fprintf(file, "problem,program,setting,error,cpu_ms,steps,evaluations,events\n");
+  for (const Rung& r : rungs)
+    std::fprintf(file, "%s,%s,%s,%.6e,%.6f,%ld,%ld,%ld\n", r.problem.c_str(), r.program.c_str(),
+                 r.setting.c_str(), r.error, r.cpu_ms, r.steps, r.evaluations, r.events);
+}
+
+void print_table(const std::vector<Rung>& rungs) {
+  std::printf("%-22s %-22s %-10s %10s %12s %9s %11s %7s\n", "problem", "program", "setting",
+              "error", "CPU ms", "steps", "evaluations", "events");
+  for (const Rung& r : rungs)
+    std::printf("%-22s %-22s %-10s %10.2e %12.4f %9ld %11ld %7ld\n", r.problem.c_str(),
+                r.program.c_str(), r.setting.c_str(), r.error, r.cpu_ms, r.steps, r.evaluations,
+                r.events);
+}
+
+double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem,
+                 const std::string& program, double error) {
+  std::vector<std::pair<double, double>> front; // error, time
+  for (const Rung& r : rungs)
+    if (r.problem == problem && r.program == program && std::isfinite(r.error))
+      front.emplace_back(std::max(r.error, 1e-16), r.cpu_ms);
+  std::sort(front.begin(), front.end());
+  double best = -1.0;
+  for (const auto& [e, ms] : front)
+    if (e <= error && (best < 0.0 || ms < best)) best = ms;
+  for (const auto& [e_low, ms_low] : front) {
+    for (const auto& [e_high, ms_high] : front) {
+      if (e_low > error || e_high <= error || ms_high >= ms_low) continue;
+      const double share = std::log(error / e_low) / std::log(e_high / e_low);
+      const double ms = ms_low * std::pow(ms_high / ms_low, share);
+      // Neighbours only: a rung between them would give a tighter pair of its own.
+      const bool neighbours = std::none_of(front.begin(), front.end(), [&](const auto& p) {
+        return p.first > e_low && p.first < e_high;
+      });
+      if (neighbours && ms < best) best = ms;
+    }
+  }
+  return best;
+}
+
+void print_summary(const std::vector<Rung>& rungs) {
+  std::vector<std::pair<std::string, std::string>> seen;
+  std::printf("\n%-22s %-22s %12s %12s %12s   (CPU ms at error)\n", "problem", "program", "1e-3",
+              "1e-6", "1e-9");
+  for (const Rung& r : rungs) {
+    const std::pair<std::string, std::string> key{r.problem, r.program};
+    if (std::find(seen.begin(), seen.end(), key) != seen.end()) continue;
+    seen.push_back(key);
+    std::printf("%-22s %-22s", r.problem.c_str(), r.program.c_str());
+    for (const double error : {1e-3, 1e-6, 1e-9}) {
+      const double ms = cpu_ms_at(rungs, r.problem, r.program, error);
+      if (ms < 0.0)
+        std::printf(" %12s", "-");
+      else
+        std::printf(" %12.4f", ms);
+    }
+    std::printf("\n");
+  }
+}
+
+} // namespace steplap::peers

@@ -1,0 +1,52 @@
+#pragma once
+
+// What every peer reports: one row per rung of a ladder of settings.
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace steplap::peers {
+
+struct Rung {
+  std::string problem;
+  std::string program;
+  std::string setting; // a tolerance or a step size
+  double error = 0.0;
+  double cpu_ms = 0.0; // integration alone, least of several runs
+  long steps = 0;
+  long evaluations = 0;
+  long events = 0;
+};
+
+// CPU seconds of this thread.
+[[nodiscard]] double cpu_seconds();
+
+// Least CPU time in milliseconds of repeated runs; short runs are repeated more often.
+template <class F> [[nodiscard]] double least_ms(F run, double budget_seconds = 0.2) {
+  double least = 1e300;
+  double spent = 0.0;
+  for (int i = 0; i < 400 && (i < 3 || spent < budget_seconds); ++i) {
+    const double start = cpu_seconds();
+    run();
+    const double elapsed = cpu_seconds() - start;
+    spent += elapsed;
+    if (elapsed < least) least = elapsed;
+  }
+  return 1e3 * least;
+}
+
+// problem,program,setting,error,cpu_ms,steps,evaluations,events
+void write_csv(std::FILE* file, const std::vector<Rung>& rungs);
+
+void print_table(const std::vector<Rung>& rungs);
+
+// CPU time at an error, by straight lines in the logarithms between the rungs of
+// the Pareto set; negative if no rung reaches it.
+[[nodiscard]] double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem,
+                               const std::string& program, double error);
+
+// One line per problem and program: CPU time at errors 1e-3, 1e-6, 1e-9.
+void print_summary(const std::vector<Rung>& rungs);
+
+} // namespace steplap::peers
