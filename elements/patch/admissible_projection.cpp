@@ -1,6 +1,6 @@
 #include "elements/patch/admissible_projection.h"
 
-#include "elements/patch/scaled_patch.h"
+#include "elements/patch/gauge.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -12,20 +12,24 @@ namespace steplap {
 namespace {
 
 constexpr int k_max_newton = 100;
-constexpr double k_tolerance = 1e-11; // on z + ∇h(η), in units of the capacity
-constexpr double k_rank = 1e-12;      // eigenvalues of A below this share of the largest: zero
-constexpr double k_no_slip = 1e-15;   // η below this share of b is rounding of b + A z
+constexpr double k_tolerance = 1e-11;       // on z + ∇h(η), in units of the capacity
+constexpr double k_gauge_tolerance = 1e-10; // on the direction; u is good to its square
+constexpr double k_rank = 1e-12;    // eigenvalues of A below this share of the largest: zero
+constexpr double k_no_slip = 1e-15; // η below this share of b is rounding of b + A z
 
 /// Pseudo-inverse and range of a symmetric positive semidefinite matrix.
 struct Inverse {
   Mat3 inverse = Mat3::Zero();
   Mat3 range = Mat3::Zero(); ///< projector
+  bool full = true;
   explicit Inverse(const Mat3& a) {
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(a);
     for (int i = 0; i < 3; ++i) {
       const double value = eigen.eigenvalues()[i];
-      if (!(value > k_rank * eigen.eigenvalues()[2]))
+      if (!(value > k_rank * eigen.eigenvalues()[2])) {
+        full = false;
         continue;
+      }
       const Mat3 axis = eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
       inverse += axis / value;
       range += axis;
@@ -37,7 +41,8 @@ struct Inverse {
 struct Point {
   Vec3 z, eta;
   Dissipation d;
-  [[nodiscard]] double value(const Mat3& a) const { return 0.5 * z.dot(a * z) + d.h; }
+  /// ½ zᵀA z + h, with A z taken as η − b: a stiff A would drown it in rounding.
+  [[nodiscard]] double value(const Vec3& b) const { return 0.5 * z.dot(eta - b) + d.h; }
   [[nodiscard]] Vec3 residual() const { return z + d.gradient; }
 };
 
@@ -56,36 +61,32 @@ Point start_opposed(const ScaledPatch& patch, const Mat3& a, const Vec3& b, cons
 
 /// On the ray η = −λn, n the normal at which the unlimited wrench z0 leaves the set: there the
 /// dual has its minimum at λ = (n·z0 − h(n))/(n·A⁻¹n). Good when z0 is only just outside.
-Point start_on_ray(const ScaledPatch& patch, const Inverse& inverse, const Vec3& z0, const Vec3& n,
-                   int& evaluations) {
-  const Dissipation d = patch.evaluate(n);
-  ++evaluations;
-  const Vec3 along = inverse.inverse * n;
-  const double lambda = (n.dot(z0) - d.h) / n.dot(along);
-  return point_at(patch, z0 - lambda * along, -lambda * (inverse.range * n), evaluations);
-}
-
-bool acceptable(double value0, double slope0, double value, double slope, double step) {
-  const double rounding = 1e-14 * (1 + std::abs(value0));
-  return value <= value0 + 1e-4 * step * slope0 ||
-         (std::abs(slope) <= 0.5 * std::abs(slope0) && value <= value0 + rounding);
+Point start_on_ray(const ScaledPatch& patch, const Mat3& a, const Vec3& b, const Inverse& inverse,
+                   const Vec3& z0, const Gauge& exit, int& evaluations) {
+  const Vec3 n = exit.y, along = inverse.inverse * n;
+  const double used = z0.norm() * exit.value; // n·z0 / h(n) > 1
+  const double lambda = n.dot(z0) * (1 - 1 / used) / n.dot(along);
+  // among the wrenches that hold b, start from the one that uses least
+  Vec3 z = z0.norm() * exit.wrench - lambda * along;
+  const Vec3 eta = -lambda * n;
+  for (int i = 0; i < 2; ++i)
+    z += inverse.inverse * (eta - b - a * z); // η small beside b: keep b + A z = η to rounding
+  return point_at(patch, z, eta, evaluations);
 }
 
 /// Newton on the dual; true when the residual is within tolerance.
-bool minimise(const ScaledPatch& patch, const Mat3& a, Point& p, int& evaluations) {
+bool minimise(const ScaledPatch& patch, const Mat3& a, const Vec3& b, Point& p, int& evaluations) {
   for (int i = 0; i < k_max_newton; ++i) {
     const Vec3 residual = p.residual();
-    if (residual.norm() <= k_tolerance)
-      return true;
+    if (residual.norm() <= k_tolerance) return true;
     const Mat3 matrix = Mat3::Identity() + p.d.hessian * a;
     const Vec3 dz = -matrix.partialPivLu().solve(residual);
     const Vec3 d_eta = a * dz;
-    const double value0 = p.value(a), slope0 = d_eta.dot(residual);
+    const double value0 = p.value(b), slope0 = d_eta.dot(residual);
     Point next = p;
     for (double s = 1; s > 1e-9; s *= 0.5) {
       next = point_at(patch, p.z + s * dz, p.eta + s * d_eta, evaluations);
-      if (acceptable(value0, slope0, next.value(a), next.residual().dot(d_eta), s))
-        break;
+      if (is_acceptable(value0, slope0, next.value(b), next.residual().dot(d_eta), s)) break;
     }
     p = next;
   }
@@ -106,28 +107,32 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility,
   const Mat3 a = scaled.scaled_mobility(mobility);
   const Vec3 b = scaled.scaled_twist(free_acceleration);
   const Inverse inverse(a);
-  const Vec3 z0 = -inverse.inverse * b;
-  const bool reachable = (b - inverse.range * b).norm() <= 1e-9 * b.norm();
+  Vec3 z0 = -inverse.inverse * b; // holds b, as far as any wrench can
+  z0 -= inverse.inverse * (b + a * z0);
+  const bool holdable = (b - inverse.range * b).norm() <= k_rank * b.norm();
+  const double size = z0.norm();
+  if (holdable && size == 0) return out;
 
-  const RequiredPressure need = required_pressure(patch, scaled.wrench(z0), -warm);
-  out.evaluations = need.evaluations;
-  if (reachable && need.u <= 1) {
-    out.wrench = scaled.wrench(z0);
-    return out;
+  Gauge need;
+  if (holdable) {
+    // Of all wrenches that hold b, the one that uses least of the capacity.
+    need = find_gauge(scaled, z0 / size, Vec3::Zero(), k_gauge_tolerance, inverse.range);
+    out.evaluations = need.evaluations;
+    if (size * need.value <= 1) {
+      out.wrench = scaled.wrench(inverse.full ? z0 : Vec3(size * need.wrench));
+      return out;
+    }
   }
-  Point p = start_opposed(scaled, a, b, warm.isZero(0) ? b : scaled.scaled_twist(warm),
-                          out.evaluations);
-  if (reachable) {
-    const Point q = start_on_ray(scaled, inverse, z0, scaled.scaled_twist(need.direction),
-                                 out.evaluations);
-    if (q.value(a) < p.value(a))
-      p = q;
+  Point p =
+      start_opposed(scaled, a, b, warm.isZero(0) ? b : scaled.scaled_twist(warm), out.evaluations);
+  if (holdable) {
+    const Point q = start_on_ray(scaled, a, b, inverse, z0, need, out.evaluations);
+    if (q.value(b) < p.value(b)) p = q;
   }
-  out.converged = minimise(scaled, a, p, out.evaluations);
+  out.converged = minimise(scaled, a, b, p, out.evaluations);
   out.slips = p.eta.norm() > k_no_slip * b.norm();
   out.wrench = scaled.wrench(out.slips ? Vec3(-p.d.gradient) : p.z);
-  if (out.slips)
-    out.acceleration = scaled.twist(p.eta);
+  if (out.slips) out.acceleration = scaled.twist(p.eta);
   return out;
 }
 

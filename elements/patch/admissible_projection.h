@@ -19,13 +19,13 @@ struct AdmissibleWrench {
   Vec3 wrench = Vec3::Zero();       ///< W on b, about the patch's reference [N, N, N m]
   Vec3 acceleration = Vec3::Zero(); ///< η = A W + b [m/s², m/s², rad/s²]; zero when it sticks
   bool slips = false;
-  int evaluations = 0;              ///< of h
+  int evaluations = 0; ///< of h
   bool converged = true;
 };
 
 /// Solves the problem above. `warm`, if not zero, is a slip direction to start from. An empty
-/// patch gives W = 0, slipping at b. Where A is singular and the minimiser not unique, a sticking
-/// W is the one of least (scaled) norm.
+/// patch gives W = 0, slipping at b. Where A is singular many wrenches may hold b; then the
+/// sticking W is the one that uses least of the capacity.
 [[nodiscard]] AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility,
                                                  const Vec3& free_acceleration,
                                                  const Vec3& warm = Vec3::Zero());

@@ -31,8 +31,8 @@ struct Traction {
 
 /// Integrals of traction × (|r|, r/|r|, (I−uuᵀ)/|r|) over the piece, r from the centre of rotation.
 struct CentreIntegrals {
-  double distance = 0;      ///< ∬ w |r| dA [N m]
-  Vec2 direction{0, 0};     ///< ∬ w r/|r| dA [N]
+  double distance = 0;           ///< ∬ w |r| dA [N m]
+  Vec2 direction{0, 0};          ///< ∬ w r/|r| dA [N]
   double xx = 0, xy = 0, yy = 0; ///< ∬ w (I−uuᵀ)/|r| dA [N/m]
 };
 

@@ -21,9 +21,13 @@ using ExactRing = CGAL::Polygon_2<Exact>;
 using Predicates = CGAL::Exact_predicates_inexact_constructions_kernel; // doubles, exact decisions
 using Point = Predicates::Point_2;
 
-Point point(const Vec2& p) { return {p.x(), p.y()}; }
+Point point(const Vec2& p) {
+  return {p.x(), p.y()};
+}
 
-std::size_t next(std::size_t i, std::size_t n) { return i + 1 == n ? 0 : i + 1; }
+std::size_t next(std::size_t i, std::size_t n) {
+  return i + 1 == n ? 0 : i + 1;
+}
 
 struct Box {
   Vec2 low, high;
@@ -39,9 +43,8 @@ Box edge_box(const Ring& r, std::size_t i) {
 
 bool edges_meet(const Ring& r, std::size_t i, const Ring& q, std::size_t j) {
   return !edge_box(r, i).apart(edge_box(q, j)) &&
-         CGAL::do_intersect(
-             Predicates::Segment_2(point(r[i]), point(r[next(i, r.size())])),
-             Predicates::Segment_2(point(q[j]), point(q[next(j, q.size())])));
+         CGAL::do_intersect(Predicates::Segment_2(point(r[i]), point(r[next(i, r.size())])),
+                            Predicates::Segment_2(point(q[j]), point(q[next(j, q.size())])));
 }
 
 /// Consecutive edges a-b, b-c: they meet beyond b only when the second runs back over the first.
@@ -55,11 +58,9 @@ bool folds_back(const Ring& r, std::size_t i) {
 std::optional<std::array<std::size_t, 4>> clash_within(const Ring& r, std::size_t index) {
   const std::size_t n = r.size();
   for (std::size_t i = 0; i < n; ++i) {
-    if (folds_back(r, i))
-      return std::array{index, index, i, next(i, n)};
+    if (folds_back(r, i)) return std::array{index, index, i, next(i, n)};
     for (std::size_t j = i + 2; j < n; ++j)
-      if (next(j, n) != i && edges_meet(r, i, r, j))
-        return std::array{index, index, i, j};
+      if (next(j, n) != i && edges_meet(r, i, r, j)) return std::array{index, index, i, j};
   }
   return std::nullopt;
 }
@@ -92,9 +93,8 @@ Ring rounded(const ExactRing& ring) {
 }
 
 /// Marks for each finite triangle whether it is inside: crossing an edge of a ring changes it.
-using Triangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Predicates, CGAL::Default,
-                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
+using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
+    Predicates, CGAL::Default, CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
 std::vector<Triangulation::Face_handle> faces_inside(const Triangulation& mesh) {
   std::map<Triangulation::Face_handle, int> depth{{mesh.infinite_face(), 0}};
@@ -105,11 +105,9 @@ std::vector<Triangulation::Face_handle> faces_inside(const Triangulation& mesh) 
     for (int i = 0; i < 3; ++i) {
       const auto neighbour = face->neighbor(i);
       const int there = depth[face] + (mesh.is_constrained({face, i}) ? 1 : 0);
-      if (!depth.emplace(neighbour, there).second)
-        continue;
+      if (!depth.emplace(neighbour, there).second) continue;
       stack.push_back(neighbour);
-      if (there % 2 == 1)
-        inside.push_back(neighbour);
+      if (there % 2 == 1) inside.push_back(neighbour);
     }
   }
   return inside;
@@ -119,13 +117,11 @@ std::vector<Triangulation::Face_handle> faces_inside(const Triangulation& mesh) 
 
 std::optional<std::array<std::size_t, 4>> find_clash(const std::vector<Ring>& rings) {
   for (std::size_t a = 0; a < rings.size(); ++a) {
-    if (const auto clash = clash_within(rings[a], a))
-      return clash;
+    if (const auto clash = clash_within(rings[a], a)) return clash;
     for (std::size_t b = a + 1; b < rings.size(); ++b)
       for (std::size_t i = 0; i < rings[a].size(); ++i)
         for (std::size_t j = 0; j < rings[b].size(); ++j)
-          if (edges_meet(rings[a], i, rings[b], j))
-            return std::array{a, b, i, j};
+          if (edges_meet(rings[a], i, rings[b], j)) return std::array{a, b, i, j};
   }
   return std::nullopt;
 }

@@ -12,6 +12,14 @@ namespace {
 // Exact for polynomials of degree 19: the moments of order 18 times a linear traction.
 constexpr int k_nodes = 10;
 
+/// 1/n
+constexpr auto k_inverse = [] {
+  std::array<double, FarField::k_order + 4> inverse{};
+  for (int n = 1; n < FarField::k_order + 4; ++n)
+    inverse[n] = 1.0 / n;
+  return inverse;
+}();
+
 struct GaussRule {
   std::array<double, k_nodes> x{}, w{}; // on [0, 1]
 };
@@ -43,20 +51,33 @@ constexpr auto k_root = [] {
   return b;
 }();
 
-/// Highest order that still matters at x = |κ|R ≤ 1/6: x^(n−2), the worst of g and its
-/// derivatives, falls below 1e-17.
-int needed_order(double x) {
-  if (x < 1e-12)
-    return 4;
-  const int n = 3 + static_cast<int>(39.2 / -std::log(x)); // 39.2 > −ln 1e-17
-  return std::min(n, FarField::k_order);
-}
+/// 1, κ, κ² … with first and second derivatives.
+struct Powers {
+  std::array<double, FarField::k_order + 1> p{}, p1{}, p2{};
+  Powers(double kappa, int order) {
+    p[0] = 1;
+    for (int n = 1; n <= order; ++n) {
+      p[n] = p[n - 1] * kappa;
+      p1[n] = n * p[n - 1];
+      p2[n] = n * p1[n - 1];
+    }
+  }
+};
 
 } // namespace
 
+// x^(n−2), the worst of g and its derivatives, is to fall below 2^-57. From the binary exponent of
+// x⁴: x < 2^(-k/4).
+int FarField::needed_order(double x) {
+  constexpr int bits = 57;
+  if (x < 0x1p-57) return 3;
+  const int k = -1 - std::ilogb(x * x * x * x);
+  return std::min(2 + (4 * bits + k - 1) / k, k_order);
+}
+
 FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& traction,
-                   double radius)
-    : radius_(radius) {
+                   double radius, int order)
+    : radius_(radius), order_(order) {
   // Moments of degree n over the triangle (centroid, edge): 2·area/(n+2) ∫₀¹ on the edge.
   static const GaussRule rule = gauss_rule();
   for (std::size_t e = 0; e < count; ++e) {
@@ -64,42 +85,46 @@ FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& tr
     const double twice_area = cross(edge.start, edge.along) * edge.length;
     for (int i = 0; i < k_nodes; ++i) {
       const Vec2 r = edge.start + edge.along * (edge.length * rule.x[i]);
-      const double w0 = rule.w[i] * twice_area * traction.at_centroid;
-      const double w1 = rule.w[i] * twice_area * traction.gradient.dot(r);
-      const double zx = r.x() / radius, zy = r.y() / radius, square = zx * zx + zy * zy;
-      double px = 1, py = 0; // z^l
-      for (int l = 0; l <= k_order; ++l) {
-        double fx = px, fy = py;
-        for (int k = 0; l + 2 * k <= k_order; ++k) {
-          const int n = l + 2 * k;
-          const double w = w0 / (n + 2) + w1 / (n + 3);
-          a_[l * k_row + k] += std::complex<double>(w * fx, w * fy);
-          fx *= square;
-          fy *= square;
-        }
-        const double turned = px * zx - py * zy;
-        py = px * zy + py * zx;
-        px = turned;
-      }
+      const double w = rule.w[i] * twice_area;
+      add_node(r / radius, w * traction.at_centroid, w * traction.gradient.dot(r));
     }
   }
   std::complex<double> turn = 1; // i^l
-  for (int l = 0; l <= k_order; ++l, turn *= std::complex<double>(0, 1))
-    for (int k = 0; l + 2 * k <= k_order; ++k)
+  for (int l = 0; l <= order_; ++l, turn *= std::complex<double>(0, 1))
+    for (int k = 0; l + 2 * k <= order_; ++k)
       a_[l * k_row + k] *= turn * ((l > 0 ? 2 : 1) * k_root[k + l] * k_root[k]);
+}
+
+void FarField::add_node(const Vec2& z, double uniform, double linear) {
+  std::array<double, k_order + 1> weight{};
+  std::array<double, k_row> square{};
+  for (int n = 0; n <= k_order; ++n)
+    weight[n] = uniform * k_inverse[n + 2] + linear * k_inverse[n + 3];
+  square[0] = 1;
+  for (int k = 1; k < k_row; ++k)
+    square[k] = square[k - 1] * z.squaredNorm();
+  double px = 1, py = 0; // z^l
+  for (int l = 0; l <= order_; ++l) {
+    double* row = reinterpret_cast<double*>(&a_[l * k_row]); // re, im, re, im …
+    for (int k = 0; l + 2 * k <= order_; ++k) {
+      const double w = weight[l + 2 * k] * square[k];
+      row[2 * k] += w * px;
+      row[2 * k + 1] += w * py;
+    }
+    const double turned = px * z.x() - py * z.y();
+    py = px * z.y() + py * z.x();
+    px = turned;
+  }
 }
 
 template <bool WithCurvature>
 PieceDissipation FarField::evaluate(const Vec2& v, double omega) const {
-  const double speed = std::hypot(v.x(), v.y());
+  const double speed = std::sqrt(v.x() * v.x() + v.y() * v.y());
   const double cx = v.x() / speed, cy = v.y() / speed;
   const double kappa = omega * radius_ / speed;
-  const int order = needed_order(std::abs(kappa));
+  const int order = std::min(order_, needed_order(std::abs(kappa)));
 
-  std::array<double, k_order + 1> power{}; // κⁿ
-  power[0] = 1;
-  for (int n = 1; n <= order; ++n)
-    power[n] = power[n - 1] * kappa;
+  const Powers power(kappa, order);
 
   double g = 0, g_k = 0, g_p = 0, g_kk = 0, g_kp = 0, g_pp = 0;
   double ex = 1, ey = 0; // e^{−ilφ}
@@ -108,19 +133,14 @@ PieceDissipation FarField::evaluate(const Vec2& v, double omega) const {
     const std::complex<double>* a = &a_[l * k_row];
     for (int n = l; n <= order; n += 2, ++a) {
       const double re = a->real(), im = a->imag();
-      r0x += power[n] * re;
-      r0y += power[n] * im;
-      if (n >= 1) {
-        const double p = n * power[n - 1];
-        r1x += p * re;
-        r1y += p * im;
+      r0x += power.p[n] * re;
+      r0y += power.p[n] * im;
+      r1x += power.p1[n] * re;
+      r1y += power.p1[n] * im;
+      if constexpr (WithCurvature) {
+        r2x += power.p2[n] * re;
+        r2y += power.p2[n] * im;
       }
-      if constexpr (WithCurvature)
-        if (n >= 2) {
-          const double p = n * (n - 1) * power[n - 2];
-          r2x += p * re;
-          r2y += p * im;
-        }
     }
     // Re(e·r) and, for d/dφ, Re(−il e·r) = l Im(e·r)
     const double im0 = ex * r0y + ey * r0x, re0 = ex * r0x - ey * r0y;

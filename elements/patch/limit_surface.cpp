@@ -47,7 +47,8 @@ PieceDissipation evaluate_piece(const Patch& patch, std::size_t i, const Vec2& v
                       : evaluate_near<WithCurvature>(patch.edges(piece), piece, v, omega);
   if (const FarField* far = PatchAccess::far(patch, i))
     return far->evaluate<WithCurvature>(v, omega);
-  return FarField(patch.edges(piece), piece.edges, piece.traction, piece.radius)
+  const int order = FarField::needed_order(std::abs(omega) * piece.radius / v.norm());
+  return FarField(patch.edges(piece), piece.edges, piece.traction, piece.radius, order)
       .evaluate<WithCurvature>(v, omega);
 }
 
@@ -135,13 +136,14 @@ void Patch::add_ring(const Ring& ring, const Vec2& centroid, double& radius) {
     const Vec2 a = ring[i] - centroid, b = ring[i + 1 == ring.size() ? 0 : i + 1] - centroid;
     const double length = (b - a).norm();
     radius = std::max(radius, a.norm());
-    if (length == 0)
-      continue;
+    if (length == 0) continue;
     edges_.push_back({a, (b - a) / length, length, std::exchange(opens, false)});
   }
 }
 
-void Patch::add(const Polygon& polygon, double traction) { add(polygon, Traction{traction, {0, 0}}); }
+void Patch::add(const Polygon& polygon, double traction) {
+  add(polygon, Traction{traction, {0, 0}});
+}
 
 void Patch::add(const Region& region, double traction) {
   for (const Polygon& polygon : region)
@@ -151,8 +153,7 @@ void Patch::add(const Region& region, double traction) {
 void Patch::add(const Polygon& polygon, const Traction& traction) {
   require_traction(traction.at_centroid);
   const double a = steplap::area(polygon);
-  if (!(a > 0) || traction.at_centroid == 0)
-    return;
+  if (!(a > 0) || traction.at_centroid == 0) return;
   Piece piece;
   piece.centroid = steplap::centroid(polygon);
   piece.traction = traction;
@@ -175,8 +176,7 @@ void Patch::add(const Polygon& polygon, const Traction& traction) {
   area_ += a;
   force_ += moments.force;
   moment_ += moments.force * centre;
-  if (!far_.empty())
-    far_.emplace_back(edges(piece), piece.edges, traction, piece.radius);
+  if (!far_.empty()) far_.emplace_back(edges(piece), piece.edges, traction, piece.radius);
   pieces_.push_back(piece);
 }
 
@@ -185,7 +185,9 @@ void Patch::prepare() {
     far_.emplace_back(edges(pieces_[i]), pieces_[i].edges, pieces_[i].traction, pieces_[i].radius);
 }
 
-double Patch::gyration() const { return std::sqrt(polar_ / force_); }
+double Patch::gyration() const {
+  return std::sqrt(polar_ / force_);
+}
 
 Dissipation evaluate(const Patch& patch, const Vec3& nu) {
   return evaluate_all<true>(patch, patch.reference(), nu);

@@ -48,17 +48,19 @@ public:
   /// it must not be negative at any vertex.
   void add(const Polygon& polygon, const Traction& traction);
 
-  /// Tabulates the expansions of all pieces (about 2 µs each), for patches evaluated many times.
-  /// Without it a far evaluation makes the table it needs and forgets it.
+  /// Tabulates the expansions of all pieces (about 7 µs each), for patches evaluated many times.
+  /// Without it a far evaluation makes the part of the table that it needs and forgets it.
   void prepare();
 
   [[nodiscard]] bool empty() const { return pieces_.empty(); }
   [[nodiscard]] const Vec2& reference() const { return reference_; }
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
-  [[nodiscard]] const PatchEdge* edges(const Piece& p) const { return edges_.data() + p.first_edge; }
+  [[nodiscard]] const PatchEdge* edges(const Piece& p) const {
+    return edges_.data() + p.first_edge;
+  }
 
-  [[nodiscard]] double area() const { return area_; }         ///< [m²]
-  [[nodiscard]] double force() const { return force_; }       ///< ∬ w dA [N]: capacity in translation
+  [[nodiscard]] double area() const { return area_; }   ///< [m²]
+  [[nodiscard]] double force() const { return force_; } ///< ∬ w dA [N]: capacity in translation
   [[nodiscard]] Vec2 centroid() const { return moment_ / force_; } ///< of the traction [m]
   /// Radius of gyration of the traction about centroid() [m].
   [[nodiscard]] double gyration() const;

@@ -13,23 +13,21 @@ void place(const Ring& ring, const Pose& pose, Ring& out) {
   const double c = std::cos(pose.theta), s = std::sin(pose.theta);
   out.resize(ring.size());
   for (std::size_t i = 0; i < ring.size(); ++i)
-    out[i] = {c * ring[i].x() - s * ring[i].y() + pose.x, s * ring[i].x() + c * ring[i].y() + pose.y};
+    out[i] = {c * ring[i].x() - s * ring[i].y() + pose.x,
+              s * ring[i].x() + c * ring[i].y() + pose.y};
 }
 
 /// out := the part of the convex ring on the left of the line through p and q.
 void clip(const Ring& ring, const Vec2& p, const Vec2& q, Ring& out) {
   out.clear();
-  if (ring.empty())
-    return;
+  if (ring.empty()) return;
   const Vec2 along = q - p;
   Vec2 from = ring.back();
   double d_from = cross(along, from - p);
   for (const Vec2& to : ring) {
     const double d_to = cross(along, to - p);
-    if ((d_from < 0) != (d_to < 0))
-      out.push_back(from + (to - from) * (d_from / (d_from - d_to)));
-    if (d_to >= 0)
-      out.push_back(to);
+    if ((d_from < 0) != (d_to < 0)) out.push_back(from + (to - from) * (d_from / (d_from - d_to)));
+    if (d_to >= 0) out.push_back(to);
     from = to;
     d_from = d_to;
   }
@@ -46,8 +44,7 @@ void clip_convex(const Ring& a, OverlapWorkspace& w) {
 
 /// Empties the region, keeping the storage of its first polygon for the next time.
 void empty_keeping_storage(Region& out, OverlapWorkspace& w) {
-  if (!out.empty())
-    std::swap(w.spare, out.front());
+  if (!out.empty()) std::swap(w.spare, out.front());
   out.clear();
 }
 
@@ -105,8 +102,7 @@ void intersect(const Outline& a, const Outline& b, const Pose& pose, OverlapWork
     place(b.polygon.outer, pose, w.placed);
     clip_convex(a.polygon.outer, w);
     empty_keeping_storage(out, w);
-    if (w.front.size() < 3 || signed_area(w.front) <= least_area)
-      return;
+    if (w.front.size() < 3 || signed_area(w.front) <= least_area) return;
     out.push_back(std::move(w.spare));
     out.front().outer.assign(w.front.begin(), w.front.end());
     out.front().holes.clear();
@@ -121,8 +117,8 @@ double penetration(const Outline& a, const Outline& b, const Pose& pose, Overlap
   for (const Ring& part_b : b.parts) {
     place(part_b, pose, w.placed);
     for (const Ring& part_a : a.parts)
-      deepest = std::max(deepest,
-                         -std::max(widest_gap(part_a, w.placed), widest_gap(w.placed, part_a)));
+      deepest =
+          std::max(deepest, -std::max(widest_gap(part_a, w.placed), widest_gap(w.placed, part_a)));
   }
   return deepest;
 }

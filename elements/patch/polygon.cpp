@@ -94,8 +94,7 @@ TracedRing without_idle_vertices(const Ring& input, const std::string& name) {
 
 /// Counter-clockwise if `ccw`, else clockwise.
 void orient(TracedRing& traced, bool ccw) {
-  if ((signed_area(traced.ring) > 0) == ccw)
-    return;
+  if ((signed_area(traced.ring) > 0) == ccw) return;
   std::reverse(traced.ring.begin(), traced.ring.end());
   std::reverse(traced.from.begin(), traced.from.end());
 }
@@ -119,10 +118,10 @@ void require_simple(const std::vector<TracedRing>& rings) {
     plain.push_back(r.ring);
   if (const auto clash = find_clash(plain)) {
     const auto [a, b, ea, eb] = *clash;
-    throw PolygonError(ring_name(a) + ": " + edge_name(rings[a], ea) + " meets " +
-                       (a == b ? std::string() : ring_name(b) + "'s ") + edge_name(rings[b], eb) +
-                       (a == b ? "; a ring must not cross or touch itself"
-                               : "; rings must not cross or touch"));
+    throw PolygonError(
+        ring_name(a) + ": " + edge_name(rings[a], ea) + " meets " +
+        (a == b ? std::string() : ring_name(b) + "'s ") + edge_name(rings[b], eb) +
+        (a == b ? "; a ring must not cross or touch itself" : "; rings must not cross or touch"));
   }
   for (std::size_t i = 1; i < rings.size(); ++i)
     if (!is_inside(plain[i].front(), plain[0]))
@@ -176,8 +175,7 @@ bool is_convex(const Ring& ring) {
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 e = ring[(i + 1) % n] - ring[i];
     const Vec2 f = ring[(i + 2) % n] - ring[(i + 1) % n];
-    if (cross(e, f) < 0)
-      return false;
+    if (cross(e, f) < 0) return false;
     if (e.x() != 0) {
       flips += last * e.x() < 0;
       last = e.x() > 0 ? 1.0 : -1.0;

@@ -33,7 +33,9 @@ public:
 };
 
 /// z component of a × b.
-[[nodiscard]] inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+[[nodiscard]] inline double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 /// Area of a ring [m²], positive when counter-clockwise.
 [[nodiscard]] double signed_area(const Ring& ring);

@@ -17,10 +17,10 @@ namespace steplap {
 
 /// What it takes to bear a wrench.
 struct RequiredPressure {
-  double u = 0;                   ///< share of the capacity; infinite for an empty patch
-  Vec3 direction = Vec3::Zero();  ///< maximiser ν, scaled to |(v at the centroid, gyration·ω)| = 1
-  std::optional<Vec2> centre;     ///< of rotation in a's axes [m]; none at infinity or if W = 0
-  int evaluations = 0;            ///< of h
+  double u = 0;                  ///< share of the capacity; infinite for an empty patch
+  Vec3 direction = Vec3::Zero(); ///< maximiser ν, scaled to |(v at the centroid, gyration·ω)| = 1
+  std::optional<Vec2> centre;    ///< of rotation in a's axes [m]; none at infinity or if W = 0
+  int evaluations = 0;           ///< of h
   bool converged = true;
 
   [[nodiscard]] double margin() const { return 1.0 / u; }
@@ -36,10 +36,10 @@ struct RequiredPressure {
 
 /// What a patch can bear along each axis about its centroid: all that cheap bounds on u need.
 struct Capacity {
-  Vec2 arm{0, 0};     ///< from the patch's reference to the centroid of its traction [m]
-  double force = 0;   ///< in pure translation, the same in every direction [N]
-  double couple = 0;  ///< pure couple; rounded down [N m]
-  double polar = 0;   ///< force × radius of gyration: upper bound of the couple [N m]
+  Vec2 arm{0, 0};    ///< from the patch's reference to the centroid of its traction [m]
+  double force = 0;  ///< in pure translation, the same in every direction [N]
+  double couple = 0; ///< pure couple; rounded down [N m]
+  double polar = 0;  ///< force × radius of gyration: upper bound of the couple [N m]
 };
 
 /// One couple to solve; done once per patch.

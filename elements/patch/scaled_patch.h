@@ -21,7 +21,9 @@ public:
   [[nodiscard]] double force() const { return force_; }
   [[nodiscard]] Vec3 scaled_twist(const Vec3& nu) const { return to_scaled_ * nu; }
   [[nodiscard]] Vec3 twist(const Vec3& y) const { return from_scaled_ * y; }
-  [[nodiscard]] Vec3 scaled_wrench(const Vec3& w) const { return from_scaled_.transpose() * w / force_; }
+  [[nodiscard]] Vec3 scaled_wrench(const Vec3& w) const {
+    return from_scaled_.transpose() * w / force_;
+  }
   [[nodiscard]] Vec3 wrench(const Vec3& w) const { return to_scaled_.transpose() * w * force_; }
   /// Of a matrix that takes wrenches to twists.
   [[nodiscard]] Mat3 scaled_mobility(const Mat3& a) const {
