@@ -32,7 +32,8 @@ enum class FieldType {
   signal,      ///< name of a signal
   element,     ///< name of an element
   elements,    ///< list of names of elements
-  texts        ///< list of free texts
+  texts,       ///< list of free texts
+  file         ///< path of a file, relative to the model file that names it; read as a usable path
 };
 
 /// What a field holds, after reading: units removed, inline markers replaced by a marker's name.

@@ -18,8 +18,12 @@ double sine_minus_argument(double x) {
   if (std::abs(x) > 0.5) return std::sin(x) - x;
   const double y = x * x;
   // Taylor series; the first term left out is x¹⁷/17! < 1e-19 of the first at |x| = 0.5.
-  return x * y * (-1.0 / 6 + y * (1.0 / 120 + y * (-1.0 / 5040 + y * (1.0 / 362880 +
-         y * (-1.0 / 39916800 + y * (1.0 / 6227020800.0 - y / 1307674368000.0))))));
+  return x * y *
+         (-1.0 / 6 +
+          y * (1.0 / 120 +
+               y * (-1.0 / 5040 +
+                    y * (1.0 / 362880 +
+                         y * (-1.0 / 39916800 + y * (1.0 / 6227020800.0 - y / 1307674368000.0))))));
 }
 
 // With x = ωτ: cos(x+φ) = cos φ cos x − sin φ sin x, and
@@ -49,22 +53,27 @@ PieceJet evaluate(const Signal::Piece& piece, double tau) {
   jet.integral = tau * (c[0] + tau * (c[1] / 2 + tau * (c[2] / 3 + tau * (c[3] / 4))));
   jet.double_integral =
       tau * tau * (c[0] / 2 + tau * (c[1] / 6 + tau * (c[2] / 12 + tau * (c[3] / 20))));
-  for (const Signal::Harmonic& h : piece.harmonics) add_harmonic(h, tau, jet);
+  for (const Signal::Harmonic& h : piece.harmonics)
+    add_harmonic(h, tau, jet);
   return jet;
 }
 
 // A bound of the piece's terms up to τ: the scale of its rounding.
 double magnitude(const Signal::Piece& piece, double tau) {
   double sum = 0.0;
-  for (int i = 3; i >= 0; --i) sum = sum * tau + std::abs(piece.c[i]);
-  for (const Signal::Harmonic& h : piece.harmonics) sum += std::abs(h.amplitude);
+  for (int i = 3; i >= 0; --i)
+    sum = sum * tau + std::abs(piece.c[i]);
+  for (const Signal::Harmonic& h : piece.harmonics)
+    sum += std::abs(h.amplitude);
   return sum;
 }
 
 bool is_finite(const Signal::Piece& piece) {
   double sum = piece.start;
-  for (const double c : piece.c) sum += c;
-  for (const Signal::Harmonic& h : piece.harmonics) sum += h.amplitude + h.frequency + h.phase;
+  for (const double c : piece.c)
+    sum += c;
+  for (const Signal::Harmonic& h : piece.harmonics)
+    sum += h.amplitude + h.frequency + h.phase;
   return std::isfinite(sum);
 }
 
@@ -90,11 +99,14 @@ Signal::Signal(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
     }
   accumulate_integrals();
   if (!is_constant())
-    for (const Piece& piece : pieces_) breakpoints_.push_back(piece.start);
+    for (const Piece& piece : pieces_)
+      breakpoints_.push_back(piece.start);
   value_at_zero_ = value(0.0);
 }
 
-Signal Signal::constant(double value) { return Signal({Piece{0.0, {value, 0.0, 0.0, 0.0}, {}}}); }
+Signal Signal::constant(double value) {
+  return Signal({Piece{0.0, {value, 0.0, 0.0, 0.0}, {}}});
+}
 
 // The integrals at the starts, forwards and backwards from the piece that holds t = 0, so that
 // pieces long before t = 0 cost those after it no digits.
@@ -151,9 +163,12 @@ SignalJet Signal::drive(double t, DriveLevel level) const {
     jet.double_integral = p.double_integral + p.integral * (t - p.start);
   }
   switch (level) {
-  case DriveLevel::position: return {jet.value - value_at_zero_, jet.rate, jet.second_rate};
-  case DriveLevel::velocity: return {jet.integral, jet.value, jet.rate};
-  case DriveLevel::acceleration: break;
+  case DriveLevel::position:
+    return {jet.value - value_at_zero_, jet.rate, jet.second_rate};
+  case DriveLevel::velocity:
+    return {jet.integral, jet.value, jet.rate};
+  case DriveLevel::acceleration:
+    break;
   }
   return {jet.double_integral, jet.integral, jet.value};
 }

@@ -31,7 +31,9 @@ FieldTable pulse_fields() {
   return f;
 }
 
-template <class T> std::shared_ptr<SignalDefinition> create() { return std::make_shared<T>(); }
+template <class T> std::shared_ptr<SignalDefinition> create() {
+  return std::make_shared<T>();
+}
 
 template <class T> const T& as(const SignalDefinition& definition) {
   return static_cast<const T&>(definition);
@@ -75,8 +77,9 @@ const SignalKind& constant_kind() {
 
 const SignalKind& haversine_kind() {
   static const SignalKind kind{
-      "haversine", "Raised cosine, peak (1 - cos(2 pi tau / duration)) / 2; its integral is "
-                   "peak duration / 2.",
+      "haversine",
+      "Raised cosine, peak (1 - cos(2 pi tau / duration)) / 2; its integral is "
+      "peak duration / 2.",
       pulse_fields(), create<Pulse>, [](const SignalDefinition& d) {
         const Pulse& p = as<Pulse>(d);
         Piece piece = polynomial(p.start, 0.5 * p.peak);
@@ -88,8 +91,9 @@ const SignalKind& haversine_kind() {
 
 const SignalKind& half_sine_kind() {
   static const SignalKind kind{
-      "half_sine", "Half a sine wave, peak sin(pi tau / duration); its integral is 2/pi peak "
-                   "duration.",
+      "half_sine",
+      "Half a sine wave, peak sin(pi tau / duration); its integral is 2/pi peak "
+      "duration.",
       pulse_fields(), create<Pulse>, [](const SignalDefinition& d) {
         const Pulse& p = as<Pulse>(d);
         Piece piece = polynomial(p.start, 0.0);
@@ -117,17 +121,21 @@ Signal build_triangle(const SignalDefinition& definition) {
   const Triangle& p = as<Triangle>(definition);
   const double rise = p.rise.value_or(0.5 * p.duration);
   if (rise > p.duration)
-    throw ModelError(p.where, "triangle '" + p.name + "' rises longer than it lasts: 'rise' must "
-                              "not exceed 'duration'");
+    throw ModelError(p.where, "triangle '" + p.name +
+                                  "' rises longer than it lasts: 'rise' must "
+                                  "not exceed 'duration'");
   return polygon({{p.start, 0.0}, {p.start + rise, p.peak}, {p.start + p.duration, 0.0}});
 }
 
 const SignalKind& triangle_kind() {
   static const SignalKind kind = [] {
-    SignalKind k{"triangle", "Linear up to the peak and down again; its integral is peak duration / 2.",
+    SignalKind k{"triangle",
+                 "Linear up to the peak and down again; its integral is peak duration / 2.",
                  pulse_fields(), create<Triangle>, build_triangle};
-    k.fields.add("rise", &Triangle::rise).in("s").not_negative().doc(
-        "time from start to peak; half the duration if not given");
+    k.fields.add("rise", &Triangle::rise)
+        .in("s")
+        .not_negative()
+        .doc("time from start to peak; half the duration if not given");
     return k;
   }();
   return kind;
@@ -143,8 +151,9 @@ Signal build_trapezoid(const SignalDefinition& definition) {
   constexpr double k_rounding = 1e-12;
   const double excess = p.rise + p.fall - p.duration;
   if (excess > k_rounding * p.duration)
-    throw ModelError(p.where, "trapezoid '" + p.name + "' rises and falls longer than it lasts: "
-                              "'rise' + 'fall' must not exceed 'duration'");
+    throw ModelError(p.where, "trapezoid '" + p.name +
+                                  "' rises and falls longer than it lasts: "
+                                  "'rise' + 'fall' must not exceed 'duration'");
   const double end = p.start + p.duration;
   const double rise_end = p.start + p.rise;
   const double fall_start = excess > -k_rounding * p.duration ? rise_end : end - p.fall;
@@ -153,13 +162,20 @@ Signal build_trapezoid(const SignalDefinition& definition) {
 
 const SignalKind& trapezoid_kind() {
   static const SignalKind kind = [] {
-    SignalKind k{"trapezoid", "Linear rise, constant peak, linear fall; its integral is peak "
-                              "(duration - rise / 2 - fall / 2).",
+    SignalKind k{"trapezoid",
+                 "Linear rise, constant peak, linear fall; its integral is peak "
+                 "(duration - rise / 2 - fall / 2).",
                  pulse_fields(), create<Trapezoid>, build_trapezoid};
-    k.fields.add("rise", &Trapezoid::rise).in("s").not_negative().required().doc(
-        "time from start to the peak value");
-    k.fields.add("fall", &Trapezoid::fall).in("s").not_negative().required().doc(
-        "time from the peak value to the end; part of the duration");
+    k.fields.add("rise", &Trapezoid::rise)
+        .in("s")
+        .not_negative()
+        .required()
+        .doc("time from start to the peak value");
+    k.fields.add("fall", &Trapezoid::fall)
+        .in("s")
+        .not_negative()
+        .required()
+        .doc("time from the peak value to the end; part of the duration");
     return k;
   }();
   return kind;
@@ -182,7 +198,8 @@ Signal build_harmonics(const SignalDefinition& definition) {
     fail("'amplitudes', 'frequencies' and 'phases' must be of equal length");
   Piece piece = polynomial(h.start, h.offset);
   for (std::size_t i = 0; i < count; ++i) {
-    if (!(h.frequencies[i] > 0.0)) fail("frequencies must be greater than 0; use 'offset' for a constant");
+    if (!(h.frequencies[i] > 0.0))
+      fail("frequencies must be greater than 0; use 'offset' for a constant");
     piece.harmonics.push_back(
         {h.amplitudes[i], 2.0 * k_pi * h.frequencies[i], h.phases.empty() ? 0.0 : h.phases[i]});
   }
@@ -196,15 +213,23 @@ const SignalKind& harmonics_kind() {
     SignalKind k{"harmonics",
                  "offset + sum of amplitude cos(2 pi frequency (t - start) + phase), zero before "
                  "start; a phase of -90 deg makes a sine.",
-                 {}, create<Harmonics>, build_harmonics};
+                 {},
+                 create<Harmonics>,
+                 build_harmonics};
     k.fields.add("offset", &Harmonics::offset).in("*").doc("constant added to the harmonics");
     k.fields.add("amplitudes", &Harmonics::amplitudes).in("*").required().doc("one per harmonic");
-    k.fields.add("frequencies", &Harmonics::frequencies).in("Hz").required().doc(
-        "cycles per second, one per harmonic");
-    k.fields.add("phases", &Harmonics::phases).in("rad").doc("one per harmonic; all 0 if not given");
+    k.fields.add("frequencies", &Harmonics::frequencies)
+        .in("Hz")
+        .required()
+        .doc("cycles per second, one per harmonic");
+    k.fields.add("phases", &Harmonics::phases)
+        .in("rad")
+        .doc("one per harmonic; all 0 if not given");
     k.fields.add("start", &Harmonics::start).in("s").doc("time at which the signal begins");
-    k.fields.add("duration", &Harmonics::duration).in("s").positive().doc(
-        "zero again after this time; endless if not given");
+    k.fields.add("duration", &Harmonics::duration)
+        .in("s")
+        .positive()
+        .doc("zero again after this time; endless if not given");
     return k;
   }();
   return kind;
@@ -214,7 +239,7 @@ const SignalKind& harmonics_kind() {
 
 const std::vector<const SignalKind*>& signal_kinds() {
   static const std::vector<const SignalKind*> kinds{
-      &constant_kind(), &haversine_kind(), &half_sine_kind(), &triangle_kind(),
+      &constant_kind(),  &haversine_kind(), &half_sine_kind(), &triangle_kind(),
       &trapezoid_kind(), &rectangle_kind(), &harmonics_kind()};
   return kinds;
 }
