@@ -34,7 +34,8 @@ Signal make(const std::string& name, const Values& values) {
   return kind.build(*definition);
 }
 
-// Composite Gauss-Legendre with four points on each of n parts of each interval between breakpoints.
+// Composite Gauss-Legendre with four points on each of n parts of each interval between
+// breakpoints.
 double quadrature(const std::function<double(double)>& f, double from, double to,
                   const std::vector<double>& breakpoints) {
   constexpr double x[] = {0.3399810435848563, 0.8611363115940526};
@@ -88,7 +89,8 @@ TEST_CASE("integrals agree with quadrature") {
       const SignalJet jet = signal.drive(t, DriveLevel::acceleration);
       const auto moment = [&](double u) { return (t - u) * f(u); };
       CHECK(jet.acceleration == f(t));
-      CHECK(jet.rate == doctest::Approx(quadrature(f, 0.0, t, signal.breakpoints())).epsilon(1e-12));
+      CHECK(jet.rate ==
+            doctest::Approx(quadrature(f, 0.0, t, signal.breakpoints())).epsilon(1e-12));
       CHECK(jet.value ==
             doctest::Approx(quadrature(moment, 0.0, t, signal.breakpoints())).epsilon(1e-11));
     }
@@ -120,7 +122,8 @@ TEST_CASE("the three levels belong to one motion") {
     CHECK(v.value == a.rate);
     CHECK(v.rate == a.acceleration);
     CHECK(v.acceleration == x.rate);
-    for (const DriveLevel level : {DriveLevel::position, DriveLevel::velocity, DriveLevel::acceleration})
+    for (const DriveLevel level :
+         {DriveLevel::position, DriveLevel::velocity, DriveLevel::acceleration})
       CHECK(std::abs(signal.drive(0.0, level).value) < 1e-15);
   }
 }
@@ -157,7 +160,8 @@ TEST_CASE("shapes at known times") {
 }
 
 TEST_CASE("small integrals keep their digits") {
-  // ∫ = −p T/2π sin(2πτ/T)/... : just after its start a haversine is p (π τ/T)², so ∬ = p π² τ⁴ / 12 T².
+  // ∫ = −p T/2π sin(2πτ/T)/... : just after its start a haversine is p (π τ/T)², so ∬ = p π² τ⁴ /
+  // 12 T².
   const Signal sine(std::vector<Signal::Piece>{{0.0, {0, 0, 0, 0}, {{1.0, 10.0, -0.5 * k_pi}}}});
   const double t = 1e-6;
   CHECK(sine.drive(t, DriveLevel::acceleration).rate == doctest::Approx(5.0 * t * t).epsilon(1e-9));
@@ -187,11 +191,13 @@ TEST_CASE("breakpoints and jumps") {
 
 TEST_CASE("a record of 1e5 pieces") {
   std::vector<Signal::Piece> pieces;
-  for (int i = 0; i < 100000; ++i) pieces.push_back({1e-3 * i, {std::sin(1e-3 * i), 0, 0, 0}, {}});
+  for (int i = 0; i < 100000; ++i)
+    pieces.push_back({1e-3 * i, {std::sin(1e-3 * i), 0, 0, 0}, {}});
   const Signal signal(pieces);
   CHECK(signal.value(50.0005) == std::sin(50.0));
   double sum = 0.0;
-  for (int i = 0; i < 50000; ++i) sum += 1e-3 * std::sin(1e-3 * i);
+  for (int i = 0; i < 50000; ++i)
+    sum += 1e-3 * std::sin(1e-3 * i);
   CHECK(signal.drive(50.0, DriveLevel::velocity).value == doctest::Approx(sum).epsilon(1e-11));
 }
 
@@ -205,9 +211,11 @@ TEST_CASE("values that make no signal") {
   CHECK_THROWS_AS(Signal(Pieces{still}), std::invalid_argument);
   CHECK_THROWS_WITH_AS(
       make("triangle", {{"peak", 1.0}, {"duration", 1.0}, {"rise", 2.0}}),
-      "error: triangle 's' rises longer than it lasts: 'rise' must not exceed 'duration'", ModelError);
-  CHECK_THROWS_AS(make("trapezoid", {{"peak", 1.0}, {"duration", 1.0}, {"rise", 0.6}, {"fall", 0.5}}),
-                  ModelError);
+      "error: triangle 's' rises longer than it lasts: 'rise' must not exceed 'duration'",
+      ModelError);
+  CHECK_THROWS_AS(
+      make("trapezoid", {{"peak", 1.0}, {"duration", 1.0}, {"rise", 0.6}, {"fall", 0.5}}),
+      ModelError);
   CHECK_THROWS_AS(make("harmonics", {{"amplitudes", std::vector<double>{1.0}},
                                      {"frequencies", std::vector<double>{1.0, 2.0}}}),
                   ModelError);
@@ -216,6 +224,7 @@ TEST_CASE("values that make no signal") {
 TEST_CASE("every field of every kind is documented") {
   for (const SignalKind* kind : signal_kinds()) {
     CHECK_FALSE(kind->doc.empty());
-    for (const Field& field : kind->fields.fields()) CHECK_FALSE(field.doc.empty());
+    for (const Field& field : kind->fields.fields())
+      CHECK_FALSE(field.doc.empty());
   }
 }

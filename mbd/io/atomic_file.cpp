@@ -1,0 +1,89 @@
+#include "mbd/io/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+namespace steplap {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& path, int code) {
+  std::string advice;
+  if (code == ENOSPC || code == EDQUOT) advice = ": free some space and run again";
+  throw FileError("cannot write '" + path + "': " + std::strerror(code) + advice);
+}
+
+// The temporary file: closed and removed unless it was renamed.
+class TemporaryFile {
+public:
+  explicit TemporaryFile(const std::string& target) : target_(target), name_(target + ".XXXXXX") {
+    std::vector<char> buffer(name_.begin(), name_.end());
+    buffer.push_back('\0');
+    descriptor_ = ::mkostemp(buffer.data(), O_CLOEXEC);
+    if (descriptor_ < 0) fail(target_, errno);
+    name_ = buffer.data();
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!is_renamed_) ::unlink(name_.c_str());
+  }
+
+  void write(const std::string& content) {
+    std::size_t done = 0;
+    while (done < content.size()) {
+      const ::ssize_t count = ::write(descriptor_, content.data() + done, content.size() - done);
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) fail(target_, errno);
+      done += static_cast<std::size_t>(count);
+    }
+  }
+
+  // Brings the content to disk and closes the file; a full disk may show only now.
+  void finish() {
+    const ::mode_t mask = ::umask(0);
+    ::umask(mask);
+    if (::fchmod(descriptor_, 0666 & ~mask) != 0) fail(target_, errno);
+    if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(target_, errno);
+    const int descriptor = std::exchange(descriptor_, -1);
+    if (::close(descriptor) != 0) fail(target_, errno);
+  }
+
+  // A hard link fails if the target exists, so that two runs at once cannot overwrite each other.
+  void become_target(IfExists if_exists) {
+    if (if_exists == IfExists::refuse && ::link(name_.c_str(), target_.c_str()) == 0) return;
+    if (if_exists == IfExists::refuse && errno == EEXIST) refuse(target_);
+    if (std::rename(name_.c_str(), target_.c_str()) != 0) fail(target_, errno);
+    is_renamed_ = true;
+  }
+
+  [[noreturn]] static void refuse(const std::string& path) {
+    throw FileError("'" + path + "' exists already and is not overwritten");
+  }
+
+private:
+  std::string target_, name_;
+  int descriptor_ = -1;
+  bool is_renamed_ = false;
+};
+
+} // namespace
+
+void write_file(const std::string& path, const std::string& content, IfExists if_exists) {
+  if (if_exists == IfExists::refuse && std::filesystem::exists(path)) TemporaryFile::refuse(path);
+  TemporaryFile file(path);
+  file.write(content);
+  file.finish();
+  file.become_target(if_exists);
+}
+
+} // namespace steplap

@@ -1,0 +1,24 @@
+// Files that are either there as a whole or not at all: written under a temporary name in the same
+// folder, brought to disk, then renamed.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace steplap {
+
+/// A file that could not be written; the message names the file and the cause.
+class FileError : public std::runtime_error {
+public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class IfExists { refuse, replace };
+
+/// Writes the whole content. Throws FileError: the file exists and may not be replaced, the folder
+/// cannot be written, the disk is full. The temporary file is removed in every case, and what stood
+/// at `path` before stays as it was.
+void write_file(const std::string& path, const std::string& content,
+                IfExists if_exists = IfExists::refuse);
+
+} // namespace steplap

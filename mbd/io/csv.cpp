@@ -1,0 +1,181 @@
+#include "mbd/io/csv.h"
+
+#include "mbd/number_text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+namespace steplap {
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::string_view unquoted(std::string_view text) {
+  text = trimmed(text);
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
+    return text.substr(1, text.size() - 2);
+  return text;
+}
+
+// Splits at the delimiter outside quotes.
+void split(std::string_view line, char delimiter, std::vector<std::string_view>& fields) {
+  fields.clear();
+  std::size_t start = 0;
+  bool is_quoted = false;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && line[i] == '"') is_quoted = !is_quoted;
+    if (i < line.size() && (is_quoted || line[i] != delimiter)) continue;
+    fields.push_back(unquoted(line.substr(start, i - start)));
+    start = i + 1;
+  }
+}
+
+char delimiter_of(std::string_view line) {
+  for (const char candidate : {'\t', ';'})
+    if (line.find(candidate) != std::string_view::npos) return candidate;
+  return ',';
+}
+
+std::optional<double> number_of(std::string_view field, bool has_decimal_comma) {
+  std::string buffer;
+  if (has_decimal_comma && field.find(',') != std::string_view::npos) {
+    buffer = field;
+    std::replace(buffer.begin(), buffer.end(), ',', '.');
+    field = buffer;
+  }
+  if (field.starts_with('+')) field.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, status] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (status != std::errc() || end != field.data() + field.size()) return std::nullopt;
+  return value;
+}
+
+// "time [s]" → "time"
+std::string column_name(std::string_view field) {
+  const auto bracket = field.find('[');
+  if (bracket != std::string_view::npos && bracket > 0) field = trimmed(field.substr(0, bracket));
+  return std::string(field);
+}
+
+class CsvReader {
+public:
+  explicit CsvReader(const std::string& file) { table_.file = file; }
+
+  CsvTable read(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3); // byte order mark
+    while (!text.empty()) {
+      const auto end = text.find('\n');
+      ++line_;
+      read_line(text.substr(0, end));
+      text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+    }
+    if (table_.lines.empty())
+      throw ModelError({table_.file, 0, 0}, "the record holds no row of numbers");
+    return std::move(table_);
+  }
+
+private:
+  void read_line(std::string_view line) {
+    if (trimmed(line).empty() || trimmed(line).front() == '#') return;
+    if (delimiter_ == 0) delimiter_ = delimiter_of(line);
+    split(line, delimiter_, fields_);
+    if (table_.columns.empty() && read_header()) return;
+    if (fields_.size() != table_.columns.size())
+      fail("expected " + std::to_string(table_.columns.size()) + " columns, got " +
+           std::to_string(fields_.size()));
+    for (std::size_t i = 0; i < fields_.size(); ++i)
+      table_.columns[i].push_back(value(i));
+    table_.lines.push_back(line_);
+  }
+
+  // The first row: true if it holds names.
+  bool read_header() {
+    table_.columns.resize(fields_.size());
+    for (const std::string_view field : fields_)
+      if (!number_of(field, delimiter_ != ',')) {
+        for (const std::string_view name : fields_)
+          table_.names.push_back(column_name(name));
+        return true;
+      }
+    return false;
+  }
+
+  double value(std::size_t column) const {
+    const std::string_view field = fields_[column];
+    const std::optional<double> number = number_of(field, delimiter_ != ',');
+    const std::string place = " in column " + std::to_string(column + 1);
+    if (field.empty()) fail("no value" + place);
+    if (!number) fail("'" + std::string(field) + "'" + place + " is not a number");
+    if (!std::isfinite(*number)) fail("'" + std::string(field) + "'" + place + " is not finite");
+    return *number;
+  }
+
+  [[noreturn]] void fail(const std::string& message) const {
+    throw ModelError({table_.file, line_, 1}, message);
+  }
+
+  CsvTable table_;
+  std::vector<std::string_view> fields_;
+  char delimiter_ = 0;
+  int line_ = 0;
+};
+
+} // namespace
+
+std::size_t CsvTable::column(const std::string& name_or_number, const Location& where) const {
+  const auto found = std::find(names.begin(), names.end(), name_or_number);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  std::size_t number = 0;
+  const char* end = name_or_number.data() + name_or_number.size();
+  const auto [rest, status] = std::from_chars(name_or_number.data(), end, number);
+  if (status == std::errc() && rest == end && number >= 1 && number <= columns.size())
+    return number - 1;
+  throw ModelError(where, "the record '" + file + "' has no column '" + name_or_number + "'" +
+                              did_you_mean(name_or_number, names) + "; it has " +
+                              std::to_string(columns.size()) + " columns");
+}
+
+CsvTable parse_csv(const std::string& text, const std::string& file_name) {
+  return CsvReader(file_name).read(text);
+}
+
+CsvTable read_csv(const std::string& path, const Location& where) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  if (stream) text << stream.rdbuf();
+  if (!stream || !text) throw ModelError(where, "cannot read the record '" + path + "'");
+  return parse_csv(text.str(), path);
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text)
+    result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + "\"";
+}
+
+CsvText::CsvText(std::span<const std::string> names) {
+  for (const std::string& name : names)
+    text_ += (text_.empty() ? "" : ",") + csv_field(name);
+  text_ += '\n';
+}
+
+void CsvText::add_row(std::span<const double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) text_ += ',';
+    append_number(text_, values[i]);
+  }
+  text_ += '\n';
+}
+
+} // namespace steplap

@@ -1,0 +1,46 @@
+// Tables of numbers as CSV: records read in, histories written out.
+//
+// Reading: the delimiter is a tab, a semicolon or a comma (the first of them that the first row
+// holds); with a semicolon or a tab a decimal comma is understood. Lines that are empty or start
+// with # are skipped; a first row that is not all numbers holds the names of the columns (with or
+// without quotes, a unit in brackets after the name is not part of it: "time [s]").
+#pragma once
+
+#include "mbd/diagnostics.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+struct CsvTable {
+  std::string file;
+  std::vector<std::string> names;           ///< of the columns, empty without a header row
+  std::vector<std::vector<double>> columns; ///< all of one length
+  std::vector<int> lines;                   ///< line of the file for each row
+
+  /// Index of a column given by name or by number (from 1). Throws ModelError at `where`.
+  [[nodiscard]] std::size_t column(const std::string& name_or_number, const Location& where) const;
+};
+
+/// Throws ModelError with file:line: for a file that cannot be read (at `where`), rows of unequal
+/// length, fields that are no finite number, and a file without rows.
+[[nodiscard]] CsvTable read_csv(const std::string& path, const Location& where);
+[[nodiscard]] CsvTable parse_csv(const std::string& text, const std::string& file_name);
+
+/// Comma-separated text, shortest digits that read back as the same numbers, "\n" after each row.
+class CsvText {
+public:
+  explicit CsvText(std::span<const std::string> names);
+  void add_row(std::span<const double> values);
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+  std::string text_;
+};
+
+/// A field as CSV wants it: quoted if it holds a comma, a quote or a line break.
+[[nodiscard]] std::string csv_field(const std::string& text);
+
+} // namespace steplap

@@ -1,0 +1,229 @@
+#include "mbd/io/document.h"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace steplap {
+
+std::string entry_name(const Node& entry) {
+  const Node* name = entry.find("name");
+  return name ? name->text() : "";
+}
+
+namespace {
+
+std::string read_text(const std::string& path, const Location& where) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(path))
+    throw ModelError(where, "cannot read '" + path + "'");
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return std::move(text).str();
+}
+
+// Lays one file's tree over what it extends.
+class Merger {
+public:
+  explicit Merger(std::vector<Diagnostic>& problems) : problems_(problems) {}
+
+  void merge_root(Node& base, Node& over) {
+    for (Node& child : over.children) {
+      Node* inherited = base.find(child.key);
+      if (child.is_array_of_tables() && (!inherited || inherited->type == Node::Type::array)) {
+        if (!inherited) inherited = &base.children.emplace_back(without_children(child));
+        merge_entries(*inherited, child);
+      } else if (child.is_table()) {
+        if (!inherited) inherited = &base.children.emplace_back(without_children(child));
+        if (inherited->is_table())
+          merge_table(*inherited, child, "[" + child.key + "]");
+        else
+          *inherited = std::move(child);
+      } else {
+        replace(base, child);
+      }
+    }
+    base.file = over.file;
+    base.line = over.line;
+    base.column = over.column;
+  }
+
+private:
+  static Node without_children(const Node& node) {
+    Node result;
+    result.type = node.type;
+    result.key = node.key;
+    result.file = node.file;
+    result.line = node.line;
+    result.column = node.column;
+    result.key_line = node.key_line;
+    result.key_column = node.key_column;
+    return result;
+  }
+
+  static void replace(Node& base, Node& child) {
+    if (Node* inherited = base.find(child.key))
+      *inherited = std::move(child);
+    else
+      base.children.push_back(std::move(child));
+  }
+
+  void merge_table(Node& base, Node& over, const std::string& subject) {
+    if (const Node* unset = over.find("unset")) {
+      unset_keys(base, *unset, subject);
+      over.erase("unset");
+    }
+    for (Node& child : over.children)
+      replace(base, child);
+    base.file = over.file;
+    base.line = over.line;
+    base.column = over.column;
+  }
+
+  void unset_keys(Node& base, const Node& unset, const std::string& subject) {
+    if (unset.type != Node::Type::array) {
+      problems_.push_back({unset.where(), "'unset' must be a list of keys, as in [\"step\"]"});
+      return;
+    }
+    for (const Node& item : unset.children) {
+      std::vector<std::string> known;
+      for (const Node& child : base.children)
+        known.push_back(child.key);
+      if (!base.find(item.text()))
+        problems_.push_back({item.where(), subject + " inherits no key '" + item.text() +
+                                               "' to unset" + did_you_mean(item.text(), known)});
+      base.erase(item.text());
+    }
+  }
+
+  void merge_entries(Node& base, Node& over) {
+    std::unordered_map<std::string, std::size_t> inherited;
+    for (std::size_t i = 0; i < base.children.size(); ++i)
+      inherited.emplace(entry_name(base.children[i]), i);
+    std::unordered_set<std::string> removed, seen;
+    for (Node& entry : over.children) {
+      const std::string name = entry_name(entry);
+      const auto found = name.empty() ? inherited.end() : inherited.find(name);
+      const bool is_new = found == inherited.end() || !seen.insert(name).second;
+      if (takes_out(entry)) {
+        if (is_new)
+          report_missing(entry, over.key, inherited);
+        else
+          removed.insert(name);
+      } else if (is_new) {
+        Node& added = base.children.emplace_back(without_children(entry));
+        merge_table(added, entry, over.key + " '" + name + "'");
+      } else {
+        merge_table(base.children[found->second], entry, over.key + " '" + name + "'");
+      }
+    }
+    if (!removed.empty())
+      std::erase_if(base.children, [&](const Node& n) { return removed.count(entry_name(n)) > 0; });
+  }
+
+  // Reads and drops the key 'remove'.
+  bool takes_out(Node& entry) {
+    const Node* remove = entry.find("remove");
+    if (!remove) return false;
+    const bool* flag = std::get_if<bool>(&remove->scalar);
+    const bool result = remove->type == Node::Type::boolean && *flag;
+    if (remove->type != Node::Type::boolean)
+      problems_.push_back({remove->where(), std::string("'remove' must be true or false, got ") +
+                                                remove->type_name()});
+    entry.erase("remove");
+    return result;
+  }
+
+  void report_missing(const Node& entry, const std::string& array,
+                      const std::unordered_map<std::string, std::size_t>& inherited) {
+    std::vector<std::string> known;
+    for (const auto& [name, index] : inherited)
+      known.push_back(name);
+    const std::string name = entry_name(entry);
+    problems_.push_back({entry.where(), "no " + array + " '" + name +
+                                            "' is inherited that could be "
+                                            "removed" +
+                                            did_you_mean(name, known)});
+  }
+
+  std::vector<Diagnostic>& problems_;
+};
+
+class Loader {
+public:
+  Document load(std::string text, const std::string& file) {
+    document_.sources = std::make_shared<std::deque<Document::Source>>();
+    document_.root = load_layer(std::move(text), file);
+    return std::move(document_);
+  }
+
+private:
+  Node load_layer(std::string text, const std::string& file) {
+    const std::string id = std::filesystem::weakly_canonical(file).string();
+    Document::Source& source =
+        document_.sources->emplace_back(Document::Source{file, std::move(text)});
+    chain_.push_back(id);
+    names_.push_back(file);
+    Node over = parse_toml(source.text, &source.file);
+    Node base;
+    base.file = &source.file;
+    if (const Node* extends = over.find("extends")) base = load_base(*extends, file);
+    over.erase("extends");
+    Merger(document_.problems).merge_root(base, over);
+    return base;
+  }
+
+  Node load_base(const Node& extends, const std::string& file) {
+    const std::string name = extends.text();
+    if (name.empty())
+      throw ModelError(
+          extends.where(),
+          std::string("'extends' must be the name of a model file, got ") +
+              (extends.type == Node::Type::text ? "an empty string" : extends.type_name()));
+    const std::string path =
+        (std::filesystem::path(file).parent_path() / name).lexically_normal().string();
+    check_no_cycle(path, extends.where());
+    return load_layer(read_text(path, extends.where()), path);
+  }
+
+  void check_no_cycle(const std::string& path, const Location& where) const {
+    const std::string id = std::filesystem::weakly_canonical(path).string();
+    for (std::size_t k = 0; k < chain_.size(); ++k) {
+      if (chain_[k] != id) continue;
+      std::string text = "'extends' goes round in circles: ";
+      for (std::size_t i = k; i < names_.size(); ++i)
+        text += base_name(names_[i]) + " -> ";
+      throw ModelError(where, text + base_name(path));
+    }
+  }
+
+  static std::string base_name(const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+  }
+
+  Document document_;
+  std::vector<std::string> chain_, names_;
+};
+
+} // namespace
+
+Document load_document(const std::string& path) {
+  return Loader().load(read_text(path, Location{}), path);
+}
+
+Document parse_document(std::string text, const std::string& file_name) {
+  return Loader().load(std::move(text), file_name);
+}
+
+std::string model_source_text(const std::string& path) {
+  std::string result;
+  const Document document = load_document(path);
+  for (const Document::Source& source : *document.sources)
+    result += "# ---- " + std::filesystem::path(source.file).filename().string() + " ----\n" +
+              source.text + (source.text.ends_with('\n') ? "" : "\n");
+  return result;
+}
+
+} // namespace steplap

@@ -1,0 +1,239 @@
+#include "mbd/io/field_reader.h"
+
+#include "mbd/io/units.h"
+#include "mbd/validate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace steplap {
+
+namespace {
+
+std::string number_expectation(const std::string& unit) {
+  if (unit.empty()) return "a number";
+  return "a number or a string with a unit" + (unit == "*" ? "" : " like '" + unit + "'");
+}
+
+std::string dimension_note(const std::string& unit) {
+  if (unit.empty()) return "";
+  return unit == "*" ? ", each a number or a string with a unit"
+                     : ", each a number in " + unit + " or a string with a unit";
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names)
+    text += (text.empty() ? "'" : ", '") + name + "'";
+  return text;
+}
+
+// What is wrong with a value; thrown and caught within this file only.
+struct BadValue {
+  const Node* node;
+  std::string message;
+};
+
+class ValueReader {
+public:
+  ValueReader(const Field& field, const TableReading& reading) : field_(field), reading_(reading) {}
+
+  FieldValue read(const Node& node) const {
+    switch (field_.type) {
+    case FieldType::number:
+      return number(node, field_.unit);
+    case FieldType::integer:
+      return integer(node);
+    case FieldType::boolean:
+      return boolean(node);
+    case FieldType::vec2:
+      return point(node, field_.unit, field_.unit);
+    case FieldType::numbers:
+      return numbers(node);
+    case FieldType::points:
+      return points(node);
+    case FieldType::elements:
+    case FieldType::texts:
+      return texts(node);
+    case FieldType::marker:
+      if (node.is_table()) return reading_.add_marker(node, field_);
+      return text(node);
+    case FieldType::file:
+      return path(node);
+    default:
+      return text(node);
+    }
+  }
+
+private:
+  [[noreturn]] void unexpected(const Node& node) const {
+    throw BadValue{&node, "expected " + expected_text(field_) + ", got " + node.type_name()};
+  }
+
+  double number(const Node& node, const std::string& unit) const {
+    if (node.type == Node::Type::integer) return static_cast<double>(std::get<long>(node.scalar));
+    if (node.type == Node::Type::number) return std::get<double>(node.scalar);
+    if (node.type != Node::Type::text) unexpected(node);
+    const Quantity quantity = parse_quantity(node.text(), unit);
+    if (!quantity.problem.empty()) throw BadValue{&node, quantity.problem};
+    return quantity.value;
+  }
+
+  long integer(const Node& node) const {
+    if (node.type == Node::Type::integer) return std::get<long>(node.scalar);
+    if (node.type != Node::Type::number) unexpected(node);
+    const double value = std::get<double>(node.scalar); // 1e5 is an integer too
+    if (std::nearbyint(value) != value || std::abs(value) > 9e15) unexpected(node);
+    return static_cast<long>(value);
+  }
+
+  bool boolean(const Node& node) const {
+    if (node.type != Node::Type::boolean) unexpected(node);
+    return std::get<bool>(node.scalar);
+  }
+
+  std::string text(const Node& node) const {
+    if (node.type != Node::Type::text) unexpected(node);
+    return node.text();
+  }
+
+  std::string path(const Node& node) const {
+    const std::filesystem::path given = text(node);
+    const bool on_command_line = node.line == 0;
+    if (given.is_absolute() || on_command_line || !node.file) return given.string();
+    return (std::filesystem::path(*node.file).parent_path() / given).lexically_normal().string();
+  }
+
+  Vec2 point(const Node& node, const std::string& unit_x, const std::string& unit_y) const {
+    if (node.type != Node::Type::array) unexpected(node);
+    if (node.children.size() != 2)
+      throw BadValue{&node, "expected " + expected_text(field_) + ", got a list of length " +
+                                std::to_string(node.children.size())};
+    return {number(node.children[0], unit_x), number(node.children[1], unit_y)};
+  }
+
+  std::vector<double> numbers(const Node& node) const {
+    if (node.type != Node::Type::array) unexpected(node);
+    std::vector<double> result;
+    for (const Node& item : node.children)
+      result.push_back(number(item, field_.unit));
+    return result;
+  }
+
+  std::vector<Vec2> points(const Node& node) const {
+    if (node.type != Node::Type::array) unexpected(node);
+    const std::string& unit_y = field_.unit2.empty() ? field_.unit : field_.unit2;
+    std::vector<Vec2> result;
+    for (const Node& item : node.children)
+      result.push_back(point(item, field_.unit, unit_y));
+    return result;
+  }
+
+  std::vector<std::string> texts(const Node& node) const {
+    if (node.type != Node::Type::array) unexpected(node);
+    std::vector<std::string> result;
+    for (const Node& item : node.children)
+      result.push_back(text(item));
+    return result;
+  }
+
+  const Field& field_;
+  const TableReading& reading_;
+};
+
+// Returns the known key that was probably meant, "" if none.
+std::string report_unknown(const Node& child, const FieldTable& fields, const TableReading& reading,
+                           std::vector<Diagnostic>& problems) {
+  std::vector<std::string> known = reading.known_keys;
+  for (const std::string& name : fields.names())
+    if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+  std::string hint = did_you_mean(child.key, known);
+  if (hint.empty()) hint = "; known are " + list_of(known);
+  problems.push_back(
+      {child.where_key(), "unknown key '" + child.key + "' in " + reading.subject + hint});
+  return nearest_name(child.key, known);
+}
+
+GivenField read_field(const Node& child, const Field& field, void* object,
+                      const TableReading& reading, std::vector<Diagnostic>& problems) {
+  try {
+    field.set(object, ValueReader(field, reading).read(child));
+  } catch (const BadValue& bad) {
+    problems.push_back(
+        {bad.node->where(), "'" + field.name + "' of " + reading.subject + ": " + bad.message});
+    return {&field, &child, false};
+  }
+  return {&field, &child, true};
+}
+
+// A key that stands there misspelt is not reported a second time as missing.
+void report_missing(const Node& table, const FieldTable& fields, const TableReading& reading,
+                    const std::vector<std::string>& misspelt, std::vector<GivenField>& given,
+                    std::vector<Diagnostic>& problems) {
+  for (const Field& field : fields.fields()) {
+    const bool is_misspelt =
+        std::find(misspelt.begin(), misspelt.end(), field.name) != misspelt.end();
+    const bool is_excused = reading.is_excused && reading.is_excused(field);
+    if (table.find(field.name) || (!is_misspelt && (!field.is_required || is_excused))) continue;
+    given.push_back({&field, nullptr, false});
+    if (!is_misspelt)
+      problems.push_back({table.where(), missing_field_message(field, reading.subject)});
+  }
+}
+
+} // namespace
+
+std::string expected_text(const Field& field) {
+  switch (field.type) {
+  case FieldType::number:
+    return number_expectation(field.unit);
+  case FieldType::integer:
+    return "an integer";
+  case FieldType::boolean:
+    return "true or false";
+  case FieldType::text:
+    return "a string";
+  case FieldType::choice:
+    return "one of " + list_of(field.choices);
+  case FieldType::vec2:
+    return "[x, y]" + dimension_note(field.unit);
+  case FieldType::numbers:
+    return "a list of numbers" + dimension_note(field.unit);
+  case FieldType::points:
+    return "a list of points [x, y]";
+  case FieldType::body:
+    return "the name of a body";
+  case FieldType::marker:
+    return "the name of a marker or body, or { body = ..., point = [x, y] }";
+  case FieldType::signal:
+    return "the name of a signal";
+  case FieldType::element:
+    return "the name of an element";
+  case FieldType::elements:
+    return "a list of names of elements";
+  case FieldType::texts:
+    return "a list of strings";
+  case FieldType::file:
+    return "the name of a file";
+  }
+  return "a value";
+}
+
+std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields, void* object,
+                                    const TableReading& reading,
+                                    std::vector<Diagnostic>& problems) {
+  std::vector<GivenField> given;
+  std::vector<std::string> misspelt;
+  for (const Node& child : table.children) {
+    if (const Field* field = fields.find(child.key))
+      given.push_back(read_field(child, *field, object, reading, problems));
+    else if (std::find(reading.known_keys.begin(), reading.known_keys.end(), child.key) ==
+             reading.known_keys.end())
+      misspelt.push_back(report_unknown(child, fields, reading, problems));
+  }
+  report_missing(table, fields, reading, misspelt, given, problems);
+  return given;
+}
+
+} // namespace steplap

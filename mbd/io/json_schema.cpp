@@ -1,0 +1,142 @@
+#include "mbd/io/json_schema.h"
+
+#include "mbd/io/described.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json quantity(const Field& field, const std::string& unit) {
+  Json number{{"type", "number"}};
+  if (std::isfinite(field.minimum))
+    number[field.is_minimum_excluded ? "exclusiveMinimum" : "minimum"] = field.minimum;
+  if (std::isfinite(field.maximum)) number["maximum"] = field.maximum;
+  if (unit.empty()) return number;
+  return {{"anyOf", {number, {{"type", "string"}, {"pattern", "^\\s*[-+]?[0-9.]"}}}}};
+}
+
+Json list_of(Json items) {
+  return {{"type", "array"}, {"items", std::move(items)}};
+}
+
+Json point(const Field& field) {
+  const std::string& unit_y = field.unit2.empty() ? field.unit : field.unit2;
+  return {{"type", "array"},
+          {"prefixItems", {quantity(field, field.unit), quantity(field, unit_y)}},
+          {"minItems", 2},
+          {"maxItems", 2}};
+}
+
+Json text() {
+  return {{"type", "string"}};
+}
+
+Json value_schema(const Field& field) {
+  switch (field.type) {
+  case FieldType::number:
+    return quantity(field, field.unit);
+  case FieldType::integer: {
+    Json schema = quantity(field, "");
+    schema["type"] = "integer";
+    return schema;
+  }
+  case FieldType::boolean:
+    return {{"type", "boolean"}};
+  case FieldType::choice:
+    return {{"enum", field.choices}};
+  case FieldType::vec2:
+    return point(field);
+  case FieldType::numbers:
+    return list_of(quantity(field, field.unit));
+  case FieldType::points:
+    return list_of(point(field));
+  case FieldType::elements:
+  case FieldType::texts:
+    return list_of(text());
+  case FieldType::marker:
+    return {{"anyOf", {text(), {{"$ref", "#/$defs/inline_marker"}}}}};
+  default:
+    return text();
+  }
+}
+
+Json field_schema(const Described& kind, const Field& field) {
+  Json schema = value_schema(field);
+  std::string doc = field.doc;
+  if (!field.unit.empty() && field.unit != "*") doc += " [" + field.unit + "]";
+  schema["description"] = doc;
+  if (field.is_required) return schema;
+  const std::string given = kind.default_text(field);
+  if (!given.empty()) schema["default"] = Json::parse(given, nullptr, false);
+  if (given.empty() || schema["default"].is_discarded()) schema.erase("default");
+  return schema;
+}
+
+Json object_schema(const Described& kind) {
+  Json properties = Json::object();
+  for (const Field& field : kind.fields->fields())
+    properties[field.name] = field_schema(kind, field);
+  return {{"type", "object"},
+          {"description", kind.doc},
+          {"properties", std::move(properties)},
+          {"additionalProperties", false}};
+}
+
+// An entry of an array of tables: what it says, its name and what merging understands.
+Json entry_schema(const Described& kind, bool has_kind) {
+  Json schema = object_schema(kind);
+  Json& properties = schema["properties"];
+  if (!properties.contains("name")) properties["name"] = text();
+  if (has_kind) properties["kind"] = {{"const", kind.name}};
+  properties["remove"] = {{"type", "boolean"}, {"description", "takes the inherited entry out"}};
+  properties["unset"] = list_of(text());
+  schema["required"] = Json::array({"name"});
+  return schema;
+}
+
+Json inline_marker_schema(const Described& marker) {
+  Json schema = object_schema(marker);
+  schema["required"] = Json::array({"body"});
+  return schema;
+}
+
+} // namespace
+
+std::string json_schema(const Catalogue& catalogue) {
+  Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+            {"title", "steplap model"}};
+  Json properties = Json::object(), definitions = Json::object();
+  Json kinds{{"signal", Json::array()}, {"element", Json::array()}};
+  properties["extends"] = {{"type", "string"},
+                           {"description", "model file that this one is laid over"}};
+  for (const Described& kind : describe(catalogue)) {
+    if (kind.role == "model") {
+      for (const Field& f : kind.fields->fields())
+        properties[f.name] = field_schema(kind, f);
+    } else if (kind.role == "settings") {
+      properties[kind.name] = object_schema(kind);
+      properties[kind.name]["properties"]["unset"] = list_of(text());
+    } else if (kind.role == "table") {
+      properties[kind.name] = list_of(entry_schema(kind, false));
+      if (kind.name == "marker") definitions["inline_marker"] = inline_marker_schema(kind);
+    } else {
+      definitions[kind.role + "_" + kind.name] = entry_schema(kind, true);
+      kinds[kind.role].push_back({{"$ref", "#/$defs/" + kind.role + "_" + kind.name}});
+    }
+  }
+  for (const std::string role : {"signal", "element"})
+    if (!kinds[role].empty()) properties[role] = list_of({{"anyOf", kinds[role]}});
+  root["type"] = "object";
+  root["properties"] = std::move(properties);
+  root["additionalProperties"] = false;
+  root["$defs"] = std::move(definitions);
+  return root.dump(2) + "\n";
+}
+
+} // namespace steplap

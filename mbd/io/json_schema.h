@@ -1,0 +1,13 @@
+// JSON Schema (draft 2020-12) of model files, for editors that complete and check TOML.
+#pragma once
+
+#include "mbd/model.h"
+
+namespace steplap {
+
+/// Generated from the field tables of the catalogue. References between names, units and `extends`
+/// are beyond a schema: files that extend others are checked as they stand, hence no field of an
+/// entry but its name is required.
+[[nodiscard]] std::string json_schema(const Catalogue& catalogue);
+
+} // namespace steplap

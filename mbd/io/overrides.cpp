@@ -1,0 +1,145 @@
+#include "mbd/io/overrides.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace steplap {
+
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Takes the part before the next point off the path.
+std::string take_segment(std::string& path) {
+  const std::size_t point = path.find('.');
+  std::string segment = path.substr(0, point);
+  path = point == std::string::npos ? "" : path.substr(point + 1);
+  return segment;
+}
+
+class Override {
+public:
+  Override(Document& document, const std::string& assignment, const TopLevelNames& names)
+      : document_(document), names_(names) {
+    const std::size_t equals = assignment.find('=');
+    file_ = &document.sources->emplace_back(Document::Source{"--set " + assignment, ""}).file;
+    path_ = assignment.substr(0, equals);
+    is_complete_ = equals != std::string::npos && !path_.empty();
+    if (is_complete_) value_ = parse_value(assignment.substr(equals + 1));
+  }
+
+  void apply() {
+    if (!is_complete_) return complain("expected path=value, for example simulation.step=1e-4");
+    const std::string top = take_segment(path_);
+    if (contains(names_.arrays, top)) return set_in_entry(top);
+    if (contains(names_.tables, top) && !path_.empty()) return set_in_table(top);
+    if (contains(names_.keys, top)) return set_below(document_.root, top);
+    std::vector<std::string> known = names_.keys;
+    known.insert(known.end(), names_.tables.begin(), names_.tables.end());
+    known.insert(known.end(), names_.arrays.begin(), names_.arrays.end());
+    if (contains(names_.tables, top))
+      complain("name a key of '" + top + "', as in " + top + ".key=value");
+    else
+      complain("a model has no '" + top + "'" + did_you_mean(top, known));
+  }
+
+private:
+  void complain(const std::string& message) {
+    document_.problems.push_back({Location{*file_, 0, 0}, message});
+  }
+
+  Node parse_value(const std::string& text) const {
+    try {
+      Node root = parse_toml("value = " + text, file_);
+      if (root.children.size() == 1) return stripped(std::move(root.children.front()));
+    } catch (const ModelError&) { // not TOML: a bare string
+    }
+    Node node;
+    node.type = Node::Type::text;
+    node.scalar = text;
+    node.file = file_;
+    return node;
+  }
+
+  // Without lines and columns, which mean nothing on a command line.
+  static Node stripped(Node node) {
+    node.line = node.column = node.key_line = node.key_column = 0;
+    for (Node& child : node.children)
+      child = stripped(std::move(child));
+    return node;
+  }
+
+  void set_in_table(const std::string& name) {
+    Node* table = document_.root.find(name);
+    if (!table) {
+      Node& added = document_.root.children.emplace_back();
+      added.key = name;
+      added.file = file_;
+      table = &added;
+    }
+    set_below(*table, take_segment(path_));
+  }
+
+  void set_in_entry(const std::string& array_name) {
+    Node* array = document_.root.find(array_name);
+    Node* best = nullptr;
+    std::vector<std::string> known;
+    if (array)
+      for (Node& entry : array->children) {
+        const std::string name = entry_name(entry);
+        known.push_back(name);
+        const bool leads = path_.rfind(name + ".", 0) == 0;
+        if (leads && !name.empty() && (!best || name.size() > entry_name(*best).size()))
+          best = &entry;
+      }
+    if (!best) {
+      const std::string wanted = path_.substr(0, path_.rfind('.'));
+      if (contains(known, path_))
+        return complain("name a key of " + array_name + " '" + path_ + "'");
+      return complain("there is no " + array_name + " '" + wanted + "'" +
+                      did_you_mean(wanted, known));
+    }
+    path_ = path_.substr(entry_name(*best).size() + 1);
+    set_below(*best, take_segment(path_));
+  }
+
+  // Sets `key` of a table, or what the rest of the path names below it.
+  void set_below(Node& parent, const std::string& key) {
+    Node* child = child_of(parent, key);
+    if (!path_.empty()) {
+      if (!child) return complain("there is no '" + key + "' to set '" + path_ + "' of");
+      return set_below(*child, take_segment(path_));
+    }
+    if (!child && !parent.is_table()) return complain("'" + key + "' is not an item of a list");
+    if (!child) child = &parent.children.emplace_back();
+    const std::string kept_key = parent.is_table() ? key : "";
+    *child = value_;
+    child->key = kept_key;
+  }
+
+  static Node* child_of(Node& parent, const std::string& key) {
+    if (parent.is_table()) return parent.find(key);
+    std::size_t index = 0;
+    const char* end = key.data() + key.size();
+    const auto [rest, status] = std::from_chars(key.data(), end, index);
+    const bool is_index = status == std::errc() && rest == end && index < parent.children.size();
+    return is_index ? &parent.children[index] : nullptr;
+  }
+
+  Document& document_;
+  const TopLevelNames& names_;
+  const std::string* file_ = nullptr;
+  std::string path_;
+  Node value_;
+  bool is_complete_ = false;
+};
+
+} // namespace
+
+void apply_override(Document& document, const std::string& assignment, const TopLevelNames& names) {
+  Override(document, assignment, names).apply();
+}
+
+} // namespace steplap

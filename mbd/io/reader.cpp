@@ -1,0 +1,455 @@
+#include "mbd/io/reader.h"
+
+#include "mbd/io/field_reader.h"
+#include "mbd/validate.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace steplap {
+
+namespace {
+
+TopLevelNames top_level_names(const Catalogue& catalogue) {
+  TopLevelNames names;
+  names.keys = ModelHeader::fields().names();
+  names.tables = {"simulation", "output"};
+  names.arrays = {"body", "marker", "signal", "element"};
+  for (const TableKind* kind : catalogue.tables)
+    names.arrays.push_back(kind->name);
+  return names;
+}
+
+Field named_field(const std::string& name) {
+  Field field;
+  field.name = name;
+  return field;
+}
+
+template <class Kind>
+const Kind* find_kind(const std::vector<const Kind*>& kinds, const std::string& name) {
+  for (const Kind* kind : kinds)
+    if (kind->name == name) return kind;
+  return nullptr;
+}
+
+// An entry of an array that another room reads: kept until everything else is known.
+struct TableEntry {
+  const TableKind* kind = nullptr;
+  std::shared_ptr<Element> object;
+  std::vector<GivenField> given;
+  bool is_usable = true;
+};
+
+class Reader {
+public:
+  Reader(Document document, const Catalogue& catalogue)
+      : document_(std::move(document)), catalogue_(catalogue), names_(top_level_names(catalogue)) {}
+
+  Model read(const std::vector<std::string>& overrides) {
+    for (const std::string& text : overrides)
+      apply_override(document_, text, names_);
+    problems_ = std::move(document_.problems);
+    read_header();
+    read_settings("simulation", Section::simulation, SimulationSettings::fields(),
+                  model_.simulation);
+    read_settings("output", Section::output, OutputSettings::fields(), model_.output);
+    read_bodies();
+    read_markers();
+    read_signals();
+    read_elements();
+    read_tables();
+    add_body_markers();
+    place_markers();
+    apply_tables();
+    finish();
+    return std::move(model_);
+  }
+
+private:
+  void add(const Location& where, std::string message) {
+    problems_.push_back({where, std::move(message)});
+  }
+
+  std::vector<std::vector<GivenField>>& given(Section section) {
+    return given_[static_cast<std::size_t>(section)];
+  }
+
+  void read_header();
+  template <class T>
+  void read_settings(const std::string& name, Section section, const FieldTable& fields, T& target);
+  const Node* array_named(const std::string& name);
+  void excuse_empty_scene();
+  void read_bodies();
+  void read_markers();
+  void read_signals();
+  void read_elements();
+  void read_tables();
+  std::string read_name(const Node& entry, const std::string& noun, std::vector<GivenField>& given);
+  template <class Kind>
+  const Kind* read_kind(const Node& entry, const std::string& noun,
+                        const std::vector<const Kind*>& kinds);
+  TableReading reading(std::string subject, std::string owner = "");
+  std::string add_inline_marker(const Node& table, const Field& field, const std::string& owner);
+  void add_body_markers();
+  void place_markers();
+  void apply_tables();
+  std::optional<Location> locate(Section section, std::size_t index, const std::string& field);
+  std::optional<Location> place_of(const std::vector<GivenField>& fields, const std::string& name,
+                                   const Location& object) const;
+  const Location& where_of(Section section, std::size_t index) const;
+  void finish();
+
+  Document document_;
+  const Catalogue& catalogue_;
+  TopLevelNames names_;
+  Model model_;
+  std::vector<Diagnostic> problems_;
+  std::vector<std::vector<GivenField>> given_[7]; // by section and index
+  std::vector<TableEntry> tables_;
+  // Entries of unknown kind: said once, references to them are not errors of their own.
+  std::unordered_set<std::string> unread_signals_, unread_elements_;
+};
+
+TableReading Reader::reading(std::string subject, std::string owner) {
+  TableReading result;
+  result.subject = std::move(subject);
+  result.add_marker = [this, owner = std::move(owner)](const Node& table, const Field& field) {
+    return add_inline_marker(table, field, owner);
+  };
+  return result;
+}
+
+void Reader::read_header() {
+  model_.header.where = {document_.sources->front().file, 0, 0};
+  TableReading r = reading("the model");
+  r.known_keys = names_.tables;
+  r.known_keys.insert(r.known_keys.end(), names_.arrays.begin(), names_.arrays.end());
+  given(Section::header) = {
+      read_fields(document_.root, ModelHeader::fields(), &model_.header, r, problems_)};
+}
+
+template <class T>
+void Reader::read_settings(const std::string& name, Section section, const FieldTable& fields,
+                           T& target) {
+  target.where = model_.header.where;
+  given(section).resize(1);
+  const Node* table = document_.root.find(name);
+  if (!table) return;
+  if (!table->is_table()) {
+    for (const Field& field : fields.fields())
+      given(section)[0].push_back({&field, nullptr, false});
+    return add(table->where_key(),
+               "'" + name + "' must be a table, [" + name + "], not " + table->type_name());
+  }
+  target.where = table->where();
+  given(section)[0] = read_fields(*table, fields, &target, reading("[" + name + "]"), problems_);
+}
+
+// After an error that may have cost the model its bodies, their absence is none of its own.
+void Reader::excuse_empty_scene() {
+  static const Field body = named_field("body");
+  given(Section::header)[0].push_back({&body, nullptr, false});
+}
+
+// The array [[name]], or null if there is none.
+const Node* Reader::array_named(const std::string& name) {
+  const Node* array = document_.root.find(name);
+  if (!array || array->is_array_of_tables()) return array;
+  if (array->type == Node::Type::array && array->children.empty()) return nullptr;
+  excuse_empty_scene();
+  add(array->where_key(), "'" + name + "' must be an array of tables, each begun by [[" + name +
+                              "]], not " + array->type_name());
+  return nullptr;
+}
+
+void Reader::read_bodies() {
+  const Node* array = array_named("body");
+  if (!array) return;
+  model_.bodies.reserve(array->children.size());
+  for (const Node& entry : array->children) {
+    Body& body = model_.bodies.emplace_back();
+    body.where = entry.where();
+    const Node* fixed = entry.find("fixed");
+    body.fixed = fixed && fixed->type == Node::Type::boolean && std::get<bool>(fixed->scalar);
+    TableReading r = reading(subject_text("body", entry_name(entry)));
+    r.is_excused = [&body](const Field& field) { return is_excused(body, field); };
+    given(Section::body).push_back(read_fields(entry, Body::fields(), &body, r, problems_));
+  }
+}
+
+void Reader::read_markers() {
+  const Node* array = array_named("marker");
+  if (!array) return;
+  for (const Node& entry : array->children) {
+    Marker marker;
+    marker.where = entry.where();
+    const TableReading r = reading(subject_text("marker", entry_name(entry)));
+    given(Section::marker).push_back(read_fields(entry, Marker::fields(), &marker, r, problems_));
+    model_.markers.push_back(std::move(marker));
+  }
+}
+
+std::string Reader::add_inline_marker(const Node& table, const Field& field,
+                                      const std::string& owner) {
+  Marker marker;
+  marker.where = table.where();
+  TableReading r = reading(subject_text("marker", owner + "." + field.name));
+  r.is_excused = [](const Field& f) { return f.name == "name"; };
+  std::vector<GivenField> fields = read_fields(table, Marker::fields(), &marker, r, problems_);
+  if (marker.name.empty()) marker.name = owner + "." + field.name;
+  given(Section::marker).push_back(std::move(fields));
+  model_.markers.push_back(marker);
+  return marker.name;
+}
+
+std::string Reader::read_name(const Node& entry, const std::string& noun,
+                              std::vector<GivenField>& fields) {
+  static const Field name_field = named_field("name");
+  const Node* name = entry.find("name");
+  if (name && name->type == Node::Type::text) {
+    fields.push_back({&name_field, name, true});
+    return name->text();
+  }
+  if (name)
+    add(name->where(),
+        "'name' of " + subject_text(noun, "") + ": expected a string, got " + name->type_name());
+  else
+    add(entry.where(), subject_text(noun, "") + " needs 'name' (unique name)");
+  fields.push_back({&name_field, name, false});
+  return "";
+}
+
+template <class Kind>
+const Kind* Reader::read_kind(const Node& entry, const std::string& noun,
+                              const std::vector<const Kind*>& kinds) {
+  std::vector<std::string> known;
+  std::string list;
+  for (const Kind* kind : kinds) {
+    known.push_back(kind->name);
+    list += (list.empty() ? "'" : ", '") + kind->name + "'";
+  }
+  const std::string subject = subject_text(noun, entry_name(entry));
+  const Node* name = entry.find("kind");
+  if (!name) {
+    add(entry.where(), subject + " needs 'kind', one of " + list);
+  } else if (name->type != Node::Type::text) {
+    add(name->where(), "'kind' of " + subject + ": expected a string, got " + name->type_name());
+  } else if (const Kind* kind = find_kind(kinds, name->text())) {
+    return kind;
+  } else {
+    std::string hint = did_you_mean(name->text(), known);
+    if (hint.empty()) hint = "; known are " + list;
+    add(name->where(), subject + " is of the unknown kind '" + name->text() + "'" + hint);
+  }
+  return nullptr;
+}
+
+void Reader::read_signals() {
+  const Node* array = array_named("signal");
+  if (!array) return;
+  for (const Node& entry : array->children) {
+    const SignalKind* kind = read_kind(entry, "signal", catalogue_.signals);
+    std::vector<GivenField> fields;
+    const std::string name = read_name(entry, kind ? kind->name : "signal", fields);
+    if (!kind) {
+      unread_signals_.insert(name);
+      continue;
+    }
+    const auto definition = kind->create();
+    definition->name = name;
+    definition->where = entry.where();
+    TableReading r = reading(subject_text(kind->name, name), name);
+    r.known_keys = {"name", "kind"};
+    const auto read = read_fields(entry, kind->fields, definition.get(), r, problems_);
+    fields.insert(fields.end(), read.begin(), read.end());
+    given(Section::signal).push_back(std::move(fields));
+    model_.signals.push_back({kind, definition});
+  }
+}
+
+void Reader::read_elements() {
+  const Node* array = array_named("element");
+  if (!array) return;
+  model_.elements.reserve(array->children.size());
+  for (const Node& entry : array->children) {
+    const ElementKind* kind = read_kind(entry, "element", catalogue_.elements);
+    std::vector<GivenField> fields;
+    const std::string name = read_name(entry, kind ? kind->name : "element", fields);
+    if (!kind) {
+      unread_elements_.insert(name);
+      continue;
+    }
+    const auto element = kind->create();
+    element->name = name;
+    element->where = entry.where();
+    TableReading r = reading(subject_text(kind->name, name), name);
+    r.known_keys = {"name", "kind"};
+    const auto read = read_fields(entry, kind->fields, element.get(), r, problems_);
+    fields.insert(fields.end(), read.begin(), read.end());
+    given(Section::element).push_back(std::move(fields));
+    model_.elements.push_back({kind, element});
+  }
+}
+
+void Reader::read_tables() {
+  for (const TableKind* kind : catalogue_.tables) {
+    const Node* array = array_named(kind->name);
+    if (!array) continue;
+    for (const Node& entry : array->children) {
+      TableEntry table{kind, kind->create(), {}, true};
+      const std::size_t before = problems_.size();
+      table.object->name = read_name(entry, kind->name, table.given);
+      table.object->where = entry.where();
+      TableReading r = reading(subject_text(kind->name, table.object->name), table.object->name);
+      r.known_keys = {"name"};
+      const auto read = read_fields(entry, kind->fields, table.object.get(), r, problems_);
+      table.given.insert(table.given.end(), read.begin(), read.end());
+      table.is_usable = problems_.size() == before;
+      tables_.push_back(std::move(table));
+    }
+  }
+}
+
+// Markers that stand for bodies' centres of gravity, where an element names a body as a marker.
+void Reader::add_body_markers() {
+  std::unordered_map<std::string, const Body*> bodies{{"ground", nullptr}};
+  for (const Body& body : model_.bodies)
+    bodies.emplace(body.name, &body);
+  std::unordered_set<std::string> known;
+  for (const Marker& marker : model_.markers)
+    known.insert(marker.name);
+  const auto add_for = [&](const FieldTable& table, const void* object) {
+    for (const Field& field : table.fields()) {
+      if (field.type != FieldType::marker) continue;
+      const std::string name = std::get<std::string>(field.get(object));
+      const auto body = bodies.find(name);
+      if (body == bodies.end() || !known.insert(name).second) continue;
+      Marker& marker = model_.markers.emplace_back();
+      marker.name = marker.body = name;
+      if (body->second) marker.where = body->second->where;
+    }
+  };
+  for (const ElementEntry& entry : model_.elements)
+    add_for(entry.kind->fields, entry.element.get());
+  for (const TableEntry& entry : tables_)
+    add_for(entry.kind->fields, entry.object.get());
+}
+
+// Markers without a place go to their body's centre of gravity.
+void Reader::place_markers() {
+  std::unordered_map<std::string, const Body*> bodies;
+  for (const Body& body : model_.bodies)
+    bodies.emplace(body.name, &body);
+  for (Marker& marker : model_.markers) {
+    if (marker.point || marker.at) continue;
+    const auto body = bodies.find(marker.body);
+    marker.point = body == bodies.end() ? Vec2(Vec2::Zero()) : body->second->cg;
+  }
+}
+
+void Reader::apply_tables() {
+  for (const TableEntry& entry : tables_) {
+    const std::string subject = subject_text(entry.kind->name, entry.object->name);
+    const std::size_t before = problems_.size();
+    FieldChecker(model_, problems_)
+        .check(entry.kind->fields, entry.object.get(), subject, [&](const std::string& field) {
+          return place_of(entry.given, field, entry.object->where);
+        });
+    if (!entry.is_usable || problems_.size() != before) {
+      excuse_empty_scene();
+      continue;
+    }
+    try {
+      entry.kind->apply(*entry.object, model_);
+    } catch (const ModelError& error) {
+      problems_.insert(problems_.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  }
+}
+
+// The place of a field; of the whole object, if the file does not give the field.
+std::optional<Location> Reader::place_of(const std::vector<GivenField>& fields,
+                                         const std::string& name, const Location& object) const {
+  for (const GivenField& given : fields) {
+    if (given.field->name != name) continue;
+    const bool refers_to_unread = given.node && ((given.field->type == FieldType::signal &&
+                                                  unread_signals_.count(given.node->text()) > 0) ||
+                                                 (given.field->type == FieldType::element &&
+                                                  unread_elements_.count(given.node->text()) > 0));
+    if (!given.is_usable || refers_to_unread) return std::nullopt;
+    return given.node->where();
+  }
+  return object;
+}
+
+const Location& Reader::where_of(Section section, std::size_t index) const {
+  switch (section) {
+  case Section::header:
+    break;
+  case Section::simulation:
+    return model_.simulation.where;
+  case Section::output:
+    return model_.output.where;
+  case Section::body:
+    return model_.bodies[index].where;
+  case Section::marker:
+    return model_.markers[index].where;
+  case Section::signal:
+    return model_.signals[index].definition->where;
+  case Section::element:
+    return model_.elements[index].element->where;
+  }
+  return model_.header.where;
+}
+
+std::optional<Location> Reader::locate(Section section, std::size_t index,
+                                       const std::string& field) {
+  const auto& objects = given(section);
+  static const std::vector<GivenField> none;
+  return place_of(index < objects.size() ? objects[index] : none, field, where_of(section, index));
+}
+
+// Validates and throws what was found, in the order of files, lines and columns.
+void Reader::finish() {
+  constexpr std::size_t k_most_reported = 50;
+  const auto found =
+      validate(model_, [this](Section section, std::size_t index, const std::string& field) {
+        return locate(section, index, field);
+      });
+  problems_.insert(problems_.end(), found.begin(), found.end());
+  if (problems_.empty()) return;
+  std::map<std::string, std::size_t> order;
+  for (const Document::Source& source : *document_.sources)
+    order.emplace(source.file, order.size());
+  const auto key = [&](const Diagnostic& d) {
+    const auto file = order.find(d.where.file);
+    return std::tuple(file == order.end() ? order.size() : file->second, d.where.line,
+                      d.where.column);
+  };
+  std::stable_sort(problems_.begin(), problems_.end(),
+                   [&](const Diagnostic& a, const Diagnostic& b) { return key(a) < key(b); });
+  if (problems_.size() > k_most_reported) {
+    const std::size_t rest = problems_.size() - k_most_reported;
+    problems_.resize(k_most_reported);
+    add(model_.header.where, "and " + std::to_string(rest) + " more errors");
+  }
+  throw ModelError(std::move(problems_));
+}
+
+} // namespace
+
+Model read_model(const std::string& path, const Catalogue& catalogue,
+                 const std::vector<std::string>& overrides) {
+  return Reader(load_document(path), catalogue).read(overrides);
+}
+
+Model parse_model(std::string text, const std::string& file_name, const Catalogue& catalogue,
+                  const std::vector<std::string>& overrides) {
+  return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides);
+}
+
+} // namespace steplap

@@ -1,0 +1,27 @@
+// Model files (TOML) read into a Model, with the element, signal and table kinds of a catalogue.
+//
+// [[marker]] and inline markers without 'point' and 'at' sit at the body's centre of gravity. Where
+// an element wants a marker, a body's name means a marker of that name at its centre of gravity,
+// which the reader adds ("ground": the origin); an inline table { body, point | at, angle } becomes
+// a marker called "element.field". So after reading every marker field names an entry of
+// Model::markers, and every marker has 'point' or 'at'.
+//
+// All errors of a file are collected: syntax, units, unknown keys, then everything that validate()
+// finds, in the order of the lines.
+#pragma once
+
+#include "mbd/io/overrides.h"
+#include "mbd/model.h"
+
+namespace steplap {
+
+/// Reads the file, with "path=value" overrides (overrides.h). Throws ModelError.
+[[nodiscard]] Model read_model(const std::string& path, const Catalogue& catalogue,
+                               const std::vector<std::string>& overrides = {});
+
+/// The same for text at hand; `file_name` is what messages call it and what paths are relative to.
+[[nodiscard]] Model parse_model(std::string text, const std::string& file_name,
+                                const Catalogue& catalogue,
+                                const std::vector<std::string>& overrides = {});
+
+} // namespace steplap

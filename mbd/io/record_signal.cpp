@@ -1,0 +1,95 @@
+#include "mbd/io/record_signal.h"
+
+#include "mbd/io/csv.h"
+#include "mbd/io/units.h"
+#include "mbd/number_text.h"
+
+namespace steplap {
+
+namespace {
+
+struct Record : SignalDefinition {
+  std::string file;
+  std::string time_column = "1";
+  std::string column = "2";
+  std::string time_unit = "s";
+  std::string unit;
+  double scale = 1.0;
+  double offset = 0.0; // s
+  std::string after = "zero";
+};
+
+double unit_factor(const Record& record, const std::string& key, const std::string& unit,
+                   const std::string& wanted) {
+  if (unit.empty()) return 1.0;
+  const Quantity zero = parse_quantity("0 " + unit, wanted),
+                 one = parse_quantity("1 " + unit, wanted);
+  if (!one.problem.empty())
+    throw ModelError(record.where, "'" + key + "' of record '" + record.name + "': " + one.problem);
+  if (zero.value != 0.0)
+    throw ModelError(record.where, "'" + key + "' of record '" + record.name +
+                                       "' must be a unit with its zero at zero, got '" + unit +
+                                       "'");
+  return one.value;
+}
+
+void check_ascending(const CsvTable& table, const std::vector<double>& times) {
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (!(times[i] > times[i - 1]))
+      throw ModelError({table.file, table.lines[i], 1},
+                       "time " + number_text(times[i]) + " does not come after " +
+                           number_text(times[i - 1]) + " of the row before: times must ascend");
+}
+
+Signal build_record(const SignalDefinition& definition) {
+  const Record& record = static_cast<const Record&>(definition);
+  const CsvTable table = read_csv(record.file, record.where);
+  const auto& times = table.columns[table.column(record.time_column, record.where)];
+  const auto& values = table.columns[table.column(record.column, record.where)];
+  check_ascending(table, times);
+  const double time_scale = unit_factor(record, "time_unit", record.time_unit, "s");
+  const double scale = record.scale * unit_factor(record, "unit", record.unit, "*");
+  std::vector<Signal::Piece> pieces(times.size());
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    pieces[i].start = times[i] * time_scale + record.offset;
+    pieces[i].c[0] = values[i] * scale;
+    if (i > 0)
+      pieces[i - 1].c[1] =
+          (pieces[i].c[0] - pieces[i - 1].c[0]) / (pieces[i].start - pieces[i - 1].start);
+  }
+  if (record.after == "zero") pieces.back().c[0] = 0.0;
+  return Signal(std::move(pieces));
+}
+
+} // namespace
+
+const SignalKind& record_signal_kind() {
+  static const SignalKind kind = [] {
+    SignalKind k{"record",
+                 "A measured history from a CSV file, linear between its rows, 0 before "
+                 "the first; it may be shorter than the run.",
+                 {},
+                 [] { return std::shared_ptr<SignalDefinition>(std::make_shared<Record>()); },
+                 build_record};
+    k.fields.add("file", &Record::file)
+        .as(FieldType::file)
+        .required()
+        .doc("CSV file, relative to the model file");
+    k.fields.add("time_column", &Record::time_column)
+        .doc("name of the column of times, or its number from \"1\"");
+    k.fields.add("column", &Record::column)
+        .doc("name of the column of values, or its number from \"1\"");
+    k.fields.add("time_unit", &Record::time_unit).doc("unit of the times");
+    k.fields.add("unit", &Record::unit)
+        .doc("unit of the values, such as \"gravity\" or \"km/h\"; SI if not given");
+    k.fields.add("scale", &Record::scale).doc("factor on the values; -1 turns the sign");
+    k.fields.add("offset", &Record::offset).in("s").doc("added to the times");
+    k.fields.add("after", &Record::after)
+        .one_of({"zero", "hold"})
+        .doc("value after the last row: 0, or the last one kept");
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

@@ -1,0 +1,111 @@
+#include "mbd/io/reference.h"
+
+#include "mbd/io/described.h"
+#include "mbd/number_text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+std::string range_text(const Field& field) {
+  const bool has_minimum = std::isfinite(field.minimum), has_maximum = std::isfinite(field.maximum);
+  std::string text;
+  if (has_minimum) text = (field.is_minimum_excluded ? "> " : ">= ") + number_text(field.minimum);
+  if (has_maximum) text += (has_minimum ? ", <= " : "<= ") + number_text(field.maximum);
+  return text;
+}
+
+std::string unit_text(const Field& field) {
+  if (field.unit == "*") return "any unit";
+  return field.unit2.empty() ? field.unit : field.unit + ", " + field.unit2;
+}
+
+std::string default_text(const Described& kind, const Field& field) {
+  if (field.is_required) return "required";
+  const std::string text = kind.default_text(field);
+  return text.empty() ? "-" : text;
+}
+
+std::string heading(const Described& kind) {
+  if (kind.role == "signal") return "[[signal]] of kind \"" + kind.name + "\"";
+  if (kind.role == "element") return "[[element]] of kind \"" + kind.name + "\"";
+  if (kind.role == "settings") return "[" + kind.name + "]";
+  return kind.role == "table" ? "[[" + kind.name + "]]" : "top level of a model file";
+}
+
+using Row = std::vector<std::string>;
+
+std::vector<Row> rows_of(const Described& kind) {
+  std::vector<Row> rows{{"field", "type", "unit", "default", "range", "meaning"}};
+  for (const Field& f : kind.fields->fields())
+    rows.push_back(
+        {f.name, type_text(f), unit_text(f), default_text(kind, f), range_text(f), f.doc});
+  return rows;
+}
+
+std::string aligned(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const Row& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], row[i].size());
+  std::string text;
+  for (const Row& row : rows) {
+    std::string line = "  ";
+    for (std::size_t i = 0; i + 1 < row.size(); ++i)
+      line += row[i] + std::string(widths[i] + 2 - row[i].size(), ' ');
+    text += line + row.back() + "\n";
+  }
+  return text;
+}
+
+std::string escaped(std::string cell) {
+  for (std::size_t i = cell.find('|'); i != std::string::npos; i = cell.find('|', i + 2))
+    cell.insert(i, "\\");
+  return cell;
+}
+
+std::string markdown(const std::vector<Row>& rows) {
+  std::string text;
+  for (const Row& row : rows) {
+    for (const std::string& cell : row)
+      text += "| " + escaped(cell) + " ";
+    text += "|\n";
+    if (&row != &rows.front()) continue;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      text += "|---";
+    text += "|\n";
+  }
+  return text;
+}
+
+} // namespace
+
+std::string kinds_text(const Catalogue& catalogue) {
+  std::vector<Row> rows{{"role", "kind", "what it is"}};
+  for (const Described& kind : describe(catalogue))
+    rows.push_back({kind.role, kind.name, kind.doc});
+  return aligned(rows);
+}
+
+std::string kind_text(const Catalogue& catalogue, const std::string& name) {
+  std::vector<std::string> known;
+  for (const Described& kind : describe(catalogue)) {
+    if (kind.name == name) return heading(kind) + "\n" + kind.doc + "\n\n" + aligned(rows_of(kind));
+    known.push_back(kind.name);
+  }
+  throw ModelError(Location{}, "there is no kind '" + name + "'" + did_you_mean(name, known));
+}
+
+std::string reference_markdown(const Catalogue& catalogue) {
+  std::string text =
+      "# Model reference\n\nGenerated from the field tables. Numbers are SI; a string "
+      "may carry a unit, as in \"47 t\".\n";
+  for (const Described& kind : describe(catalogue))
+    text += "\n## " + heading(kind) + "\n" + kind.doc + "\n\n" + markdown(rows_of(kind));
+  return text;
+}
+
+} // namespace steplap

@@ -1,0 +1,208 @@
+#include "mbd/io/units.h"
+
+#include "mbd/diagnostics.h"
+
+#include <udunits2.h>
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <numbers>
+#include <unordered_map>
+
+namespace steplap {
+
+namespace {
+
+struct FreeUnit {
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+};
+struct FreeConverter {
+  void operator()(cv_converter* converter) const { cv_free(converter); }
+};
+struct FreeSystem {
+  void operator()(ut_system* system) const { ut_free_system(system); }
+};
+using UnitPtr = std::unique_ptr<ut_unit, FreeUnit>;
+using ConverterPtr = std::unique_ptr<cv_converter, FreeConverter>;
+
+// A unit taken apart into base units: their product, and their powers by name.
+struct BaseForm {
+  UnitPtr product;
+  std::map<std::string, int> powers; // without the radian
+  int radian_power = 0;
+};
+
+struct Conversion {
+  ConverterPtr converter; // null: see problem
+  double factor = 1.0;    // applied after the converter
+  std::string problem;
+};
+
+ut_status visit_basic(const ut_unit* unit, void* out) {
+  auto& form = *static_cast<BaseForm*>(out);
+  form.product.reset(ut_clone(unit));
+  const char* name = ut_get_name(unit, UT_ASCII);
+  const std::string text = name ? name : "?";
+  if (text == "radian")
+    form.radian_power = 1;
+  else
+    form.powers[text] = 1;
+  return UT_SUCCESS;
+}
+
+ut_status visit_product(const ut_unit*, int count, const ut_unit* const* units, const int* powers,
+                        void* out) {
+  auto& form = *static_cast<BaseForm*>(out);
+  for (int i = 0; i < count; ++i) {
+    if (powers[i] == 0) continue;
+    const UnitPtr power(ut_raise(units[i], powers[i]));
+    form.product.reset(form.product ? ut_multiply(form.product.get(), power.get())
+                                    : ut_clone(power.get()));
+    const char* name = ut_get_name(units[i], UT_ASCII);
+    const std::string text = name ? name : "?";
+    if (text == "radian")
+      form.radian_power = powers[i];
+    else
+      form.powers[text] = powers[i];
+  }
+  return UT_SUCCESS;
+}
+
+ut_status visit_galilean(const ut_unit*, double, const ut_unit* underlying, double, void* out);
+ut_status visit_timestamp(const ut_unit*, const ut_unit*, double, void*) {
+  return UT_BAD_ARG;
+}
+ut_status visit_logarithmic(const ut_unit*, double, const ut_unit*, void*) {
+  return UT_BAD_ARG;
+}
+
+const ut_visitor k_visitor{visit_basic, visit_product, visit_galilean, visit_timestamp,
+                           visit_logarithmic};
+
+ut_status visit_galilean(const ut_unit*, double, const ut_unit* underlying, double, void* out) {
+  return ut_accept_visitor(underlying, &k_visitor, out);
+}
+
+class UnitSystem {
+public:
+  UnitSystem() {
+    ut_set_error_message_handler(ut_ignore);
+    system_.reset(ut_read_xml(nullptr));
+    if (!system_) throw ModelError(Location{}, "the unit database of UDUNITS-2 was not found");
+    const UnitPtr degree = parse("degree"); // the database knows no "deg"
+    if (degree) ut_map_name_to_unit("deg", UT_ASCII, degree.get());
+  }
+
+  UnitPtr parse(const std::string& text) const {
+    const bool starts_with_number = text.find_first_of("0123456789+-.") == 0;
+    if (starts_with_number && text.rfind("1/", 0) != 0) return nullptr;
+    if (text.find('@') != std::string::npos) return nullptr;
+    return UnitPtr(ut_parse(system_.get(), text.c_str(), UT_UTF8));
+  }
+
+  const Conversion& conversion(const std::string& given, const std::string& wanted) {
+    Conversion& c = cache_[given + '\n' + wanted];
+    if (!c.converter && c.problem.empty()) c = make_conversion(given, wanted);
+    return c;
+  }
+
+private:
+  Conversion make_conversion(const std::string& given, const std::string& wanted) const;
+  std::string unknown_unit(const std::string& given, const std::string& wanted) const;
+
+  std::unique_ptr<ut_system, FreeSystem> system_;
+  std::unordered_map<std::string, Conversion> cache_;
+};
+
+bool names_hertz(const std::string& unit) {
+  return unit.find("Hz") != std::string::npos || unit.find("hertz") != std::string::npos;
+}
+
+Conversion failed(std::string problem) {
+  return {nullptr, 1.0, std::move(problem)};
+}
+
+Conversion UnitSystem::make_conversion(const std::string& given, const std::string& wanted) const {
+  if (given == "g" && (wanted == "*" || wanted == "m/s^2"))
+    return failed("is in grams: write 'gravity' for the acceleration, or 'kg' for a mass");
+  const UnitPtr from = parse(given);
+  BaseForm form;
+  if (!from || ut_accept_visitor(from.get(), &k_visitor, &form) != UT_SUCCESS)
+    return failed(unknown_unit(given, wanted));
+  if (!form.product) form.product.reset(ut_get_dimensionless_unit_one(system_.get()));
+  if (wanted == "*")
+    return {ConverterPtr(ut_get_converter(from.get(), form.product.get())), 1.0, ""};
+  const UnitPtr to(ut_parse(system_.get(), wanted.c_str(), UT_UTF8));
+  BaseForm target;
+  if (!to || ut_accept_visitor(to.get(), &k_visitor, &target) != UT_SUCCESS)
+    return failed("a field is kept in the unknown unit '" + wanted + "'");
+  if (form.powers != target.powers)
+    return failed(wanted.empty()
+                      ? "has the unit '" + given + "', but the value has no dimension"
+                      : "has the unit '" + given + "', but a unit like '" + wanted + "' is needed");
+  if (target.radian_power != 0 && form.radian_power == 0 && names_hertz(given))
+    return failed("is a frequency, but an angular velocity is needed: write 'rad/s', or 'rpm' for "
+                  "turns per minute");
+  const bool turns = wanted == "Hz" && form.radian_power == 1;
+  return {ConverterPtr(ut_get_converter(from.get(), to.get())),
+          turns ? 0.5 / std::numbers::pi : 1.0, ""};
+}
+
+// Names the unit, and the product that was probably meant ("Nm": "N m").
+std::string UnitSystem::unknown_unit(const std::string& given, const std::string& wanted) const {
+  std::string text = "has the unknown unit '" + given + "'";
+  const bool may_be_product = given.find(' ') == std::string::npos && given.size() < 12;
+  for (std::size_t i = 1; may_be_product && i < given.size(); ++i) {
+    const std::string product = given.substr(0, i) + " " + given.substr(i);
+    if (parse(given.substr(0, i)) && parse(product) && make_conversion(product, wanted).converter)
+      return text + " (did you mean '" + product + "'?)";
+  }
+  return text;
+}
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+std::string example(const std::string& unit) {
+  return unit.empty() || unit == "*" ? "'0.5'" : "'0.5 " + unit + "'";
+}
+
+Quantity without_unit(double value, const std::string& text, const std::string& unit) {
+  if (unit.empty() || unit == "*") return {value, ""};
+  return {0.0, "'" + text + "' names no unit: write " + text + " without quotes for " + unit +
+                   ", or add a unit"};
+}
+
+} // namespace
+
+Quantity parse_quantity(const std::string& original, const std::string& unit) {
+  const std::string text = trimmed(original);
+  const char* begin = text.c_str() + (text.rfind('+', 0) == 0 ? 1 : 0);
+  const char* end = text.c_str() + text.size();
+  double number = 0.0;
+  const auto [rest, status] = std::from_chars(begin, end, number);
+  if (status != std::errc())
+    return {0.0, "'" + text + "' is not a number with a unit, such as " + example(unit)};
+  if (rest != end && *rest == ',')
+    return {0.0, "'" + text + "': the decimal sign is a point, as in " + example(unit)};
+  if (!std::isfinite(number)) return {0.0, "'" + text + "' is not finite"};
+  const std::string given = trimmed(std::string(rest, end));
+  if (given.empty()) return without_unit(number, text, unit);
+
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  static UnitSystem system;
+  const Conversion& conversion = system.conversion(given, unit);
+  if (!conversion.problem.empty()) return {0.0, "'" + text + "' " + conversion.problem};
+  const double value = conversion.factor * cv_convert_double(conversion.converter.get(), number);
+  if (!std::isfinite(value)) return {0.0, "'" + text + "' is not finite"};
+  return {value, ""};
+}
+
+} // namespace steplap

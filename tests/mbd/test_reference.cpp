@@ -1,0 +1,53 @@
+// The reference and the schema that are generated from field tables.
+#include "mbd/io/json_schema.h"
+#include "mbd/io/reference.h"
+#include "tests/mbd/small_catalogue.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+using namespace steplap;
+using steplap::testing::small_catalogue;
+
+TEST_CASE("the reference of a kind shows every field") {
+  CHECK(kind_text(small_catalogue(), "pair") ==
+        "[[pair]]\n"
+        "Two equal bodies side by side.\n"
+        "\n"
+        "  field    type    unit  default   range  meaning\n"
+        "  spacing  number  m     1         > 0    distance of the two\n"
+        "  carrier  body          \"ground\"         what carries them\n");
+  const std::string spring = kind_text(small_catalogue(), "spring");
+  CHECK(spring.find("[[element]] of kind \"spring\"") == 0);
+  for (const std::string& field : testing::spring_kind().fields.names())
+    CHECK(spring.find("\n  " + field + " ") != std::string::npos);
+  CHECK_THROWS_WITH_AS(static_cast<void>(kind_text(small_catalogue(), "sprong")),
+                       "error: there is no kind 'sprong' (did you mean 'spring'?)", ModelError);
+}
+
+TEST_CASE("all kinds are listed") {
+  const std::string list = kinds_text(small_catalogue());
+  const std::string markdown = reference_markdown(small_catalogue());
+  for (const std::string kind : {"body", "marker", "simulation", "output", "haversine", "record",
+                                 "spring", "pusher", "pair"}) {
+    CHECK(list.find(" " + kind + " ") != std::string::npos);
+    CHECK(markdown.find(kind) != std::string::npos);
+  }
+  CHECK(markdown.find("\"linear\" \\| \"table\"") != std::string::npos);
+}
+
+TEST_CASE("the schema follows the tables") {
+  const auto schema = nlohmann::json::parse(json_schema(small_catalogue()));
+  const auto& spring = schema["$defs"]["element_spring"];
+  CHECK(spring["properties"]["kind"]["const"] == "spring");
+  CHECK(spring["properties"]["stiffness"]["anyOf"][0]["exclusiveMinimum"] == 0.0);
+  CHECK(spring["properties"]["law"]["enum"][1] == "table");
+  CHECK(spring["properties"]["turns"]["default"] == 3);
+  CHECK(spring["properties"]["turns"]["maximum"] == 20);
+  CHECK(spring["additionalProperties"] == false);
+  CHECK(schema["properties"]["body"]["items"]["properties"]["position"]["default"][0] == 0.0);
+  CHECK(schema["properties"].contains("pair"));
+  CHECK(schema["properties"].contains("gravity"));
+  CHECK(schema["properties"]["signal"]["items"]["anyOf"].size() ==
+        small_catalogue().signals.size());
+}
