@@ -1,0 +1,241 @@
+// How long the friction of a step-lap joint takes: closed form against adaptive quadrature of the
+// same accuracy, required pressure cold and warm, the certified bound, overlap fast and exact.
+#include "elements/patch/overlap.h"
+#include "elements/patch/required_pressure.h"
+
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+using namespace steplap;
+
+namespace {
+
+/// The paper's joint (one limb): yoke and limb sheets at the upper (+1) and lower (−1) corner.
+Outline sheet(double k, double s0, double s1, double q0, double q1) {
+  const double r = std::sqrt(0.5);
+  const Vec2 corner(-0.25, 1.15 * k), t(r, r * k), n(r, -r * k);
+  const auto at = [&](double s, double q) -> Vec2 { return corner + s * t + q * n; };
+  return make_outline({{at(s0, q0), at(s1, q0), at(s1, q1), at(s0, q1)}, {}});
+}
+Outline limb_sheet(double k) {
+  return sheet(k, 0, std::sqrt(0.5), -0.005, 0.05);
+}
+Outline yoke_sheet(double k) {
+  return sheet(k, -0.02, std::sqrt(0.5) + 0.02, -0.05, 0.005);
+}
+
+Patch joint() {
+  Patch patch;
+  OverlapWorkspace workspace;
+  Region overlap;
+  for (const double k : {1.0, -1.0}) {
+    intersect(yoke_sheet(k), limb_sheet(k), {}, workspace, overlap);
+    patch.add(overlap, 1165 * 0.25 * 0.10e6);
+  }
+  patch.prepare();
+  return patch;
+}
+
+Polygon quadrilateral() {
+  return {{{-0.5, -0.3}, {0.6, -0.4}, {0.5, 0.35}, {-0.4, 0.3}}, {}};
+}
+
+/// Twists that turn about points all over and around the quadrilateral.
+std::array<Vec3, 256> near_twists() {
+  std::array<Vec3, 256> twists;
+  for (std::size_t i = 0; i < twists.size(); ++i) {
+    const double a = 2.399963 * static_cast<double>(i),
+                 r = std::sqrt(static_cast<double>(i) / 256.0);
+    twists[i] = {r * std::sin(a), -r * std::cos(a), 1};
+  }
+  return twists;
+}
+
+/// h by adaptive Gauss-Kronrod (7, 15) in both directions over the quadrilateral's fan of
+/// triangles, cut at the centre of rotation's own triangle: what one would write without a closed
+/// form. The wrench would be three more integrands.
+double adaptive(const auto& f, double a, double b, double tolerance, int depth) {
+  static constexpr double x[8] = {
+      0.991455371120813, 0.949107912342759, 0.864864423359769, 0.741531185599394,
+      0.586087235467691, 0.405845151377397, 0.207784955007898, 0.0};
+  static constexpr double wk[8] = {0.022935322010529, 0.063092092629979, 0.104790010322250,
+                                   0.140653259715525, 0.169004726639267, 0.190350578064785,
+                                   0.204432940075298, 0.209482141084728};
+  static constexpr double wg[4] = {0.129484966168870, 0.279705391489277, 0.381830050505119,
+                                   0.417959183673469};
+  const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
+  double kronrod = 0, gauss = 0;
+  for (int i = 0; i < 8; ++i) {
+    const double v = i == 7 ? f(middle) : f(middle - half * x[i]) + f(middle + half * x[i]);
+    kronrod += wk[i] * v;
+    if (i % 2 == 1) gauss += wg[i / 2] * v;
+  }
+  if (std::abs(kronrod - gauss) * half <= tolerance || depth == 0) return kronrod * half;
+  return adaptive(f, a, middle, 0.5 * tolerance, depth - 1) +
+         adaptive(f, middle, b, 0.5 * tolerance, depth - 1);
+}
+
+double h_by_quadrature(const Polygon& polygon, const Vec3& nu, double tolerance) {
+  double sum = 0;
+  const Vec2 origin = polygon.outer[0];
+  for (std::size_t i = 1; i + 1 < polygon.outer.size(); ++i) {
+    const Vec2 e = polygon.outer[i] - origin, f = polygon.outer[i + 1] - origin;
+    sum += cross(e, f) *
+           adaptive(
+               [&](double s) {
+                 return adaptive(
+                     [&](double t) {
+                       const Vec2 r = origin + s * (e + t * (f - e));
+                       return s * std::hypot(nu[0] - nu[2] * r.y(), nu[1] + nu[2] * r.x());
+                     },
+                     0, 1, 0.1 * tolerance, 30);
+               },
+               0, 1, tolerance, 30);
+  }
+  return sum;
+}
+
+void h_gradient_closed_form(benchmark::State& state) {
+  Patch patch;
+  patch.add(quadrilateral(), 1);
+  patch.prepare();
+  const auto twists = near_twists();
+  std::size_t i = 0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(evaluate_gradient(patch, twists[i++ % 256]));
+}
+BENCHMARK(h_gradient_closed_form);
+
+void h_gradient_hessian_closed_form(benchmark::State& state) {
+  Patch patch;
+  patch.add(quadrilateral(), 1);
+  patch.prepare();
+  const auto twists = near_twists();
+  std::size_t i = 0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(evaluate(patch, twists[i++ % 256]));
+}
+BENCHMARK(h_gradient_hessian_closed_form);
+
+void h_gradient_hessian_far(benchmark::State& state) {
+  Patch patch;
+  patch.add(quadrilateral(), 1);
+  patch.prepare();
+  auto twists = near_twists();
+  for (Vec3& nu : twists)
+    nu[2] = 0.05;
+  std::size_t i = 0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(evaluate(patch, twists[i++ % 256]));
+}
+BENCHMARK(h_gradient_hessian_far);
+
+void h_only_quadrature_1e10(benchmark::State& state) {
+  Patch patch;
+  patch.add(quadrilateral(), 1);
+  const auto twists = near_twists();
+  std::size_t i = 0;
+  double worst = 0;
+  for (auto _ : state) {
+    const Vec3& nu = twists[i++ % 256];
+    const double h = h_by_quadrature(quadrilateral(), nu, 1e-10);
+    worst = std::max(worst, std::abs(h - evaluate_gradient(patch, nu).h));
+    benchmark::DoNotOptimize(h);
+  }
+  state.counters["largest_error"] = worst;
+}
+BENCHMARK(h_only_quadrature_1e10);
+
+/// Wrenches that wander as those of a run do: turning force, changing couple.
+std::array<Vec3, 1024> wrenches() {
+  std::array<Vec3, 1024> out;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double t = 2 * std::numbers::pi * static_cast<double>(i) / 1024;
+    out[i] = {5e4 * std::cos(t), 9e4 + 2e4 * std::sin(3 * t), 3e4 * std::sin(t + 1)};
+  }
+  return out;
+}
+
+void required_pressure_cold(benchmark::State& state) {
+  const Patch patch = joint();
+  const auto w = wrenches();
+  std::size_t i = 0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(required_pressure(patch, w[i++ % 1024]));
+}
+BENCHMARK(required_pressure_cold);
+
+void required_pressure_warm(benchmark::State& state) {
+  const Patch patch = joint();
+  const auto w = wrenches();
+  std::size_t i = 0;
+  double evaluations = 0;
+  Vec3 direction = Vec3::Zero();
+  for (auto _ : state) {
+    const RequiredPressure r = required_pressure(patch, w[i++ % 1024], direction);
+    direction = r.direction;
+    evaluations += r.evaluations;
+  }
+  state.counters["evaluations"] = evaluations / static_cast<double>(state.iterations());
+}
+BENCHMARK(required_pressure_warm);
+
+void usage_bound_only(benchmark::State& state) {
+  const Capacity limits = capacity(joint());
+  const auto w = wrenches();
+  std::size_t i = 0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(usage_bounds(limits, w[i++ % 1024]));
+}
+BENCHMARK(usage_bound_only);
+
+Pose wander(std::size_t i) {
+  const double t = static_cast<double>(i % 64) / 64;
+  return {2e-3 * t, -1e-3 * t, 1e-3 * t};
+}
+
+void overlap_fast(benchmark::State& state) {
+  const Outline yoke = yoke_sheet(1), limb = limb_sheet(1);
+  OverlapWorkspace workspace;
+  Region overlap;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    intersect(yoke, limb, wander(i++), workspace, overlap);
+    benchmark::DoNotOptimize(overlap.data());
+  }
+}
+BENCHMARK(overlap_fast);
+
+void overlap_exact(benchmark::State& state) {
+  const Outline yoke = yoke_sheet(1), limb = limb_sheet(1);
+  std::size_t i = 0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(exact_intersection(yoke.polygon, limb.polygon, wander(i++)));
+}
+BENCHMARK(overlap_exact);
+
+/// What a sliding joint does anew at every evaluation, both corners: overlap, patch, wrench.
+void sliding_joint(benchmark::State& state) {
+  const std::array yokes{yoke_sheet(1), yoke_sheet(-1)}, limbs{limb_sheet(1), limb_sheet(-1)};
+  OverlapWorkspace workspace;
+  Region overlap;
+  Patch patch;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const Pose at = wander(i++);
+    patch.clear(Vec2(at.x, at.y));
+    for (std::size_t k = 0; k < 2; ++k) {
+      intersect(yokes[k], limbs[k], at, workspace, overlap);
+      patch.add(overlap, 1165 * 0.25 * 0.10e6);
+    }
+    benchmark::DoNotOptimize(evaluate_gradient(patch, {0.02, 0.1, 0.1}));
+  }
+}
+BENCHMARK(sliding_joint);
+
+} // namespace
+
+BENCHMARK_MAIN();
