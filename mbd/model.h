@@ -64,6 +64,7 @@ struct ElementKind {
   std::string name; ///< as written in a model file, "spring_damper"
   std::string doc;  ///< a few sentences: what it models, sign convention
   FieldTable fields;
+  int stage = 0; ///< kinds that refer to other elements compile at stage 1
   std::shared_ptr<Element> (*create)() = nullptr;
   /// Adds the element to the system; reports what is wrong through the builder's errors.
   void (*compile)(const Element& element, SystemBuilder& builder) = nullptr;

@@ -1,0 +1,32 @@
+#include "elements/catalog.h"
+
+#include "elements/bushing.h"
+#include "elements/coulomb_stick.h"
+#include "elements/joints.h"
+#include "elements/load.h"
+#include "elements/prescribed_motion.h"
+#include "elements/spring_damper.h"
+#include "elements/step_lap_joint.h"
+#include "elements/unilateral_contact.h"
+#include "mbd/io/record_signal.h"
+
+namespace steplap {
+
+const Catalogue& element_catalog() {
+  static const Catalogue catalogue = [] {
+    Catalogue c;
+    c.elements = {&spring_damper_kind(),     &rotational_spring_damper_kind(),
+                  &bushing_kind(),           &unilateral_contact_kind(),
+                  &coulomb_stick_kind(),     &step_lap_joint_kind(),
+                  &revolute_kind(),          &prismatic_kind(),
+                  &weld_kind(),              &distance_kind(),
+                  &point_on_line_kind(),     &prescribed_motion_kind(),
+                  &load_kind()};
+    c.signals = signal_kinds();
+    c.signals.push_back(&record_signal_kind());
+    return c;
+  }();
+  return catalogue;
+}
+
+} // namespace steplap

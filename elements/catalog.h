@@ -1,0 +1,10 @@
+// All kinds of elements and signals: the one list that a new kind is added to.
+#pragma once
+
+#include "mbd/model.h"
+
+namespace steplap {
+
+[[nodiscard]] const Catalogue& element_catalog();
+
+} // namespace steplap

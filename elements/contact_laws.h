@@ -1,0 +1,131 @@
+// Normal laws of unilateral contacts for LawGroup. Modes: open, pressed, released (closed, force zero).
+#pragma once
+
+#include "mbd/law_group.h"
+
+#include <algorithm>
+
+namespace steplap {
+
+/// f = max(0, −kδ − cδ̇) while δ < 0: the damper never pulls.
+struct KelvinVoigtContact {
+  static constexpr int k_watches = 2;
+  static constexpr bool k_is_contact = true;
+  double k = 0.0, c = 0.0, offset = 0.0;
+
+  template <class S> [[nodiscard]] S raw(const S& value, const S& rate) const {
+    return S(-k) * (value - S(offset)) - S(c) * rate;
+  }
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
+    return mode == k_contact_pressed ? raw(value, rate) : S(0);
+  }
+  [[nodiscard]] double elastic_force(double value) const {
+    return -k * std::min(0.0, value - offset);
+  }
+  [[nodiscard]] double energy(double value) const {
+    const double closed = std::min(0.0, value - offset);
+    return 0.5 * k * closed * closed;
+  }
+  [[nodiscard]] std::uint8_t mode_at(double value, double rate) const {
+    if (value - offset >= 0.0) return k_contact_open;
+    return raw(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
+  }
+  void watch(double value, double rate, std::uint8_t mode, double* watch, double* watch_rate) const {
+    const double gap = value - offset;
+    if (mode == k_contact_open) {
+      watch[0] = gap;
+      watch_rate[0] = rate;
+      watch[1] = 1.0;
+    } else if (mode == k_contact_pressed) {
+      watch[0] = raw(value, rate);
+      watch_rate[0] = std::numeric_limits<double>::quiet_NaN();
+      watch[1] = 1.0;
+    } else {
+      watch[0] = -gap;
+      watch_rate[0] = -rate;
+      watch[1] = -raw(value, rate);
+    }
+  }
+  [[nodiscard]] std::uint8_t next_mode(std::uint8_t mode, int slot, double value, double rate) const {
+    if (mode == k_contact_open) return raw(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
+    if (mode == k_contact_pressed) return value - offset < 0.0 ? k_contact_released : k_contact_open;
+    return slot == 0 ? k_contact_open : k_contact_pressed;
+  }
+  static const char* transition_name(std::uint8_t from, std::uint8_t to) {
+    if (to == k_contact_open) return "opens";
+    if (from == k_contact_open) return "closes";
+    return to == k_contact_released ? "force reaches zero" : "force returns";
+  }
+};
+
+/// f = −kδ − cδ̇ while δ < 0, as the paper writes it: the damper may pull just before opening.
+struct LiteralContact {
+  static constexpr int k_watches = 1;
+  static constexpr bool k_is_contact = true;
+  double k = 0.0, c = 0.0, offset = 0.0;
+
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
+    return mode == k_contact_pressed ? S(-k) * (value - S(offset)) - S(c) * rate : S(0);
+  }
+  [[nodiscard]] double elastic_force(double value) const {
+    return -k * std::min(0.0, value - offset);
+  }
+  [[nodiscard]] double energy(double value) const {
+    const double closed = std::min(0.0, value - offset);
+    return 0.5 * k * closed * closed;
+  }
+  [[nodiscard]] std::uint8_t mode_at(double value, double) const {
+    return value - offset < 0.0 ? k_contact_pressed : k_contact_open;
+  }
+  void watch(double value, double rate, std::uint8_t mode, double* watch, double* watch_rate) const {
+    const double sign = mode == k_contact_open ? 1.0 : -1.0;
+    watch[0] = sign * (value - offset);
+    watch_rate[0] = sign * rate;
+  }
+  [[nodiscard]] std::uint8_t next_mode(std::uint8_t mode, int, double, double) const {
+    return mode == k_contact_open ? k_contact_pressed : k_contact_open;
+  }
+  static const char* transition_name(std::uint8_t, std::uint8_t to) {
+    return to == k_contact_open ? "opens" : "closes";
+  }
+};
+
+/// f = k|δ|ⁿ (1 − α δ̇), never below zero (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440).
+struct HuntCrossleyContact {
+  static constexpr int k_watches = 2;
+  static constexpr bool k_is_contact = true;
+  double k = 0.0, exponent = 1.5, alpha = 0.0, offset = 0.0;
+
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
+    using std::pow;
+    const S depth = S(offset) - value;
+    if (mode != k_contact_pressed || !(depth > S(0))) return S(0);
+    return S(k) * pow(depth, exponent) * (S(1) - S(alpha) * rate);
+  }
+  [[nodiscard]] double elastic_force(double value) const {
+    return value < offset ? k * std::pow(offset - value, exponent) : 0.0;
+  }
+  [[nodiscard]] double energy(double value) const {
+    return value < offset ? k * std::pow(offset - value, exponent + 1.0) / (exponent + 1.0) : 0.0;
+  }
+  [[nodiscard]] std::uint8_t mode_at(double value, double rate) const {
+    if (value - offset >= 0.0) return k_contact_open;
+    return alpha * rate <= 1.0 ? k_contact_pressed : k_contact_released;
+  }
+  void watch(double value, double rate, std::uint8_t mode, double* watch, double* watch_rate) const {
+    const double sign = mode == k_contact_open ? 1.0 : -1.0;
+    watch[0] = sign * (value - offset);
+    watch_rate[0] = sign * rate;
+    watch[1] = mode == k_contact_open ? 1.0 : (mode == k_contact_pressed ? 1.0 : -1.0) * (1.0 - alpha * rate);
+  }
+  [[nodiscard]] std::uint8_t next_mode(std::uint8_t mode, int slot, double, double rate) const {
+    if (mode == k_contact_open) return alpha * rate <= 1.0 ? k_contact_pressed : k_contact_released;
+    if (slot == 0) return k_contact_open;
+    return mode == k_contact_pressed ? k_contact_released : k_contact_pressed;
+  }
+  static const char* transition_name(std::uint8_t from, std::uint8_t to) {
+    return KelvinVoigtContact::transition_name(from, to);
+  }
+};
+
+} // namespace steplap

@@ -1,0 +1,198 @@
+#include "elements/coulomb_stick.h"
+
+#include "elements/unilateral_contact.h"
+#include "mbd/system.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// θ_A = θ_B exactly is the normal state at rest: the foot is kept within this dead band, rad.
+constexpr double k_foot_dead_band = 1e-13;
+// |λ| may pass the bound by rounding, relative: ten times below the 1e-12 that a load can resolve.
+constexpr double k_bound_slack = 1e-13;
+
+class CoulombFriction final : public FrictionElement {
+public:
+  std::vector<ContactIndex> contacts;
+  RowSpec feet[2]; ///< rear-most, front-most; the same twice for one contact
+  bool has_two_feet = false;
+  double mu_static = 0.0, mu_kinetic = 0.0;
+
+  [[nodiscard]] int dimension() const override { return 1; }
+  [[nodiscard]] const RowSpec* rows(const FrictionState& state) const override {
+    return &feet[state.foot];
+  }
+  void mark_bodies(std::vector<char>& is_used) const override {
+    is_used[feet[0].a] = is_used[feet[0].b] = 1;
+  }
+  [[nodiscard]] double normal_force(const Evaluation& e) const {
+    double sum = 0.0;
+    for (const ContactIndex& contact : contacts) sum += e.contact_force[contact.force];
+    return std::max(0.0, sum); // the paper's literal contact law may pull
+  }
+  [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
+    return std::any_of(contacts.begin(), contacts.end(), [&e](const ContactIndex& contact) {
+      return e.mode[contact.unit] == k_contact_pressed;
+    });
+  }
+  void slip_wrench(const Evaluation& e, const FrictionState& state, const double*,
+                   double* wrench) const override {
+    wrench[0] = -mu_kinetic * normal_force(e) * state.sign;
+  }
+  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench,
+                   double* watch) const override {
+    const double bound = mu_static * normal_force(e) * (1.0 + k_bound_slack);
+    watch[0] = bound - wrench[0];
+    watch[1] = bound + wrench[0];
+  }
+  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
+    state.sign = wrench[0] > 0.0 ? -1 : 1;
+  }
+  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
+    if (!has_two_feet) return 1.0;
+    const double turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
+    return k_foot_dead_band + (state.foot == 0 ? turn : -turn);
+  }
+  [[nodiscard]] std::uint8_t next_place(const Evaluation&, const FrictionState& state) const override {
+    return state.foot == 0 ? 1 : 0;
+  }
+  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a,
+                                          const double* b, bool is_kinetic) const override {
+    FrictionBlock block;
+    const double bound = (is_kinetic ? mu_kinetic : mu_static) * normal_force(e);
+    const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? -bound : bound);
+    block.is_inside = std::abs(wanted) <= bound * (1.0 + k_bound_slack);
+    block.wrench[0] = std::clamp(wanted, -bound, bound);
+    block.direction[0] = wanted > 0.0 ? -1.0 : 1.0;
+    return block;
+  }
+};
+
+RowSpec slide_row(const ContactGeometry& g, int memory) {
+  RowSpec row;
+  row.kind = MeasureKind::slide;
+  row.a = g.a;
+  row.b = g.b;
+  row.point_a = g.gap.point_a;
+  row.point_b = g.gap.point_b;
+  row.direction = g.gap.normal;
+  row.contact_axis = g.gap.axis;
+  row.is_axis_in_a = g.gap.is_axis_in_a;
+  row.memory = memory;
+  row.quantity = "slide";
+  return row;
+}
+
+// All contacts must lie between the same two bodies on one line, so that one coordinate serves them.
+bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactGeometry>& geometry,
+             std::vector<ContactIndex>& contacts) {
+  for (const std::string& name : e.contacts) {
+    const ContactIndex* index = builder.contact(name);
+    const ElementEntry* entry = builder.element(name);
+    if (!index || !entry) {
+      builder.error("'" + name + "' is no contact: name unilateral_contact elements in 'contacts'");
+      return false;
+    }
+    const auto* contact = dynamic_cast<const UnilateralContact*>(entry->element.get());
+    if (!contact) {
+      builder.error("'" + name + "' is no unilateral_contact");
+      return false;
+    }
+    geometry.push_back(contact_geometry(*contact, builder));
+    contacts.push_back(*index);
+    const ContactGeometry &first = geometry.front(), &last = geometry.back();
+    if (first.a != last.a || first.b != last.b ||
+        (first.gap.normal - last.gap.normal).norm() > 1e-9) {
+      builder.error("contacts '" + e.contacts.front() + "' and '" + name +
+                    "' are not between the same two bodies with the same normal: give each its own "
+                    "coulomb_stick");
+      return false;
+    }
+  }
+  return true;
+}
+
+void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
+  const int f = builder.next_friction(), row = builder.next_friction_row();
+  const auto reference = [&](int foot) {
+    return evaluate_row<false>(friction.feet[foot], &builder.reference(0)).value;
+  };
+  const double start_front = reference(1), start_rear = reference(0);
+  const auto* self = &friction;
+  builder.add_channel("friction", "N", "friction force on a along b's tangent",
+                      [row](const Snapshot& s) { return s.friction_force[row]; });
+  builder.add_channel("normal", "N", "sum of the contacts' normal forces",
+                      [self](const Snapshot& s) { return self->normal_force(*s.evaluation); });
+  builder.add_channel("capacity", "N", "largest friction force that holds",
+                      [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
+  builder.add_channel("slide", "m", "tangential coordinate of the front-most contact since the reference pose",
+                      [self, start_front](const Snapshot& s) {
+                        return evaluate_row<false>(self->feet[1], s.motion).value - start_front;
+                      });
+  builder.add_channel("slide_rear", "m", "the same of the rear-most contact",
+                      [self, start_rear](const Snapshot& s) {
+                        return evaluate_row<false>(self->feet[0], s.motion).value - start_rear;
+                      });
+  builder.add_channel("slip_rate", "m/s", "velocity of the last contact point along b's tangent",
+                      [self, f](const Snapshot& s) {
+                        return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate;
+                      });
+  builder.add_channel("mode", "", "0 free, 1 sticks, 2 slips", [f](const Snapshot& s) {
+    return static_cast<double>(s.evaluation->friction[f].phase);
+  });
+}
+
+void compile_coulomb(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const CoulombStick&>(element);
+  if (e.contacts.empty()) return builder.error("'contacts' is empty: name the contacts that carry the friction");
+  const double mu_kinetic = e.kinetic_friction.value_or(e.static_friction);
+  if (mu_kinetic > e.static_friction)
+    return builder.error("'kinetic_friction' must not exceed 'static_friction'");
+  std::vector<ContactGeometry> geometry;
+  auto friction = std::make_unique<CoulombFriction>();
+  if (!collect(e, builder, geometry, friction->contacts)) return;
+
+  const int memory = builder.add_memory();
+  const auto slide_of = [&](const ContactGeometry& g) {
+    return evaluate_row<false>(slide_row(g, -1), &builder.reference(0)).value;
+  };
+  const auto [rear, front] = std::minmax_element(
+      geometry.begin(), geometry.end(), [&](const ContactGeometry& x, const ContactGeometry& y) {
+        return slide_of(x) < slide_of(y);
+      });
+  friction->feet[0] = slide_row(*rear, memory);
+  friction->feet[1] = slide_row(*front, memory);
+  friction->feet[0].element = friction->feet[1].element = builder.element_index();
+  friction->has_two_feet = rear != front;
+  friction->mu_static = e.static_friction;
+  friction->mu_kinetic = mu_kinetic;
+  add_channels(builder, *friction);
+  builder.add_friction(std::move(friction));
+}
+
+} // namespace
+
+const ElementKind& coulomb_stick_kind() {
+  static const ElementKind kind = [] {
+    using T = CoulombStick;
+    ElementKind k;
+    k.name = "coulomb_stick";
+    k.stage = 1;
+    k.doc = "Coulomb friction under a group of contacts of one pair of bodies: sticks exactly while the "
+            "force it takes is within static_friction times the sum of their normal forces.";
+    FieldTable& f = k.fields;
+    f.add("contacts", &T::contacts).as(FieldType::elements).required().doc("the contacts that press");
+    f.add("static_friction", &T::static_friction).not_negative().required().doc("mu_s");
+    f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.compile = compile_coulomb;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

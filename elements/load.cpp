@@ -1,0 +1,114 @@
+#include "elements/load.h"
+
+#include "mbd/system.h"
+
+namespace steplap {
+
+namespace {
+
+struct LoadEntry {
+  int body = k_ground;
+  Vec2 point, force;
+  double couple = 0.0, angle = 0.0;
+  const Signal *x = nullptr, *y = nullptr, *torque = nullptr;
+  bool is_in_body = false;
+};
+
+struct AppliedLoad {
+  Pair<double> force, lever;
+  double couple = 0.0;
+};
+
+AppliedLoad load_at(const LoadEntry& entry, const Motion<double>& body, double t) {
+  AppliedLoad load;
+  const Vec2 local(entry.force.x() + (entry.x ? entry.x->value(t) : 0.0),
+                   entry.force.y() + (entry.y ? entry.y->value(t) : 0.0));
+  load.force = entry.is_in_body ? to_ground(body, rotated(local, entry.angle))
+                                : Pair<double>{local.x(), local.y()};
+  load.lever = to_ground(body, entry.point);
+  load.couple = entry.couple + (entry.torque ? entry.torque->value(t) : 0.0);
+  return load;
+}
+
+class LoadGroup final : public ForceGroup {
+public:
+  std::vector<LoadEntry> entries;
+
+  void add_forces(Evaluation& e) const override {
+    for (const LoadEntry& entry : entries) {
+      const Motion<double>& body = e.motion[entry.body];
+      const AppliedLoad load = load_at(entry, body, e.t);
+      BodyForce& sum = e.force[entry.body];
+      const double moment = cross(load.lever, load.force) + load.couple;
+      sum.fx += load.force.x;
+      sum.fy += load.force.y;
+      sum.m += moment;
+      e.work += load.force.x * body.vx + load.force.y * body.vy + moment * body.omega;
+    }
+  }
+  [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
+
+  void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
+    for (const LoadEntry& entry : entries) {
+      const AppliedLoad load = load_at(entry, e.motion[entry.body], e.t);
+      PairJacobian& j = out.emplace_back();
+      j.a = entry.body;
+      j.b = k_ground;
+      j.stiffness.setZero();
+      j.damping.setZero();
+      // Turning the body turns the lever, and the force where it is fixed in the body: then the
+      // moment keeps its value.
+      if (entry.is_in_body) {
+        j.stiffness(0, 2) = -load.force.y;
+        j.stiffness(1, 2) = load.force.x;
+      } else {
+        j.stiffness(2, 2) = -dot(load.lever, load.force);
+      }
+    }
+  }
+  void mark_bodies(std::vector<char>& is_used) const override {
+    for (const LoadEntry& entry : entries) is_used[entry.body] = 1;
+  }
+};
+
+void compile_load(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const Load&>(element);
+  const CompiledMarker marker = builder.marker(e.at);
+  if (marker.body == k_ground) return builder.error("acts on the ground or a fixed body, which it cannot move");
+  LoadGroup& group = builder.group<LoadGroup>();
+  group.entries.push_back({marker.body, marker.point, e.force, e.couple, marker.angle,
+                           builder.signal(e.force_x), builder.signal(e.force_y), builder.signal(e.torque),
+                           e.frame == "body"});
+  const auto* entries = &group.entries;
+  const std::size_t i = group.entries.size() - 1;
+  const auto load = [entries, i](const Snapshot& s) {
+    return load_at((*entries)[i], s.motion[(*entries)[i].body], s.t);
+  };
+  builder.add_channel("force_x", "N", "ground axes", [load](const Snapshot& s) { return load(s).force.x; });
+  builder.add_channel("force_y", "N", "ground axes", [load](const Snapshot& s) { return load(s).force.y; });
+  builder.add_channel("torque", "N m", "couple", [load](const Snapshot& s) { return load(s).couple; });
+}
+
+} // namespace
+
+const ElementKind& load_kind() {
+  static const ElementKind kind = [] {
+    ElementKind k;
+    k.name = "load";
+    k.doc = "A force and a couple at a marker, constant or following signals.";
+    FieldTable& f = k.fields;
+    f.add("at", &Load::at).as(FieldType::marker).required().doc("marker where it acts");
+    f.add("force", &Load::force).in("N").doc("constant part");
+    f.add("couple", &Load::couple).in("N m").doc("constant part");
+    f.add("force_x", &Load::force_x).as(FieldType::signal).doc("signal added to the force along x");
+    f.add("force_y", &Load::force_y).as(FieldType::signal).doc("signal added to the force along y");
+    f.add("torque", &Load::torque).as(FieldType::signal).doc("signal added to the couple");
+    f.add("frame", &Load::frame).one_of({"ground", "body"}).doc("axes of the force: ground, or the marker's");
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Load>()); };
+    k.compile = compile_load;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

@@ -1,0 +1,18 @@
+// Force and couple at a marker, constant or following signals, in ground or body axes.
+#pragma once
+
+#include "mbd/model.h"
+
+namespace steplap {
+
+struct Load : Element {
+  std::string at;
+  Vec2 force = Vec2::Zero();
+  double couple = 0.0;
+  std::string force_x, force_y, torque; ///< signals, added to the constants
+  std::string frame = "ground";
+};
+
+[[nodiscard]] const ElementKind& load_kind();
+
+} // namespace steplap

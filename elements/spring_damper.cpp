@@ -1,0 +1,161 @@
+#include "elements/spring_damper.h"
+
+#include "elements/spring_laws.h"
+#include "mbd/system.h"
+
+namespace steplap {
+
+namespace {
+
+bool is_increasing(const std::vector<Vec2>& table) {
+  for (std::size_t i = 1; i < table.size(); ++i)
+    if (!(table[i].x() > table[i - 1].x())) return false;
+  return true;
+}
+
+bool check(const SpringDamper& e, SystemBuilder& builder) {
+  const auto fails = [&builder](bool is_wrong, const char* message) {
+    if (is_wrong) builder.error(message);
+    return is_wrong;
+  };
+  bool is_bad = fails(e.preload && e.free_length, "give either 'preload' or 'free_length', not both");
+  is_bad |= fails(e.preload && *e.preload != 0.0 && e.stiffness == 0.0, "'preload' needs a 'stiffness'");
+  is_bad |= fails(!e.force_table.empty() && e.stiffness != 0.0,
+                  "give either 'stiffness' or 'force_table', not both");
+  is_bad |= fails(!e.damping_table.empty() && e.damping != 0.0,
+                  "give either 'damping' or 'damping_table', not both");
+  is_bad |= fails(e.force_table.size() == 1 || e.damping_table.size() == 1,
+                  "a table needs at least two points");
+  is_bad |= fails(!is_increasing(e.force_table) || !is_increasing(e.damping_table),
+                  "the first column of a table must increase from row to row");
+  is_bad |= fails(e.gap > 0.0 && (!e.force_table.empty() || !e.damping_table.empty()),
+                  "'gap' and tables exclude each other: put the dead band into the table");
+  is_bad |= fails(e.force_table.size() * std::max<std::size_t>(1, e.damping_table.size()) > 200,
+                  "tables are too long: at most 200 combinations of their segments");
+  is_bad |= fails(e.stiffness == 0.0 && e.damping == 0.0 && e.force_table.empty() &&
+                      e.damping_table.empty(),
+                  "gives no force: set 'stiffness', 'damping' or a table");
+  return !is_bad;
+}
+
+template <class Measure, class Law>
+void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Law& law) {
+  using Group = LawGroup<Measure, Law>;
+  Group& group = builder.group<Group>();
+  group.entries.push_back({a, b, measure, law});
+  if constexpr (Law::k_watches > 0) builder.add_unit(group, Law::k_watches);
+  const int i = static_cast<int>(group.entries.size()) - 1;
+  const bool is_angle = std::is_same_v<Measure, AngleMeasure>;
+  builder.add_channel("elongation", is_angle ? "rad" : "m", "measure minus free length",
+                      [&group, i](const Snapshot& s) {
+                        return group.measured(i, *s.evaluation).value - group.entries[i].law.free;
+                      });
+  builder.add_channel("rate", is_angle ? "rad/s" : "m/s", "of the elongation",
+                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
+  builder.add_channel("force", is_angle ? "N m" : "N", "on a along the measure: −k δ − c δ̇",
+                      [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
+}
+
+template <class Measure>
+void add_with_law(const SpringDamper& e, SystemBuilder& builder, int a, int b, const Measure& measure,
+                  double default_free) {
+  const double n = static_cast<double>(e.count);
+  const double k = n * e.stiffness, c = n * e.damping;
+  const double now =
+      measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
+  double free = e.free_length.value_or(default_free);
+  if (e.preload && k > 0.0) free = now + *e.preload / k;
+  if (!e.force_table.empty() || !e.damping_table.empty()) {
+    auto spring = e.force_table, damper = e.damping_table;
+    if (spring.empty()) spring = {{-1.0, -e.stiffness}, {1.0, e.stiffness}};
+    if (damper.empty()) damper = {{-1.0, -e.damping}, {1.0, e.damping}};
+    add(builder, a, b, measure,
+        TabulatedSpring{PiecewiseLinear(spring), PiecewiseLinear(damper), free, n});
+  } else if (e.gap > 0.0) {
+    add(builder, a, b, measure, GapSpring{k, c, free, 0.5 * e.gap});
+  } else {
+    add(builder, a, b, measure, LinearSpring{k, c, free});
+  }
+}
+
+void compile_spring_damper(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const SpringDamper&>(element);
+  if (!check(e, builder)) return;
+  const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
+  if (e.axis) {
+    if (e.axis->norm() == 0.0) return builder.error("'axis' has no direction");
+    const AxisMeasure measure{a.point, b.point, builder.direction(b, *e.axis)};
+    const double now = measure.at<false, double>(builder.reference(a.body), builder.reference(b.body)).value;
+    return add_with_law(e, builder, a.body, b.body, measure, now);
+  }
+  const double length = (builder.marker_position(a) - builder.marker_position(b)).norm();
+  if (length < 1e-12)
+    return builder.error("its ends coincide, so its direction is undefined: move a marker, or give an "
+                         "'axis'");
+  add_with_law(e, builder, a.body, b.body, DistanceMeasure{a.point, b.point}, length);
+}
+
+void compile_rotational(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const RotationalSpringDamper&>(element);
+  if (e.preload && e.free_angle) return builder.error("give either 'preload' or 'free_angle', not both");
+  if (e.preload && e.stiffness == 0.0) return builder.error("'preload' needs a 'stiffness'");
+  const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
+  const double n = static_cast<double>(e.count);
+  const double now = builder.reference(a.body).theta - builder.reference(b.body).theta;
+  double free = e.free_angle.value_or(now);
+  if (e.preload) free = now + *e.preload / (n * e.stiffness);
+  add(builder, a.body, b.body, AngleMeasure{}, LinearSpring{n * e.stiffness, n * e.damping, free});
+}
+
+} // namespace
+
+const ElementKind& spring_damper_kind() {
+  static const ElementKind kind = [] {
+    using T = SpringDamper;
+    ElementKind k;
+    k.name = "spring_damper";
+    k.doc = "Spring and damper between two markers, along an axis fixed in body b or from point to point. "
+            "The force on a is f = -k d - c d' along the axis (away from b), d the elongation.";
+    FieldTable& f = k.fields;
+    f.add("a", &T::a).as(FieldType::marker).required().doc("marker on the first body");
+    f.add("b", &T::b).as(FieldType::marker).doc("marker on the second body");
+    f.add("axis", &T::axis).doc("direction in marker b's axes; without it, from point to point");
+    f.add("stiffness", &T::stiffness).in("N/m").not_negative().doc("k of one element");
+    f.add("damping", &T::damping).in("N s/m").not_negative().doc("c of one element");
+    f.add("count", &T::count).at_least(1).doc("equal elements side by side");
+    f.add("free_length", &T::free_length).in("m").doc(
+        "distance at which it gives no force; default: that of the reference pose");
+    f.add("preload", &T::preload).in("N").doc("force f of all in the reference pose, instead of free_length");
+    f.add("gap", &T::gap).in("m").not_negative().doc("width of a dead band around the free length");
+    f.add("force_table", &T::force_table).in("m", "N").doc("[d, -f] pairs instead of stiffness, linear between");
+    f.add("damping_table", &T::damping_table).in("m/s", "N").doc("[d', -f] pairs instead of damping");
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.compile = compile_spring_damper;
+    return k;
+  }();
+  return kind;
+}
+
+const ElementKind& rotational_spring_damper_kind() {
+  static const ElementKind kind = [] {
+    using T = RotationalSpringDamper;
+    ElementKind k;
+    k.name = "rotational_spring_damper";
+    k.doc = "Spring and damper on the relative angle of two bodies: couple -k d - c d' on a, d the angle of "
+            "a against b minus the free angle.";
+    FieldTable& f = k.fields;
+    f.add("a", &T::a).as(FieldType::marker).required().doc("marker on the first body");
+    f.add("b", &T::b).as(FieldType::marker).doc("marker on the second body");
+    f.add("stiffness", &T::stiffness).in("N m/rad").not_negative().doc("k of one element");
+    f.add("damping", &T::damping).in("N m s/rad").not_negative().doc("c of one element");
+    f.add("count", &T::count).at_least(1).doc("equal elements side by side");
+    f.add("free_angle", &T::free_angle).in("rad").doc("default: the angle of the reference pose");
+    f.add("preload", &T::preload).in("N m").doc("couple on a in the reference pose, instead of free_angle");
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.compile = compile_rotational;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

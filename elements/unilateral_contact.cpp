@@ -1,0 +1,111 @@
+#include "elements/unilateral_contact.h"
+
+#include "elements/contact_laws.h"
+#include "mbd/system.h"
+
+namespace steplap {
+
+namespace {
+
+template <class Law>
+void add(const ContactGeometry& g, const Law& law, SystemBuilder& builder) {
+  using Group = LawGroup<GapMeasure, Law>;
+  Group& group = builder.group<Group>();
+  group.entries.push_back({g.a, g.b, g.gap, law});
+  builder.add_unit(group, Law::k_watches);
+  group.entries.back().contact = builder.add_contact(group.entries.back().unit);
+  const int i = static_cast<int>(group.entries.size()) - 1;
+  builder.add_channel("gap", "m", "δ, negative while closed", [&group, i](const Snapshot& s) {
+    return group.measured(i, *s.evaluation).value - group.entries[i].law.offset;
+  });
+  builder.add_channel("rate", "m/s", "of the gap",
+                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
+  builder.add_channel("force", "N", "normal force, positive in compression",
+                      [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
+}
+
+bool check(const UnilateralContact& e, SystemBuilder& builder) {
+  const int given = e.preload.has_value() + e.interference.has_value() + e.gap.has_value();
+  bool is_bad = false;
+  const auto fail = [&](const char* message) {
+    builder.error(message);
+    is_bad = true;
+  };
+  if (given > 1) fail("give one of 'preload', 'interference' and 'gap'");
+  if (e.preload && e.stiffness == 0.0) fail("'preload' needs a 'stiffness'");
+  if (e.normal.norm() == 0.0) fail("'normal' has no direction");
+  if (e.axis && e.axis->norm() == 0.0) fail("'axis' has no direction");
+  if (e.law == "hunt_crossley" && e.damping != 0.0) fail("Hunt-Crossley takes 'dissipation' instead of 'damping'");
+  if (e.law != "hunt_crossley" && (e.exponent != 1.0 || e.dissipation != 0.0))
+    fail("'exponent' and 'dissipation' belong to law = \"hunt_crossley\"");
+  return !is_bad;
+}
+
+void compile_contact(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const UnilateralContact&>(element);
+  if (!check(e, builder)) return;
+  const ContactGeometry g = contact_geometry(e, builder);
+  const Motion<double>&a = builder.reference(g.a), &b = builder.reference(g.b);
+  if (g.gap.is_axis_in_a) {
+    const auto frame = detail::contact_frame(a, b, g.gap.point_a, g.gap.point_b, g.gap.normal, g.gap.axis, true);
+    if (!(frame.alpha > 0.0))
+      return builder.error("the contact axis must point away from the line: normal · axis > 0 is required");
+  }
+  const double now = g.gap.at<false, double>(a, b).value;
+  const double n = static_cast<double>(e.count), k = n * e.stiffness;
+  double offset = 0.0;
+  if (e.gap) offset = now - *e.gap;
+  if (e.interference) offset = now + *e.interference;
+  if (e.preload) offset = now + std::pow(*e.preload / k, 1.0 / e.exponent);
+  if (e.law == "literal") add(g, LiteralContact{k, n * e.damping, offset}, builder);
+  else if (e.law == "hunt_crossley")
+    add(g, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
+  else add(g, KelvinVoigtContact{k, n * e.damping, offset}, builder);
+}
+
+} // namespace
+
+ContactGeometry contact_geometry(const UnilateralContact& contact, const SystemBuilder& builder) {
+  const CompiledMarker a = builder.marker(contact.a), b = builder.marker(contact.b);
+  ContactGeometry g;
+  g.a = a.body;
+  g.b = b.body;
+  g.gap.point_a = a.point;
+  g.gap.point_b = b.point;
+  g.gap.normal = builder.direction(b, contact.normal);
+  g.gap.is_axis_in_a = contact.axis.has_value();
+  if (contact.axis) g.gap.axis = builder.direction(a, *contact.axis);
+  return g;
+}
+
+const ElementKind& unilateral_contact_kind() {
+  static const ElementKind kind = [] {
+    using T = UnilateralContact;
+    ElementKind k;
+    k.name = "unilateral_contact";
+    k.doc = "A marker on a against a line through marker b: it presses, it never holds. Closed while the gap "
+            "is negative; the normal force is positive in compression.";
+    FieldTable& f = k.fields;
+    f.add("a", &T::a).as(FieldType::marker).required().doc("marker that touches");
+    f.add("b", &T::b).as(FieldType::marker).doc("marker on the line");
+    f.add("normal", &T::normal).doc("normal of the line in marker b's axes, towards a");
+    f.add("axis", &T::axis).doc("contact axis in marker a's axes; default: the normal");
+    f.add("law", &T::law).one_of({"kelvin_voigt", "literal", "hunt_crossley"}).doc(
+        "kelvin_voigt: max(0, -k d - c d'); literal: -k d - c d', may pull; hunt_crossley");
+    f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc(
+        "k of one element (Hunt-Crossley: per m^exponent)");
+    f.add("damping", &T::damping).in("N s/m").not_negative().doc("c of one element");
+    f.add("exponent", &T::exponent).positive().doc("Hunt-Crossley: power of the depth");
+    f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
+    f.add("count", &T::count).at_least(1).doc("equal elements side by side");
+    f.add("preload", &T::preload).in("N").not_negative().doc("force of all in the reference pose");
+    f.add("interference", &T::interference).in("m").not_negative().doc("depth in the reference pose");
+    f.add("gap", &T::gap).in("m").not_negative().doc("gap in the reference pose");
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.compile = compile_contact;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

@@ -1,0 +1,58 @@
+// A number that carries its derivatives by N variables: the exact Jacobian of any templated element
+// law, without a second hand-written copy of it.
+//
+// Eigen's own AutoDiffScalar is not used: its expression templates defeat template deduction in
+// Pair<S> and MeasureValue<S>.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cmath>
+
+namespace steplap {
+
+template <int N> struct Dual {
+  double v = 0.0;
+  Eigen::Array<double, N, 1> d = Eigen::Array<double, N, 1>::Zero();
+
+  Dual() = default;
+  Dual(double value) : v(value) {} // NOLINT: a constant is a Dual
+  Dual(double value, const Eigen::Array<double, N, 1>& derivative) : v(value), d(derivative) {}
+  static Dual variable(double value, int index) {
+    Dual x(value);
+    x.d[index] = 1.0;
+    return x;
+  }
+
+  Dual& operator+=(const Dual& o) { return *this = *this + o; }
+  Dual& operator-=(const Dual& o) { return *this = *this - o; }
+
+  friend Dual operator+(const Dual& a, const Dual& b) { return {a.v + b.v, a.d + b.d}; }
+  friend Dual operator-(const Dual& a, const Dual& b) { return {a.v - b.v, a.d - b.d}; }
+  friend Dual operator-(const Dual& a) { return {-a.v, -a.d}; }
+  friend Dual operator*(const Dual& a, const Dual& b) { return {a.v * b.v, a.d * b.v + b.d * a.v}; }
+  friend Dual operator/(const Dual& a, const Dual& b) {
+    const double q = a.v / b.v;
+    return {q, (a.d - q * b.d) / b.v};
+  }
+  friend bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
+  friend bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
+  friend bool operator<=(const Dual& a, const Dual& b) { return a.v <= b.v; }
+  friend bool operator>=(const Dual& a, const Dual& b) { return a.v >= b.v; }
+  friend Dual sqrt(const Dual& a) {
+    const double r = std::sqrt(a.v);
+    return {r, a.d / (2.0 * r)};
+  }
+  friend Dual sin(const Dual& a) { return {std::sin(a.v), std::cos(a.v) * a.d}; }
+  friend Dual cos(const Dual& a) { return {std::cos(a.v), -std::sin(a.v) * a.d}; }
+  friend Dual pow(const Dual& a, double n) {
+    return {std::pow(a.v, n), n * std::pow(a.v, n - 1.0) * a.d};
+  }
+  friend Dual abs(const Dual& a) { return a.v < 0.0 ? -a : a; }
+};
+
+/// The value without its derivatives, for branching and table look-ups.
+inline double value_of(double x) { return x; }
+template <int N> double value_of(const Dual<N>& x) { return x.v; }
+
+} // namespace steplap

@@ -1,0 +1,638 @@
+#include "mbd/dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_max_projection_iterations = 25;
+constexpr int k_iterations_per_factorization = 3;
+
+} // namespace
+
+Dynamics::Dynamics(const System& system) : system_(system) {
+  const std::size_t n = system.bodies.size();
+  motion_.resize(2 * n);
+  force_.resize(n);
+  contact_force_.assign(system.contact_count, 0.0);
+  watch_.assign(system.watch_count, 1.0);
+  watch_rate_.assign(system.watch_count, std::numeric_limits<double>::quiet_NaN());
+  y_.resize(6 * n);
+  total_.resize(3 * n);
+  reaction_.assign(3 * n, 0.0);
+  acceleration_.assign(3 * n, 0.0);
+  wrench_.resize(n);
+  row_force_.assign(system.rows.size(), 0.0);
+  friction_force_.assign(system.friction_row_count, 0.0);
+  evaluation_.motion = motion_.data();
+  evaluation_.force = force_.data();
+  evaluation_.contact_force = contact_force_.data();
+  evaluation_.watch = watch_.data();
+  evaluation_.watch_rate = watch_rate_.data();
+}
+
+void Dynamics::set_state(const State& state) {
+  state_ = &state;
+  evaluation_.mode = state.mode.data();
+  evaluation_.friction = state.friction.data();
+  is_factored_ = false;
+  std::fill(watch_.begin(), watch_.end(), 1.0);
+  const std::vector<char> key = layout_key(state);
+  for (const auto& layout : layouts_)
+    if (layout->key == key) {
+      layout_ = layout.get();
+      return;
+    }
+  layouts_.push_back(std::make_unique<Layout>(make_layout(system_, state)));
+  layout_ = layouts_.back().get();
+  std::vector<double> packed(dimension());
+  pack(system_.initial_state(), packed.data());
+  layout_->reference.assign(packed.begin(), packed.begin() + coordinate_count());
+  const std::size_t rows = layout_->active.size();
+  if (right_side_.size() < rows) {
+    right_side_.resize(rows);
+    row_value_.resize(rows);
+    row_rate_.resize(rows);
+    target_rate_.resize(rows);
+  }
+  if (lock_acceleration_.size() < layout_->locks.size())
+    lock_acceleration_.resize(layout_->locks.size());
+}
+
+void Dynamics::set_time_limit(double limit) {
+  time_cap_ = std::nextafter(limit, -std::numeric_limits<double>::infinity());
+}
+
+// --- packing ------------------------------------------------------------------------------------
+
+void Dynamics::pack(const State& state, double* y) const {
+  const int n = coordinate_count();
+  std::fill(y, y + 2 * n, 0.0);
+  for (std::size_t i = 1; i < layout_->placements.size(); ++i) {
+    const Placement& place = layout_->placements[i];
+    const Cluster& cluster = layout_->clusters[place.cluster];
+    double* q = y + 3 * place.cluster;
+    double* v = q + n;
+    const double* bq = &state.q[3 * i];
+    const double* bv = &state.v[3 * i];
+    if (place.is_trivial) {
+      std::copy(bq, bq + 3, q);
+      std::copy(bv, bv + 3, v);
+      continue;
+    }
+    // The root's angle turns the cluster; momentum decides its rates (exact for a rigid motion).
+    if (static_cast<int>(i) == cluster.root) q[2] = bq[2];
+    const double share = system_.bodies[i].mass / cluster.mass;
+    const Vec2 lever = rotated(place.offset, state.q[3 * cluster.root + 2]);
+    q[0] += share * bq[0];
+    q[1] += share * bq[1];
+    v[0] += share * bv[0];
+    v[1] += share * bv[1];
+    v[2] += (system_.bodies[i].inertia * bv[2] +
+             system_.bodies[i].mass * (lever.x() * bv[1] - lever.y() * bv[0])) / cluster.inertia;
+  }
+  // Angular momentum was taken about the cluster's centre, where Σ m lever = 0: no correction is due.
+  y[2 * n] = state.dissipated;
+  y[2 * n + 1] = state.work;
+}
+
+void Dynamics::unpack(double t, const double* y, State& state) const {
+  const int n = coordinate_count();
+  state.t = t;
+  for (std::size_t i = 1; i < layout_->placements.size(); ++i) {
+    const Placement& place = layout_->placements[i];
+    const double* q = y + 3 * place.cluster;
+    const double* v = q + n;
+    double* bq = &state.q[3 * i];
+    double* bv = &state.v[3 * i];
+    std::copy(q, q + 3, bq);
+    std::copy(v, v + 3, bv);
+    if (place.is_trivial) continue;
+    const Vec2 lever = rotated(place.offset, q[2]);
+    bq[0] += lever.x();
+    bq[1] += lever.y();
+    bq[2] += place.angle;
+    bv[0] -= v[2] * lever.y();
+    bv[1] += v[2] * lever.x();
+  }
+  state.dissipated = y[2 * n];
+  state.work = y[2 * n + 1];
+}
+
+// --- one evaluation -----------------------------------------------------------------------------
+
+void Dynamics::place(double t, const double* q, const double* v) {
+  const Layout& layout = *layout_;
+  const int n = coordinate_count();
+  if (!layout.locks.empty()) {
+    std::memcpy(y_.data(), q, sizeof(double) * n);
+    std::memcpy(y_.data() + n, v, sizeof(double) * n);
+    for (std::size_t i = 0; i < layout.locks.size(); ++i) {
+      const Lock& lock = layout.locks[i];
+      const SignalJet target = row_target(system_.rows[lock.row], state_->memory.data(), t);
+      const int k = 3 * lock.cluster + lock.coordinate;
+      y_[k] = target.value;
+      y_[n + k] = target.rate;
+      lock_acceleration_[i] = target.acceleration;
+    }
+    q = y_.data();
+    v = y_.data() + n;
+  }
+  for (int k = 0; k < layout.cluster_count(); ++k) {
+    Motion<double>& m = motion_[layout.clusters[k].motion];
+    m.x = q[3 * k];
+    m.y = q[3 * k + 1];
+    m.theta = q[3 * k + 2];
+    m.vx = v[3 * k];
+    m.vy = v[3 * k + 1];
+    m.omega = v[3 * k + 2];
+    m.c = std::cos(m.theta);
+    m.s = std::sin(m.theta);
+  }
+  for (const int i : layout.placed) place_member(i);
+}
+
+// A body that moves with others: from its cluster's motion.
+void Dynamics::place_member(int i) {
+  const Placement& place = layout_->placements[i];
+  if (place.is_trivial) return;
+  const Motion<double>& k = motion_[layout_->clusters[place.cluster].motion];
+  Motion<double>& m = motion_[i];
+  const Pair<double> lever = to_ground(k, place.offset);
+  m.x = k.x + lever.x;
+  m.y = k.y + lever.y;
+  m.theta = k.theta + place.angle;
+  m.c = k.c * place.c - k.s * place.s;
+  m.s = k.s * place.c + k.c * place.s;
+  m.vx = k.vx - k.omega * lever.y;
+  m.vy = k.vy + k.omega * lever.x;
+  m.omega = k.omega;
+}
+
+void Dynamics::apply_sliding() {
+  for (const int f : layout_->sliding) {
+    const FrictionUnit& unit = system_.frictions[f];
+    const FrictionState& friction = state_->friction[f];
+    const RowSpec* rows = unit.friction->rows(friction);
+    const int n = unit.friction->dimension();
+    MeasureValue<double> m[3];
+    double rate[3], wrench[3];
+    for (int r = 0; r < n; ++r) {
+      m[r] = evaluate_row<false>(rows[r], motion_.data());
+      rate[r] = m[r].rate;
+    }
+    unit.friction->slip_wrench(evaluation_, friction, rate, wrench);
+    for (int r = 0; r < n; ++r) {
+      apply_force(evaluation_, rows[r].a, rows[r].b, m[r], wrench[r]);
+      evaluation_.dissipation -= wrench[r] * rate[r];
+      friction_force_[unit.row + r] = wrench[r];
+    }
+    if (n == 1) watch_[unit.watch] = friction.sign * rate[0];
+  }
+}
+
+void Dynamics::gather_forces(double* total) const {
+  const Layout& layout = *layout_;
+  for (int k = 0; k < layout.cluster_count(); ++k) {
+    total[3 * k] = layout.clusters[k].mass * system_.gravity.x();
+    total[3 * k + 1] = layout.clusters[k].mass * system_.gravity.y();
+    total[3 * k + 2] = 0.0;
+  }
+  for (const int i : layout.placed) {
+    const Placement& place = layout.placements[i];
+    const BodyForce& f = force_[i];
+    double* sum = total + 3 * place.cluster;
+    sum[0] += f.fx;
+    sum[1] += f.fy;
+    sum[2] += f.m;
+    if (place.is_trivial) continue;
+    const Motion<double>& k = motion_[layout.clusters[place.cluster].motion];
+    sum[2] += (motion_[i].x - k.x) * f.fy - (motion_[i].y - k.y) * f.fx;
+  }
+}
+
+void Dynamics::to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const {
+  const int body[2] = {spec.a, spec.b};
+  for (int side = 0; side < 2; ++side) {
+    if (row.body[side] < 0) continue;
+    const Placement& place = layout_->placements[body[side]];
+    const Cluster& cluster = layout_->clusters[row.body[side]];
+    Pair<double> lever = side == 0 ? m.lever_a : m.lever_b;
+    if (!place.is_trivial) {
+      const Motion<double>& k = motion_[cluster.motion];
+      lever = lever + Pair<double>{motion_[body[side]].x - k.x, motion_[body[side]].y - k.y};
+    }
+    const double sign = side == 0 ? 1.0 : -1.0;
+    double* j = row.j[side];
+    j[0] = sign * m.direction.x;
+    j[1] = sign * m.direction.y;
+    j[2] = sign * (cross(lever, m.direction) + m.couple);
+    for (int c = 0; c < 3; ++c) row.wj[side][c] = cluster.w[c] * j[c];
+  }
+}
+
+// The second rate at zero accelerations of the clusters: a body off its cluster's centre has −ω² lever.
+double Dynamics::cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const {
+  double bias = m.bias;
+  const int body[2] = {spec.a, spec.b};
+  for (int side = 0; side < 2; ++side) {
+    const Placement& place = layout_->placements[body[side]];
+    if (place.cluster < 0 || place.is_trivial) continue;
+    const Motion<double>& k = motion_[layout_->clusters[place.cluster].motion];
+    const Pair<double> lever{motion_[body[side]].x - k.x, motion_[body[side]].y - k.y};
+    const double term = k.omega * k.omega * dot(m.direction, lever);
+    bias += side == 0 ? -term : term;
+  }
+  return bias;
+}
+
+// Rows at the placed motion: J, and either γ in right_side_ or values and rates for projection.
+void Dynamics::evaluate_rows(bool with_position) {
+  Layout& layout = *layout_;
+  const double* memory = state_->memory.data();
+  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+    const RowSpec& spec = *layout.active[r].spec;
+    const SignalJet target = row_target(spec, memory, evaluation_.t);
+    if (with_position) {
+      const auto m = evaluate_row<false>(spec, motion_.data());
+      to_clusters(spec, m, layout.schur_rows[r]);
+      row_value_[r] = m.value - target.value;
+      row_rate_[r] = m.rate - target.rate;
+    } else {
+      const auto m = evaluate_row<true>(spec, motion_.data());
+      to_clusters(spec, m, layout.schur_rows[r]);
+      right_side_[r] = target.acceleration - cluster_bias(spec, m);
+      target_rate_[r] = target.rate;
+    }
+  }
+}
+
+// J (a_f + W Jᵀλ) = γ; leaves λ in right_side_, Jᵀλ in reaction_, and adds W Jᵀλ to a.
+void Dynamics::solve_constraints(double* a) {
+  Layout& layout = *layout_;
+  const int n = coordinate_count();
+  std::fill(reaction_.begin(), reaction_.begin() + n, 0.0);
+  if (layout.active.empty()) return;
+  evaluate_rows(false);
+  for (std::size_t r = 0; r < layout.schur_rows.size(); ++r) {
+    const SchurRow& row = layout.schur_rows[r];
+    for (int side = 0; side < 2; ++side) {
+      if (row.body[side] < 0) continue;
+      const double* ak = a + 3 * row.body[side];
+      right_side_[r] -= row.j[side][0] * ak[0] + row.j[side][1] * ak[1] + row.j[side][2] * ak[2];
+    }
+  }
+  layout.schur.factor(layout.schur_rows);
+  is_factored_ = true;
+  layout.schur.solve(right_side_.data());
+  for (std::size_t r = 0; r < layout.schur_rows.size(); ++r) {
+    const SchurRow& row = layout.schur_rows[r];
+    const double lambda = right_side_[r];
+    for (int side = 0; side < 2; ++side) {
+      if (row.body[side] < 0) continue;
+      for (int c = 0; c < 3; ++c) {
+        reaction_[3 * row.body[side] + c] += row.j[side][c] * lambda;
+        a[3 * row.body[side] + c] += row.wj[side][c] * lambda;
+      }
+    }
+  }
+}
+
+// Work of drives: multiplier times the rate of the target; a lock's multiplier is what is missing in
+// its equation of motion.
+void Dynamics::finish_power(const double* a) {
+  const Layout& layout = *layout_;
+  if (!layout.has_drives) return;
+  for (std::size_t r = 0; r < layout.active.size(); ++r)
+    if (layout.active[r].spec->drive) evaluation_.work += right_side_[r] * target_rate_[r];
+  const int n = coordinate_count();
+  for (const Lock& lock : layout.locks) {
+    const int k = 3 * lock.cluster + lock.coordinate;
+    const Cluster& cluster = layout.clusters[lock.cluster];
+    const double inertia = lock.coordinate < 2 ? cluster.mass : cluster.inertia;
+    const double force = inertia * a[k] - total_[k] - reaction_[k];
+    evaluation_.work += force * y_[n + k];
+  }
+}
+
+void Dynamics::finish_watches() {
+  const Layout& layout = *layout_;
+  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+    const ActiveRow& row = layout.active[r];
+    if (row.friction < 0) continue;
+    friction_force_[system_.frictions[row.friction].row + row.friction_row] = right_side_[r];
+  }
+  for (const int f : layout.holding) {
+    const FrictionUnit& unit = system_.frictions[f];
+    unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row],
+                               &watch_[unit.watch]);
+    watch_[unit.watch + 2] = unit.friction->watch_place(evaluation_, state_->friction[f]);
+  }
+  for (const int f : layout.sliding) {
+    const FrictionUnit& unit = system_.frictions[f];
+    watch_[unit.watch + 2] = unit.friction->watch_place(evaluation_, state_->friction[f]);
+  }
+}
+
+void Dynamics::rates(double t, const double* y, double* dy) {
+  const Layout& layout = *layout_;
+  const int n = coordinate_count();
+  ++evaluations_;
+  t = std::min(t, time_cap_);
+  evaluation_.t = t;
+  evaluation_.dissipation = 0.0;
+  evaluation_.work = 0.0;
+  place(t, y, y + n);
+  for (const int i : layout.placed) force_[i] = {};
+  for (const auto& group : system_.groups) group->add_forces(evaluation_);
+  if (!layout.sliding.empty()) apply_sliding();
+  gather_forces(total_.data());
+
+  double* a = dy + n;
+  for (int k = 0; k < layout.cluster_count(); ++k)
+    for (int c = 0; c < 3; ++c) a[3 * k + c] = layout.clusters[k].w[c] * total_[3 * k + c];
+  std::memcpy(dy, y + n, sizeof(double) * n);
+  for (std::size_t i = 0; i < layout.locks.size(); ++i) {
+    const int k = 3 * layout.locks[i].cluster + layout.locks[i].coordinate;
+    a[k] = lock_acceleration_[i];
+    dy[k] = y_[n + k];
+  }
+  solve_constraints(a);
+  finish_power(a);
+  finish_watches();
+  dy[2 * n] = evaluation_.dissipation;
+  dy[2 * n + 1] = evaluation_.work;
+}
+
+// --- projection -----------------------------------------------------------------------------------
+
+Residual Dynamics::constraint_values(double t, const double* y) {
+  t = std::min(t, time_cap_);
+  evaluation_.t = t;
+  place(t, y, y + coordinate_count());
+  evaluate_rows(true);
+  Residual residual;
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) {
+    residual.position = std::max(residual.position, std::abs(row_value_[r]));
+    residual.velocity = std::max(residual.velocity, std::abs(row_rate_[r]));
+  }
+  return residual;
+}
+
+Residual Dynamics::residual(double t, const double* y) {
+  if (layout_->active.empty()) return {};
+  is_factored_ = false;
+  return constraint_values(t, y);
+}
+
+Residual Dynamics::project(double t, double* y, double tolerance) {
+  Layout& layout = *layout_;
+  const int n = coordinate_count();
+  for (const Lock& lock : layout.locks) {
+    const SignalJet target =
+        row_target(system_.rows[lock.row], state_->memory.data(), std::min(t, time_cap_));
+    y[3 * lock.cluster + lock.coordinate] = target.value;
+    y[n + 3 * lock.cluster + lock.coordinate] = target.rate;
+  }
+  if (layout.active.empty()) return {};
+  Residual first = constraint_values(t, y);
+  Residual now = first;
+  const auto move = [&](const std::vector<double>& residual, double* target) {
+    for (std::size_t r = 0; r < layout.active.size(); ++r) right_side_[r] = -residual[r];
+    layout.schur.solve(right_side_.data());
+    for (std::size_t r = 0; r < layout.active.size(); ++r)
+      for (int side = 0; side < 2; ++side) {
+        const SchurRow& row = layout.schur_rows[r];
+        if (row.body[side] < 0) continue;
+        for (int c = 0; c < 3; ++c)
+          target[3 * row.body[side] + c] += row.wj[side][c] * right_side_[r];
+      }
+  };
+  // The factorisation of the step's last evaluation serves while it converges fast.
+  for (int iteration = 0; now.position > tolerance; ++iteration) {
+    if (iteration == k_max_projection_iterations || !std::isfinite(now.position)) {
+      int worst = 0;
+      for (std::size_t r = 1; r < layout.active.size(); ++r)
+        if (!(std::abs(row_value_[r]) <= std::abs(row_value_[worst]))) worst = static_cast<int>(r);
+      const RowSpec& spec = *layout.active[worst].spec;
+      throw NumericalFailure("constraint " + std::string(spec.quantity) + " of '" +
+                             system_.element_names[spec.element] + "' cannot be met at t = " +
+                             std::to_string(t) + " s: residual " + std::to_string(row_value_[worst]));
+    }
+    if (!is_factored_ || iteration % k_iterations_per_factorization == k_iterations_per_factorization - 1) {
+      layout.schur.factor(layout.schur_rows);
+      is_factored_ = true;
+    }
+    move(row_value_, y);
+    now = constraint_values(t, y);
+  }
+  for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
+    if (!is_factored_ || iteration > 0) {
+      layout.schur.factor(layout.schur_rows);
+      is_factored_ = true;
+    }
+    const double before = now.velocity;
+    move(row_rate_, y + n);
+    now = constraint_values(t, y);
+    if (now.velocity >= 0.5 * before) break; // rounding of fast motions
+  }
+  return first;
+}
+
+// --- reactions --------------------------------------------------------------------------------------
+
+void Dynamics::body_accelerations(const double* dy) {
+  const Layout& layout = *layout_;
+  const int n = coordinate_count();
+  for (int i = 1; i < system_.body_count(); ++i) {
+    const Placement& place = layout.placements[i];
+    const double* a = dy + n + 3 * place.cluster;
+    double* out = &acceleration_[3 * i];
+    std::copy(a, a + 3, out);
+    if (place.is_trivial) continue;
+    const Motion<double>& k = motion_[layout.clusters[place.cluster].motion];
+    const Pair<double> lever = to_ground(k, place.offset);
+    out[0] += -a[2] * lever.y - k.omega * k.omega * lever.x;
+    out[1] += a[2] * lever.x - k.omega * k.omega * lever.y;
+  }
+}
+
+double* Dynamics::joint_multipliers(const RigidEdge& edge) {
+  if (edge.block >= 0) return &row_force_[system_.row_blocks[edge.block].first];
+  return &friction_force_[system_.frictions[edge.friction].row];
+}
+
+// Newton–Euler from the leaves of each merged cluster: what an edge carries is what its subtree lacks.
+void Dynamics::merged_wrenches() {
+  const Layout& layout = *layout_;
+  for (const RigidEdge& edge : layout.edges)
+    for (const int i : {edge.child, edge.parent}) {
+      const double* a = &acceleration_[3 * i];
+      const BodyData& body = system_.bodies[i];
+      wrench_[i] = {body.mass * (a[0] - system_.gravity.x()), body.mass * (a[1] - system_.gravity.y()),
+                    body.inertia * a[2]};
+      if (!layout.is_placed[i]) continue;
+      wrench_[i].fx -= force_[i].fx;
+      wrench_[i].fy -= force_[i].fy;
+      wrench_[i].m -= force_[i].m;
+    }
+  if (layout.edges.empty()) return;
+  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+    const RowSpec& spec = *layout.active[r].spec;
+    const auto m = evaluate_row<false>(spec, motion_.data());
+    const double lambda = right_side_[r];
+    const int body[2] = {spec.a, spec.b};
+    for (int side = 0; side < 2; ++side) {
+      const double f = side == 0 ? -lambda : lambda;
+      BodyForce& w = wrench_[body[side]];
+      w.fx += f * m.direction.x;
+      w.fy += f * m.direction.y;
+      w.m += f * (cross(side == 0 ? m.lever_a : m.lever_b, m.direction) + m.couple);
+    }
+  }
+  for (const RigidEdge& edge : layout.edges) {
+    const BodyForce on_child = wrench_[edge.child];
+    const auto position = [&](int i) {
+      const Placement& place = layout.placements[i];
+      const Motion<double>& k = motion_[layout.clusters[place.cluster].motion];
+      return Pair<double>{k.x, k.y} + to_ground(k, place.offset);
+    };
+    const Pair<double> lever = position(edge.child) - position(edge.parent);
+    const Pair<double> force{on_child.fx, on_child.fy};
+    wrench_[edge.parent].fx += force.x;
+    wrench_[edge.parent].fy += force.y;
+    wrench_[edge.parent].m += on_child.m + cross(lever, force);
+
+    const RowSpec* rows = edge.block >= 0
+                              ? &system_.rows[system_.row_blocks[edge.block].first]
+                              : system_.frictions[edge.friction].friction->rows(
+                                    state_->friction[edge.friction]);
+    // Wrench on a about the joint's point, along the rows (two axes fixed in b, then the angle).
+    BodyForce on_a = on_child;
+    if (rows[0].a != edge.child)
+      on_a = {-force.x, -force.y, -(on_child.m + cross(lever, force))};
+    const Motion<double>& k = motion_[layout.clusters[layout.placements[edge.child].cluster].motion];
+    const Placement& pa = layout.placements[rows[0].a];
+    const Placement& pb = layout.placements[rows[0].b];
+    const auto turned = [&k](const Placement& p, const Vec2& local) {
+      return to_ground(k, Vec2(p.c * local.x() - p.s * local.y(), p.s * local.x() + p.c * local.y()));
+    };
+    const Pair<double> f{on_a.fx, on_a.fy};
+    double* lambda = joint_multipliers(edge);
+    lambda[0] = dot(f, turned(pb, rows[0].direction));
+    lambda[1] = dot(f, turned(pb, rows[1].direction));
+    lambda[2] = on_a.m - cross(turned(pa, rows[0].point_a), f);
+  }
+}
+
+void Dynamics::watch_merged(const double* dy) {
+  if (layout_->merged.empty()) return;
+  body_accelerations(dy);
+  merged_wrenches();
+  for (const int f : layout_->merged) {
+    const FrictionUnit& unit = system_.frictions[f];
+    unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row],
+                               &watch_[unit.watch]);
+  }
+}
+
+Snapshot Dynamics::snapshot(const double* dy) {
+  const Layout& layout = *layout_;
+  for (int i = 1; i < system_.body_count(); ++i) place_member(i); // also those not needed so far
+  body_accelerations(dy);
+  merged_wrenches();
+  const int n = coordinate_count();
+  for (std::size_t r = 0; r < layout.active.size(); ++r)
+    if (layout.active[r].row >= 0) row_force_[layout.active[r].row] = right_side_[r];
+  for (const Lock& lock : layout.locks) {
+    const int k = 3 * lock.cluster + lock.coordinate;
+    const Cluster& cluster = layout.clusters[lock.cluster];
+    const double inertia = lock.coordinate < 2 ? cluster.mass : cluster.inertia;
+    row_force_[lock.row] = inertia * dy[n + k] - total_[k] - reaction_[k];
+  }
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
+    const FrictionPhase phase = state_->friction[f].phase;
+    if (phase == FrictionPhase::stick || phase == FrictionPhase::slip) continue;
+    const FrictionUnit& unit = system_.frictions[f];
+    std::fill_n(&friction_force_[unit.row], unit.friction->dimension(), 0.0);
+  }
+  Snapshot s;
+  s.t = evaluation_.t;
+  s.motion = motion_.data();
+  s.acceleration = acceleration_.data();
+  s.evaluation = &evaluation_;
+  s.row_force = row_force_.data();
+  s.friction_force = friction_force_.data();
+  s.memory = state_->memory.data();
+  return s;
+}
+
+double Dynamics::mechanical_energy(double t, const double* y) {
+  const int n = coordinate_count();
+  place(std::min(t, time_cap_), y, y + n);
+  double kinetic = 0.0, potential = 0.0;
+  const double* v = layout_->locks.empty() ? y + n : y_.data() + n;
+  for (int k = 0; k < layout_->cluster_count(); ++k) {
+    const Cluster& c = layout_->clusters[k];
+    const Motion<double>& m = motion_[c.motion];
+    kinetic += 0.5 * c.mass * (v[3 * k] * v[3 * k] + v[3 * k + 1] * v[3 * k + 1]) +
+               0.5 * c.inertia * v[3 * k + 2] * v[3 * k + 2];
+    potential -= c.mass * (system_.gravity.x() * m.x + system_.gravity.y() * m.y);
+  }
+  for (const auto& group : system_.groups) potential += group->potential(motion_.data());
+  return kinetic + potential;
+}
+
+// --- the mode problem's matrices ---------------------------------------------------------------------
+
+void Dynamics::respond(Candidates& candidates, const double* dy) {
+  Layout& layout = *layout_;
+  const std::size_t n = candidates.rows.size();
+  const int coordinates = coordinate_count();
+  candidates.compliance.assign(n * n, 0.0);
+  candidates.acceleration.assign(n, 0.0);
+  for (int i = 1; i < system_.body_count(); ++i) place_member(i);
+  std::vector<SchurRow> rows(n);
+  std::vector<double> response(coordinates), lambda(layout.active.size());
+  for (std::size_t c = 0; c < n; ++c) {
+    const RowSpec& spec = *candidates.rows[c];
+    const auto m = evaluate_row<true>(spec, motion_.data());
+    rows[c].body[0] = layout.placements[spec.a].cluster;
+    rows[c].body[1] = layout.placements[spec.b].cluster;
+    to_clusters(spec, m, rows[c]);
+    candidates.acceleration[c] = cluster_bias(spec, m);
+    for (int side = 0; side < 2; ++side)
+      if (rows[c].body[side] >= 0)
+        for (int k = 0; k < 3; ++k)
+          candidates.acceleration[c] += rows[c].j[side][k] * dy[coordinates + 3 * rows[c].body[side] + k];
+  }
+  const auto along = [&](const SchurRow& row, const std::vector<double>& a) {
+    double sum = 0.0;
+    for (int side = 0; side < 2; ++side)
+      if (row.body[side] >= 0)
+        for (int k = 0; k < 3; ++k) sum += row.j[side][k] * a[3 * row.body[side] + k];
+    return sum;
+  };
+  const auto add_response = [&](const SchurRow& row, double f) {
+    for (int side = 0; side < 2; ++side)
+      if (row.body[side] >= 0)
+        for (int k = 0; k < 3; ++k) response[3 * row.body[side] + k] += f * row.wj[side][k];
+  };
+  for (std::size_t c = 0; c < n; ++c) {
+    std::fill(response.begin(), response.end(), 0.0);
+    add_response(rows[c], 1.0);
+    if (!layout.active.empty()) {
+      for (std::size_t r = 0; r < layout.active.size(); ++r)
+        lambda[r] = -along(layout.schur_rows[r], response);
+      layout.schur.solve(lambda.data());
+      for (std::size_t r = 0; r < layout.active.size(); ++r) add_response(layout.schur_rows[r], lambda[r]);
+    }
+    for (std::size_t d = 0; d < n; ++d) candidates.compliance[d * n + c] = along(rows[d], response);
+  }
+}
+
+} // namespace steplap

@@ -1,0 +1,115 @@
+// Equations of motion of a compiled system in its present modes.
+//
+//   M a = Q(q, v, t) + Jᵀλ,  J a = γ            (27), (29)–(31) with the corrections of physics.md §1
+// in the coordinates of a layout's clusters. The packed vector y holds the clusters' (x, y, θ), their
+// rates, and two integrals of power: energy dissipated and work done by loads and drives.
+//
+// One object per thread: it owns all scratch memory; rates() and project() allocate nothing.
+#pragma once
+
+#include "mbd/layout.h"
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace steplap {
+
+/// Largest constraint residuals, m or rad (position) and m/s or rad/s (velocity).
+struct Residual {
+  double position = 0.0;
+  double velocity = 0.0;
+};
+
+class Dynamics {
+public:
+  explicit Dynamics(const System& system);
+
+  /// Takes over modes, friction phases and anchors. `state` must outlive the use of this object or be
+  /// set anew; poses are read only where a new layout has to be made.
+  void set_state(const State& state);
+  /// Forgets layouts whose merged bodies may have moved against each other.
+  void forget_layouts() { layouts_.clear(); }
+
+  /// Signals are read on the left side of `limit`, a breakpoint that no step passes: a jump there does
+  /// not reach into the step that ends at it.
+  void set_time_limit(double limit);
+
+  [[nodiscard]] const Layout& layout() const { return *layout_; }
+  [[nodiscard]] int dimension() const { return 6 * layout_->cluster_count() + 2; }
+  [[nodiscard]] int coordinate_count() const { return 3 * layout_->cluster_count(); }
+  void pack(const State& state, double* y) const;
+  void unpack(double t, const double* y, State& state) const;
+
+  /// dy/dt. Also leaves watch values, multipliers and forces for the functions below.
+  void rates(double t, const double* y, double* dy);
+  /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
+  /// residuals found before. Stops at `tolerance`; throws NumericalFailure if that cannot be reached.
+  Residual project(double t, double* y, double tolerance);
+  /// Residuals at y without moving it.
+  [[nodiscard]] Residual residual(double t, const double* y);
+
+  // --- by-products of the last rates() ----------------------------------------------------------
+  [[nodiscard]] const std::vector<double>& watch() const { return watch_; }
+  [[nodiscard]] const std::vector<double>& watch_rate() const { return watch_rate_; }
+  [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
+  [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
+  /// Adds the watch values of joints that are merged: costs a pass over the merged bodies.
+  void watch_merged(const double* dy);
+  /// Accelerations of all bodies and all reactions; fills a snapshot valid until the next rates().
+  [[nodiscard]] Snapshot snapshot(const double* dy);
+  /// Power residual-free pieces of the energy balance: kinetic + potential at the last rates().
+  [[nodiscard]] double mechanical_energy(double t, const double* y);
+
+  /// Response to unit wrenches along rows: columns of J_c P J_cᵀ and J_c a − γ_c for rows that are not
+  /// active (candidates of the mode problem), P the constrained inverse mass. Uses the last rates().
+  struct Candidates {
+    std::vector<const RowSpec*> rows;
+    std::vector<double> compliance;   ///< n × n, row-major
+    std::vector<double> acceleration; ///< n: relative acceleration without their wrenches
+  };
+  void respond(Candidates& candidates, const double* dy);
+
+  [[nodiscard]] long evaluations() const { return evaluations_; }
+  [[nodiscard]] const System& system() const { return system_; }
+
+private:
+  void place(double t, const double* q, const double* v);
+  void place_member(int body);
+  void apply_sliding();
+  void gather_forces(double* total) const;
+  void evaluate_rows(bool with_position);
+  void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
+  [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
+  void solve_constraints(double* a);
+  void finish_power(const double* a);
+  void finish_watches();
+  Residual constraint_values(double t, const double* y);
+  void body_accelerations(const double* dy);
+  void merged_wrenches();
+  [[nodiscard]] double* joint_multipliers(const RigidEdge& edge);
+
+  const System& system_;
+  const State* state_ = nullptr;
+  std::vector<std::unique_ptr<Layout>> layouts_;
+  Layout* layout_ = nullptr;
+  bool is_factored_ = false;
+  double time_cap_ = std::numeric_limits<double>::infinity();
+  long evaluations_ = 0;
+
+  Evaluation evaluation_;
+  std::vector<Motion<double>> motion_;  ///< bodies, then clusters of several
+  std::vector<BodyForce> force_;
+  std::vector<double> contact_force_, watch_, watch_rate_;
+  std::vector<double> y_;               ///< coordinates and rates with locks applied
+  std::vector<double> total_;           ///< force on each cluster coordinate
+  std::vector<double> reaction_;        ///< constraint force on each cluster coordinate
+  std::vector<double> lock_acceleration_;
+  std::vector<double> right_side_;      ///< then multipliers of active rows
+  std::vector<double> row_value_, row_rate_, target_rate_;
+  std::vector<double> acceleration_;    ///< 3 per body
+  std::vector<BodyForce> wrench_;       ///< scratch of merged_wrenches
+  std::vector<double> row_force_, friction_force_;
+};
+
+} // namespace steplap

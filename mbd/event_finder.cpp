@@ -1,0 +1,166 @@
+#include "mbd/event_finder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_scan_points = 8;
+constexpr int k_max_root_iterations = 100;
+
+// Lowest point inside (0, 1) of the cubic with values w0, w1 and slopes s0 < 0 < s1; NaN if none.
+double bottom_of_cubic(double w0, double s0, double w1, double s1) {
+  const double a = 2.0 * (w0 - w1) + s0 + s1, b = 3.0 * (w1 - w0) - 2.0 * s0 - s1;
+  // 3aθ² + 2bθ + s0 = 0, the root where the curve turns upward
+  const double discriminant = b * b - 3.0 * a * s0;
+  if (!(discriminant >= 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  return -s0 / (b + std::sqrt(discriminant));
+}
+
+double cubic(double theta, double w0, double s0, double w1, double s1) {
+  const double t = theta, u = 1.0 - t;
+  return u * u * ((1.0 + 2.0 * t) * w0 + t * s0) + t * t * ((3.0 - 2.0 * t) * w1 - u * s1);
+}
+
+} // namespace
+
+EventFinder::EventFinder(const System& system, int max_dimension)
+    : slots_(system.watch_count), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), low_(slots_, 1.0),
+      high_(low_), middle_(low_), armed_(slots_, 1) {}
+
+void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double theta,
+                           std::vector<double>& watch) {
+  integrator.dense(dynamics, theta, y_.data());
+  dynamics.rates(integrator.t0() + theta * integrator.h(), y_.data(), dy_.data());
+  dynamics.watch_merged(dy_.data());
+  watch = dynamics.watch();
+}
+
+EventFinder::Suspicion EventFinder::suspicion(const Integrator& integrator,
+                                              const std::vector<char>& fresh) {
+  look_at_.clear();
+  Suspicion worst = Suspicion::none;
+  const double h = integrator.h();
+  for (int i = 0; i < slots_; ++i) {
+    const double w0 = integrator.watch0()[i], w1 = integrator.watch1()[i];
+    if (w1 < 0.0) {
+      // A plain crossing; a fresh value has to be followed from its start.
+      worst = std::max(worst, fresh[i] ? Suspicion::inside : Suspicion::at_end);
+      continue;
+    }
+    if (fresh[i]) continue;
+    if (integrator.watch_low()[i] < 0.0) worst = Suspicion::inside;
+    const double s0 = h * integrator.watch_rate0()[i], s1 = h * integrator.watch_rate1()[i];
+    if (!(s0 < 0.0 && s1 > 0.0)) continue; // also where the rate is not known (NaN)
+    const double theta = bottom_of_cubic(w0, s0, w1, s1);
+    if (!(theta > 0.0 && theta < 1.0)) continue;
+    // The cubic's own error is a fraction of how far it bends away from the chord.
+    const double bend = std::abs(w0 + theta * (w1 - w0) - cubic(theta, w0, s0, w1, s1));
+    if (cubic(theta, w0, s0, w1, s1) > 0.5 * bend) continue;
+    look_at_.push_back(theta);
+    worst = Suspicion::inside;
+  }
+  return worst;
+}
+
+// Slots that were believed positive in `low` and are negative in `high` go to fired_.
+bool EventFinder::crosses(const std::vector<double>& low, const std::vector<double>& high) {
+  fired_.clear();
+  for (int i = 0; i < slots_; ++i)
+    if (armed_[i] && high[i] < 0.0 && low[i] >= 0.0) fired_.push_back(i);
+  return !fired_.empty();
+}
+
+EventFinder::Bracket EventFinder::bracket_whole(const Integrator& integrator) {
+  theta_low_ = 0.0;
+  theta_high_ = 1.0;
+  low_ = integrator.watch0();
+  high_ = integrator.watch1();
+  std::fill(armed_.begin(), armed_.end(), 1);
+  return crosses(low_, high_) ? Bracket::found : Bracket::none;
+}
+
+EventFinder::Bracket EventFinder::scan(Integrator& integrator, Dynamics& dynamics,
+                                       const std::vector<char>& fresh) {
+  for (int i = 0; i < slots_; ++i) armed_[i] = !fresh[i];
+  for (int p = 1; p < k_scan_points; ++p) look_at_.push_back(static_cast<double>(p) / k_scan_points);
+  // Fresh values often turn within the first fraction of a step.
+  if (std::find(fresh.begin(), fresh.end(), 1) != fresh.end())
+    for (const double theta : {1e-4, 1e-3, 1e-2}) look_at_.push_back(theta);
+  look_at_.push_back(1.0);
+  std::sort(look_at_.begin(), look_at_.end());
+  theta_low_ = 0.0;
+  low_ = integrator.watch0();
+  for (const double theta : look_at_) {
+    if (theta == 1.0) high_ = integrator.watch1();
+    else watch_at(integrator, dynamics, theta, high_);
+    theta_high_ = theta;
+    if (crosses(low_, high_)) return Bracket::found;
+    for (int i = 0; i < slots_; ++i)
+      if (high_[i] > 0.0) armed_[i] = 1;
+    std::swap(low_, high_);
+    theta_low_ = theta;
+  }
+  // Fresh values that were never positive: the mode chosen is not the one the motion takes. The event
+  // is at once; the handler decides anew a hair later.
+  for (int i = 0; i < slots_; ++i)
+    if (!armed_[i] && low_[i] < 0.0) fired_.push_back(i);
+  if (fired_.empty()) return Bracket::none;
+  theta_high_ = look_at_.front();
+  return Bracket::at_once;
+}
+
+// Illinois on the slot whose secant crosses first; the bracket shrinks to the spacing of t.
+void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
+  const double resolution = 2.0 * std::numeric_limits<double>::epsilon() *
+                            std::max(std::abs(integrator.t1()), integrator.h()) / integrator.h();
+  double scale_low = 1.0, scale_high = 1.0;
+  int last_side = 0;
+  for (int iteration = 0; theta_high_ - theta_low_ > resolution; ++iteration) {
+    if (iteration == k_max_root_iterations) break;
+    const double width = theta_high_ - theta_low_;
+    double step = 1.0;
+    for (const int i : fired_) {
+      const double a = scale_low * low_[i], b = scale_high * high_[i];
+      step = std::min(step, a / (a - b));
+    }
+    // Every fifth iteration bisects: a kink inside the bracket cannot stall the secant for long.
+    if (!(step >= 0.0 && step <= 1.0) || iteration % 5 == 4) step = 0.5;
+    const double edge = std::min(0.5, 0.5 * resolution / width);
+    const double theta = theta_low_ + width * std::clamp(step, edge, 1.0 - edge);
+    watch_at(integrator, dynamics, theta, middle_);
+    const std::vector<int> before = fired_;
+    if (crosses(low_, middle_)) {
+      theta_high_ = theta;
+      std::swap(high_, middle_);
+      scale_low = last_side == 1 ? 0.5 * scale_low : 1.0;
+      scale_high = 1.0;
+      last_side = 1;
+    } else {
+      fired_ = before;
+      theta_low_ = theta;
+      std::swap(low_, middle_);
+      scale_high = last_side == -1 ? 0.5 * scale_high : 1.0;
+      scale_low = 1.0;
+      last_side = -1;
+    }
+  }
+}
+
+bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh) {
+  if (slots_ == 0) return false;
+  const Suspicion suspected = suspicion(integrator, fresh);
+  if (suspected == Suspicion::none) return false;
+  const Bracket bracket = suspected == Suspicion::inside ? scan(integrator, dynamics, fresh)
+                                                         : bracket_whole(integrator);
+  if (bracket == Bracket::none) return false;
+  if (bracket == Bracket::found) close_in(integrator, dynamics);
+  theta_ = theta_high_;
+  integrator.dense(dynamics, theta_, y_.data());
+  return true;
+}
+
+} // namespace steplap

@@ -1,0 +1,186 @@
+#include "mbd/event_handler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// Below this relative velocity, m/s, a friction element that becomes loaded counts as at rest: far
+// above the rounding of a projected velocity, far below any motion.
+constexpr double k_rest_velocity = 1e-12;
+constexpr double k_projection_tolerance = 1e-12; // m, rad
+
+} // namespace
+
+EventHandler::EventHandler(const System& system, Dynamics& dynamics)
+    : system_(system), dynamics_(dynamics), modes_(system, dynamics),
+      unit_of_slot_(system.watch_count, -1), friction_of_slot_(system.watch_count, -1),
+      fresh_(system.watch_count, 0), y_(6 * system.bodies.size() + 2), dy_(y_.size()) {
+  for (std::size_t u = 0; u < system.units.size(); ++u)
+    for (int w = 0; w < system.units[u].watch_count; ++w)
+      unit_of_slot_[system.units[u].watch + w] = static_cast<int>(u);
+  for (std::size_t f = 0; f < system.frictions.size(); ++f)
+    for (int w = 0; w < k_friction_watches; ++w)
+      friction_of_slot_[system.frictions[f].watch + w] = static_cast<int>(f);
+}
+
+void EventHandler::evaluate(const State& state) {
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  dynamics_.watch_merged(dy_.data());
+}
+
+double EventHandler::slip_rate(const State& state, int f) const {
+  const FrictionElement& friction = *system_.frictions[f].friction;
+  const RowSpec* rows = friction.rows(state.friction[f]);
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  double largest = 0.0;
+  for (int r = 0; r < friction.dimension(); ++r) {
+    const double rate = evaluate_row<false>(rows[r], motion.data()).rate;
+    if (std::abs(rate) > std::abs(largest)) largest = rate;
+  }
+  return largest;
+}
+
+// The path slid since the last anchor: within one slip the direction does not change.
+void EventHandler::end_slip(State& state, int f) {
+  const RowSpec* rows = system_.frictions[f].friction->rows(state.friction[f]);
+  const double before = rows[0].memory >= 0 ? state.memory[rows[0].memory] : 0.0;
+  modes_.set_anchor(state, f);
+  if (rows[0].memory >= 0) state.friction[f].slid += std::abs(state.memory[rows[0].memory] - before);
+}
+
+void EventHandler::start(State& state) {
+  dynamics_.forget_layouts();
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  for (std::size_t u = 0; u < system_.units.size(); ++u) {
+    const Unit& unit = system_.units[u];
+    state.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
+  }
+  evaluate(state);
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    FrictionState& friction = state.friction[f];
+    modes_.set_anchor(state, f);
+    if (!system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction)) {
+      friction.phase = FrictionPhase::free;
+      continue;
+    }
+    const double rate = slip_rate(state, f);
+    friction.phase = std::abs(rate) > k_rest_velocity ? FrictionPhase::slip : FrictionPhase::stick;
+    friction.sign = rate > 0.0 ? 1 : -1;
+  }
+  modes_.decide(state);
+  clear_fresh();
+}
+
+bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
+                                std::vector<Event>& events) {
+  bool is_any = false;
+  for (const int slot : fired) {
+    const int u = unit_of_slot_[slot];
+    if (u < 0) continue;
+    const Unit& unit = system_.units[u];
+    const std::uint8_t from = state.mode[u];
+    const std::uint8_t to =
+        unit.group->next_mode(unit.index, from, slot - unit.watch, dynamics_.evaluation());
+    if (to == from) continue;
+    state.mode[u] = to;
+    is_any = true;
+    for (int w = 0; w < unit.watch_count; ++w) fresh_[unit.watch + w] = 1;
+    events.push_back({state.t, system_.element_names[unit.element], unit.group->transition_name(from, to)});
+  }
+  return is_any;
+}
+
+void EventHandler::fire_friction(State& state, int f, int slot) {
+  const FrictionUnit& unit = system_.frictions[f];
+  FrictionState& friction = state.friction[f];
+  if (slot == unit.watch + 2) {
+    if (friction.phase == FrictionPhase::slip) end_slip(state, f);
+    friction.foot = unit.friction->next_place(dynamics_.evaluation(), friction);
+    modes_.set_anchor(state, f);
+  } else if (friction.phase == FrictionPhase::stick) {
+    friction.phase = FrictionPhase::slip;
+    friction.has_slipped = true;
+    const Snapshot snapshot = dynamics_.snapshot(dy_.data());
+    unit.friction->begin_slip(dynamics_.evaluation(), friction, snapshot.friction_force + unit.row);
+  } else if (friction.phase == FrictionPhase::slip) {
+    end_slip(state, f);
+    friction.phase = FrictionPhase::stick; // or it reverses: the mode problem tells
+  }
+}
+
+// Friction gains or loses its normal force with the contacts.
+void EventHandler::update_loading(State& state) {
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    FrictionState& friction = state.friction[f];
+    if (friction.phase == FrictionPhase::apart) continue;
+    const bool is_loaded = system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction);
+    if (is_loaded && friction.phase == FrictionPhase::free) {
+      modes_.set_anchor(state, f);
+      const double rate = slip_rate(state, f);
+      friction.phase = std::abs(rate) > k_rest_velocity ? FrictionPhase::slip : FrictionPhase::stick;
+      friction.sign = rate > 0.0 ? 1 : -1;
+      if (friction.phase == FrictionPhase::slip) friction.has_slipped = true;
+    } else if (!is_loaded && friction.phase != FrictionPhase::free) {
+      if (friction.phase == FrictionPhase::slip) end_slip(state, f);
+      friction.phase = FrictionPhase::free;
+    }
+  }
+}
+
+void EventHandler::note_friction(const State& before, const State& state, std::vector<Event>& events) {
+  for (std::size_t f = 0; f < state.friction.size(); ++f) {
+    const FrictionState& old = before.friction[f];
+    const FrictionState& now = state.friction[f];
+    const bool is_same_slip = now.phase != FrictionPhase::slip || now.sign == old.sign;
+    if (old.phase == now.phase && old.foot == now.foot && is_same_slip) continue;
+    const FrictionUnit& unit = system_.frictions[f];
+    for (int w = 0; w < k_friction_watches; ++w) fresh_[unit.watch + w] = 1;
+    const std::string& name = system_.element_names[unit.element];
+    if (old.foot != now.foot) events.push_back({state.t, name, "changes foot"});
+    if (old.phase == now.phase && is_same_slip) continue;
+    const char* what = "";
+    switch (now.phase) {
+    case FrictionPhase::free: what = "loses its normal force"; break;
+    case FrictionPhase::stick: what = "sticks"; break;
+    case FrictionPhase::slip:
+      if (unit.friction->dimension() == 3) what = "slips";
+      else what = now.sign > 0 ? "slips forward" : "slips backward";
+      break;
+    case FrictionPhase::apart: what = "comes apart"; break;
+    }
+    events.push_back({state.t, name, what});
+    if (unit.friction->is_rigid()) dynamics_.forget_layouts();
+  }
+}
+
+void EventHandler::handle(State& state, const std::vector<int>& fired, std::vector<Event>& events) {
+  clear_fresh();
+  const State before = state;
+  evaluate(state);
+  const bool is_contact_changed = switch_units(state, fired, events);
+  for (const int slot : fired)
+    if (const int f = friction_of_slot_[slot]; f >= 0) fire_friction(state, f, slot);
+  if (is_contact_changed) {
+    evaluate(state);
+    update_loading(state);
+  }
+  modes_.decide(state);
+  note_friction(before, state, events);
+  // What sticks now had a relative velocity up to rounding: projecting it away books what is lost.
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  const double energy = system_.kinetic_energy(state);
+  dynamics_.project(state.t, y_.data(), k_projection_tolerance);
+  dynamics_.unpack(state.t, y_.data(), state);
+  state.dissipated += energy - system_.kinetic_energy(state);
+}
+
+} // namespace steplap

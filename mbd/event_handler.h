@@ -1,0 +1,50 @@
+// What happens at an event: contacts change mode, friction changes place or phase, and all friction
+// modes that this may upset are decided anew together.
+#pragma once
+
+#include "mbd/friction_modes.h"
+
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// One line of the list of events.
+struct Event {
+  double t = 0.0;
+  std::string element;
+  std::string what; ///< "opens", "closes", "slips forward", "sticks", …
+};
+
+class EventHandler {
+public:
+  EventHandler(const System& system, Dynamics& dynamics);
+
+  /// Modes and phases at the start: contacts from their gaps, friction from the mode problem.
+  void start(State& state);
+  /// `state` is at the event, `fired` the watch slots that fell below zero (none: a breakpoint of a
+  /// signal, at which loads may jump). Changes modes, phases and anchors, notes what changed.
+  void handle(State& state, const std::vector<int>& fired, std::vector<Event>& events);
+
+  /// Slots whose unit or friction changed in the last handle(), for EventFinder.
+  [[nodiscard]] const std::vector<char>& fresh() const { return fresh_; }
+  void clear_fresh() { std::fill(fresh_.begin(), fresh_.end(), 0); }
+
+private:
+  void evaluate(const State& state);
+  bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
+  void fire_friction(State& state, int f, int slot);
+  void update_loading(State& state);
+  void note_friction(const State& before, const State& state, std::vector<Event>& events);
+  [[nodiscard]] double slip_rate(const State& state, int f) const;
+  void end_slip(State& state, int f);
+
+  const System& system_;
+  Dynamics& dynamics_;
+  FrictionModes modes_;
+  std::vector<int> unit_of_slot_, friction_of_slot_;
+  std::vector<char> fresh_;
+  std::vector<double> y_, dy_;
+};
+
+} // namespace steplap

@@ -1,0 +1,148 @@
+#include "mbd/friction_modes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_max_sweeps = 20000;
+// Wrenches settle to rounding; what is left after that is the conditioning of A.
+constexpr double k_settled = 1e-15;
+
+// Block Gauss–Seidel on the dual: each element's part is solved exactly in turn. It converges for
+// every positive semidefinite A, and the accelerations are unique even where the wrenches are not.
+class DualProblem {
+public:
+  DualProblem(const System& system, const State& state, const std::vector<int>& elements,
+              const Evaluation& evaluation, const Dynamics::Candidates& candidates)
+      : system_(system), state_(state), elements_(elements), evaluation_(evaluation),
+        candidates_(candidates), n_(candidates.rows.size()), wrench_(n_, 0.0),
+        blocks_(elements.size()), is_kinetic_(elements.size(), 0) {}
+
+  // μ_s first; those that slip get μ_k, and so on: the slipping set only grows (physics.md §3).
+  const std::vector<FrictionBlock>& solve() {
+    for (std::size_t pass = 0; pass <= elements_.size(); ++pass) {
+      sweep_until_settled();
+      bool is_changed = false;
+      for (std::size_t e = 0; e < elements_.size(); ++e)
+        if (!blocks_[e].is_inside && !is_kinetic_[e]) is_kinetic_[e] = is_changed = true;
+      if (!is_changed) break;
+    }
+    return blocks_;
+  }
+
+private:
+  void sweep_until_settled() {
+    for (int sweep = 0; sweep < k_max_sweeps; ++sweep) {
+      double change = 0.0, size = 0.0;
+      std::size_t row = 0;
+      for (std::size_t e = 0; e < elements_.size(); ++e) {
+        const FrictionElement& friction = *system_.frictions[elements_[e]].friction;
+        const std::size_t m = friction.dimension();
+        solve_element(e, friction, row, m, change, size);
+        row += m;
+      }
+      if (change <= k_settled * size || elements_.size() == 1) return;
+    }
+    // Not settled to rounding: the partition found is still checked by whoever asked.
+  }
+
+  void solve_element(std::size_t e, const FrictionElement& friction, std::size_t row, std::size_t m,
+                     double& change, double& size) {
+    double a[9], b[3];
+    for (std::size_t i = 0; i < m; ++i) {
+      b[i] = candidates_.acceleration[row + i];
+      for (std::size_t j = 0; j < n_; ++j)
+        if (j < row || j >= row + m) b[i] += candidates_.compliance[(row + i) * n_ + j] * wrench_[j];
+      for (std::size_t j = 0; j < m; ++j) a[i * m + j] = candidates_.compliance[(row + i) * n_ + row + j];
+    }
+    blocks_[e] = friction.solve_block(evaluation_, state_.friction[elements_[e]], a, b, is_kinetic_[e]);
+    for (std::size_t i = 0; i < m; ++i) {
+      change = std::max(change, std::abs(blocks_[e].wrench[i] - wrench_[row + i]));
+      size = std::max(size, std::abs(blocks_[e].wrench[i]));
+      wrench_[row + i] = blocks_[e].wrench[i];
+    }
+  }
+
+  const System& system_;
+  const State& state_;
+  const std::vector<int>& elements_;
+  const Evaluation& evaluation_;
+  const Dynamics::Candidates& candidates_;
+  std::size_t n_;
+  std::vector<double> wrench_;
+  std::vector<FrictionBlock> blocks_;
+  std::vector<char> is_kinetic_;
+};
+
+} // namespace
+
+FrictionModes::FrictionModes(const System& system, Dynamics& dynamics)
+    : system_(system), dynamics_(dynamics), y_(6 * system.bodies.size() + 2), dy_(y_.size()) {}
+
+void FrictionModes::set_anchor(State& state, int f) const {
+  const FrictionElement& friction = *system_.frictions[f].friction;
+  const RowSpec* rows = friction.rows(state.friction[f]);
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  for (int r = 0; r < friction.dimension(); ++r)
+    if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion.data()).value;
+}
+
+std::vector<int> FrictionModes::violated(const State& state) {
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  dynamics_.watch_merged(dy_.data());
+  std::vector<int> result;
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    if (state.friction[f].phase != FrictionPhase::stick) continue;
+    const double* watch = &dynamics_.watch()[system_.frictions[f].watch];
+    if (watch[0] < 0.0 || watch[1] < 0.0) result.push_back(f);
+  }
+  return result;
+}
+
+// The candidates alone, everything else as it is: fills in their phases.
+void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
+  for (const int f : candidates) state.friction[f].phase = FrictionPhase::free;
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  Dynamics::Candidates problem;
+  for (const int f : candidates) {
+    const FrictionElement& friction = *system_.frictions[f].friction;
+    for (int r = 0; r < friction.dimension(); ++r)
+      problem.rows.push_back(friction.rows(state.friction[f]) + r);
+  }
+  dynamics_.respond(problem, dy_.data());
+  DualProblem dual(system_, state, candidates, dynamics_.evaluation(), problem);
+  const std::vector<FrictionBlock>& blocks = dual.solve();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    FrictionState& friction = state.friction[candidates[i]];
+    friction.phase = blocks[i].is_inside ? FrictionPhase::stick : FrictionPhase::slip;
+    std::copy(blocks[i].direction, blocks[i].direction + 3, friction.direction);
+    friction.sign = blocks[i].direction[0] > 0.0 ? 1 : -1;
+    if (!blocks[i].is_inside) friction.has_slipped = true;
+  }
+}
+
+void FrictionModes::decide(State& state) {
+  std::vector<int> candidates = violated(state);
+  if (candidates.empty()) return;
+  // Candidates only grow: at most every element is one.
+  for (std::size_t pass = 0; pass <= system_.frictions.size(); ++pass) {
+    solve(state, candidates);
+    std::vector<int> more = violated(state);
+    std::erase_if(more, [&](int f) {
+      return std::find(candidates.begin(), candidates.end(), f) != candidates.end();
+    });
+    if (more.empty()) return;
+    candidates.insert(candidates.end(), more.begin(), more.end());
+  }
+  throw NumericalFailure("friction modes cannot be decided at t = " + std::to_string(state.t) + " s");
+}
+
+} // namespace steplap

@@ -1,0 +1,81 @@
+// The explicit pair of order 8 of Dormand and Prince (DOP853) with its dense output of order 7, whose
+// three extra evaluations are made only for steps that are looked into.
+#include "mbd/integrators/explicit_pair.h"
+#include "mbd/integrators/methods.h"
+#include "mbd/integrators/tableau_dop853.h"
+
+namespace steplap {
+
+namespace {
+
+class Dop853 final : public ExplicitPair {
+public:
+  Dop853(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
+      : ExplicitPair(dynamics, settings, max_dimension, 16, 8), r_(7 * max_dimension) {
+    set_rate_storage(k(0), k(12));
+  }
+  [[nodiscard]] const char* name() const override { return "dop853"; }
+
+  void dense(Dynamics& dynamics, double theta, double* out) override {
+    if (!is_dense_ready_) prepare_dense(dynamics);
+    const double s = theta, u = 1.0 - theta;
+    const double* r = r_.data();
+    const int m = stride_;
+    for (int i = 0; i < n_; ++i)
+      out[i] = y0_[i] +
+               s * (r[i] + u * (r[m + i] +
+                                s * (r[2 * m + i] +
+                                     u * (r[3 * m + i] +
+                                          s * (r[4 * m + i] + u * (r[5 * m + i] + s * r[6 * m + i]))))));
+  }
+
+protected:
+  double try_step(Dynamics& dynamics) override {
+    using namespace dop853;
+    is_dense_ready_ = false;
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (stage<a, I + 1>(dynamics, c[I + 1]), ...);
+    }(std::make_index_sequence<11>{});
+    combine<a, 12, 12>(y0_.data(), h_, k_.data(), stride_, n_, y1_.data());
+    weighted_sum<e5, 12>(k_.data(), stride_, n_, scratch_.data());
+    const double fifth = error_norm(scratch_.data());
+    weighted_sum<e3, 12>(k_.data(), stride_, n_, scratch_.data());
+    const double third = error_norm(scratch_.data());
+    const double denominator = std::sqrt(fifth * fifth + 0.01 * third * third);
+    return denominator > 0.0 ? h_ * fifth * fifth / denominator : h_ * fifth;
+  }
+
+private:
+  void prepare_dense(Dynamics& dynamics) {
+    using namespace dop853;
+    stage<a, 13>(dynamics, c[13]);
+    stage<a, 14>(dynamics, c[14]);
+    stage<a, 15>(dynamics, c[15]);
+    double* r = r_.data();
+    const int m = stride_;
+    for (int i = 0; i < n_; ++i) {
+      r[i] = y1_[i] - y0_[i];
+      r[m + i] = h_ * k(0)[i] - r[i];
+      r[2 * m + i] = 2.0 * r[i] - h_ * (k(0)[i] + k(12)[i]);
+    }
+    weighted_sum<d[0], 16>(k_.data(), m, n_, r + 3 * m);
+    weighted_sum<d[1], 16>(k_.data(), m, n_, r + 4 * m);
+    weighted_sum<d[2], 16>(k_.data(), m, n_, r + 5 * m);
+    weighted_sum<d[3], 16>(k_.data(), m, n_, r + 6 * m);
+    for (int p = 3; p < 7; ++p)
+      for (int i = 0; i < n_; ++i) r[p * m + i] *= h_;
+    is_dense_ready_ = true;
+  }
+
+  std::vector<double> r_;
+  bool is_dense_ready_ = false;
+};
+
+} // namespace
+
+std::unique_ptr<Integrator> make_dop853(const Dynamics& dynamics, const IntegratorSettings& settings,
+                                        int max_dimension) {
+  return std::make_unique<Dop853>(dynamics, settings, max_dimension);
+}
+
+} // namespace steplap

@@ -1,0 +1,37 @@
+// Step control shared by the embedded explicit pairs.
+#pragma once
+
+#include "mbd/integrators/explicit_runge_kutta.h"
+
+namespace steplap {
+
+class ExplicitPair : public Integrator {
+public:
+  ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension,
+               int stages, int order);
+  [[nodiscard]] bool is_adaptive() const override { return true; }
+  void step(Dynamics& dynamics, double t_limit) override;
+
+protected:
+  /// Stages, y1 and the error norm (accepted when ≤ 1) of a step of h_ from t0_.
+  virtual double try_step(Dynamics& dynamics) = 0;
+  void on_restart(Dynamics& dynamics) override;
+
+  template <const auto& Rows, std::size_t Row>
+  void stage(Dynamics& dynamics, double c) {
+    combine<Rows, Row, Row>(y0_.data(), h_, k_.data(), stride_, n_, scratch_.data());
+    dynamics.rates(t0_ + c * h_, scratch_.data(), k(Row));
+    note_stage_watches(dynamics);
+  }
+  double* k(std::size_t i) { return k_.data() + i * stride_; }
+
+  std::vector<double> k_;
+  int stride_;
+
+private:
+  StepControl control_;
+  int order_;
+  double next_h_ = 0.0;
+};
+
+} // namespace steplap

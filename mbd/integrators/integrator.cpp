@@ -1,0 +1,109 @@
+#include "mbd/integrators/integrator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// Absolute part of the error scales: a thousandth of the bodies' size, and what it would be in motion
+// at 10 Hz. Beyond that errors are relative to displacement and velocity.
+constexpr double k_displacement_floor = 1e-3;
+constexpr double k_rate_floor = 60.0;
+
+} // namespace
+
+Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
+    : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0),
+      y1_(max_dimension, 0.0), weight_(max_dimension, 0.0), scratch_(3 * max_dimension, 0.0),
+      watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_low_(watch0_), watch_rate0_(watch0_),
+      watch_rate1_(watch0_) {
+  double size = 0.0;
+  for (const BodyData& body : system_.bodies)
+    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
+  length_scale_ = size > 0.0 ? size : 1.0;
+}
+
+void Integrator::restart(Dynamics& dynamics, double t, const double* y) {
+  n_ = dynamics.dimension();
+  t0_ = t1_ = t;
+  std::copy(y, y + n_, y0_.begin());
+  on_restart(dynamics);
+  dynamics.rates(t, y0_.data(), k0_);
+  dynamics.watch_merged(k0_);
+  watch0_ = dynamics.watch();
+  watch_rate0_ = dynamics.watch_rate();
+}
+
+void Integrator::accept() {
+  t0_ = t1_;
+  std::swap(y0_, y1_);
+  std::copy(k1_, k1_ + n_, k0_);
+  std::swap(watch0_, watch1_);
+  std::swap(watch_rate0_, watch_rate1_);
+}
+
+void Integrator::finish_step(Dynamics& dynamics) {
+  const Residual found = dynamics.project(t1_, y1_.data(), settings_.projection_tolerance);
+  residual_.position = std::max(residual_.position, found.position);
+  residual_.velocity = std::max(residual_.velocity, found.velocity);
+  dynamics.rates(t1_, y1_.data(), k1_);
+  dynamics.watch_merged(k1_);
+  watch1_ = dynamics.watch();
+  watch_rate1_ = dynamics.watch_rate();
+  ++steps_;
+}
+
+void Integrator::note_stage_watches(const Dynamics& dynamics) {
+  const std::vector<double>& watch = dynamics.watch();
+  for (std::size_t i = 0; i < watch.size(); ++i) watch_low_[i] = std::min(watch_low_[i], watch[i]);
+}
+
+void Integrator::update_weights(const Dynamics& dynamics) {
+  const Layout& layout = dynamics.layout();
+  const int m = dynamics.coordinate_count();
+  const double tolerance = settings_.tolerance;
+  for (int k = 0; k < layout.cluster_count(); ++k)
+    for (int c = 0; c < 3; ++c) {
+      const int i = 3 * k + c;
+      const bool is_locked = layout.clusters[k].w[c] == 0.0;
+      const double size = c < 2 ? k_displacement_floor * length_scale_ : k_displacement_floor;
+      const double displacement = std::abs(y0_[i] - layout.reference[i]);
+      weight_[i] = is_locked ? 0.0 : 1.0 / (tolerance * (size + displacement));
+      weight_[m + i] =
+          is_locked ? 0.0 : 1.0 / (tolerance * (k_rate_floor * size + std::abs(y0_[m + i])));
+    }
+  weight_[2 * m] = weight_[2 * m + 1] = 0.0;
+}
+
+double Integrator::error_norm(const double* error) const {
+  double sum = 0.0;
+  for (int i = 0; i < n_; ++i) {
+    const double e = error[i] * weight_[i];
+    sum += e * e;
+  }
+  return std::sqrt(sum / n_);
+}
+
+// Hairer, Nørsett, Wanner, Solving ODEs I, II.4: from the size of y, f and a difference of f.
+double Integrator::first_step(Dynamics& dynamics, int order, double h_max) {
+  update_weights(dynamics);
+  double* y = scratch_.data();
+  double* f = y + n_;
+  double* change = f + n_;
+  for (int i = 0; i < n_; ++i)
+    change[i] = i < dynamics.coordinate_count() ? y0_[i] - dynamics.layout().reference[i] : y0_[i];
+  const double size = error_norm(change) + 1.0 / settings_.tolerance * 1e-3;
+  const double slope = error_norm(k0_);
+  double h = slope > 0.0 ? 0.01 * size / slope : h_max;
+  h = std::min(h, h_max);
+  for (int i = 0; i < n_; ++i) y[i] = y0_[i] + h * k0_[i];
+  dynamics.rates(t0_ + h, y, f);
+  for (int i = 0; i < n_; ++i) change[i] = (f[i] - k0_[i]) / h;
+  const double curvature = std::max(slope, error_norm(change));
+  const double h1 = curvature > 0.0 ? std::pow(0.01 / curvature, 1.0 / (order + 1)) : h_max;
+  return std::min({100.0 * h, h1, h_max});
+}
+
+} // namespace steplap

@@ -1,0 +1,95 @@
+// The interface behind which every one-step method sits.
+//
+// A method advances the packed vector y of a Dynamics within one mode; it knows nothing of events. It
+// leaves the step it has made (both ends, rates, watch values, dense output) for whoever looks for
+// events in it, and goes on from where it is told: accept() from the step's end, restart() from
+// anywhere (after an event, in a new layout).
+#pragma once
+
+#include "mbd/dynamics.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+struct IntegratorSettings {
+  double tolerance = 1e-8;            ///< relative local error of adaptive methods
+  double step = 0.0;                  ///< s; fixed-step methods need it, others take it as the first step
+  double max_step = 0.0;              ///< s; 0: none
+  double projection_tolerance = 1e-12;
+};
+
+class Integrator {
+public:
+  Integrator(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension);
+  virtual ~Integrator() = default;
+  Integrator(const Integrator&) = delete;
+  Integrator& operator=(const Integrator&) = delete;
+
+  [[nodiscard]] virtual const char* name() const = 0;
+  [[nodiscard]] virtual bool is_adaptive() const = 0;
+  /// Begins at (t, y) in the layout that `dynamics` has now; evaluates the rates there.
+  void restart(Dynamics& dynamics, double t, const double* y);
+  /// Makes one step of at most t_limit − t. Throws NumericalFailure where no step can be made.
+  virtual void step(Dynamics& dynamics, double t_limit) = 0;
+  /// State at t + theta·h of the step made, 0 ≤ theta ≤ 1. May evaluate.
+  virtual void dense(Dynamics& dynamics, double theta, double* out) = 0;
+  /// Goes on from the end of the step.
+  void accept();
+
+  // --- the step made ------------------------------------------------------------------------------
+  [[nodiscard]] double t0() const { return t0_; }
+  [[nodiscard]] double h() const { return h_; }
+  [[nodiscard]] double t1() const { return t1_; }
+  [[nodiscard]] const double* y0() const { return y0_.data(); }
+  [[nodiscard]] const double* y1() const { return y1_.data(); }
+  [[nodiscard]] const double* rate0() const { return k0_; }
+  [[nodiscard]] const double* rate1() const { return k1_; }
+  [[nodiscard]] const std::vector<double>& watch0() const { return watch0_; }
+  [[nodiscard]] const std::vector<double>& watch1() const { return watch1_; }
+  [[nodiscard]] const std::vector<double>& watch_rate0() const { return watch_rate0_; }
+  [[nodiscard]] const std::vector<double>& watch_rate1() const { return watch_rate1_; }
+  /// Per watch value the least one met at the stages inside the step: a hint where to look closer.
+  [[nodiscard]] const std::vector<double>& watch_low() const { return watch_low_; }
+
+  [[nodiscard]] long steps() const { return steps_; }
+  [[nodiscard]] long rejections() const { return rejections_; }
+  [[nodiscard]] double max_position_residual() const { return residual_.position; }
+  [[nodiscard]] double max_velocity_residual() const { return residual_.velocity; }
+
+protected:
+  virtual void on_restart(Dynamics& /*dynamics*/) {}
+  /// Where the rates at both ends are kept; a method with more stages points them into its own.
+  void set_rate_storage(double* k0, double* k1) {
+    k0_ = k0;
+    k1_ = k1;
+  }
+  /// Projects y1 and evaluates there: rates into k1, watch values into watch1.
+  void finish_step(Dynamics& dynamics);
+  void note_stage_watches(const Dynamics& dynamics);
+  /// Weights of the error norm: 1/(tolerance · scale) per coordinate, 0 where locked.
+  void update_weights(const Dynamics& dynamics);
+  [[nodiscard]] double error_norm(const double* error) const;
+  [[nodiscard]] double first_step(Dynamics& dynamics, int order, double h_max);
+
+  const System& system_;
+  IntegratorSettings settings_;
+  int n_ = 0; ///< dimension now
+  double t0_ = 0.0, t1_ = 0.0, h_ = 0.0;
+  std::vector<double> y0_, y1_, weight_, scratch_;
+  double* k0_ = nullptr;
+  double* k1_ = nullptr;
+  std::vector<double> watch0_, watch1_, watch_low_, watch_rate0_, watch_rate1_;
+  long steps_ = 0, rejections_ = 0;
+  Residual residual_;
+  double length_scale_ = 1.0;
+};
+
+/// "rk4", "tsit5", "dop853". Throws std::invalid_argument for an unknown name.
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(const std::string& name,
+                                                          const Dynamics& dynamics,
+                                                          const IntegratorSettings& settings);
+
+} // namespace steplap

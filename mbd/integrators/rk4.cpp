@@ -1,0 +1,85 @@
+// The classical Runge–Kutta method of order 4 with a fixed step, as the paper uses it (§3).
+//
+// Dense output: positions by the quintic that has position, velocity and acceleration of both ends
+// (error O(h⁶)), velocities by its derivative (O(h⁵)), so that events located on it keep the order.
+#include "mbd/integrators/explicit_runge_kutta.h"
+#include "mbd/integrators/methods.h"
+
+namespace steplap {
+
+namespace {
+
+class Rk4 final : public Integrator {
+public:
+  Rk4(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
+      : Integrator(dynamics, settings, max_dimension), k_(6 * max_dimension), stride_(max_dimension) {
+    set_rate_storage(k_.data(), k_.data() + 5 * stride_);
+  }
+  [[nodiscard]] const char* name() const override { return "rk4"; }
+  [[nodiscard]] bool is_adaptive() const override { return false; }
+
+  void step(Dynamics& dynamics, double t_limit) override {
+    const double left = t_limit - t0_;
+    // A remainder of a step's rounding is taken along rather than left for a step of its own.
+    const bool is_last = left <= settings_.step * (1.0 + 1e-9);
+    h_ = is_last ? left : settings_.step;
+    t1_ = is_last ? t_limit : t0_ + h_;
+    std::fill(watch_low_.begin(), watch_low_.end(), 1.0);
+    stage(dynamics, 1, 0.5, k(0));
+    stage(dynamics, 2, 0.5, k(1));
+    stage(dynamics, 3, 1.0, k(2));
+    for (int i = 0; i < n_; ++i)
+      y1_[i] = y0_[i] + h_ / 6.0 * (k(0)[i] + 2.0 * (k(1)[i] + k(2)[i]) + k(3)[i]);
+    finish_step(dynamics);
+  }
+
+  void dense(Dynamics& dynamics, double theta, double* out) override {
+    hermite_dense(dynamics.coordinate_count(), theta, h_, y0_.data(), y1_.data(), k0_, k1_, out);
+  }
+
+private:
+  double* k(int i) { return k_.data() + i * stride_; }
+  void stage(Dynamics& dynamics, int index, double c, const double* previous) {
+    double* y = scratch_.data();
+    for (int i = 0; i < n_; ++i) y[i] = y0_[i] + c * h_ * previous[i];
+    dynamics.rates(t0_ + c * h_, y, k(index));
+    note_stage_watches(dynamics);
+  }
+  std::vector<double> k_;
+  int stride_;
+};
+
+} // namespace
+
+std::unique_ptr<Integrator> make_rk4(const Dynamics& dynamics, const IntegratorSettings& settings,
+                                     int max_dimension) {
+  return std::make_unique<Rk4>(dynamics, settings, max_dimension);
+}
+
+void hermite_dense(int coordinates, double theta, double h, const double* y0, const double* y1,
+                   const double* rate0, const double* rate1, double* out) {
+  const int n = coordinates;
+  const double s = theta, s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
+  // Quintic basis on [0, 1] for (q0, h v0, h² a0, q1, h v1, h² a1) and its derivative.
+  const double b1 = s - 6 * s3 + 8 * s4 - 3 * s5;
+  const double b2 = 0.5 * (s2 - 3 * s3 + 3 * s4 - s5);
+  const double b3 = 10 * s3 - 15 * s4 + 6 * s5;
+  const double b4 = -4 * s3 + 7 * s4 - 3 * s5;
+  const double b5 = 0.5 * (s3 - 2 * s4 + s5);
+  const double d1 = 1 - 18 * s2 + 32 * s3 - 15 * s4;
+  const double d2 = 0.5 * (2 * s - 9 * s2 + 12 * s3 - 5 * s4);
+  const double d3 = 30 * s2 - 60 * s3 + 30 * s4;
+  const double d4 = -12 * s2 + 28 * s3 - 15 * s4;
+  const double d5 = 0.5 * (3 * s2 - 8 * s3 + 5 * s4);
+  for (int i = 0; i < n; ++i) {
+    const double change = y1[i] - y0[i];
+    const double v0 = y0[n + i], v1 = y1[n + i], a0 = rate0[n + i], a1 = rate1[n + i];
+    out[i] = y0[i] + b3 * change + h * (b1 * v0 + b4 * v1) + h * h * (b2 * a0 + b5 * a1);
+    out[n + i] = d3 * change / h + d1 * v0 + d4 * v1 + h * (d2 * a0 + d5 * a1);
+  }
+  const double c1 = s - 2 * s2 + s3, c2 = 3 * s2 - 2 * s3, c3 = s3 - s2;
+  for (int i = 2 * n; i < 2 * n + 2; ++i)
+    out[i] = y0[i] + c2 * (y1[i] - y0[i]) + h * (c1 * rate0[i] + c3 * rate1[i]);
+}
+
+} // namespace steplap

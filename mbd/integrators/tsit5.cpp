@@ -1,0 +1,60 @@
+// Tsitouras' explicit pair of order 5(4) with its dense output of order 4.
+#include "mbd/integrators/explicit_pair.h"
+#include "mbd/integrators/methods.h"
+#include "mbd/integrators/tableau_tsit5.h"
+
+namespace steplap {
+
+namespace {
+
+class Tsit5 final : public ExplicitPair {
+public:
+  Tsit5(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
+      : ExplicitPair(dynamics, settings, max_dimension, 7, 5), raw_(max_dimension) {
+    set_rate_storage(k(0), k(6));
+  }
+  [[nodiscard]] const char* name() const override { return "tsit5"; }
+
+  void dense(Dynamics&, double theta, double* out) override {
+    double weight[7];
+    for (std::size_t j = 0; j < 7; ++j) {
+      const auto& d = tsit5::d[j];
+      weight[j] = theta * (d[0] + theta * (d[1] + theta * (d[2] + theta * d[3])));
+    }
+    // What projection moved is spread over the step, so that the output meets the projected end.
+    const double blend = theta * theta * (3.0 - 2.0 * theta);
+    for (int i = 0; i < n_; ++i) {
+      double sum = 0.0;
+      for (std::size_t j = 0; j < 7; ++j) sum += weight[j] * k(j)[i];
+      out[i] = y0_[i] + h_ * sum + blend * (y1_[i] - raw_[i]);
+    }
+  }
+
+protected:
+  double try_step(Dynamics& dynamics) override {
+    using namespace tsit5;
+    stage<a, 1>(dynamics, c[1]);
+    stage<a, 2>(dynamics, c[2]);
+    stage<a, 3>(dynamics, c[3]);
+    stage<a, 4>(dynamics, c[4]);
+    stage<a, 5>(dynamics, c[5]);
+    combine<a, 6, 6>(y0_.data(), h_, k_.data(), stride_, n_, y1_.data());
+    // The estimate counts the rates at the end: taken before projection, which moves far less.
+    dynamics.rates(t0_ + h_, y1_.data(), k(6));
+    std::copy(y1_.begin(), y1_.begin() + n_, raw_.begin());
+    weighted_sum<e, 7>(k_.data(), stride_, n_, scratch_.data());
+    return h_ * error_norm(scratch_.data());
+  }
+
+private:
+  std::vector<double> raw_;
+};
+
+} // namespace
+
+std::unique_ptr<Integrator> make_tsit5(const Dynamics& dynamics, const IntegratorSettings& settings,
+                                       int max_dimension) {
+  return std::make_unique<Tsit5>(dynamics, settings, max_dimension);
+}
+
+} // namespace steplap

@@ -1,0 +1,222 @@
+#include "mbd/layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace steplap {
+
+namespace {
+
+// A rigid joint that may merge its two bodies.
+struct RigidJoint {
+  int a, b, block, friction;
+};
+
+bool is_stuck(const State& state, int f) { return state.friction[f].phase == FrictionPhase::stick; }
+
+std::vector<RigidJoint> rigid_joints(const System& system, const State& state) {
+  std::vector<RigidJoint> joints;
+  for (int i = 0; i < static_cast<int>(system.row_blocks.size()); ++i) {
+    const RowBlock& block = system.row_blocks[i];
+    const RowSpec& row = system.rows[block.first];
+    if (block.is_rigid) joints.push_back({row.a, row.b, i, -1});
+  }
+  for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
+    const FrictionElement& friction = *system.frictions[f].friction;
+    if (!is_stuck(state, f) || !friction.is_rigid()) continue;
+    const RowSpec* rows = friction.rows(state.friction[f]);
+    joints.push_back({rows[0].a, rows[0].b, -1, f});
+  }
+  return joints;
+}
+
+int find_root(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+// Joints that merge (a spanning forest, the ground excluded) come back; the others stay rows.
+std::vector<char> merge(const System& system, const std::vector<RigidJoint>& joints,
+                        std::vector<int>& parent) {
+  parent.resize(system.bodies.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<char> is_merged(joints.size(), 0);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].a == k_ground || joints[i].b == k_ground) continue;
+    const int ra = find_root(parent, joints[i].a), rb = find_root(parent, joints[i].b);
+    if (ra == rb) continue;
+    parent[std::max(ra, rb)] = std::min(ra, rb);
+    is_merged[i] = 1;
+  }
+  return is_merged;
+}
+
+void make_clusters(const System& system, const State& state, std::vector<int>& parent, Layout& layout) {
+  const int n = system.body_count();
+  layout.placements.assign(n, {});
+  std::vector<int> cluster_of(n, -1);
+  std::vector<int> size;
+  for (int i = 1; i < n; ++i) {
+    const int root = find_root(parent, i);
+    if (root == i) {
+      cluster_of[i] = layout.cluster_count();
+      layout.clusters.push_back({});
+      layout.clusters.back().root = i;
+      size.push_back(0);
+    }
+    const int k = cluster_of[root];
+    cluster_of[i] = k;
+    layout.placements[i].cluster = k;
+    layout.clusters[k].mass += system.bodies[i].mass;
+    ++size[k];
+  }
+  std::vector<Vec2> centre(layout.clusters.size(), Vec2::Zero());
+  for (int i = 1; i < n; ++i) {
+    const int k = cluster_of[i];
+    const Vec2 p(state.q[3 * i], state.q[3 * i + 1]);
+    if (size[k] == 1) centre[k] = p;
+    else centre[k] += system.bodies[i].mass / layout.clusters[k].mass * p;
+  }
+  for (int i = 1; i < n; ++i) {
+    Cluster& cluster = layout.clusters[cluster_of[i]];
+    Placement& place = layout.placements[i];
+    place.is_trivial = size[cluster_of[i]] == 1;
+    cluster.inertia += system.bodies[i].inertia;
+    if (place.is_trivial) continue;
+    const double root_angle = state.q[3 * cluster.root + 2];
+    const Vec2 lever = Vec2(state.q[3 * i], state.q[3 * i + 1]) - centre[cluster_of[i]];
+    place.offset = rotated(lever, -root_angle);
+    place.angle = state.q[3 * i + 2] - root_angle;
+    place.c = std::cos(place.angle);
+    place.s = std::sin(place.angle);
+    cluster.inertia += system.bodies[i].mass * lever.squaredNorm();
+  }
+  int extra = n;
+  for (int k = 0; k < layout.cluster_count(); ++k) {
+    Cluster& cluster = layout.clusters[k];
+    cluster.motion = size[k] == 1 ? cluster.root : extra++;
+    cluster.w[0] = cluster.w[1] = 1.0 / cluster.mass;
+    cluster.w[2] = 1.0 / cluster.inertia;
+  }
+}
+
+// Edges of each cluster's spanning tree, leaves first (reverse breadth-first from the roots).
+void order_edges(const std::vector<RigidJoint>& joints, const std::vector<char>& is_merged,
+                 int body_count, Layout& layout) {
+  std::vector<std::vector<std::size_t>> at_body(body_count);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (is_merged[i]) {
+      at_body[joints[i].a].push_back(i);
+      at_body[joints[i].b].push_back(i);
+    }
+  std::vector<char> is_seen(body_count, 0);
+  for (const Cluster& cluster : layout.clusters) {
+    std::vector<int> queue{cluster.root};
+    is_seen[cluster.root] = 1;
+    for (std::size_t next = 0; next < queue.size(); ++next)
+      for (const std::size_t i : at_body[queue[next]]) {
+        const int other = joints[i].a == queue[next] ? joints[i].b : joints[i].a;
+        if (is_seen[other]) continue;
+        is_seen[other] = 1;
+        layout.edges.push_back({queue[next], other, joints[i].block, joints[i].friction});
+        queue.push_back(other);
+      }
+  }
+  std::reverse(layout.edges.begin(), layout.edges.end());
+}
+
+void add_active(Layout& layout, const ActiveRow& row) {
+  SchurRow schur;
+  schur.body[0] = layout.placements[row.spec->a].cluster;
+  schur.body[1] = layout.placements[row.spec->b].cluster;
+  layout.active.push_back(row);
+  layout.schur_rows.push_back(schur);
+  if (row.spec->drive) layout.has_drives = true;
+}
+
+// Bilateral rows: locks where a drive prescribes one coordinate of a body that is alone, else rows.
+void add_bilateral(const System& system, const std::vector<char>& is_block_merged, Layout& layout) {
+  for (int i = 0; i < static_cast<int>(system.row_blocks.size()); ++i) {
+    const RowBlock& block = system.row_blocks[i];
+    if (is_block_merged[i]) continue;
+    const RowSpec& first = system.rows[block.first];
+    const Placement& place = layout.placements[first.a];
+    if (place.cluster >= 0 && place.cluster == layout.placements[first.b].cluster) {
+      layout.redundant_blocks.push_back(i);
+      continue;
+    }
+    const bool is_free = block.coordinate >= 0 && place.is_trivial &&
+                         layout.clusters[place.cluster].w[block.coordinate] > 0.0;
+    if (is_free) {
+      layout.clusters[place.cluster].w[block.coordinate] = 0.0;
+      layout.locks.push_back({place.cluster, block.coordinate, block.first});
+      layout.has_drives = true;
+      continue;
+    }
+    for (int r = block.first; r < block.first + block.count; ++r)
+      add_active(layout, {&system.rows[r], r, -1, 0});
+  }
+}
+
+void add_frictions(const System& system, const State& state,
+                   const std::vector<char>& is_friction_merged, Layout& layout) {
+  for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
+    if (is_friction_merged[f]) layout.merged.push_back(f);
+    else if (is_stuck(state, f)) {
+      layout.holding.push_back(f);
+      const FrictionElement& friction = *system.frictions[f].friction;
+      for (int r = 0; r < friction.dimension(); ++r)
+        add_active(layout, {friction.rows(state.friction[f]) + r, -1, f, r});
+    } else if (state.friction[f].phase == FrictionPhase::slip) {
+      layout.sliding.push_back(f);
+    }
+  }
+}
+
+void find_placed(const System& system, const State& state, Layout& layout) {
+  std::vector<char>& is_needed = layout.is_placed;
+  is_needed = system.is_body_used;
+  for (const ActiveRow& row : layout.active) is_needed[row.spec->a] = is_needed[row.spec->b] = 1;
+  for (const int f : layout.sliding) {
+    const RowSpec* rows = system.frictions[f].friction->rows(state.friction[f]);
+    is_needed[rows[0].a] = is_needed[rows[0].b] = 1;
+  }
+  for (int i = 1; i < system.body_count(); ++i)
+    if (is_needed[i]) layout.placed.push_back(i);
+
+}
+
+} // namespace
+
+std::vector<char> layout_key(const State& state) {
+  std::vector<char> key;
+  for (const FrictionState& f : state.friction)
+    key.push_back(static_cast<char>(static_cast<int>(f.phase) * 16 + f.foot));
+  return key;
+}
+
+Layout make_layout(const System& system, const State& state) {
+  Layout layout;
+  layout.key = layout_key(state);
+  const std::vector<RigidJoint> joints = rigid_joints(system, state);
+  std::vector<int> parent;
+  const std::vector<char> is_merged = merge(system, joints, parent);
+  make_clusters(system, state, parent, layout);
+  if (std::find(is_merged.begin(), is_merged.end(), 1) != is_merged.end())
+    order_edges(joints, is_merged, system.body_count(), layout);
+  std::vector<char> is_block_merged(system.row_blocks.size(), 0);
+  std::vector<char> is_friction_merged(system.frictions.size(), 0);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (is_merged[i]) {
+      if (joints[i].block >= 0) is_block_merged[joints[i].block] = 1;
+      if (joints[i].friction >= 0) is_friction_merged[joints[i].friction] = 1;
+    }
+  add_bilateral(system, is_block_merged, layout);
+  add_frictions(system, state, is_friction_merged, layout);
+  find_placed(system, state, layout);
+  layout.schur.analyze(layout.schur_rows);
+  return layout;
+}
+
+} // namespace steplap

@@ -1,0 +1,177 @@
+// Measures: scalar functions of the relative pose of two bodies a and b, with gradient and second rate.
+//
+// Nearly everything planar is a law or a constraint on one of five scalars: the distance of a marker
+// along an axis of b, the distance of two points, a relative angle, the gap of a contact and the
+// tangential coordinate of its tip. A measure gives
+//   value, rate,
+//   the gradient as a unit wrench: direction d at a common point of both bodies plus a couple, acting on
+//   a, its opposite on b (Newton's third law holds by construction),
+//   bias = second time derivative at zero accelerations (q̇ᵀ f_qq q̇; γ of physics.md §1 is −bias).
+#pragma once
+
+#include "mbd/motion.h"
+
+namespace steplap {
+
+template <class S> struct MeasureValue {
+  S value{0}, rate{0}, bias{0};
+  Pair<S> direction;          ///< of the force on a, ground axes
+  Pair<S> lever_a, lever_b;   ///< from each centre of gravity to the point of application
+  S couple{0};                ///< on a; its opposite on b
+};
+
+/// e·(p_A − p_B) with e fixed in b: force e at p_A.
+struct AxisMeasure {
+  Vec2 point_a, point_b, axis; ///< in the frames of a, b, b
+  template <bool WithBias, class S>
+  MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+    MeasureValue<S> m;
+    const Pair<S> ra = to_ground(a, point_a), rb = to_ground(b, point_b);
+    const Pair<S> e = to_ground(b, axis);
+    const Pair<S> offset{b.x, b.y};
+    const Pair<S> reach = Pair<S>{a.x, a.y} - offset + ra; // from b's centre to p_A
+    const Pair<S> d = reach - rb;
+    m.value = dot(e, d);
+    m.direction = e;
+    m.lever_a = ra;
+    m.lever_b = reach;
+    m.rate = dot(e, point_velocity(a, ra) - point_velocity(b, reach));
+    if constexpr (WithBias) {
+      // d̈ = −ωA² ra + ωB² rb, ė = ωB ẑ×e, ë = −ωB² e
+      const Pair<S> ddot = point_velocity(a, ra) - point_velocity(b, rb);
+      const S wa2 = a.omega * a.omega, wb2 = b.omega * b.omega;
+      m.bias = wb2 * dot(e, rb) - wa2 * dot(e, ra) + S(2) * b.omega * dot(perp(e), ddot) -
+               wb2 * m.value;
+    }
+    return m;
+  }
+};
+
+/// |p_A − p_B|; undefined at zero length (the rate then is not finite, and the caller says so).
+struct DistanceMeasure {
+  Vec2 point_a, point_b;
+  template <bool WithBias, class S>
+  MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+    using std::sqrt;
+    MeasureValue<S> m;
+    const Pair<S> ra = to_ground(a, point_a), rb = to_ground(b, point_b);
+    const Pair<S> d = Pair<S>{a.x - b.x, a.y - b.y} + ra - rb;
+    const Pair<S> ddot = point_velocity(a, ra) - point_velocity(b, rb);
+    m.value = sqrt(dot(d, d));
+    m.direction = (S(1) / m.value) * d;
+    m.lever_a = ra;
+    m.lever_b = rb;
+    m.rate = dot(m.direction, ddot);
+    if constexpr (WithBias) {
+      const S wa2 = a.omega * a.omega, wb2 = b.omega * b.omega;
+      m.bias = wb2 * dot(m.direction, rb) - wa2 * dot(m.direction, ra) +
+               (dot(ddot, ddot) - m.rate * m.rate) / m.value;
+    }
+    return m;
+  }
+};
+
+/// θ_A − θ_B.
+struct AngleMeasure {
+  template <bool WithBias, class S>
+  MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+    MeasureValue<S> m;
+    m.value = a.theta - b.theta;
+    m.rate = a.omega - b.omega;
+    m.couple = S(1);
+    return m;
+  }
+};
+
+namespace detail {
+
+// What gap and slide share: the line of b with normal n and tangent t (t × n = 1), the contact axis a
+// (fixed in body a, or n itself), α = n·a, β = t·a, and the tip p_A − δ a.
+template <class S> struct ContactFrame {
+  Pair<S> ra, rb, d, n, t, axis;
+  S alpha, beta, gap;
+  Pair<S> tip_a, tip_b; // levers to the tip
+};
+
+template <class S>
+ContactFrame<S> contact_frame(const Motion<S>& a, const Motion<S>& b, const Vec2& point_a,
+                              const Vec2& point_b, const Vec2& normal, const Vec2& axis,
+                              bool is_axis_in_a) {
+  ContactFrame<S> k;
+  k.ra = to_ground(a, point_a);
+  k.rb = to_ground(b, point_b);
+  const Pair<S> centres{a.x - b.x, a.y - b.y};
+  k.d = centres + k.ra - k.rb;
+  k.n = to_ground(b, normal);
+  k.t = {k.n.y, -k.n.x};
+  k.axis = is_axis_in_a ? to_ground(a, axis) : k.n;
+  k.alpha = is_axis_in_a ? dot(k.n, k.axis) : S(1);
+  k.beta = is_axis_in_a ? dot(k.t, k.axis) : S(0);
+  k.gap = dot(k.n, k.d) / k.alpha;
+  k.tip_a = k.ra - k.gap * k.axis;
+  k.tip_b = centres + k.tip_a;
+  return k;
+}
+
+} // namespace detail
+
+/// Gap of a contact, δ = n·(p_A − p_B)/(n·a): force n/(n·a) at the tip p_A − δ a (physics.md §2). With
+/// the axis n itself this is the ordinary distance from b's line. n·a > 0 is required.
+struct GapMeasure {
+  Vec2 point_a, point_b, normal; ///< in the frames of a, b, b
+  Vec2 axis = Vec2::Zero();      ///< in the frame of a, if is_axis_in_a
+  bool is_axis_in_a = false;
+  template <bool WithBias, class S>
+  MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+    MeasureValue<S> m;
+    const auto k = detail::contact_frame(a, b, point_a, point_b, normal, axis, is_axis_in_a);
+    m.value = k.gap;
+    m.direction = (S(1) / k.alpha) * k.n;
+    m.lever_a = k.tip_a;
+    m.lever_b = k.tip_b;
+    m.rate = dot(m.direction, point_velocity(a, k.tip_a) - point_velocity(b, k.tip_b));
+    if constexpr (WithBias) {
+      // (n·d)'' = δ'' α + 2 δ' α' + δ α'', with α' = β Ω, α'' = −α Ω² (axis in a; else α = 1)
+      const S wa2 = a.omega * a.omega, wb2 = b.omega * b.omega;
+      const Pair<S> ddot = point_velocity(a, k.ra) - point_velocity(b, k.rb);
+      const S second = wb2 * dot(k.n, k.rb) - wa2 * dot(k.n, k.ra) +
+                       S(2) * b.omega * dot(perp(k.n), ddot) - wb2 * dot(k.n, k.d);
+      const S spin = is_axis_in_a ? a.omega - b.omega : S(0);
+      m.bias = (second - S(2) * m.rate * k.beta * spin + m.value * k.alpha * spin * spin) / k.alpha;
+    }
+    return m;
+  }
+};
+
+/// Tangential coordinate of the same tip on b's line, s = t·(p_A − δ a − p_B) = (d × a)/(n·a), d = p_A −
+/// p_B; with the axis a = body a's y axis it equals Eq. (8). Its gradient is t − (β/α) n at the tip.
+struct SlideMeasure {
+  Vec2 point_a, point_b, normal;
+  Vec2 axis = Vec2::Zero();
+  bool is_axis_in_a = false;
+  template <bool WithBias, class S>
+  MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+    MeasureValue<S> m;
+    const auto k = detail::contact_frame(a, b, point_a, point_b, normal, axis, is_axis_in_a);
+    const S cross_da = is_axis_in_a ? cross(k.d, k.axis) : dot(k.t, k.d);
+    m.value = cross_da / k.alpha;
+    m.direction = k.t - (k.beta / k.alpha) * k.n;
+    m.lever_a = k.tip_a;
+    m.lever_b = k.tip_b;
+    m.rate = dot(m.direction, point_velocity(a, k.tip_a) - point_velocity(b, k.tip_b));
+    if constexpr (WithBias) {
+      // s α = d × a twice differentiated; a turns with body a (or with b when it is the normal)
+      const S wa2 = a.omega * a.omega, wb2 = b.omega * b.omega;
+      const Pair<S> ddot = point_velocity(a, k.ra) - point_velocity(b, k.rb);
+      const Pair<S> dddot = wb2 * k.rb - wa2 * k.ra;
+      const S w = is_axis_in_a ? a.omega : b.omega;
+      const S second = cross(dddot, k.axis) + S(2) * w * cross(ddot, perp(k.axis)) -
+                       w * w * cross(k.d, k.axis);
+      const S spin = is_axis_in_a ? a.omega - b.omega : S(0);
+      m.bias = (second - S(2) * m.rate * k.beta * spin + m.value * k.alpha * spin * spin) / k.alpha;
+    }
+    return m;
+  }
+};
+
+} // namespace steplap

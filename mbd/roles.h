@@ -1,0 +1,137 @@
+// The roles that an element plays in a compiled system, each a small interface.
+//
+//   ForceGroup       all elements of one kind that give forces, evaluated in one loop;
+//   FrictionElement  rows along which it can stick, the convex set of wrenches it can bear, its slip law;
+//   RowSpec (row.h)  bilateral and driven constraint rows.
+// A *unit* is a force element with modes (a contact: open, pressed, released): its present mode selects
+// a smooth law, and its watch values tell how far that law stays valid: an event is where one of them
+// falls below zero.
+#pragma once
+
+#include "mbd/motion.h"
+#include "mbd/row.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+enum class FrictionPhase : std::uint8_t {
+  free,  ///< no normal force: no friction
+  stick, ///< its rows hold as constraints
+  slip,  ///< relative motion, the wrench follows the slip law
+  apart  ///< the joint has come apart: no friction for good
+};
+
+/// What a friction element remembers; anchors are in the state's memory (RowSpec::memory).
+struct FrictionState {
+  FrictionPhase phase = FrictionPhase::stick;
+  std::int8_t sign = 0;             ///< direction of slip, for one-dimensional friction
+  std::uint8_t foot = 0;            ///< which of its places it acts at
+  bool has_slipped = false;
+  double slid = 0.0;                ///< path length of finished slips (first row), m
+  double direction[3] = {0, 0, 0};  ///< of slip at its onset, for three-dimensional friction
+};
+
+/// Everything an evaluation reads and writes; one per thread, sized once.
+struct Evaluation {
+  double t = 0.0;
+  const Motion<double>* motion = nullptr; ///< per body
+  BodyForce* force = nullptr;             ///< per body, accumulated
+  const std::uint8_t* mode = nullptr;     ///< per unit
+  const FrictionState* friction = nullptr;
+  double* contact_force = nullptr;        ///< per contact: normal force f ≥ 0 (N = Σ f)
+  double* watch = nullptr;                ///< per watch slot: valid while ≥ 0
+  double* watch_rate = nullptr;           ///< its rate where the element knows it, else NaN
+  double dissipation = 0.0;               ///< W
+  double work = 0.0;                      ///< W, of loads and drives
+};
+
+inline void apply_force(Evaluation& e, int a, int b, const MeasureValue<double>& m, double f) {
+  const Pair<double> d = f * m.direction;
+  BodyForce& fa = e.force[a];
+  BodyForce& fb = e.force[b];
+  fa.fx += d.x;
+  fa.fy += d.y;
+  fa.m += cross(m.lever_a, d) + f * m.couple;
+  fb.fx -= d.x;
+  fb.fy -= d.y;
+  fb.m -= cross(m.lever_b, d) + f * m.couple;
+}
+
+/// ∂(force on a, force on b)/∂(pose a, pose b) and /∂(velocity a, velocity b) of one element.
+struct PairJacobian {
+  int a = 0, b = 0;
+  Eigen::Matrix<double, 6, 6> stiffness; ///< ∂F/∂q
+  Eigen::Matrix<double, 6, 6> damping;   ///< ∂F/∂v
+};
+
+class ForceGroup {
+public:
+  virtual ~ForceGroup() = default;
+  virtual void add_forces(Evaluation& e) const = 0;
+  [[nodiscard]] virtual double potential(const Motion<double>* motion) const = 0;
+  virtual void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const = 0;
+  virtual void mark_bodies(std::vector<char>& is_used) const = 0;
+
+  /// Modes, for groups whose elements are units. `slot` is the watch value that fell below zero.
+  [[nodiscard]] virtual std::uint8_t initial_mode(int /*element*/, const Evaluation&) const { return 0; }
+  [[nodiscard]] virtual std::uint8_t next_mode(int /*element*/, std::uint8_t mode, int /*slot*/,
+                                               const Evaluation&) const {
+    return mode;
+  }
+  /// What the change is called in the list of events ("closes", "opens", "force reaches zero").
+  [[nodiscard]] virtual const char* transition_name(std::uint8_t /*from*/, std::uint8_t /*to*/) const {
+    return "";
+  }
+};
+
+/// Solution of one element's part of the mode problem.
+struct FrictionBlock {
+  double wrench[3] = {0, 0, 0};
+  double direction[3] = {0, 0, 0}; ///< of the relative acceleration, if it starts to slip
+  bool is_inside = true;           ///< true: sticks
+};
+
+class FrictionElement {
+public:
+  virtual ~FrictionElement() = default;
+  [[nodiscard]] virtual int dimension() const = 0; ///< 1 or 3
+  /// The `dimension()` rows along which it sticks, at its present place.
+  [[nodiscard]] virtual const RowSpec* rows(const FrictionState& state) const = 0;
+  /// 3 rows that hold b rigidly to a, so that the two may be merged into one body while sticking.
+  [[nodiscard]] virtual bool is_rigid() const { return false; }
+  virtual void mark_bodies(std::vector<char>& is_used) const = 0;
+
+  /// Can it bear any wrench at all (some contact closed, some area left)?
+  [[nodiscard]] virtual bool is_loaded(const Evaluation& e, const FrictionState& state) const = 0;
+  /// The wrench of the slip law for the relative velocity `rate` along its rows.
+  virtual void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
+                           double* wrench) const = 0;
+  /// Watch values while sticking with `wrench`: admissible while both are ≥ 0.
+  virtual void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench,
+                           double* watch) const = 0;
+  /// At the onset of slip, when `wrench` has reached the bound: sets sign or direction.
+  virtual void begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const = 0;
+  /// Watch value of the place it acts at (foot switch, coming apart): valid while ≥ 0.
+  [[nodiscard]] virtual double watch_place(const Evaluation&, const FrictionState&) const { return 1.0; }
+  /// The place after watch_place fell below zero.
+  [[nodiscard]] virtual std::uint8_t next_place(const Evaluation&, const FrictionState& state) const {
+    return state.foot;
+  }
+  /// min ½ wᵀA w + bᵀw over admissible w (A: dimension × dimension, row-major); `kinetic`: with the
+  /// slip law's bounds instead of the static ones.
+  [[nodiscard]] virtual FrictionBlock solve_block(const Evaluation& e, const FrictionState& state,
+                                                  const double* a, const double* b,
+                                                  bool kinetic) const = 0;
+};
+
+/// Mode of a contact unit in which it presses; every contact law uses these three.
+inline constexpr std::uint8_t k_contact_open = 0, k_contact_pressed = 1, k_contact_released = 2;
+
+/// Watch slots of a friction element: two for stick bounds or the end of slip, one for its place.
+inline constexpr int k_friction_watches = 3;
+
+} // namespace steplap

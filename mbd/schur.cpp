@@ -1,0 +1,159 @@
+#include "mbd/schur.h"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+using Pattern = Eigen::SparseMatrix<double>;
+
+// Pairs (i, j, side i, side j) of rows that share a body.
+struct Coupling {
+  int i, j;
+  unsigned char side_i, side_j;
+};
+
+std::vector<Coupling> couplings(const std::vector<SchurRow>& rows) {
+  int body_count = 0;
+  for (const SchurRow& row : rows) body_count = std::max({body_count, row.body[0] + 1, row.body[1] + 1});
+  std::vector<std::vector<std::pair<int, unsigned char>>> at_body(body_count);
+  for (int i = 0; i < static_cast<int>(rows.size()); ++i)
+    for (unsigned char side = 0; side < 2; ++side)
+      if (rows[i].body[side] >= 0) at_body[rows[i].body[side]].push_back({i, side});
+  std::vector<Coupling> result;
+  for (const auto& members : at_body)
+    for (const auto& [i, side_i] : members)
+      for (const auto& [j, side_j] : members) result.push_back({i, j, side_i, side_j});
+  return result;
+}
+
+std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Coupling& c : coupled) entries.emplace_back(c.i, c.j, 1.0);
+  for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
+  Pattern pattern(n, n);
+  pattern.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation(n);
+  Eigen::AMDOrdering<int> ordering;
+  ordering(pattern, permutation);
+  std::vector<int> order(n);
+  for (int k = 0; k < n; ++k) order[k] = permutation.indices()[k];
+  return order;
+}
+
+} // namespace
+
+void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
+  n_ = static_cast<int>(rows.size());
+  const std::vector<Coupling> coupled = couplings(rows);
+  order_.resize(n_);
+  // Few rows: elimination order does not matter, and the given one is the most predictable.
+  if (n_ > 6) order_ = fill_reducing_order(n_, coupled);
+  else
+    for (int k = 0; k < n_; ++k) order_[k] = k;
+  position_.resize(n_);
+  for (int k = 0; k < n_; ++k) position_[order_[k]] = k;
+
+  // Upper triangle of the permuted matrix, column by column: products that make up A(i, k), i ≤ k.
+  std::vector<std::vector<Product>> by_column(n_);
+  for (const Coupling& c : coupled) {
+    const int k = position_[c.i], i = position_[c.j];
+    if (i <= k) by_column[k].push_back({c.j, i, c.side_i, c.side_j});
+  }
+  product_begin_.assign(1, 0);
+  products_.clear();
+  for (auto& column : by_column) {
+    std::sort(column.begin(), column.end(),
+              [](const Product& x, const Product& y) { return x.position < y.position; });
+    products_.insert(products_.end(), column.begin(), column.end());
+    product_begin_.push_back(static_cast<int>(products_.size()));
+  }
+
+  // Elimination tree and the pattern of each row of L (T. A. Davis, Direct Methods for Sparse Linear
+  // Systems, §4.1): row k of L is the union of the paths from each i with A(i, k) ≠ 0 up to k.
+  std::vector<int> parent(n_, -1), mark(n_, -1), count(n_, 0);
+  pattern_begin_.assign(1, 0);
+  pattern_.clear();
+  for (int k = 0; k < n_; ++k) {
+    mark[k] = k;
+    for (const Product& p : by_column[k])
+      for (int i = p.position; mark[i] != k; i = parent[i]) {
+        if (parent[i] < 0) parent[i] = k;
+        mark[i] = k;
+        pattern_.push_back(i);
+        ++count[i];
+      }
+    std::sort(pattern_.begin() + pattern_begin_.back(), pattern_.end());
+    pattern_begin_.push_back(static_cast<int>(pattern_.size()));
+  }
+  column_begin_.assign(1, 0);
+  for (int k = 0; k < n_; ++k) column_begin_.push_back(column_begin_[k] + count[k]);
+  column_row_.assign(column_begin_.back(), 0);
+  std::vector<int> next(column_begin_.begin(), column_begin_.end() - 1);
+  for (int k = 0; k < n_; ++k)
+    for (int p = pattern_begin_[k]; p < pattern_begin_[k + 1]; ++p) column_row_[next[pattern_[p]]++] = k;
+
+  column_fill_.assign(n_, 0);
+  l_.assign(column_begin_.back(), 0.0);
+  d_.assign(n_, 0.0);
+  inverse_d_.assign(n_, 0.0);
+  work_.assign(n_, 0.0);
+  permuted_.assign(n_, 0.0);
+}
+
+void SchurSolver::factor(const std::vector<SchurRow>& rows) {
+  dependent_count_ = 0;
+  smallest_pivot_ = 1.0;
+  double* const y = work_.data();
+  for (int k = 0; k < n_; ++k) column_fill_[k] = column_begin_[k];
+  for (int k = 0; k < n_; ++k) {
+    const SchurRow& row_k = rows[order_[k]];
+    for (int p = product_begin_[k]; p < product_begin_[k + 1]; ++p) {
+      const Product& product = products_[p];
+      const double* a = row_k.wj[product.side_k];
+      const double* b = rows[product.row].j[product.side_i];
+      y[product.position] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    }
+    const double diagonal = y[k];
+    double d = diagonal;
+    y[k] = 0.0;
+    for (int p = pattern_begin_[k]; p < pattern_begin_[k + 1]; ++p) {
+      const int i = pattern_[p];
+      const double yi = y[i];
+      y[i] = 0.0;
+      const int end = column_fill_[i];
+      for (int c = column_begin_[i]; c < end; ++c) y[column_row_[c]] -= l_[c] * yi;
+      const double lki = yi * inverse_d_[i];
+      d -= lki * yi;
+      l_[end] = lki;
+      column_fill_[i] = end + 1;
+    }
+    d_[k] = d;
+    if (!(d > k_pivot_tolerance * diagonal)) {
+      inverse_d_[k] = 0.0;
+      ++dependent_count_;
+      smallest_pivot_ = 0.0;
+    } else {
+      inverse_d_[k] = 1.0 / d;
+      smallest_pivot_ = std::min(smallest_pivot_, d / diagonal);
+    }
+  }
+}
+
+void SchurSolver::solve(double* x) const {
+  double* const y = permuted_.data();
+  for (int k = 0; k < n_; ++k) y[k] = x[order_[k]];
+  for (int k = 0; k < n_; ++k)
+    for (int c = column_begin_[k]; c < column_begin_[k + 1]; ++c) y[column_row_[c]] -= l_[c] * y[k];
+  for (int k = 0; k < n_; ++k) y[k] *= inverse_d_[k];
+  for (int k = n_ - 1; k >= 0; --k)
+    for (int c = column_begin_[k]; c < column_begin_[k + 1]; ++c) y[k] -= l_[c] * y[column_row_[c]];
+  for (int k = 0; k < n_; ++k) x[order_[k]] = y[k];
+}
+
+} // namespace steplap

@@ -1,0 +1,59 @@
+// The constraint equations: A λ = r with A = J W Jᵀ, W = diag(1/m, 1/m, 1/J) per moving body.
+//
+// A is symmetric, positive semidefinite and sparse: two rows meet where they share a moving body.
+// Pattern, fill-reducing order and elimination tree are found once for a set of rows; a factorisation
+// L D Lᵀ then runs over precomputed lists, without allocation. A pivot that vanishes against its
+// diagonal marks a row as dependent on the earlier ones: its multiplier is set to zero and the row's
+// index is reported (redundant constraints; least-norm multipliers are found apart, on demand).
+#pragma once
+
+#include <vector>
+
+namespace steplap {
+
+/// Row in the coordinates of the moving bodies ("clusters") of one layout.
+struct SchurRow {
+  int body[2] = {-1, -1};     ///< cluster on either side, −1: the ground
+  double j[2][3] = {};        ///< ∂measure/∂(x, y, θ) of either side
+  double wj[2][3] = {};       ///< W times that
+};
+
+class SchurSolver {
+public:
+  /// Pattern from the rows' bodies. Body −1 couples nothing.
+  void analyze(const std::vector<SchurRow>& rows);
+  /// Numbers from the rows' j and wj. Allocates nothing.
+  void factor(const std::vector<SchurRow>& rows);
+  /// In place: x = A⁻¹ x.
+  void solve(double* x) const;
+
+  [[nodiscard]] int size() const { return n_; }
+  [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
+  [[nodiscard]] bool is_dependent(int row) const { return inverse_d_[position_[row]] == 0.0; }
+  /// Smallest pivot relative to its diagonal in the last factorisation: near 0 close to a singularity.
+  [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
+
+  /// A pivot below this fraction of its diagonal counts as zero.
+  static constexpr double k_pivot_tolerance = 1e-11;
+
+private:
+  struct Product {
+    int row;                   ///< the earlier row in elimination order
+    int position;              ///< its position in elimination order
+    unsigned char side_k, side_i;
+  };
+  int n_ = 0;
+  int dependent_count_ = 0;
+  double smallest_pivot_ = 1.0;
+  std::vector<int> order_;     ///< order_[k]: row eliminated as k-th
+  std::vector<int> position_;  ///< inverse of order_
+  std::vector<int> product_begin_;
+  std::vector<Product> products_;
+  std::vector<int> pattern_begin_, pattern_; ///< columns of row k of L, ascending
+  std::vector<int> column_begin_, column_row_;
+  std::vector<int> column_fill_;
+  std::vector<double> l_, d_, inverse_d_, work_;
+  mutable std::vector<double> permuted_;
+};
+
+} // namespace steplap

@@ -1,0 +1,202 @@
+#include "mbd/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <sstream>
+
+namespace steplap {
+
+namespace {
+
+// Events within this relative distance of each other count as one instant; more of them than the
+// limit means that modes chase each other without the motion getting anywhere.
+constexpr double k_same_instant = 1e-13;
+constexpr int k_max_events_at_once = 60;
+constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
+
+} // namespace
+
+double thread_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+SimulationOptions options_of(const Model& model) {
+  SimulationOptions options;
+  const SimulationSettings& s = model.simulation;
+  options.end = s.end;
+  options.integrator = s.integrator;
+  options.settings.step = s.step.value_or(0.0);
+  options.settings.tolerance = s.tolerance.value_or(1e-8);
+  options.settings.projection_tolerance = s.projection_tolerance;
+  options.output_step = model.output.step;
+  options.channels = model.output.channels;
+  options.max_events = s.max_events;
+  return options;
+}
+
+Simulation::Simulation(const System& system, const State& initial, SimulationOptions options)
+    : system_(system), options_(std::move(options)), state_(initial), dynamics_(system),
+      handler_(system, dynamics_), finder_(system, 6 * system.body_count() + 2),
+      y_(6 * system.bodies.size() + 2), dy_(y_.size()) {
+  cpu_start_ = thread_cpu_seconds();
+  integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
+  trajectory_ = std::make_unique<Trajectory>(system, options_.channels);
+  start_drives(system_, state_);
+  dynamics_.set_time_limit(next_limit());
+  handler_.start(state_);
+  // The poses as given meet the constraints to the digits of the file: now they do to rounding.
+  dynamics_.set_state(state_);
+  dynamics_.pack(state_, y_.data());
+  dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
+  dynamics_.unpack(state_.t, y_.data(), state_);
+  restart();
+  energy_start_ = dynamics_.mechanical_energy(state_.t, y_.data());
+  kinetic_start_ = system_.kinetic_energy(state_);
+  if (options_.output_step > 0.0) record_sample(state_.t);
+}
+
+double Simulation::next_limit() const {
+  const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t);
+  return next == system_.breakpoints.end() ? options_.end : std::min(*next, options_.end);
+}
+
+void Simulation::restart() {
+  dynamics_.set_state(state_);
+  const double limit = next_limit();
+  dynamics_.set_time_limit(limit);
+  dynamics_.pack(state_, y_.data());
+  integrator_->restart(dynamics_, state_.t, y_.data());
+}
+
+void Simulation::account_energy(double t, const double* y) {
+  const double energy = dynamics_.mechanical_energy(t, y);
+  const double dissipated = y[dynamics_.dimension() - 2], work = y[dynamics_.dimension() - 1];
+  const double residual = std::abs(energy + dissipated - work - energy_start_);
+  statistics_.energy_residual = std::max(statistics_.energy_residual, residual);
+  statistics_.energy_exchanged =
+      std::max({statistics_.energy_exchanged, std::abs(dissipated), std::abs(work)});
+}
+
+// y_ holds the state to sample.
+void Simulation::record_sample(double t) {
+  dynamics_.rates(t, y_.data(), dy_.data());
+  const Snapshot snapshot = dynamics_.snapshot(dy_.data());
+  trajectory_->add(snapshot);
+  double kinetic = 0.0;
+  for (int i = 1; i < system_.body_count(); ++i) {
+    const Motion<double>& m = snapshot.motion[i];
+    const BodyData& body = system_.bodies[i];
+    kinetic += 0.5 * body.mass * (m.vx * m.vx + m.vy * m.vy) + 0.5 * body.inertia * m.omega * m.omega;
+  }
+  statistics_.energy_exchanged =
+      std::max(statistics_.energy_exchanged, std::abs(kinetic - kinetic_start_));
+  account_energy(t, y_.data());
+  ++sample_;
+  if (options_.progress) options_.progress(t);
+}
+
+// Samples due in the step made, up to t.
+void Simulation::sample_until(double t) {
+  if (options_.output_step <= 0.0) return;
+  for (;;) {
+    const double due = static_cast<double>(sample_) * options_.output_step;
+    if (due > t + k_output_slack * options_.output_step) return;
+    const double theta = std::clamp((due - integrator_->t0()) / integrator_->h(), 0.0, 1.0);
+    integrator_->dense(dynamics_, theta, y_.data());
+    record_sample(due);
+  }
+}
+
+void Simulation::guard_against_chatter(double t) {
+  const bool is_same = t - last_event_ <= k_same_instant * std::max(1.0, std::abs(t));
+  events_at_once_ = is_same ? events_at_once_ + 1 : 0;
+  last_event_ = t;
+  ++statistics_.events;
+  if (events_at_once_ < k_max_events_at_once && statistics_.events < options_.max_events) return;
+  std::ostringstream message;
+  message.precision(12);
+  message << (events_at_once_ >= k_max_events_at_once ? "events repeat without end at t = "
+                                                      : "more events than simulation.max_events by t = ")
+          << t << " s; the last ones:";
+  const std::size_t shown = std::min<std::size_t>(events_.size(), 4);
+  for (std::size_t i = events_.size() - shown; i < events_.size(); ++i)
+    message << " '" << events_[i].element << "' " << events_[i].what << ";";
+  throw NumericalFailure(message.str());
+}
+
+void Simulation::pass_event(double t, const double* y, const std::vector<int>& fired) {
+  std::copy(y, y + dynamics_.dimension(), y_.begin());
+  dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
+  dynamics_.unpack(t, y_.data(), state_);
+  if (fired.empty()) dynamics_.set_time_limit(next_limit()); // on the far side of the breakpoint
+  handler_.handle(state_, fired, events_);
+  if (!fired.empty()) guard_against_chatter(t);
+  restart();
+}
+
+bool Simulation::advance() {
+  if (state_.t >= options_.end) return false;
+  const double limit = next_limit();
+  integrator_->step(dynamics_, limit);
+  if (finder_.find(*integrator_, dynamics_, handler_.fresh())) {
+    const double t = integrator_->t0() + finder_.theta() * integrator_->h();
+    const std::vector<double> at_event = finder_.state();
+    sample_until(std::nextafter(t, 0.0) - k_output_slack * options_.output_step);
+    pass_event(t, at_event.data(), finder_.fired());
+    return true;
+  }
+  const double t1 = integrator_->t1();
+  sample_until(t1);
+  handler_.clear_fresh();
+  if (t1 >= limit && limit < options_.end) {
+    const std::vector<double> at_limit(integrator_->y1(), integrator_->y1() + dynamics_.dimension());
+    pass_event(t1, at_limit.data(), {});
+    return true;
+  }
+  if (t1 >= options_.end) {
+    dynamics_.unpack(t1, integrator_->y1(), state_);
+    account_energy(t1, integrator_->y1());
+    return false;
+  }
+  state_.t = t1;
+  integrator_->accept();
+  return true;
+}
+
+void Simulation::run() {
+  while (advance()) {
+  }
+}
+
+RunStatistics Simulation::statistics() const {
+  RunStatistics s = statistics_;
+  s.steps = integrator_->steps();
+  s.rejections = integrator_->rejections();
+  s.evaluations = dynamics_.evaluations();
+  s.max_position_residual = integrator_->max_position_residual();
+  s.max_velocity_residual = integrator_->max_velocity_residual();
+  s.dissipated = state_.dissipated;
+  s.work = state_.work;
+  s.cpu_seconds = thread_cpu_seconds() - cpu_start_;
+  return s;
+}
+
+RunResult Simulation::result() && {
+  RunResult result;
+  result.statistics = statistics();
+  result.trajectory = std::move(trajectory_);
+  result.events = std::move(events_);
+  result.final_state = std::move(state_);
+  return result;
+}
+
+RunResult simulate(const System& system, const State& initial, const SimulationOptions& options) {
+  Simulation simulation(system, initial, options);
+  simulation.run();
+  return std::move(simulation).result();
+}
+
+} // namespace steplap

@@ -1,0 +1,98 @@
+// A run: steps, events between them, samples, and the account of energy and accuracy.
+#pragma once
+
+#include "mbd/event_finder.h"
+#include "mbd/event_handler.h"
+#include "mbd/integrators/integrator.h"
+#include "mbd/trajectory.h"
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+struct SimulationOptions {
+  double end = 1.0;
+  std::string integrator = "rk4";
+  IntegratorSettings settings;
+  double output_step = 0.0;                ///< s; 0: no samples
+  std::vector<std::string> channels;       ///< patterns; empty: all
+  long max_events = 100000;
+  std::function<void(double t)> progress;  ///< called now and then, if given
+};
+
+/// The options a model asks for.
+[[nodiscard]] SimulationOptions options_of(const Model& model);
+
+struct RunStatistics {
+  long steps = 0, rejections = 0, evaluations = 0, events = 0;
+  double max_position_residual = 0.0;  ///< before projection, m or rad
+  double max_velocity_residual = 0.0;
+  double energy_residual = 0.0;        ///< largest |E + dissipated − work − E₀| met, J
+  double energy_exchanged = 0.0;       ///< scale for it: kinetic energy change, work, dissipation, J
+  double dissipated = 0.0, work = 0.0; ///< J
+  double cpu_seconds = 0.0;            ///< of this thread, samples included
+};
+
+struct RunResult {
+  std::unique_ptr<Trajectory> trajectory;
+  std::vector<Event> events;
+  RunStatistics statistics;
+  State final_state;
+};
+
+/// Steps through a run; owns everything that changes. One object per thread.
+class Simulation {
+public:
+  /// Starts at `initial`: poses and velocities are first moved onto the constraints.
+  Simulation(const System& system, const State& initial, SimulationOptions options);
+
+  /// To options.end. Throws NumericalFailure (with the state kept in state()).
+  void run();
+  /// One accepted step, or up to an event and through it. False at the end.
+  bool advance();
+
+  [[nodiscard]] const State& state() const { return state_; }
+  [[nodiscard]] const std::vector<Event>& events() const { return events_; }
+  [[nodiscard]] const Trajectory& trajectory() const { return *trajectory_; }
+  [[nodiscard]] RunStatistics statistics() const;
+  [[nodiscard]] RunResult result() &&;
+
+private:
+  void restart();
+  void sample_until(double t);
+  void record_sample(double t);
+  void account_energy(double t, const double* y);
+  void pass_event(double t, const double* y, const std::vector<int>& fired);
+  void guard_against_chatter(double t);
+  [[nodiscard]] double next_limit() const;
+
+  const System& system_;
+  SimulationOptions options_;
+  State state_;
+  Dynamics dynamics_;
+  EventHandler handler_;
+  EventFinder finder_;
+  std::unique_ptr<Integrator> integrator_;
+  std::unique_ptr<Trajectory> trajectory_;
+  std::vector<Event> events_;
+  std::vector<double> y_, dy_;
+  long sample_ = 0;
+  double energy_start_ = 0.0, kinetic_start_ = 0.0;
+  double last_event_ = -std::numeric_limits<double>::infinity();
+  int events_at_once_ = 0;
+  RunStatistics statistics_;
+  double cpu_start_ = 0.0;
+};
+
+/// Compiled, started (from equilibrium if `model` says so) and run to the end.
+[[nodiscard]] RunResult simulate(const System& system, const State& initial,
+                                 const SimulationOptions& options);
+
+/// CPU time of this thread, s.
+[[nodiscard]] double thread_cpu_seconds();
+
+} // namespace steplap
