@@ -38,17 +38,13 @@ double cpu_ms_at(const std::vector<Rung>& rungs, const std::string& problem,
   double best = -1.0;
   for (const auto& [e, ms] : front)
     if (e <= error && (best < 0.0 || ms < best)) best = ms;
-  for (const auto& [e_low, ms_low] : front) {
-    for (const auto& [e_high, ms_high] : front) {
-      if (e_low > error || e_high <= error || ms_high >= ms_low) continue;
-      const double share = std::log(error / e_low) / std::log(e_high / e_low);
-      const double ms = ms_low * std::pow(ms_high / ms_low, share);
-      // Neighbours only: a rung between them would give a tighter pair of its own.
-      const bool neighbours = std::none_of(front.begin(), front.end(), [&](const auto& p) {
-        return p.first > e_low && p.first < e_high;
-      });
-      if (neighbours && ms < best) best = ms;
-    }
+  // Between neighbours on either side of the error.
+  for (std::size_t i = 0; i + 1 < front.size(); ++i) {
+    const auto& low = front[i];
+    const auto& high = front[i + 1];
+    if (low.first > error || high.first <= error || high.second >= low.second) continue;
+    const double share = std::log(error / low.first) / std::log(high.first / low.first);
+    best = std::min(best, low.second * std::pow(high.second / low.second, share));
   }
   return best;
 }

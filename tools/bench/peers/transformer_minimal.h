@@ -19,6 +19,10 @@
 
 namespace steplap::peers {
 
+namespace transformer {
+struct Kinematics;
+}
+
 enum class Condition { no_interference, interference };
 enum class ContactMode { closed, held, open }; // held: δ < 0 with the force held at zero
 enum class FrictionMode { stick, slip_forward, slip_backward, none };
@@ -82,11 +86,8 @@ public:
   [[nodiscard]] const char* describe(int slot) const;
 
 private:
-  struct Kinematics;
-  [[nodiscard]] static Kinematics kinematics(const double* y);
-  [[nodiscard]] static double gap(int contact, const Kinematics& k, const double* y);
+  using Kinematics = transformer::Kinematics;
   [[nodiscard]] double effective_gap(int contact, const Kinematics& k, const double* y) const;
-  [[nodiscard]] static double gap_rate(int contact, const Kinematics& k, const double* y);
   [[nodiscard]] double force_law(int contact, const Kinematics& k, const double* y) const;
   [[nodiscard]] double slide_speed(const Kinematics& k) const;
   void try_stick(double t, State& y);
