@@ -13,8 +13,8 @@ namespace steplap::peers {
 namespace {
 
 // A foot that lifts and lands again within one step would be missed by the sign
-// checks at step ends (the shortest lift of this scene lasts 6 ms).
-constexpr double k_longest_step = 4e-3;
+// checks at step ends (the shortest lift of this scene lasts 6.4 ms).
+constexpr double k_longest_step = 6e-3;
 
 class Run {
 public:

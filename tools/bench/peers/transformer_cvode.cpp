@@ -14,7 +14,7 @@ namespace steplap::peers {
 namespace {
 
 // A foot that lifts and lands again within one step would be missed by the sign
-// checks at step ends (the shortest lift of this scene lasts 6 ms).
+// checks at step ends (the shortest lift of this scene lasts 6.4 ms).
 constexpr double k_longest_step = 2e-3;
 
 // A restart is of order 1: it needs far smaller steps than the last ones.
