@@ -4,9 +4,9 @@
 
 #include <doctest/doctest.h>
 
-#include <unistd.h>
+#include <sys/resource.h>
 
-#include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -101,5 +101,32 @@ TEST_CASE("files are whole or absent") {
   fs::create_directories(folder / "taken");
   CHECK_THROWS_AS(write_file((folder / "taken").string(), "x", IfExists::replace), FileError);
   CHECK(files_in(folder) == 2);
+  fs::remove_all(folder);
+}
+
+TEST_CASE("a file that does not fit leaves nothing behind") {
+  const fs::path folder = fs::temp_directory_path() / "steplap_test_full";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const std::string path = (folder / "out.csv").string();
+  write_file(path, "before");
+
+  rlimit usual{};
+  REQUIRE(getrlimit(RLIMIT_FSIZE, &usual) == 0);
+  const rlimit tight{1000, usual.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  REQUIRE(setrlimit(RLIMIT_FSIZE, &tight) == 0);
+  std::string message;
+  try {
+    write_file(path, std::string(100000, 'x'), IfExists::replace);
+  } catch (const FileError& error) {
+    message = error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &usual);
+  std::signal(SIGXFSZ, handler);
+
+  CHECK(message == "cannot write '" + path + "': File too large");
+  CHECK(content(path) == "before");
+  CHECK(files_in(folder) == 1);
   fs::remove_all(folder);
 }
