@@ -19,8 +19,8 @@ struct KelvinVoigtContact {
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
     return mode == k_contact_pressed ? raw(value, rate) : S(0);
   }
-  [[nodiscard]] double elastic_force(double value) const {
-    return -k * std::min(0.0, value - offset);
+  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+    return mode == k_contact_open ? 0.0 : -k * (value - offset);
   }
   [[nodiscard]] double energy(double value) const {
     const double closed = std::min(0.0, value - offset);
@@ -67,8 +67,8 @@ struct LiteralContact {
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
     return mode == k_contact_pressed ? S(-k) * (value - S(offset)) - S(c) * rate : S(0);
   }
-  [[nodiscard]] double elastic_force(double value) const {
-    return -k * std::min(0.0, value - offset);
+  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+    return mode == k_contact_open ? 0.0 : -k * (value - offset);
   }
   [[nodiscard]] double energy(double value) const {
     const double closed = std::min(0.0, value - offset);
@@ -102,8 +102,8 @@ struct HuntCrossleyContact {
     if (mode != k_contact_pressed || !(depth > S(0))) return S(0);
     return S(k) * pow(depth, exponent) * (S(1) - S(alpha) * rate);
   }
-  [[nodiscard]] double elastic_force(double value) const {
-    return value < offset ? k * std::pow(offset - value, exponent) : 0.0;
+  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+    return mode != k_contact_open && value < offset ? k * std::pow(offset - value, exponent) : 0.0;
   }
   [[nodiscard]] double energy(double value) const {
     return value < offset ? k * std::pow(offset - value, exponent + 1.0) / (exponent + 1.0) : 0.0;

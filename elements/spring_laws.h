@@ -18,7 +18,7 @@ struct LinearSpring {
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t) const {
     return S(-k) * (value - S(free)) - S(c) * rate;
   }
-  [[nodiscard]] double elastic_force(double value) const { return -k * (value - free); }
+  [[nodiscard]] double elastic_force(double value, std::uint8_t) const { return -k * (value - free); }
   [[nodiscard]] double energy(double value) const {
     return 0.5 * k * (value - free) * (value - free);
   }
@@ -38,9 +38,8 @@ struct GapSpring {
     if (mode == 1) return S(0);
     return S(-k) * (value - S(edge(mode))) - S(c) * rate;
   }
-  [[nodiscard]] double elastic_force(double value) const {
-    const double beyond = std::max(0.0, std::abs(value - free) - half_gap);
-    return value > free ? -k * beyond : k * beyond;
+  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+    return mode == 1 ? 0.0 : -k * (value - edge(mode));
   }
   [[nodiscard]] double energy(double value) const {
     const double beyond = std::max(0.0, std::abs(value - free) - half_gap);
@@ -124,9 +123,8 @@ struct TabulatedSpring {
     return S(-count) * (spring.value(value - S(free), spring_segment(mode)) +
                         damper.value(rate, damper_segment(mode)));
   }
-  [[nodiscard]] double elastic_force(double value) const {
-    const double e = value - free;
-    return -count * spring.value(e, spring.segment_at(e));
+  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+    return -count * spring.value(value - free, spring_segment(mode));
   }
   [[nodiscard]] double energy(double value) const { return count * spring.integral(value - free); }
   [[nodiscard]] std::uint8_t mode_at(double value, double rate) const {

@@ -4,7 +4,7 @@
 //   static constexpr int k_watches           0: smooth for ever; n: a unit with n watch values
 //   static constexpr bool k_is_contact       true: its force counts as a normal force for friction
 //   S force(S value, S rate, mode)           force along the measure's gradient
-//   double elastic_force(value)              −dU/dvalue of the stored energy
+//   double elastic_force(value, mode)        −dU/dvalue of the stored energy, smooth within a mode
 //   double energy(value)                     U
 //   and, if k_watches > 0: mode_at, next_mode, watch, transition_name.
 // It dissipates (elastic_force − force)·rate.
@@ -37,7 +37,7 @@ public:
         entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch,
                         e.watch_rate + entry.watch);
       if (f != 0.0) apply_force(e, entry.a, entry.b, m, f);
-      e.dissipation += (entry.law.elastic_force(m.value) - f) * m.rate;
+      e.dissipation += (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
     }
   }
 

@@ -78,6 +78,7 @@ int FarField::needed_order(double x) {
 FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& traction,
                    double radius, int order)
     : radius_(radius), order_(order) {
+  a_.fill(Pair::Zero());
   // Moments of degree n over the triangle (centroid, edge): 2·area/(n+2) ∫₀¹ on the edge.
   static const GaussRule rule = gauss_rule();
   for (std::size_t e = 0; e < count; ++e) {
@@ -89,10 +90,14 @@ FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& tr
       add_node(r / radius, w * traction.at_centroid, w * traction.gradient.dot(r));
     }
   }
-  std::complex<double> turn = 1; // i^l
-  for (int l = 0; l <= order_; ++l, turn *= std::complex<double>(0, 1))
-    for (int k = 0; l + 2 * k <= order_; ++k)
-      a_[l * k_row + k] *= turn * ((l > 0 ? 2 : 1) * k_root[k + l] * k_root[k]);
+  for (int l = 0; l <= order_; ++l)
+    for (int k = 0; l + 2 * k <= order_; ++k) {
+      Pair& a = a_[l * k_row + k];
+      a *= (l > 0 ? 2 : 1) * k_root[k + l] * k_root[k];
+      if (l % 4 >= 2) // iˡ
+        a = -a;
+      if (l % 2 == 1) a = Pair(-a[1], a[0]);
+    }
 }
 
 void FarField::add_node(const Vec2& z, double uniform, double linear) {
@@ -103,17 +108,12 @@ void FarField::add_node(const Vec2& z, double uniform, double linear) {
   square[0] = 1;
   for (int k = 1; k < k_row; ++k)
     square[k] = square[k - 1] * z.squaredNorm();
-  double px = 1, py = 0; // z^l
+  Pair power(1, 0); // z^l
   for (int l = 0; l <= order_; ++l) {
-    double* row = reinterpret_cast<double*>(&a_[l * k_row]); // re, im, re, im …
-    for (int k = 0; l + 2 * k <= order_; ++k) {
-      const double w = weight[l + 2 * k] * square[k];
-      row[2 * k] += w * px;
-      row[2 * k + 1] += w * py;
-    }
-    const double turned = px * z.x() - py * z.y();
-    py = px * z.y() + py * z.x();
-    px = turned;
+    Pair* row = &a_[l * k_row];
+    for (int k = 0; l + 2 * k <= order_; ++k)
+      row[k] += weight[l + 2 * k] * square[k] * power;
+    power = Pair(power[0] * z.x() - power[1] * z.y(), power[0] * z.y() + power[1] * z.x());
   }
 }
 
@@ -129,27 +129,21 @@ PieceDissipation FarField::evaluate(const Vec2& v, double omega) const {
   double g = 0, g_k = 0, g_p = 0, g_kk = 0, g_kp = 0, g_pp = 0;
   double ex = 1, ey = 0; // e^{−ilφ}
   for (int l = 0; l <= order; ++l) {
-    double r0x = 0, r0y = 0, r1x = 0, r1y = 0, r2x = 0, r2y = 0; // row and its κ-derivatives
-    const std::complex<double>* a = &a_[l * k_row];
+    Pair r0 = Pair::Zero(), r1 = Pair::Zero(), r2 = Pair::Zero(); // row, its κ-derivatives
+    const Pair* a = &a_[l * k_row];
     for (int n = l; n <= order; n += 2, ++a) {
-      const double re = a->real(), im = a->imag();
-      r0x += power.p[n] * re;
-      r0y += power.p[n] * im;
-      r1x += power.p1[n] * re;
-      r1y += power.p1[n] * im;
-      if constexpr (WithCurvature) {
-        r2x += power.p2[n] * re;
-        r2y += power.p2[n] * im;
-      }
+      r0 += power.p[n] * *a;
+      r1 += power.p1[n] * *a;
+      if constexpr (WithCurvature) r2 += power.p2[n] * *a;
     }
     // Re(e·r) and, for d/dφ, Re(−il e·r) = l Im(e·r)
-    const double im0 = ex * r0y + ey * r0x, re0 = ex * r0x - ey * r0y;
+    const double im0 = ex * r0[1] + ey * r0[0], re0 = ex * r0[0] - ey * r0[1];
     g += re0;
-    g_k += ex * r1x - ey * r1y;
+    g_k += ex * r1[0] - ey * r1[1];
     g_p += l * im0;
     if constexpr (WithCurvature) {
-      g_kk += ex * r2x - ey * r2y;
-      g_kp += l * (ex * r1y + ey * r1x);
+      g_kk += ex * r2[0] - ey * r2[1];
+      g_kp += l * (ex * r1[1] + ey * r1[0]);
       g_pp -= l * l * re0;
     }
     const double turned = ex * cx + ey * cy;

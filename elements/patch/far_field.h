@@ -13,7 +13,6 @@
 #include "elements/patch/closed_form.h"
 
 #include <array>
-#include <complex>
 
 namespace steplap {
 
@@ -33,7 +32,6 @@ class FarField {
 public:
   static constexpr int k_order = 18;
 
-  FarField() = default;
   /// Takes about 7 µs for a quadrilateral at full order, less as the square of `order`.
   FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius,
            int order = k_order);
@@ -51,9 +49,11 @@ private:
   /// Moments of a node at z (in radii) of the rule along an edge.
   void add_node(const Vec2& z, double uniform, double linear);
 
+  using Pair = Eigen::Array2d; // real and imaginary part
+
   double radius_ = 1;
   int order_ = k_order;
-  std::array<std::complex<double>, (k_order + 1) * k_row> a_{}; // row l: n = l, l+2, …
+  std::array<Pair, (k_order + 1) * k_row> a_; // row l: n = l, l+2, …
 };
 
 } // namespace steplap
