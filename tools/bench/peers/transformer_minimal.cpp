@@ -25,6 +25,7 @@ State Transformer::initial_state() const {
 
 void Transformer::rates(double t, const double* y, double* dydt) {
   ++evaluations_;
+  // Members are written once, at the end: dydt could alias them for all the compiler knows.
   const Kinematics k = kinematics(y);
   const double w = y[10];
   const double s4 = y[5];
@@ -32,7 +33,7 @@ void Transformer::rates(double t, const double* y, double* dydt) {
 
   // Forces conjugate to rx, ry, φ and s4.
   double px = 0.0, py = 0.0, pphi = 0.0, ps = 0.0;
-  normal_ = 0.0;
+  double normal = 0.0;
   const double foot_height = k.d * k.sec + (foot_offset_ - k_height_active);
   const double foot_lever = k.d * k.sec * k.tan;
   const double foot_rate = k.ryd * k.sec + foot_lever * k.phid;
@@ -44,9 +45,9 @@ void Transformer::rates(double t, const double* y, double* dydt) {
     const double tilt = -k_foot_stiffness * k.tan - k_foot_damping * k.sec2 * k.phid;
     const double f_rear = rear ? mean - tilt : 0.0;
     const double f_front = front ? mean + tilt : 0.0;
-    normal_ = f_rear + f_front;
-    py = normal_ * k.sec;
-    pphi = normal_ * foot_lever + (f_front - f_rear) * k.sec2;
+    normal = f_rear + f_front;
+    py = normal * k.sec;
+    pphi = normal * foot_lever + (f_front - f_rear) * k.sec2;
   }
   for (int i = 2; i < 4; ++i) {
     if (contacts_[i] != ContactMode::closed) continue;
@@ -72,7 +73,7 @@ void Transformer::rates(double t, const double* y, double* dydt) {
   const double s_phi = (k.d + k_place[foot_] * k.sp) * k.sec2; // ∂s/∂φ
   if (friction_ == FrictionMode::slip_forward || friction_ == FrictionMode::slip_backward) {
     const double force =
-        friction_ == FrictionMode::slip_forward ? -k_friction * normal_ : k_friction * normal_;
+        friction_ == FrictionMode::slip_forward ? -k_friction * normal : k_friction * normal;
     px += force;
     py += force * k.tan;
     pphi += force * s_phi;
@@ -126,17 +127,21 @@ void Transformer::rates(double t, const double* y, double* dydt) {
     const double mobility =
         k.sec2 * k_inv_mass + s_phi * s_phi * k_inv_inertia + (j5 * u2 - jy * u1) * inv_det;
     const double inv_mobility = 1.0 / mobility;
-    lambda_ = -(bias + jx * ax + jy * (ay - ay5) + s_phi * at + j5 * at5) * inv_mobility;
-    const double by_det = lambda_ * inv_det;
-    ax += jx * (lambda_ * k_inv_mass);
-    ay += jy * (lambda_ * k_inv_mass);
-    at += s_phi * (lambda_ * k_inv_inertia);
+    const double lambda =
+        -(bias + jx * ax + jy * (ay - ay5) + s_phi * at + j5 * at5) * inv_mobility;
+    const double by_det = lambda * inv_det;
+    ax += jx * (lambda * k_inv_mass);
+    ay += jy * (lambda * k_inv_mass);
+    at += s_phi * (lambda * k_inv_inertia);
     ay5 += u1 * by_det;
     at5 += u2 * by_det;
     as4 += (k_rise_upper * u2 - k.s * u1) * by_det;
-    stick_margin_ = std::min(stick_margin_, k_friction * normal_ - std::abs(lambda_));
+    lambda_ = lambda;
+    stick_margin_ = std::min(stick_margin_, k_friction * normal - std::abs(lambda));
   }
-  std::copy(y + 6, y + 12, dydt);
+  normal_ = normal;
+  for (int i = 0; i < 6; ++i)
+    dydt[i] = y[6 + i];
   dydt[6] = ax;
   dydt[7] = ay;
   dydt[8] = at;
