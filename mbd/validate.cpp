@@ -275,23 +275,12 @@ void Validation::check_settings() {
     const Location& fallback = section == Section::output ? model_.output.where : s.where;
     if (const auto where = locate(section, 0, field, fallback)) add(*where, message);
   };
-  const std::vector<std::string>& known = SimulationSettings::fields().find("integrator")->choices;
-  const bool is_known = std::find(known.begin(), known.end(), s.integrator) != known.end();
-  const std::string method = "integrator '" + s.integrator + "'";
-  if (has_fixed_step(s.integrator)) {
-    if (!s.step)
-      complain(Section::simulation, "step",
-               "[simulation] needs 'step' for the fixed-step " + method +
-                   ", for example step = 1e-4");
-    if (s.tolerance)
-      complain(Section::simulation, "tolerance",
-               "'tolerance' has no meaning for the fixed-step " + method +
-                   ": remove it, or choose an adaptive integrator");
-  } else if (is_known && s.step) {
+  // 'step' is for fixed-step methods, 'tolerance' for adaptive ones: a file may hold both, so that
+  // the integrator alone can be changed.
+  if (has_fixed_step(s.integrator) && !s.step)
     complain(Section::simulation, "step",
-             "'step' has no meaning for the adaptive " + method +
-                 ", which chooses its steps by 'tolerance': remove it");
-  }
+             "[simulation] needs 'step' for the fixed-step integrator '" + s.integrator +
+                 "', for example step = 1e-4");
   const std::string end = "'end' of [simulation], " + number_text(s.end) + " s";
   if (s.step && *s.step > s.end && s.end > 0.0)
     complain(Section::simulation, "step",

@@ -203,6 +203,34 @@ mass = 3
   CHECK(text.find("name = \"wall\"") != std::string::npos);
 }
 
+TEST_CASE("an entry drops a key that it inherits") {
+  const Folder folder;
+  folder.write("base.toml", k_plain);
+  const std::string top = folder.write("top.toml", R"(
+extends = "base.toml"
+[[element]]
+name = "rope"
+unset = ["damping"]
+preload = 5
+)");
+  const Model base = read_model(top, small_catalogue(), {"element.rope.damping=7"});
+  CHECK(spring(base, 0).damping == 7.0);
+  const Model model = read_model(top, small_catalogue());
+  CHECK_FALSE(spring(model, 0).damping.has_value());
+  CHECK(spring(model, 0).preload == 5.0);
+}
+
+TEST_CASE("step and tolerance may both be given, whatever the integrator") {
+  const std::string text = "[simulation]\nstep = 1e-3\ntolerance = 1e-9\n[[body]]\nname = \"a\"\n"
+                           "mass = 1\ninertia = 1\n";
+  for (const char* integrator : {"rk4", "tsit5", "dop853"}) {
+    const Model model = parse_model(text, "both.toml", small_catalogue(),
+                                    {std::string("simulation.integrator=") + integrator});
+    CHECK(model.simulation.step == 1e-3);
+    CHECK(model.simulation.tolerance == 1e-9);
+  }
+}
+
 TEST_CASE("overrides from the command line") {
   const Model model = parse_model(
       k_two, "two.toml", small_catalogue(),
