@@ -55,7 +55,7 @@ void add_andrews(std::vector<Entry>& all) {
     add("KKT, IDA", run_andrews_kkt_ida, 1e-11);
 #endif
 #ifdef STEPLAP_PEER_SIMBODY
-    all.push_back({problem, "Simbody", decades(1e-3, 1e-9),
+    all.push_back({problem, "Simbody", decades(1e-3, 1e-11),
                    [v](double accuracy) { return run_andrews_simbody(v, accuracy); }});
 #endif
   }
