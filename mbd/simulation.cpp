@@ -84,7 +84,7 @@ void Simulation::account_energy(double t, const double* y) {
 void Simulation::record_sample(double t) {
   dynamics_.rates(t, y_.data(), dy_.data());
   const Snapshot snapshot = dynamics_.snapshot(dy_.data());
-  trajectory_->add(snapshot);
+  trajectory_->add(t, snapshot);
   double kinetic = 0.0;
   for (int i = 1; i < system_.body_count(); ++i) {
     const Motion<double>& m = snapshot.motion[i];

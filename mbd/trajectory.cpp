@@ -33,8 +33,8 @@ Trajectory::Trajectory(const System& system, const std::vector<std::string>& pat
   }
 }
 
-void Trajectory::add(const Snapshot& snapshot) {
-  times_.push_back(snapshot.t);
+void Trajectory::add(double t, const Snapshot& snapshot) {
+  times_.push_back(t);
   for (const Channel* channel : channels_) values_.push_back(channel->value(snapshot));
 }
 

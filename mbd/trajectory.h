@@ -13,7 +13,8 @@ public:
   /// The channels of `system` whose names match one of `patterns` (* and ?; none = all).
   Trajectory(const System& system, const std::vector<std::string>& patterns);
 
-  void add(const Snapshot& snapshot);
+  /// `t`: the time the sample is due; snapshot.t may lie a hair before it, left of a breakpoint.
+  void add(double t, const Snapshot& snapshot);
 
   [[nodiscard]] const std::vector<const Channel*>& channels() const { return channels_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
