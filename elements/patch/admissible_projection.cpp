@@ -109,7 +109,8 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility,
   const Inverse inverse(a);
   Vec3 z0 = -inverse.inverse * b; // holds b, as far as any wrench can
   z0 -= inverse.inverse * (b + a * z0);
-  const bool holdable = (b - inverse.range * b).norm() <= k_rank * b.norm();
+  const bool holdable =
+      (b - inverse.range * b).norm() <= k_rank * (b.norm() + a.norm() * z0.norm());
   const double size = z0.norm();
   if (holdable && size == 0) return out;
 

@@ -74,14 +74,15 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
   for (int i = 0; i < k_max_newton && !out.converged; ++i) {
     Mat3 curvature = t.curvature();
     if (!whole) curvature = subspace * curvature * subspace + across;
-    const Vec3 step = -(curvature.inverse() * residual);
+    const Vec3 step = reduced(-(curvature.inverse() * residual));
     const double value0 = t.value(w), slope0 = residual.dot(step);
     Trial next;
     for (double s = 1; s > k_shortest_step; s *= 0.5) {
       next.y = t.y + s * step;
       next.d = patch.evaluate(next.y);
       ++out.evaluations;
-      if (is_acceptable(value0, slope0, next.value(w), next.residual(w).dot(step), s)) break;
+      if (is_acceptable(value0, slope0, next.value(w), reduced(next.residual(w)).dot(step), s))
+        break;
     }
     t = next;
     residual = reduced(t.residual(w));
