@@ -57,8 +57,8 @@ public:
     const double turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
     return k_foot_dead_band + (state.foot == 0 ? turn : -turn);
   }
-  [[nodiscard]] std::uint8_t next_place(const Evaluation&, const FrictionState& state) const override {
-    return state.foot == 0 ? 1 : 0;
+  void change_place(const Evaluation&, FrictionState& state) const override {
+    state.foot = state.foot == 0 ? 1 : 0;
   }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a,
                                           const double* b, bool is_kinetic) const override {

@@ -11,6 +11,9 @@ namespace {
 
 constexpr int k_max_projection_iterations = 25;
 constexpr int k_iterations_per_factorization = 3;
+// A merged joint with more of its capacity left than this at a step's ends is not looked at in between:
+// what rises and falls by so much within a step is not resolved anyway.
+constexpr double k_near_limit = 0.5;
 
 } // namespace
 
@@ -33,13 +36,20 @@ Dynamics::Dynamics(const System& system) : system_(system) {
   evaluation_.contact_force = contact_force_.data();
   evaluation_.watch = watch_.data();
   evaluation_.watch_rate = watch_rate_.data();
+  for (const FrictionUnit& unit : system.frictions) {
+    scratch_.push_back(unit.friction->make_scratch());
+    scratch_pointers_.push_back(scratch_.back().get());
+  }
+  evaluation_.scratch = scratch_pointers_.data();
 }
 
 void Dynamics::set_state(const State& state) {
   state_ = &state;
   evaluation_.mode = state.mode.data();
   evaluation_.friction = state.friction.data();
+  evaluation_.memory = state.memory.data();
   is_factored_ = false;
+  is_merged_near_ = false;
   std::fill(watch_.begin(), watch_.end(), 1.0);
   const std::vector<char> key = layout_key(state);
   for (const auto& layout : layouts_)
@@ -191,7 +201,7 @@ void Dynamics::apply_sliding() {
       evaluation_.dissipation -= wrench[r] * rate[r];
       friction_force_[unit.row + r] = wrench[r];
     }
-    if (n == 1) watch_[unit.watch] = friction.sign * rate[0];
+    unit.friction->watch_slip(evaluation_, friction, rate, &watch_[unit.watch]);
   }
 }
 
@@ -530,14 +540,20 @@ void Dynamics::merged_wrenches() {
 }
 
 void Dynamics::watch_merged(const double* dy) {
-  if (layout_->merged.empty()) return;
+  if (!layout_->is_merged_watched) return;
   body_accelerations(dy);
   merged_wrenches();
+  is_merged_near_ = false;
   for (const int f : layout_->merged) {
     const FrictionUnit& unit = system_.frictions[f];
-    unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row],
-                               &watch_[unit.watch]);
+    double* watch = &watch_[unit.watch];
+    unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row], watch);
+    if (std::min(watch[0], watch[1]) < k_near_limit) is_merged_near_ = true;
   }
+}
+
+void Dynamics::watch_merged_if_near(const double* dy) {
+  if (is_merged_near_) watch_merged(dy);
 }
 
 Snapshot Dynamics::snapshot(const double* dy) {

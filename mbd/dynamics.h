@@ -34,6 +34,8 @@ public:
   /// Signals are read on the left side of `limit`, a breakpoint that no step passes: a jump there does
   /// not reach into the step that ends at it.
   void set_time_limit(double limit);
+  /// Tells slip laws the step of a method that does not control it (Evaluation::fixed_step).
+  void set_fixed_step(double step) { evaluation_.fixed_step = step; }
 
   [[nodiscard]] const Layout& layout() const { return *layout_; }
   [[nodiscard]] int dimension() const { return 6 * layout_->cluster_count() + 2; }
@@ -56,6 +58,8 @@ public:
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
   /// Adds the watch values of joints that are merged: costs a pass over the merged bodies.
   void watch_merged(const double* dy);
+  /// The same at a stage inside a step, where only values near their limit are worth the pass.
+  void watch_merged_if_near(const double* dy);
   /// Accelerations of all bodies and all reactions; fills a snapshot valid until the next rates().
   [[nodiscard]] Snapshot snapshot(const double* dy);
   /// Power residual-free pieces of the energy balance: kinetic + potential at the last rates().
@@ -94,10 +98,13 @@ private:
   std::vector<std::unique_ptr<Layout>> layouts_;
   Layout* layout_ = nullptr;
   bool is_factored_ = false;
+  bool is_merged_near_ = false; ///< some merged joint was near its limit when last watched
   double time_cap_ = std::numeric_limits<double>::infinity();
   long evaluations_ = 0;
 
   Evaluation evaluation_;
+  std::vector<std::unique_ptr<FrictionScratch>> scratch_;
+  std::vector<FrictionScratch*> scratch_pointers_;
   std::vector<Motion<double>> motion_;  ///< bodies, then clusters of several
   std::vector<BodyForce> force_;
   std::vector<double> contact_force_, watch_, watch_rate_;

@@ -33,17 +33,34 @@ void EventHandler::evaluate(const State& state) {
   dynamics_.watch_merged(dy_.data());
 }
 
-double EventHandler::slip_rate(const State& state, int f) const {
+void EventHandler::slip_rates(const State& state, int f, double* rate) const {
   const FrictionElement& friction = *system_.frictions[f].friction;
   const RowSpec* rows = friction.rows(state.friction[f]);
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
+  for (int r = 0; r < friction.dimension(); ++r)
+    rate[r] = evaluate_row<false>(rows[r], motion.data()).rate;
+}
+
+// Element f has got its normal force: anchored here, at rest or sliding as the bodies move.
+void EventHandler::load(State& state, int f) {
+  FrictionState& friction = state.friction[f];
+  const FrictionElement& element = *system_.frictions[f].friction;
+  modes_.set_anchor(state, f);
+  double rate[3] = {0, 0, 0};
+  slip_rates(state, f, rate);
   double largest = 0.0;
-  for (int r = 0; r < friction.dimension(); ++r) {
-    const double rate = evaluate_row<false>(rows[r], motion.data()).rate;
-    if (std::abs(rate) > std::abs(largest)) largest = rate;
-  }
-  return largest;
+  for (const double r : rate) largest = std::max(largest, std::abs(r));
+  friction.phase = largest > k_rest_velocity ? FrictionPhase::slip : FrictionPhase::stick;
+  friction.is_starting = false;
+  element.aim(friction, rate);
+}
+
+// While a rigid joint slides, its two bodies move against each other: layouts that merge them are stale.
+void EventHandler::forget_moved_layouts(const State& state) {
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f)
+    if (state.friction[f].phase == FrictionPhase::slip && system_.frictions[f].friction->is_rigid())
+      return dynamics_.forget_layouts();
 }
 
 // The path slid since the last anchor: within one slip the direction does not change.
@@ -67,13 +84,9 @@ void EventHandler::start(State& state) {
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state.friction[f];
     modes_.set_anchor(state, f);
-    if (!system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction)) {
+    if (!system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction))
       friction.phase = FrictionPhase::free;
-      continue;
-    }
-    const double rate = slip_rate(state, f);
-    friction.phase = std::abs(rate) > k_rest_velocity ? FrictionPhase::slip : FrictionPhase::stick;
-    friction.sign = rate > 0.0 ? 1 : -1;
+    else load(state, f);
   }
   modes_.decide(state);
   clear_fresh();
@@ -103,14 +116,17 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
   FrictionState& friction = state.friction[f];
   if (slot == unit.watch + 2) {
     if (friction.phase == FrictionPhase::slip) end_slip(state, f);
-    friction.foot = unit.friction->next_place(dynamics_.evaluation(), friction);
+    unit.friction->change_place(dynamics_.evaluation(), friction);
     modes_.set_anchor(state, f);
   } else if (friction.phase == FrictionPhase::stick) {
     friction.phase = FrictionPhase::slip;
-    friction.has_slipped = true;
+    friction.has_slipped = friction.is_starting = true;
     const Snapshot snapshot = dynamics_.snapshot(dy_.data());
     unit.friction->begin_slip(dynamics_.evaluation(), friction, snapshot.friction_force + unit.row);
   } else if (friction.phase == FrictionPhase::slip) {
+    double rate[3];
+    slip_rates(state, f, rate);
+    if (unit.friction->goes_on_slipping(dynamics_.evaluation(), friction, rate, slot - unit.watch)) return;
     end_slip(state, f);
     friction.phase = FrictionPhase::stick; // or it reverses: the mode problem tells
   }
@@ -123,10 +139,7 @@ void EventHandler::update_loading(State& state) {
     if (friction.phase == FrictionPhase::apart) continue;
     const bool is_loaded = system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction);
     if (is_loaded && friction.phase == FrictionPhase::free) {
-      modes_.set_anchor(state, f);
-      const double rate = slip_rate(state, f);
-      friction.phase = std::abs(rate) > k_rest_velocity ? FrictionPhase::slip : FrictionPhase::stick;
-      friction.sign = rate > 0.0 ? 1 : -1;
+      load(state, f);
       if (friction.phase == FrictionPhase::slip) friction.has_slipped = true;
     } else if (!is_loaded && friction.phase != FrictionPhase::free) {
       if (friction.phase == FrictionPhase::slip) end_slip(state, f);
@@ -135,28 +148,36 @@ void EventHandler::update_loading(State& state) {
   }
 }
 
+bool EventHandler::is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const {
+  if (system_.frictions[f].friction->dimension() == 1) return a.sign == b.sign;
+  return !b.is_starting || (a.is_starting && std::equal(a.direction, a.direction + 3, b.direction));
+}
+
 void EventHandler::note_friction(const State& before, const State& state, std::vector<Event>& events) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState& old = before.friction[f];
     const FrictionState& now = state.friction[f];
-    const bool is_same_slip = now.phase != FrictionPhase::slip || now.sign == old.sign;
+    const bool is_same_slip = now.phase != FrictionPhase::slip || is_same_direction(f, old, now);
     if (old.phase == now.phase && old.foot == now.foot && is_same_slip) continue;
     const FrictionUnit& unit = system_.frictions[f];
     for (int w = 0; w < k_friction_watches; ++w) fresh_[unit.watch + w] = 1;
     const std::string& name = system_.element_names[unit.element];
-    if (old.foot != now.foot) events.push_back({state.t, name, "changes foot"});
+    if (old.foot != now.foot) events.push_back({state.t, name, unit.friction->place_change_name()});
     if (old.phase == now.phase && is_same_slip) continue;
     const char* what = "";
     switch (now.phase) {
     case FrictionPhase::free: what = "loses its normal force"; break;
     case FrictionPhase::stick: what = "sticks"; break;
     case FrictionPhase::slip:
-      if (unit.friction->dimension() == 3) what = "slips";
+      if (unit.friction->dimension() == 3)
+        what = old.phase == FrictionPhase::slip ? "slips another way" : "slips";
       else what = now.sign > 0 ? "slips forward" : "slips backward";
       break;
     case FrictionPhase::apart: what = "comes apart"; break;
     }
     events.push_back({state.t, name, what});
+    if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart())
+      stop_reason_ = "'" + name + "' came apart";
     if (unit.friction->is_rigid()) dynamics_.forget_layouts();
   }
 }
@@ -164,6 +185,7 @@ void EventHandler::note_friction(const State& before, const State& state, std::v
 void EventHandler::handle(State& state, const std::vector<int>& fired, std::vector<Event>& events) {
   clear_fresh();
   const State before = state;
+  forget_moved_layouts(state);
   evaluate(state);
   const bool is_contact_changed = switch_units(state, fired, events);
   for (const int slot : fired)

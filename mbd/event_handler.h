@@ -28,6 +28,8 @@ public:
 
   /// Slots whose unit or friction changed in the last handle(), for EventFinder.
   [[nodiscard]] const std::vector<char>& fresh() const { return fresh_; }
+  /// Not empty once an element has ended the run: which, and why.
+  [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
   void clear_fresh() { std::fill(fresh_.begin(), fresh_.end(), 0); }
 
 private:
@@ -35,8 +37,11 @@ private:
   bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
   void fire_friction(State& state, int f, int slot);
   void update_loading(State& state);
+  [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   void note_friction(const State& before, const State& state, std::vector<Event>& events);
-  [[nodiscard]] double slip_rate(const State& state, int f) const;
+  void forget_moved_layouts(const State& state);
+  void load(State& state, int f);
+  void slip_rates(const State& state, int f, double* rate) const;
   void end_slip(State& state, int f);
 
   const System& system_;
@@ -44,6 +49,7 @@ private:
   FrictionModes modes_;
   std::vector<int> unit_of_slot_, friction_of_slot_;
   std::vector<char> fresh_;
+  std::string stop_reason_;
   std::vector<double> y_, dy_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap {
 
@@ -10,6 +11,10 @@ namespace {
 constexpr int k_max_sweeps = 20000;
 // Wrenches settle to rounding; what is left after that is the conditioning of A.
 constexpr double k_settled = 1e-15;
+// Three-dimensional blocks are solved to about 1e-11 and jitter at that level: no progress for this many
+// sweeps, once the change is small, is the end too.
+constexpr int k_stalled_sweeps = 20;
+constexpr double k_small_change = 1e-9;
 
 // Block Gauss–Seidel on the dual: each element's part is solved exactly in turn. It converges for
 // every positive semidefinite A, and the accelerations are unique even where the wrenches are not.
@@ -35,6 +40,8 @@ public:
 
 private:
   void sweep_until_settled() {
+    double least = std::numeric_limits<double>::infinity();
+    int stalled = 0;
     for (int sweep = 0; sweep < k_max_sweeps; ++sweep) {
       double change = 0.0, size = 0.0;
       std::size_t row = 0;
@@ -45,6 +52,9 @@ private:
         row += m;
       }
       if (change <= k_settled * size || elements_.size() == 1) return;
+      stalled = change < least ? 0 : stalled + 1;
+      least = std::min(least, change);
+      if (stalled >= k_stalled_sweeps && least <= k_small_change * size) return;
     }
     // Not settled to rounding: the partition found is still checked by whoever asked.
   }
@@ -125,6 +135,7 @@ void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
     friction.phase = blocks[i].is_inside ? FrictionPhase::stick : FrictionPhase::slip;
     std::copy(blocks[i].direction, blocks[i].direction + 3, friction.direction);
     friction.sign = blocks[i].direction[0] > 0.0 ? 1 : -1;
+    friction.is_starting = !blocks[i].is_inside;
     if (!blocks[i].is_inside) friction.has_slipped = true;
   }
 }

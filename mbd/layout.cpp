@@ -162,8 +162,10 @@ void add_bilateral(const System& system, const std::vector<char>& is_block_merge
 void add_frictions(const System& system, const State& state,
                    const std::vector<char>& is_friction_merged, Layout& layout) {
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
-    if (is_friction_merged[f]) layout.merged.push_back(f);
-    else if (is_stuck(state, f)) {
+    if (is_friction_merged[f]) {
+      layout.merged.push_back(f);
+      if (!system.frictions[f].friction->never_slips()) layout.is_merged_watched = true;
+    } else if (is_stuck(state, f)) {
       layout.holding.push_back(f);
       const FrictionElement& friction = *system.frictions[f].friction;
       for (int r = 0; r < friction.dimension(); ++r)
@@ -191,8 +193,10 @@ void find_placed(const System& system, const State& state, Layout& layout) {
 
 std::vector<char> layout_key(const State& state) {
   std::vector<char> key;
-  for (const FrictionState& f : state.friction)
-    key.push_back(static_cast<char>(static_cast<int>(f.phase) * 16 + f.foot));
+  for (const FrictionState& f : state.friction) {
+    key.push_back(static_cast<char>(f.phase));
+    for (int shift = 0; shift < 32; shift += 8) key.push_back(static_cast<char>(f.foot >> shift & 0xffu));
+  }
   return key;
 }
 

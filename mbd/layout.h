@@ -63,6 +63,7 @@ struct Layout {
   std::vector<int> sliding;          ///< friction elements in phase slip
   std::vector<int> holding;          ///< friction elements in phase stick that are not merged
   std::vector<int> merged;           ///< friction elements in phase stick that are merged
+  bool is_merged_watched = false;    ///< some of those can slip
   std::vector<double> reference;     ///< clusters' coordinates in the reference pose, for error scales
   bool has_drives = false;           ///< some active row or lock moves with time
   SchurSolver schur;

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,10 +30,16 @@ enum class FrictionPhase : std::uint8_t {
 struct FrictionState {
   FrictionPhase phase = FrictionPhase::stick;
   std::int8_t sign = 0;             ///< direction of slip, for one-dimensional friction
-  std::uint8_t foot = 0;            ///< which of its places it acts at
+  std::uint32_t foot = 0;           ///< which of its places it acts at; or a set of places, by bits
   bool has_slipped = false;
+  bool is_starting = false;         ///< slip has only begun: `direction` still shares in the slip law
   double slid = 0.0;                ///< path length of finished slips (first row), m
-  double direction[3] = {0, 0, 0};  ///< of slip at its onset, for three-dimensional friction
+  double direction[3] = {0, 0, 0};  ///< of slip, as last looked at, for three-dimensional friction
+};
+
+/// What an element keeps between evaluations to save work, never to change a result: one per thread.
+struct FrictionScratch {
+  virtual ~FrictionScratch() = default;
 };
 
 /// Everything an evaluation reads and writes; one per thread, sized once.
@@ -42,6 +49,9 @@ struct Evaluation {
   BodyForce* force = nullptr;             ///< per body, accumulated
   const std::uint8_t* mode = nullptr;     ///< per unit
   const FrictionState* friction = nullptr;
+  const double* memory = nullptr;         ///< of the state: anchors of rows
+  FrictionScratch* const* scratch = nullptr; ///< per friction element; null where it wants none
+  double fixed_step = 0.0;                ///< s, of a method that does not control its step, else 0
   double* contact_force = nullptr;        ///< per contact: normal force f ≥ 0 (N = Σ f)
   double* watch = nullptr;                ///< per watch slot: valid while ≥ 0
   double* watch_rate = nullptr;           ///< its rate where the element knows it, else NaN
@@ -103,7 +113,10 @@ public:
   [[nodiscard]] virtual const RowSpec* rows(const FrictionState& state) const = 0;
   /// 3 rows that hold b rigidly to a, so that the two may be merged into one body while sticking.
   [[nodiscard]] virtual bool is_rigid() const { return false; }
+  /// Sticks whatever it takes: nothing to watch.
+  [[nodiscard]] virtual bool never_slips() const { return false; }
   virtual void mark_bodies(std::vector<char>& is_used) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<FrictionScratch> make_scratch() const { return nullptr; }
 
   /// Can it bear any wrench at all (some contact closed, some area left)?
   [[nodiscard]] virtual bool is_loaded(const Evaluation& e, const FrictionState& state) const = 0;
@@ -115,12 +128,29 @@ public:
                            double* watch) const = 0;
   /// At the onset of slip, when `wrench` has reached the bound: sets sign or direction.
   virtual void begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const = 0;
+  /// Sets sign or direction for a slip that is under way.
+  virtual void aim(FrictionState& state, const double* rate) const {
+    state.sign = rate[0] > 0.0 ? 1 : -1;
+  }
+  /// Watch values while sliding at `rate`: its slip law is the one of `state` while both are ≥ 0.
+  virtual void watch_slip(const Evaluation&, const FrictionState& state, const double* rate,
+                          double* watch) const {
+    watch[0] = state.sign * rate[0];
+    watch[1] = 1.0;
+  }
+  /// After one of them fell below zero: true if the slip goes on, with `state` brought up to date;
+  /// false if it is at rest, so that the mode problem must tell what comes next.
+  [[nodiscard]] virtual bool goes_on_slipping(const Evaluation&, FrictionState&, const double* /*rate*/,
+                                              int /*slot*/) const {
+    return false;
+  }
   /// Watch value of the place it acts at (foot switch, coming apart): valid while ≥ 0.
   [[nodiscard]] virtual double watch_place(const Evaluation&, const FrictionState&) const { return 1.0; }
-  /// The place after watch_place fell below zero.
-  [[nodiscard]] virtual std::uint8_t next_place(const Evaluation&, const FrictionState& state) const {
-    return state.foot;
-  }
+  /// Changes the place, or the phase to apart, after watch_place fell below zero.
+  virtual void change_place(const Evaluation&, FrictionState&) const {}
+  [[nodiscard]] virtual const char* place_change_name() const { return "changes foot"; }
+  /// Does coming apart end the run?
+  [[nodiscard]] virtual bool stops_when_apart() const { return false; }
   /// min ½ wᵀA w + bᵀw over admissible w (A: dimension × dimension, row-major); `kinetic`: with the
   /// slip law's bounds instead of the static ones.
   [[nodiscard]] virtual FrictionBlock solve_block(const Evaluation& e, const FrictionState& state,

@@ -44,6 +44,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   cpu_start_ = thread_cpu_seconds();
   integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
   trajectory_ = std::make_unique<Trajectory>(system, options_.channels);
+  if (!integrator_->is_adaptive()) dynamics_.set_fixed_step(options_.settings.step);
   start_drives(system_, state_);
   dynamics_.set_time_limit(next_limit());
   handler_.start(state_);
@@ -138,7 +139,7 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
 }
 
 bool Simulation::advance() {
-  if (state_.t >= options_.end) return false;
+  if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
   const double limit = next_limit();
   integrator_->step(dynamics_, limit);
   if (finder_.find(*integrator_, dynamics_, handler_.fresh())) {
@@ -190,6 +191,7 @@ RunResult Simulation::result() && {
   result.trajectory = std::move(trajectory_);
   result.events = std::move(events_);
   result.final_state = std::move(state_);
+  result.stop_reason = handler_.stop_reason();
   return result;
 }
 

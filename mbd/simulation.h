@@ -42,6 +42,7 @@ struct RunResult {
   std::vector<Event> events;
   RunStatistics statistics;
   State final_state;
+  std::string stop_reason; ///< empty if it ran to its end; else which element ended it, and why
 };
 
 /// Steps through a run; owns everything that changes. One object per thread.
@@ -58,6 +59,8 @@ public:
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   [[nodiscard]] const Trajectory& trajectory() const { return *trajectory_; }
+  /// Not empty if an element ended the run before its time ("'front joint' came apart").
+  [[nodiscard]] const std::string& stop_reason() const { return handler_.stop_reason(); }
   [[nodiscard]] RunStatistics statistics() const;
   [[nodiscard]] RunResult result() &&;
 

@@ -21,7 +21,7 @@ protected:
   void stage(Dynamics& dynamics, double c) {
     combine<Rows, Row, Row>(y0_.data(), h_, k_.data(), stride_, n_, scratch_.data());
     dynamics.rates(t0_ + c * h_, scratch_.data(), k(Row));
-    note_stage_watches(dynamics);
+    note_stage_watches(dynamics, k(Row));
   }
   double* k(std::size_t i) { return k_.data() + i * stride_; }
 

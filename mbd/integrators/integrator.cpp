@@ -55,7 +55,8 @@ void Integrator::finish_step(Dynamics& dynamics) {
   ++steps_;
 }
 
-void Integrator::note_stage_watches(const Dynamics& dynamics) {
+void Integrator::note_stage_watches(Dynamics& dynamics, const double* dy) {
+  dynamics.watch_merged_if_near(dy);
   const std::vector<double>& watch = dynamics.watch();
   for (std::size_t i = 0; i < watch.size(); ++i) watch_low_[i] = std::min(watch_low_[i], watch[i]);
 }

@@ -68,7 +68,8 @@ protected:
   }
   /// Projects y1 and evaluates there: rates into k1, watch values into watch1.
   void finish_step(Dynamics& dynamics);
-  void note_stage_watches(const Dynamics& dynamics);
+  /// After the rates dy of a stage.
+  void note_stage_watches(Dynamics& dynamics, const double* dy);
   /// Weights of the error norm: 1/(tolerance · scale) per coordinate, 0 where locked.
   void update_weights(const Dynamics& dynamics);
   [[nodiscard]] double error_norm(const double* error) const;

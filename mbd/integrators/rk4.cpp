@@ -43,7 +43,7 @@ private:
     double* y = scratch_.data();
     for (int i = 0; i < n_; ++i) y[i] = y0_[i] + c * h_ * previous[i];
     dynamics.rates(t0_ + c * h_, y, k(index));
-    note_stage_watches(dynamics);
+    note_stage_watches(dynamics, k(index));
   }
   std::vector<double> k_;
   int stride_;
