@@ -1,6 +1,7 @@
 #include "mbd/io/reader.h"
 
 #include "mbd/io/field_reader.h"
+#include "mbd/io/toml_writer.h"
 #include "mbd/validate.h"
 
 #include <algorithm>
@@ -445,6 +446,16 @@ void Reader::finish() {
 Model read_model(const std::string& path, const Catalogue& catalogue,
                  const std::vector<std::string>& overrides) {
   return Reader(load_document(path), catalogue).read(overrides);
+}
+
+std::string effective_model_text(const std::string& path, const Catalogue& catalogue,
+                                 const std::vector<std::string>& overrides) {
+  Document document = load_document(path);
+  const TopLevelNames names = top_level_names(catalogue);
+  for (const std::string& text : overrides)
+    apply_override(document, text, names);
+  if (!document.problems.empty()) throw ModelError(std::move(document.problems));
+  return write_toml(document.root);
 }
 
 Model parse_model(std::string text, const std::string& file_name, const Catalogue& catalogue,

@@ -19,6 +19,11 @@ namespace steplap {
 [[nodiscard]] Model read_model(const std::string& path, const Catalogue& catalogue,
                                const std::vector<std::string>& overrides = {});
 
+/// The file with all that it extends and the overrides laid over it, as TOML that stands alone. Paths
+/// of other files in it stay relative to where they were. Throws ModelError.
+[[nodiscard]] std::string effective_model_text(const std::string& path, const Catalogue& catalogue,
+                                               const std::vector<std::string>& overrides = {});
+
 /// The same for text at hand; `file_name` is what messages call it and what paths are relative to.
 [[nodiscard]] Model parse_model(std::string text, const std::string& file_name,
                                 const Catalogue& catalogue,

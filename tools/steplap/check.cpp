@@ -1,0 +1,123 @@
+#include "tools/steplap/check.h"
+
+#include "mbd/freedom.h"
+#include "mbd/number_text.h"
+#include "tools/steplap/run.h"
+#include "tools/steplap/text_table.h"
+#include "tools/steplap/warnings.h"
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <set>
+
+namespace steplap {
+
+namespace {
+
+using Align = TextTable::Align;
+
+struct CheckOptions {
+  std::vector<std::string> models;
+  std::vector<std::string> overrides;
+};
+
+// "16: 2 unilateral_contact, 1 weld"
+template <class Entries, class KindOf>
+std::string counts_text(const Entries& entries, KindOf kind_of) {
+  std::map<std::string, int> counts;
+  for (const auto& entry : entries)
+    ++counts[kind_of(entry)];
+  std::string text = std::to_string(entries.size());
+  const char* separator = ": ";
+  for (const auto& [kind, count] : counts) {
+    text += separator + std::to_string(count) + " " + kind;
+    separator = ", ";
+  }
+  return text;
+}
+
+std::string bodies_text(const Model& model) {
+  double mass = 0.0;
+  std::size_t fixed = 0;
+  for (const Body& body : model.bodies)
+    body.fixed ? static_cast<void>(++fixed) : static_cast<void>(mass += body.mass);
+  std::string text = std::to_string(model.bodies.size());
+  if (fixed > 0) text += ", " + std::to_string(fixed) + " of them fixed";
+  return text + "; " + number_text(mass) + " kg move";
+}
+
+std::string run_text(const Model& model) {
+  const SimulationSettings& s = model.simulation;
+  std::string text = s.integrator + ", 0 to " + number_text(s.end) + " s";
+  if (s.step) {
+    text += ", step " + number_text(*s.step) + " s";
+    if (s.integrator == "rk4") text += " (" + number_text(std::ceil(s.end / *s.step - 1e-9)) + " steps)";
+  }
+  if (s.tolerance) text += ", tolerance " + number_text(*s.tolerance);
+  return text + "; starts " + (s.initial == "equilibrium" ? "from equilibrium" : "as given");
+}
+
+void print_freedom(TextTable& table, const System& system) {
+  const Freedom freedom = count_freedom(system);
+  table.add_row({"coordinates", std::to_string(freedom.coordinates)});
+  std::string rows = std::to_string(freedom.rows);
+  if (freedom.rank < freedom.rows) {
+    std::set<std::string> names;
+    for (const int row : freedom.dependent_rows)
+      names.insert(system.element_names[system.rows[row].element]);
+    rows += ", only " + std::to_string(freedom.rank) + " of them independent; reactions are not unique, among others of";
+    for (const std::string& name : names)
+      rows += " '" + name + "'";
+  }
+  table.add_row({"constraint rows", rows});
+  std::string degrees = std::to_string(freedom.degrees());
+  if (!system.frictions.empty())
+    degrees += "; " + std::to_string(freedom.degrees_sticking()) + " while all friction sticks";
+  table.add_row({"degrees of freedom", degrees});
+}
+
+void print_model(std::ostream& out, const LoadedModel& loaded) {
+  const Model& model = loaded.model;
+  out << loaded.path << ": fine\n";
+  TextTable table({Align::left, Align::left});
+  if (!model.header.title.empty()) table.add_row({"title", model.header.title});
+  table.add_row({"bodies", bodies_text(model)});
+  table.add_row({"signals", counts_text(model.signals, [](const SignalEntry& e) { return e.kind->name; })});
+  table.add_row({"elements", counts_text(model.elements, [](const ElementEntry& e) { return e.kind->name; })});
+  print_freedom(table, *loaded.system);
+  table.add_row({"run", run_text(model)});
+  const Trajectory channels(*loaded.system, model.output.channels);
+  table.add_row({"output", std::to_string(channels.channels().size()) + " channels every " +
+                               number_text(model.output.step) + " s"});
+  out << table;
+  for (const std::string& warning : warnings_about(loaded))
+    out << "  warning: " << warning << "\n";
+}
+
+ExitCode check(const CheckOptions& options, Console& console) {
+  const auto models = load_models(options.models, options.overrides);
+  if (console.verbosity == Verbosity::quiet) return ExitCode::done;
+  for (const auto& loaded : models)
+    print_model(console.out, *loaded);
+  return ExitCode::done;
+}
+
+} // namespace
+
+Command check_command() {
+  const auto o = std::make_shared<CheckOptions>();
+  Command command;
+  command.name = "check";
+  command.summary = "read models, report all errors, count what is in them, run nothing";
+  command.examples = R"(  steplap check my.toml
+  steplap check models/paper/*.toml
+)";
+  command.options = {{"MODEL", &o->models, "FILE", "model files (TOML)", true},
+                     {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
+  command.run = [o](Console& console) { return check(*o, console); };
+  return command;
+}
+
+} // namespace steplap

@@ -1,0 +1,146 @@
+#include "tools/steplap/command_line.h"
+
+#include "mbd/diagnostics.h"
+#include "mbd/io/atomic_file.h"
+#include "tools/steplap/commands.h"
+#include "tools/steplap/log.h"
+#include "tools/steplap/version.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <ostream>
+
+namespace steplap {
+
+namespace {
+
+constexpr const char* k_footer = R"(Exit codes:
+  0  done
+  1  a fault of the program itself
+  2  wrong command line, or results that cannot be written
+  3  the model cannot be used as it stands
+  4  the computation could not be finished (what there is is saved as partial_*)
+  5  finished, but a criterion that was asked for is not met
+
+Examples:
+  steplap check my.toml
+  steplap simulate my.toml -o out
+  steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --integrator dop853
+  steplap elements spring_damper
+"steplap COMMAND --help" tells the options of a command.)";
+
+struct BindOption {
+  CLI::App& app;
+  const Option& option;
+
+  CLI::Option* operator()(bool* target) const {
+    return app.add_flag(option.names, *target, option.doc);
+  }
+  CLI::Option* operator()(std::optional<std::string>* target) const {
+    return named(app.add_option_function<std::string>(
+        option.names, [target](const std::string& value) { *target = value; }, option.doc));
+  }
+  CLI::Option* operator()(std::string* target) const {
+    return named(app.add_option(option.names, *target, option.doc));
+  }
+  CLI::Option* operator()(std::vector<std::string>* target) const {
+    CLI::Option* bound = named(app.add_option(option.names, *target, option.doc));
+    // An option may come again and again with one value each; a positional takes all that are left.
+    if (option.names.front() == '-') bound->expected(1)->multi_option_policy(
+        CLI::MultiOptionPolicy::TakeAll);
+    return bound;
+  }
+  CLI::Option* named(CLI::Option* bound) const { return bound->type_name(option.value_name); }
+};
+
+struct VerbosityFlags {
+  bool is_quiet = false, is_verbose = false;
+
+  [[nodiscard]] Verbosity verbosity() const {
+    if (is_quiet) return Verbosity::quiet;
+    return is_verbose ? Verbosity::verbose : Verbosity::normal;
+  }
+};
+
+void bind(CLI::App& app, const Command& command, VerbosityFlags& flags) {
+  CLI::App* sub = app.add_subcommand(command.name, command.summary);
+  if (!command.examples.empty()) sub->footer("Examples:\n" + command.examples);
+  for (const Option& option : command.options)
+    std::visit(BindOption{*sub, option}, option.target)->required(option.is_required);
+  CLI::Option* quiet = sub->add_flag("-q,--quiet", flags.is_quiet, "say nothing but errors");
+  sub->add_flag("-v,--verbose", flags.is_verbose, "say more about what is done")->excludes(quiet);
+}
+
+ExitCode run_command(const Command& command, Console& console) {
+  try {
+    return command.run(console);
+  } catch (const UsageError& error) {
+    log_error(error.what());
+    return ExitCode::usage;
+  } catch (const FileError& error) {
+    log_error(error.what());
+    return ExitCode::usage;
+  } catch (const ModelError& error) {
+    console.err << error.what() << "\n";
+    return ExitCode::model_error;
+  } catch (const NumericalFailure& error) {
+    log_error(error.what());
+    return ExitCode::numerical_failure;
+  } catch (const std::exception& error) {
+    log_error(std::string("internal error, please report it: ") + error.what());
+    return ExitCode::internal_error;
+  }
+}
+
+// What the parser says about a wrong command line, with the nearest sub-command.
+ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::string>& arguments,
+                      const std::vector<Command>& commands) {
+  std::vector<std::string> names;
+  for (const Command& command : commands)
+    names.push_back(command.name);
+  const bool is_unknown = !arguments.empty() && arguments.front().front() != '-' &&
+                          std::find(names.begin(), names.end(), arguments.front()) == names.end();
+  if (is_unknown)
+    log_error("there is no command '" + arguments.front() + "'" +
+              did_you_mean(arguments.front(), names) + "; see steplap --help");
+  else
+    log_error(std::string(error.what()) + "; see steplap " +
+              (arguments.empty() || arguments.front().front() == '-' ? "" : arguments.front() + " ") +
+              "--help");
+  return ExitCode::usage;
+}
+
+} // namespace
+
+int run_command_line(const std::vector<std::string>& arguments, std::ostream& out,
+                     std::ostream& err, bool is_terminal) {
+  Console console{out, err, is_terminal};
+  start_log(err, is_terminal);
+  CLI::App app("steplap: planar multibody dynamics with honest friction, machines described in TOML",
+               "steplap");
+  const std::vector<Command> commands = all_commands();
+  VerbosityFlags flags;
+  app.set_version_flag("--version", std::string("steplap ") + k_version);
+  app.require_subcommand(1);
+  app.footer(k_footer);
+  for (const Command& command : commands)
+    bind(app, command, flags);
+  try {
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+    app.parse(reversed);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0)
+      return static_cast<int>(report_usage(error, arguments, commands));
+    app.exit(error, out, err); // help or version
+    return static_cast<int>(ExitCode::done);
+  }
+  console.verbosity = flags.verbosity();
+  set_log_level(console.verbosity);
+  const std::string chosen = app.get_subcommands().front()->get_name();
+  for (const Command& command : commands)
+    if (command.name == chosen) return static_cast<int>(run_command(command, console));
+  return static_cast<int>(ExitCode::internal_error);
+}
+
+} // namespace steplap

@@ -1,0 +1,19 @@
+#include "tools/steplap/commands.h"
+
+#include "tools/steplap/check.h"
+#include "tools/steplap/elements.h"
+#include "tools/steplap/schema.h"
+#include "tools/steplap/simulate.h"
+
+namespace steplap {
+
+std::vector<Command> all_commands() {
+  std::vector<Command> commands;
+  commands.push_back(simulate_command());
+  commands.push_back(check_command());
+  commands.push_back(elements_command());
+  commands.push_back(schema_command());
+  return commands;
+}
+
+} // namespace steplap

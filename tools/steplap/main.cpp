@@ -1,0 +1,10 @@
+#include "tools/steplap/command_line.h"
+
+#include <unistd.h>
+
+#include <iostream>
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  return steplap::run_command_line(arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
+}

@@ -1,0 +1,29 @@
+// One line on a terminal that tells how far a run is; nothing where there is no terminal.
+#pragma once
+
+#include "tools/steplap/console.h"
+
+#include <chrono>
+#include <string>
+
+namespace steplap {
+
+class Progress {
+public:
+  Progress(Console& console, std::string name, double end);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  /// Wipes the line.
+  ~Progress();
+
+  void operator()(double t);
+
+private:
+  Console& console_;
+  std::string name_;
+  double end_ = 0.0;
+  bool is_shown_ = false;
+  std::chrono::steady_clock::time_point last_;
+};
+
+} // namespace steplap

@@ -1,0 +1,161 @@
+#include "tools/steplap/result_files.h"
+
+#include "mbd/io/atomic_file.h"
+#include "mbd/io/csv.h"
+#include "mbd/number_text.h"
+#include "tools/steplap/command.h"
+#include "tools/steplap/version.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace steplap {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* k_names[] = {"trajectory.csv", "events.csv", "model.toml", "summary.json"};
+constexpr const char* k_partial = "partial_";
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names;
+  for (const char* name : k_names) {
+    names.emplace_back(name);
+    names.push_back(std::string(k_partial) + name);
+  }
+  return names;
+}
+
+[[noreturn]] void fail(const std::string& folder, const std::string& cause) {
+  throw FileError("cannot write results to '" + folder + "': " + cause);
+}
+
+// The nearest folder above that exists.
+fs::path existing_part(fs::path path) {
+  path = fs::absolute(path);
+  std::error_code ignored;
+  while (!fs::exists(path, ignored) && path.has_parent_path() && path != path.parent_path())
+    path = path.parent_path();
+  return path;
+}
+
+// A folder beside the wanted one in which files are gathered; removed with all that is left in it.
+// So is the parent folder, if it was made for this and is still empty.
+class Staging {
+public:
+  explicit Staging(const fs::path& folder) {
+    fs::path parent = folder.parent_path();
+    if (parent.empty()) parent = ".";
+    std::error_code error;
+    if (fs::create_directories(parent, error)) made_ = parent;
+    if (error) fail(folder.string(), error.message());
+    path_ = parent / (".steplap-" + std::to_string(::getpid()));
+    fs::remove_all(path_, error); // of a process long gone
+    fs::create_directory(path_, error);
+    if (error) fail(folder.string(), error.message());
+  }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+  ~Staging() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    if (!made_.empty()) fs::remove(made_, ignored);
+  }
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+private:
+  fs::path path_, made_;
+};
+
+// Messages name the place where the user looks for the file.
+void write_all(const fs::path& staging, const fs::path& folder,
+               const std::vector<ResultFile>& files) {
+  for (const ResultFile& file : files) {
+    const std::string path = (staging / file.name).string();
+    try {
+      write_file(path, file.content);
+    } catch (const FileError& error) {
+      std::string message = error.what();
+      if (const auto at = message.find(path); at != std::string::npos)
+        message.replace(at, path.size(), (folder / file.name).string());
+      throw FileError(message);
+    }
+  }
+}
+
+// File by file into a folder that exists; what an earlier run left there goes, the summary comes last.
+void move_into(const fs::path& staging, const fs::path& folder,
+               const std::vector<ResultFile>& files) {
+  std::error_code error;
+  for (const std::string& name : all_names())
+    if (fs::remove(folder / name, error); error) fail(folder.string(), error.message());
+  for (const ResultFile& file : files)
+    if (fs::rename(staging / file.name, folder / file.name, error); error)
+      fail(folder.string(), error.message());
+}
+
+} // namespace
+
+std::string trajectory_csv(const Trajectory& trajectory) {
+  std::vector<std::string> header{"t [s]"};
+  for (const Channel* channel : trajectory.channels())
+    header.push_back(channel->name + (channel->unit.empty() ? "" : " [" + channel->unit + "]"));
+  CsvText csv(header);
+  std::vector<double> values(header.size());
+  for (std::size_t row = 0; row < trajectory.size(); ++row) {
+    values[0] = trajectory.times()[row];
+    for (std::size_t column = 1; column < values.size(); ++column)
+      values[column] = trajectory.value(row, column - 1);
+    csv.add_row(values);
+  }
+  return csv.text();
+}
+
+std::string events_csv(const std::vector<Event>& events) {
+  std::string text = "t [s],element,event\n";
+  for (const Event& event : events)
+    text += number_text(event.t) + "," + csv_field(event.element) + "," + csv_field(event.what) +
+            "\n";
+  return text;
+}
+
+std::vector<ResultFile> result_files(const Run& run, const RunSummary& summary) {
+  const std::string prefix = run.failure.empty() ? "" : k_partial;
+  const std::string head = "# Effective model of '" + run.loaded->path + "', written by steplap " +
+                           k_version + ".\n\n";
+  return {{prefix + "trajectory.csv", trajectory_csv(*run.result.trajectory)},
+          {prefix + "events.csv", events_csv(run.result.events)},
+          {prefix + "model.toml", head + run.loaded->text},
+          {prefix + "summary.json", summary_json(run, summary)}};
+}
+
+void check_result_folder(const std::string& folder, bool is_overwriting) {
+  std::error_code ignored;
+  for (const std::string& name : all_names())
+    if (!is_overwriting && fs::exists(fs::path(folder) / name, ignored))
+      throw UsageError("'" + folder + "' holds the results of an earlier run: choose another " +
+                       "folder with -o, or overwrite them with --force");
+  const fs::path existing = existing_part(folder);
+  if (!fs::is_directory(existing)) fail(folder, "'" + existing.string() + "' is not a folder");
+  if (::access(existing.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
+}
+
+void write_results(const std::string& folder, const std::vector<ResultFile>& files,
+                   bool is_overwriting) {
+  check_result_folder(folder, is_overwriting);
+  const Staging staging(folder);
+  write_all(staging.path(), folder, files);
+  std::error_code error;
+  fs::rename(staging.path(), folder, error); // succeeds onto nothing or an empty folder
+  if (!error) return;
+  if (!fs::is_directory(folder)) fail(folder, error.message());
+  check_result_folder(folder, is_overwriting); // somebody else may have been quicker
+  move_into(staging.path(), folder, files);
+}
+
+} // namespace steplap

@@ -1,0 +1,36 @@
+// The files of a run, and the folder they stand in: all there or none.
+//
+//   trajectory.csv  time histories, units in the header row: "t [s],active part.x [m]"
+//   events.csv      what happened when: "t [s],element,event"
+//   summary.json    settings, statistics, extremes of every channel, final state
+//   model.toml      the effective model, extended files and overrides merged
+// Nothing in them depends on the clock or the machine: two runs of a model give the same bytes. A run
+// that did not reach its end is saved as partial_trajectory.csv and so on.
+#pragma once
+
+#include "tools/steplap/summary.h"
+
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+struct ResultFile {
+  std::string name; ///< in the folder of the run
+  std::string content;
+};
+
+[[nodiscard]] std::string trajectory_csv(const Trajectory& trajectory);
+[[nodiscard]] std::string events_csv(const std::vector<Event>& events);
+[[nodiscard]] std::string summary_json(const Run& run, const RunSummary& summary);
+[[nodiscard]] std::vector<ResultFile> result_files(const Run& run, const RunSummary& summary);
+
+/// Throws UsageError if results stand in `folder` that may not be overwritten, FileError if it cannot
+/// be written: to be asked before a long run.
+void check_result_folder(const std::string& folder, bool is_overwriting);
+/// Writes all files, or none; earlier results in `folder` are replaced if `is_overwriting`, files of
+/// other names stay. Throws FileError.
+void write_results(const std::string& folder, const std::vector<ResultFile>& files,
+                   bool is_overwriting);
+
+} // namespace steplap

@@ -1,0 +1,56 @@
+#include "tools/steplap/run.h"
+
+#include "mbd/io/reader.h"
+#include "tools/steplap/catalogue.h"
+
+#include <filesystem>
+
+namespace steplap {
+
+std::shared_ptr<const LoadedModel> load_model(const std::string& path,
+                                              const std::vector<std::string>& overrides) {
+  auto loaded = std::make_shared<LoadedModel>();
+  loaded->path = path;
+  loaded->name = std::filesystem::path(path).stem().string();
+  loaded->overrides = overrides;
+  loaded->model = read_model(path, program_catalogue(), overrides);
+  loaded->text = effective_model_text(path, program_catalogue(), overrides);
+  loaded->system = compile(loaded->model);
+  return loaded;
+}
+
+std::vector<std::shared_ptr<const LoadedModel>>
+load_models(const std::vector<std::string>& paths, const std::vector<std::string>& overrides) {
+  std::vector<std::shared_ptr<const LoadedModel>> models;
+  std::vector<Diagnostic> problems;
+  for (const std::string& path : paths) {
+    try {
+      models.push_back(load_model(path, overrides));
+    } catch (const ModelError& error) {
+      problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  }
+  if (!problems.empty()) throw ModelError(std::move(problems));
+  return models;
+}
+
+State initial_state_of(const LoadedModel& loaded) {
+  return loaded.system->initial_state();
+}
+
+Run run_model(std::shared_ptr<const LoadedModel> loaded, std::function<void(double t)> progress) {
+  SimulationOptions options = options_of(loaded->model);
+  options.progress = std::move(progress);
+  Simulation simulation(*loaded->system, initial_state_of(*loaded), std::move(options));
+  Run run;
+  run.loaded = std::move(loaded);
+  try {
+    simulation.run();
+  } catch (const NumericalFailure& failure) {
+    run.failure = failure.what();
+  }
+  run.result = std::move(simulation).result();
+  return run;
+}
+
+} // namespace steplap

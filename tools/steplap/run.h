@@ -1,0 +1,42 @@
+// A model from its file to the end of its run.
+#pragma once
+
+#include "mbd/simulation.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// A model read and compiled, with what the files of its results need to know about it.
+struct LoadedModel {
+  std::string path;                   ///< as given
+  std::string name;                   ///< of the file, without folder and ending
+  std::vector<std::string> overrides; ///< "path=value", laid over the file
+  std::string text;                   ///< the effective model as TOML that stands alone
+  Model model;
+  std::unique_ptr<System> system;
+};
+
+/// Throws ModelError with all that is wrong with the model.
+[[nodiscard]] std::shared_ptr<const LoadedModel>
+load_model(const std::string& path, const std::vector<std::string>& overrides = {});
+/// All of them, or a ModelError with what is wrong with any of them.
+[[nodiscard]] std::vector<std::shared_ptr<const LoadedModel>>
+load_models(const std::vector<std::string>& paths, const std::vector<std::string>& overrides = {});
+
+/// The state a run of the model begins at. Throws NumericalFailure if there is no equilibrium.
+[[nodiscard]] State initial_state_of(const LoadedModel& loaded);
+
+struct Run {
+  std::shared_ptr<const LoadedModel> loaded;
+  RunResult result;    ///< up to the failure, if there was one
+  std::string failure; ///< what stopped the run; empty: it reached its end
+};
+
+/// Runs to the end, or to a NumericalFailure, which is kept. Throws it only if nothing could be run.
+[[nodiscard]] Run run_model(std::shared_ptr<const LoadedModel> loaded,
+                            std::function<void(double t)> progress = {});
+
+} // namespace steplap

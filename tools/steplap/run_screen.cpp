@@ -1,0 +1,205 @@
+#include "tools/steplap/run_screen.h"
+
+#include "mbd/number_text.h"
+#include "tools/steplap/text_table.h"
+
+#include <algorithm>
+#include <ostream>
+
+namespace steplap {
+
+namespace {
+
+using Align = TextTable::Align;
+
+constexpr std::size_t k_most_events_shown = 30;
+
+void print_heading(std::ostream& out, const FinishedRun& finished) {
+  const LoadedModel& loaded = *finished.run.loaded;
+  const SimulationSettings& s = loaded.model.simulation;
+  out << loaded.name;
+  if (!loaded.model.header.title.empty()) out << ": " << loaded.model.header.title;
+  out << "\n  " << s.integrator;
+  if (s.step && s.integrator == "rk4") out << ", step " << number_text(*s.step) << " s";
+  if (s.tolerance && s.integrator != "rk4") out << ", tolerance " << number_text(*s.tolerance);
+  out << ", t = 0 to " << number_text(finished.run.result.final_state.t) << " s\n";
+  if (!finished.run.failure.empty())
+    out << "  STOPPED before the end: " << finished.run.failure << "\n";
+}
+
+void print_events(std::ostream& out, const FinishedRun& finished) {
+  const std::vector<Event>& events = finished.run.result.events;
+  const auto main = std::count_if(events.begin(), events.end(), is_main_event);
+  out << "\nEvents: " << events.size();
+  if (main < static_cast<long>(events.size()))
+    out << "; without changes of foot and kinks of a force " << main;
+  out << "\n";
+  TextTable table({Align::right, Align::left, Align::left});
+  std::size_t shown = 0;
+  for (const Event& event : events) {
+    if (!is_main_event(event)) continue;
+    if (shown++ < k_most_events_shown)
+      table.add_row({time_text(event.t) + " s", event.element, event.what});
+  }
+  out << table;
+  if (shown > k_most_events_shown)
+    out << "  … and " << shown - k_most_events_shown << " more: see events.csv\n";
+}
+
+// Channels that are told of: reactions that are not zero throughout.
+bool is_shown(const ChannelRange& range) {
+  return is_reaction(*range.channel) && range.largest().value != 0.0;
+}
+
+void print_reactions(std::ostream& out, const RunSummary& summary) {
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
+  table.add_row({"", "lowest", "at", "highest", "at"});
+  bool is_any = false;
+  for (const ChannelRange& range : summary.ranges) {
+    if (!is_shown(range)) continue;
+    is_any = true;
+    const std::string& unit = range.channel->unit;
+    table.add_row({range.channel->name, quantity_text(range.low.value, unit),
+                   time_text(range.low.t) + " s", quantity_text(range.high.value, unit),
+                   time_text(range.high.t) + " s"});
+  }
+  if (is_any) out << "\nReactions, extremes over the samples\n" << table;
+}
+
+void print_slides(std::ostream& out, const RunSummary& summary) {
+  TextTable table({Align::left, Align::right, Align::right});
+  for (const ChannelRange& range : summary.ranges)
+    if (is_slide(*range.channel))
+      table.add_row({range.channel->name, quantity_text(range.largest().value, range.channel->unit),
+                     "at " + time_text(range.largest().t) + " s"});
+  if (!table.is_empty()) out << "\nLargest slides\n" << table;
+}
+
+// Rows of the last table: name and how a run's value reads.
+struct Figure {
+  std::string name;
+  std::string (*text)(const FinishedRun&);
+};
+
+const RunStatistics& statistics(const FinishedRun& f) {
+  return f.run.result.statistics;
+}
+
+const std::vector<Figure>& accuracy_and_cost() {
+  static const std::vector<Figure> figures{
+      {"energy residual",
+       [](const FinishedRun& f) { return small_text(statistics(f).energy_residual) + " J"; }},
+      {"energy exchanged",
+       [](const FinishedRun& f) { return quantity_text(statistics(f).energy_exchanged, "J"); }},
+      {"energy residual, relative",
+       [](const FinishedRun& f) { return small_text(f.summary.relative_energy_residual); }},
+      {"constraint residual, m or rad",
+       [](const FinishedRun& f) { return small_text(statistics(f).max_position_residual); }},
+      {"constraint residual, per s",
+       [](const FinishedRun& f) { return small_text(statistics(f).max_velocity_residual); }},
+      {"steps", [](const FinishedRun& f) { return std::to_string(statistics(f).steps); }},
+      {"steps rejected", [](const FinishedRun& f) { return std::to_string(statistics(f).rejections); }},
+      {"evaluations", [](const FinishedRun& f) { return std::to_string(statistics(f).evaluations); }},
+      {"CPU time", [](const FinishedRun& f) {
+         return quantity_text(1e3 * statistics(f).cpu_seconds, "ms");
+       }}};
+  return figures;
+}
+
+void print_place(std::ostream& out, const FinishedRun& finished) {
+  const Trajectory& trajectory = *finished.run.result.trajectory;
+  if (finished.folder.empty()) return;
+  out << "Written to " << finished.folder << ": "
+      << (finished.run.failure.empty() ? "" : "partial_") << "trajectory.csv (" << trajectory.size()
+      << " rows, " << trajectory.channels().size() << " channels), events.csv, summary.json, model.toml\n";
+}
+
+std::vector<std::string> cells(std::string name, const std::vector<FinishedRun>& runs,
+                               const std::function<std::string(const FinishedRun&)>& text) {
+  std::vector<std::string> row{std::move(name)};
+  for (const FinishedRun& run : runs)
+    row.push_back(text(run));
+  return row;
+}
+
+// Names of the channels that any run tells of, in the order in which they come.
+template <class Predicate>
+std::vector<std::string> channel_names(const std::vector<FinishedRun>& runs, Predicate is_wanted) {
+  std::vector<std::string> names;
+  for (const FinishedRun& run : runs)
+    for (const ChannelRange& range : run.summary.ranges)
+      if (is_wanted(range) &&
+          std::find(names.begin(), names.end(), range.channel->name) == names.end())
+        names.push_back(range.channel->name);
+  return names;
+}
+
+// "lowest" and "highest" of a channel for each run, or the one further from zero.
+void add_range_row(TextTable& table, const std::vector<FinishedRun>& runs, const std::string& name) {
+  std::vector<std::string> row{name};
+  for (const FinishedRun& run : runs) {
+    const ChannelRange* range = run.summary.find(name);
+    row.push_back(range ? quantity_text(range->low.value, range->channel->unit) : "–");
+    row.push_back(range ? quantity_text(range->high.value, range->channel->unit) : "–");
+  }
+  table.add_row(row);
+}
+
+void print_reactions_side_by_side(std::ostream& out, const std::vector<FinishedRun>& runs) {
+  const std::vector<std::string> names = channel_names(runs, is_shown);
+  if (names.empty()) return;
+  std::vector<Align> columns(2 * runs.size() + 1, Align::right);
+  columns.front() = Align::left;
+  TextTable table(columns);
+  std::vector<std::string> models{""}, heads{""};
+  for (const FinishedRun& run : runs) {
+    models.insert(models.end(), {run.run.loaded->name, ""});
+    heads.insert(heads.end(), {"lowest", "highest"});
+  }
+  table.add_row(models);
+  table.add_row(heads);
+  for (const std::string& name : names)
+    add_range_row(table, runs, name);
+  out << "Reactions, extremes over the samples (their times: summary.json)\n" << table;
+}
+
+} // namespace
+
+void print_run(std::ostream& out, const FinishedRun& finished) {
+  print_heading(out, finished);
+  print_events(out, finished);
+  print_reactions(out, finished.summary);
+  print_slides(out, finished.summary);
+  TextTable table({Align::left, Align::right});
+  for (const Figure& figure : accuracy_and_cost())
+    table.add_row({figure.name, figure.text(finished)});
+  out << "\nAccuracy and cost\n" << table << "\n";
+  print_place(out, finished);
+}
+
+void print_comparison(std::ostream& out, const std::vector<FinishedRun>& runs) {
+  for (const FinishedRun& run : runs) {
+    print_heading(out, run);
+    print_events(out, run);
+    out << "\n";
+  }
+  std::vector<Align> columns(runs.size() + 1, Align::right);
+  columns.front() = Align::left;
+  TextTable table(columns);
+  table.add_row(cells("", runs, [](const FinishedRun& run) { return run.run.loaded->name; }));
+  for (const std::string& name :
+       channel_names(runs, [](const ChannelRange& r) { return is_slide(*r.channel); }))
+    table.add_row(cells(name + ", largest", runs, [&](const FinishedRun& run) -> std::string {
+      const ChannelRange* range = run.summary.find(name);
+      return range ? quantity_text(range->largest().value, range->channel->unit) : "–";
+    }));
+  for (const Figure& figure : accuracy_and_cost())
+    table.add_row(cells(figure.name, runs, figure.text));
+  print_reactions_side_by_side(out, runs);
+  out << "\nSide by side\n" << table;
+  out << "\n";
+  for (const FinishedRun& run : runs)
+    print_place(out, run);
+}
+
+} // namespace steplap

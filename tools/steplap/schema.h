@@ -1,0 +1,10 @@
+// steplap schema
+#pragma once
+
+#include "tools/steplap/command.h"
+
+namespace steplap {
+
+[[nodiscard]] Command schema_command();
+
+} // namespace steplap

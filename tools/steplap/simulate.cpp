@@ -1,0 +1,124 @@
+#include "tools/steplap/simulate.h"
+
+#include "tools/steplap/log.h"
+#include "tools/steplap/progress.h"
+#include "tools/steplap/result_files.h"
+#include "tools/steplap/run_screen.h"
+
+#include <filesystem>
+#include <memory>
+#include <set>
+
+namespace steplap {
+
+namespace {
+
+struct SimulateOptions {
+  std::vector<std::string> models;
+  std::vector<std::string> overrides;
+  std::string output = "out";
+  std::optional<std::string> end, step, integrator, tolerance;
+  bool is_overwriting = false;
+
+  /// --set and its short forms.
+  [[nodiscard]] std::vector<std::string> all_overrides() const {
+    std::vector<std::string> all = overrides;
+    if (end) all.push_back("simulation.end=" + *end);
+    if (step) all.push_back("simulation.step=" + *step);
+    if (integrator) all.push_back("simulation.integrator=" + *integrator);
+    if (tolerance) all.push_back("simulation.tolerance=" + *tolerance);
+    return all;
+  }
+
+  [[nodiscard]] std::string folder_of(const LoadedModel& loaded) const {
+    return (std::filesystem::path(output) / loaded.name).string();
+  }
+};
+
+using Models = std::vector<std::shared_ptr<const LoadedModel>>;
+
+void check_folders(const SimulateOptions& options, const Models& models) {
+  std::set<std::string> folders;
+  for (const auto& loaded : models) {
+    const std::string folder = options.folder_of(*loaded);
+    if (!folders.insert(folder).second)
+      throw UsageError("two models are called '" + loaded->name +
+                       "' and would be written to the same folder, '" + folder +
+                       "': run them one after the other with different -o");
+    check_result_folder(folder, options.is_overwriting);
+  }
+}
+
+FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const LoadedModel>& loaded,
+                    Console& console) {
+  log_detail("'" + loaded->name + "': " + std::to_string(loaded->system->body_count() - 1) +
+             " bodies, " + std::to_string(loaded->system->rows.size()) + " constraint rows, " +
+             std::to_string(loaded->system->frictions.size()) + " joints with friction");
+  FinishedRun finished;
+  {
+    Progress progress(console, loaded->name, loaded->model.simulation.end);
+    finished.run = run_model(loaded, std::ref(progress));
+  }
+  finished.summary = summarise(finished.run);
+  finished.folder = options.folder_of(*loaded);
+  for (const Event& event : finished.run.result.events)
+    log_detail("t = " + std::to_string(event.t) + " s: '" + event.element + "' " + event.what);
+  write_results(finished.folder, result_files(finished.run, finished.summary),
+                options.is_overwriting);
+  if (!finished.run.failure.empty())
+    log_error("'" + loaded->path + "': " + finished.run.failure + " What was computed up to there is in '" +
+              finished.folder + "' as partial_*");
+  return finished;
+}
+
+ExitCode simulate(const SimulateOptions& options, Console& console) {
+  const Models models = load_models(options.models, options.all_overrides());
+  check_folders(options, models);
+  std::vector<FinishedRun> runs;
+  ExitCode code = ExitCode::done;
+  for (const auto& loaded : models) {
+    try {
+      runs.push_back(run_one(options, loaded, console));
+      if (!runs.back().run.failure.empty()) code = ExitCode::numerical_failure;
+    } catch (const NumericalFailure& failure) { // it could not even begin
+      log_error("'" + loaded->path + "': " + failure.what());
+      code = ExitCode::numerical_failure;
+    }
+  }
+  if (console.verbosity == Verbosity::quiet || runs.empty()) return code;
+  if (models.size() == 1)
+    print_run(console.out, runs.front());
+  else
+    print_comparison(console.out, runs);
+  return code;
+}
+
+} // namespace
+
+Command simulate_command() {
+  const auto o = std::make_shared<SimulateOptions>();
+  Command command;
+  command.name = "simulate";
+  command.summary = "run models, write their time histories, say what happened";
+  command.examples = R"(  steplap simulate models/paper/no_interference.toml
+  steplap simulate models/paper/*.toml -o out/paper --force
+  steplap simulate my.toml --end "2 s" --integrator dop853 --tolerance 1e-9
+  steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --set body.tank.mass="48 t"
+Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv,
+summary.json and model.toml. If the computation fails, what there is is saved as partial_* and the
+exit code is 4.
+)";
+  command.options = {
+      {"MODEL", &o->models, "FILE", "model files (TOML)", true},
+      {"-o,--output", &o->output, "DIR", "folder for the results (default: out)"},
+      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
+      {"--end", &o->end, "T", "end of the run, s; short for --set simulation.end=T"},
+      {"--step", &o->step, "H", "step of a fixed-step integrator, s"},
+      {"--integrator", &o->integrator, "NAME", "integration method; see steplap elements simulation"},
+      {"--tolerance", &o->tolerance, "TOL", "relative tolerance of an adaptive integrator"},
+      {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
+  command.run = [o](Console& console) { return simulate(*o, console); };
+  return command;
+}
+
+} // namespace steplap

@@ -1,0 +1,63 @@
+#include "tools/steplap/summary.h"
+
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// "front foot.force" -> "force"
+std::string last_part(const std::string& channel) {
+  return channel.substr(channel.rfind('.') + 1);
+}
+
+ChannelRange range_of(const Trajectory& trajectory, std::size_t column) {
+  ChannelRange range;
+  range.channel = trajectory.channels()[column];
+  for (std::size_t row = 0; row < trajectory.size(); ++row) {
+    const Extreme here{trajectory.value(row, column), trajectory.times()[row]};
+    if (row == 0 || here.value < range.low.value) range.low = here;
+    if (row == 0 || here.value > range.high.value) range.high = here;
+  }
+  return range;
+}
+
+} // namespace
+
+const Extreme& ChannelRange::largest() const {
+  return std::abs(low.value) > std::abs(high.value) ? low : high;
+}
+
+const ChannelRange* RunSummary::find(const std::string& channel) const {
+  for (const ChannelRange& range : ranges)
+    if (range.channel->name == channel) return &range;
+  return nullptr;
+}
+
+RunSummary summarise(const Run& run) {
+  RunSummary summary;
+  const Trajectory& trajectory = *run.result.trajectory;
+  for (std::size_t column = 0; column < trajectory.channels().size(); ++column)
+    summary.ranges.push_back(range_of(trajectory, column));
+  for (const Event& event : run.result.events)
+    ++summary.event_counts[event.what];
+  const RunStatistics& s = run.result.statistics;
+  if (s.energy_exchanged > 0.0)
+    summary.relative_energy_residual = s.energy_residual / s.energy_exchanged;
+  return summary;
+}
+
+bool is_reaction(const Channel& channel) {
+  return (channel.unit == "N" || channel.unit == "N m") && last_part(channel.name) != "capacity";
+}
+
+bool is_slide(const Channel& channel) {
+  const std::string part = last_part(channel.name);
+  return part == "slide" || part.rfind("slide_", 0) == 0;
+}
+
+bool is_main_event(const Event& event) {
+  return event.what != "changes foot" && event.what.rfind("force ", 0) != 0;
+}
+
+} // namespace steplap

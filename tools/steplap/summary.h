@@ -1,0 +1,47 @@
+// What a run came to: extremes, events and accuracy, the same for the screen, for summary.json and
+// for whoever reads a run in code.
+#pragma once
+
+#include "tools/steplap/run.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+struct Extreme {
+  double value = 0.0;
+  double t = 0.0;
+};
+
+/// Least and largest value of a channel over the samples of the trajectory.
+struct ChannelRange {
+  const Channel* channel = nullptr;
+  Extreme low, high;
+
+  /// Whichever is further from zero.
+  [[nodiscard]] const Extreme& largest() const;
+};
+
+/// Pointers lead into the run's compiled system: valid as long as the run.
+struct RunSummary {
+  std::vector<ChannelRange> ranges;          ///< of all channels, in the order of the trajectory
+  std::map<std::string, long> event_counts;  ///< by what happened
+  double relative_energy_residual = 0.0;     ///< of the energy exchanged
+
+  /// nullptr if there is no such channel.
+  [[nodiscard]] const ChannelRange* find(const std::string& channel) const;
+};
+
+[[nodiscard]] RunSummary summarise(const Run& run);
+
+/// A reaction: a force or couple of an element, by its unit; what a joint could bear is none.
+[[nodiscard]] bool is_reaction(const Channel& channel);
+/// A path slid in friction.
+[[nodiscard]] bool is_slide(const Channel& channel);
+/// Slips, sticks, lift-offs and touch-downs: what a reader looks for first. The rest (a change of the
+/// last contact foot, a kink of a contact's force) matters to the integrator.
+[[nodiscard]] bool is_main_event(const Event& event);
+
+} // namespace steplap

@@ -1,0 +1,87 @@
+#include "tools/steplap/result_files.h"
+#include "tools/steplap/version.h"
+
+#include <nlohmann/json.hpp>
+
+namespace steplap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json settings_json(const Model& model) {
+  const SimulationSettings& s = model.simulation;
+  Json json;
+  json["end"] = s.end;
+  json["step"] = s.step ? Json(*s.step) : Json();
+  json["tolerance"] = s.tolerance ? Json(*s.tolerance) : Json();
+  json["initial"] = s.initial;
+  json["projection_tolerance"] = s.projection_tolerance;
+  json["output_step"] = model.output.step;
+  return json;
+}
+
+// Without the CPU time, which no two runs share.
+Json statistics_json(const RunStatistics& s) {
+  return {{"steps", s.steps},
+          {"rejections", s.rejections},
+          {"evaluations", s.evaluations},
+          {"events", s.events}};
+}
+
+Json accuracy_json(const RunStatistics& s, const RunSummary& summary) {
+  return {{"energy_residual", s.energy_residual},
+          {"energy_exchanged", s.energy_exchanged},
+          {"relative_energy_residual", summary.relative_energy_residual},
+          {"dissipated", s.dissipated},
+          {"work", s.work},
+          {"max_position_residual", s.max_position_residual},
+          {"max_velocity_residual", s.max_velocity_residual}};
+}
+
+Json extremes_json(const RunSummary& summary) {
+  Json json = Json::object();
+  for (const ChannelRange& range : summary.ranges)
+    json[range.channel->name] = {{"unit", range.channel->unit},
+                                 {"min", range.low.value},
+                                 {"t_min", range.low.t},
+                                 {"max", range.high.value},
+                                 {"t_max", range.high.t}};
+  return json;
+}
+
+Json state_json(const System& system, const State& state) {
+  Json bodies = Json::object();
+  for (std::size_t i = 1; i < system.bodies.size(); ++i) {
+    const double* q = &state.q[3 * i];
+    const double* v = &state.v[3 * i];
+    bodies[system.bodies[i].name] = {{"x", q[0]},  {"y", q[1]},  {"theta", q[2]},
+                                     {"vx", v[0]}, {"vy", v[1]}, {"omega", v[2]}};
+  }
+  return {{"t", state.t}, {"bodies", bodies}};
+}
+
+} // namespace
+
+std::string summary_json(const Run& run, const RunSummary& summary) {
+  const LoadedModel& loaded = *run.loaded;
+  const RunStatistics& statistics = run.result.statistics;
+  Json json;
+  json["program"] = {{"name", "steplap"}, {"version", k_version}};
+  json["model"] = {{"file", loaded.path},
+                   {"title", loaded.model.header.title},
+                   {"overrides", loaded.overrides}};
+  json["completed"] = run.failure.empty();
+  if (!run.failure.empty()) json["failure"] = run.failure;
+  json["integrator"] = loaded.model.simulation.integrator;
+  json["settings"] = settings_json(loaded.model);
+  json["statistics"] = statistics_json(statistics);
+  json["accuracy"] = accuracy_json(statistics, summary);
+  json["events"] = {{"count", run.result.events.size()}, {"by_kind", summary.event_counts}};
+  json["extremes"] = extremes_json(summary);
+  json["final_state"] = state_json(*loaded.system, run.result.final_state);
+  // Names may hold bytes that are no UTF-8: replaced, not an exception at the end of a long run.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace steplap

@@ -1,0 +1,36 @@
+// Tables and numbers for the screen.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// Columns as wide as their widest cell (counted in characters, not bytes).
+class TextTable {
+public:
+  enum class Align { left, right };
+
+  /// `indent` blanks before every row, two between columns; `columns` tells how each is aligned.
+  explicit TextTable(std::vector<Align> columns, int indent = 2);
+
+  /// Missing cells are empty.
+  void add_row(std::vector<std::string> cells);
+  [[nodiscard]] bool is_empty() const { return rows_.empty(); }
+  friend std::ostream& operator<<(std::ostream& stream, const TextTable& table);
+
+private:
+  std::vector<Align> columns_;
+  int indent_ = 2;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// Six digits with a prefix that suits: 259822.17 N -> "259.822 kN", 7.9e-4 m -> "0.791366 mm".
+[[nodiscard]] std::string quantity_text(double value, const std::string& unit);
+/// "0.085143"; microseconds are enough to tell events apart on a screen.
+[[nodiscard]] std::string time_text(double t);
+/// Few digits, for residuals: "2.0e-07".
+[[nodiscard]] std::string small_text(double value);
+
+} // namespace steplap

@@ -1,0 +1,8 @@
+// The program's version, as CMake knows it.
+#pragma once
+
+namespace steplap {
+
+extern const char* const k_version;
+
+} // namespace steplap

@@ -1,0 +1,62 @@
+#include "tools/steplap/warnings.h"
+
+#include <unordered_map>
+#include <unordered_set>
+
+namespace steplap {
+
+namespace {
+
+using Names = std::unordered_set<std::string>;
+
+// Names that fields of elements refer to, by what they refer to.
+struct References {
+  Names signals, markers, bodies;
+};
+
+References references_of(const Model& model) {
+  References found;
+  for (const ElementEntry& entry : model.elements)
+    for (const Field& field : entry.kind->fields.fields()) {
+      Names* names = nullptr;
+      if (field.type == FieldType::signal) names = &found.signals;
+      if (field.type == FieldType::marker) names = &found.markers;
+      if (field.type == FieldType::body) names = &found.bodies;
+      if (names) names->insert(std::get<std::string>(field.get(entry.element.get())));
+    }
+  for (const Marker& marker : model.markers)
+    if (found.markers.count(marker.name) > 0) found.bodies.insert(marker.body);
+  return found;
+}
+
+std::string place(const Location& where) {
+  return where.line > 0 ? " (line " + std::to_string(where.line) + ")" : "";
+}
+
+} // namespace
+
+std::vector<std::string> warnings_about(const LoadedModel& loaded) {
+  const Model& model = loaded.model;
+  const References used = references_of(model);
+  std::vector<std::string> warnings;
+  for (const SignalEntry& entry : model.signals)
+    if (used.signals.count(entry.definition->name) == 0)
+      warnings.push_back("signal '" + entry.definition->name + "'" + place(entry.definition->where) +
+                         " is used by nothing");
+  Names body_names;
+  for (const Body& body : model.bodies)
+    body_names.insert(body.name);
+  for (const Marker& marker : model.markers) // a marker named as its body is the reader's own
+    if (used.markers.count(marker.name) == 0 && body_names.count(marker.name) == 0 &&
+        marker.name != "ground")
+      warnings.push_back("marker '" + marker.name + "'" + place(marker.where) + " is used by nothing");
+  for (const Body& body : model.bodies)
+    if (used.bodies.count(body.name) == 0)
+      warnings.push_back("no element is attached to body '" + body.name + "'" + place(body.where));
+  const Trajectory written(*loaded.system, model.output.channels);
+  if (written.channels().empty())
+    warnings.push_back("no channel matches 'channels' of [output]: the trajectory will hold the time only");
+  return warnings;
+}
+
+} // namespace steplap

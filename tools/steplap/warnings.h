@@ -1,0 +1,10 @@
+// What is allowed in a model, but hardly meant: signals that nothing uses, bodies that nothing holds.
+#pragma once
+
+#include "tools/steplap/run.h"
+
+namespace steplap {
+
+[[nodiscard]] std::vector<std::string> warnings_about(const LoadedModel& loaded);
+
+} // namespace steplap
