@@ -4,6 +4,7 @@
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 
 namespace steplap {
@@ -13,6 +14,7 @@ namespace {
 using Align = TextTable::Align;
 
 constexpr std::size_t k_most_events_shown = 30;
+constexpr double k_rounding = 1e-9;
 
 void print_heading(std::ostream& out, const FinishedRun& finished) {
   const LoadedModel& loaded = *finished.run.loaded;
@@ -51,6 +53,16 @@ bool is_shown(const ChannelRange& range) {
   return is_reaction(*range.channel) && range.largest().value != 0.0;
 }
 
+// A value as the screen gives it; what is rounding beside the channel's other values is zero.
+std::string value_text(const ChannelRange& range, const Extreme& extreme) {
+  const bool is_rounding = std::abs(extreme.value) < k_rounding * std::abs(range.largest().value);
+  return quantity_text(is_rounding ? 0.0 : extreme.value, range.channel->unit);
+}
+
+std::string sample_time_text(double t) {
+  return quantity_text(t, "s");
+}
+
 void print_reactions(std::ostream& out, const RunSummary& summary) {
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
   table.add_row({"", "lowest", "at", "highest", "at"});
@@ -58,10 +70,8 @@ void print_reactions(std::ostream& out, const RunSummary& summary) {
   for (const ChannelRange& range : summary.ranges) {
     if (!is_shown(range)) continue;
     is_any = true;
-    const std::string& unit = range.channel->unit;
-    table.add_row({range.channel->name, quantity_text(range.low.value, unit),
-                   time_text(range.low.t) + " s", quantity_text(range.high.value, unit),
-                   time_text(range.high.t) + " s"});
+    table.add_row({range.channel->name, value_text(range, range.low), sample_time_text(range.low.t),
+                   value_text(range, range.high), sample_time_text(range.high.t)});
   }
   if (is_any) out << "\nReactions, extremes over the samples\n" << table;
 }
@@ -71,7 +81,7 @@ void print_slides(std::ostream& out, const RunSummary& summary) {
   for (const ChannelRange& range : summary.ranges)
     if (is_slide(*range.channel))
       table.add_row({range.channel->name, quantity_text(range.largest().value, range.channel->unit),
-                     "at " + time_text(range.largest().t) + " s"});
+                     "at " + sample_time_text(range.largest().t)});
   if (!table.is_empty()) out << "\nLargest slides\n" << table;
 }
 
@@ -139,8 +149,8 @@ void add_range_row(TextTable& table, const std::vector<FinishedRun>& runs, const
   std::vector<std::string> row{name};
   for (const FinishedRun& run : runs) {
     const ChannelRange* range = run.summary.find(name);
-    row.push_back(range ? quantity_text(range->low.value, range->channel->unit) : "–");
-    row.push_back(range ? quantity_text(range->high.value, range->channel->unit) : "–");
+    row.push_back(range ? value_text(*range, range->low) : "–");
+    row.push_back(range ? value_text(*range, range->high) : "–");
   }
   table.add_row(row);
 }

@@ -1,0 +1,115 @@
+// Usage, help, exit codes, and the commands that run nothing.
+#include "tests/tools/workbench.h"
+
+#include <doctest/doctest.h>
+
+using namespace steplap::testing;
+
+TEST_CASE("help names every command, the exit codes and examples") {
+  const Outcome help = steplap_does({"--help"});
+  CHECK(help.code == 0);
+  CHECK(help.err.empty());
+  for (const char* part : {"simulate", "check", "elements", "schema", "Exit codes:", "Examples:"})
+    CHECK(has(help.out, part));
+  for (const char* command : {"simulate", "check", "elements", "schema"}) {
+    const Outcome own = steplap_does({command, "--help"});
+    CAPTURE(command);
+    CHECK(own.code == 0);
+    CHECK(has(own.out, std::string("  steplap ") + command));
+  }
+  CHECK(has(steplap_does({"simulate", "--help"}).out, "--integrator"));
+}
+
+TEST_CASE("the version is said") {
+  const Outcome version = steplap_does({"--version"});
+  CHECK(version.code == 0);
+  CHECK(version.out.rfind("steplap ", 0) == 0);
+}
+
+TEST_CASE("wrong usage is exit code 2 and one line") {
+  CHECK(steplap_does({}).code == 2);
+  const Outcome unknown = steplap_does({"simlate", "x.toml"});
+  CHECK(unknown.code == 2);
+  CHECK(unknown.err == "steplap: error: there is no command 'simlate' (did you mean 'simulate'?); "
+                       "see steplap --help\n");
+  const Outcome option = steplap_does({"check", "--sideways", "x.toml"});
+  CHECK(option.code == 2);
+  CHECK(has(option.err, "--sideways"));
+  CHECK(has(option.err, "see steplap check --help"));
+  const Outcome nothing = steplap_does({"simulate"});
+  CHECK(nothing.code == 2);
+  CHECK(has(nothing.err, "MODEL"));
+  CHECK(steplap_does({"simulate", "x.toml", "-q", "-v"}).code == 2);
+}
+
+TEST_CASE("errors of a model are exit code 3, all of them, with their places") {
+  const Workbench bench;
+  const std::string first = bench.write("a.toml", std::string(k_oscillator) + "stifness = 3\n");
+  const std::string second = bench.write("b.toml", "[simulation]\nstep = 1e-3\n");
+  for (const char* command : {"check", "simulate"}) {
+    const Outcome outcome = steplap_does({command, first, second, bench.at("none.toml")});
+    CHECK(outcome.code == 3);
+    CHECK(outcome.out.empty());
+    CHECK(has(outcome.err, "a.toml:24:1: error: unknown key 'stifness' in spring_damper 'spring'"));
+    CHECK(has(outcome.err, "b.toml"));
+    CHECK(has(outcome.err, "the model has no body"));
+    CHECK(has(outcome.err, "cannot read '" + bench.at("none.toml") + "'"));
+  }
+  CHECK_FALSE(fs::exists("out/a"));
+}
+
+TEST_CASE("check counts what is in a model and warns") {
+  const Workbench bench;
+  const Outcome outcome = steplap_does({"check", bench.write("a.toml", k_oscillator)});
+  CHECK(outcome.code == 0);
+  CHECK(has(outcome.out, "a.toml: fine"));
+  CHECK(has(outcome.out, "a mass on a spring"));
+  CHECK(has(outcome.out, "degrees of freedom  3\n"));
+  CHECK(has(outcome.out, "1 spring_damper"));
+  CHECK(has(outcome.out, "warning: signal 'spare' (line 8) is used by nothing"));
+  CHECK(steplap_does({"check", "-q", bench.at("a.toml")}).out.empty());
+}
+
+TEST_CASE("check counts the paper's degrees of freedom") {
+  const Outcome outcome = steplap_does({"check", STEPLAP_MODELS "/paper/no_interference.toml"});
+  CHECK(outcome.code == 0);
+  // 15 coordinates; the tank joint takes 2, the vehicle's motion 1; friction 1, two joints 3 each
+  CHECK(has(outcome.out, "coordinates         15\n"));
+  CHECK(has(outcome.out, "degrees of freedom  12; 5 while all friction sticks\n"));
+  CHECK_FALSE(has(outcome.out, "warning"));
+}
+
+TEST_CASE("check names joints that hold what others hold already") {
+  const Workbench bench;
+  std::string text = k_oscillator;
+  for (const char* name : {"weld one", "weld two"})
+    text += std::string("[[element]]\nname = \"") + name +
+            "\"\nkind = \"weld\"\na = \"mass\"\nb = \"ground\"\n";
+  const Outcome outcome = steplap_does({"check", bench.write("a.toml", text)});
+  CHECK(outcome.code == 0);
+  CHECK(has(outcome.out, "6, only 3 of them independent"));
+  CHECK(has(outcome.out, "'weld "));
+  CHECK(has(outcome.out, "degrees of freedom  0\n"));
+}
+
+TEST_CASE("elements is the reference of a kind") {
+  const Outcome all = steplap_does({"elements"});
+  CHECK(all.code == 0);
+  CHECK(has(all.out, "spring_damper"));
+  CHECK(has(all.out, "haversine"));
+  const Outcome one = steplap_does({"elements", "unilateral_contact"});
+  CHECK(one.code == 0);
+  CHECK(has(one.out, "stiffness"));
+  CHECK(has(steplap_does({"elements", "simulation"}).out, "integrator"));
+  CHECK(has(steplap_does({"elements", "--markdown"}).out, "step_lap_joint"));
+  const Outcome wrong = steplap_does({"elements", "spring_dampr"});
+  CHECK(wrong.code == 2);
+  CHECK(has(wrong.err, "spring_damper"));
+}
+
+TEST_CASE("schema is JSON") {
+  const Outcome schema = steplap_does({"schema"});
+  CHECK(schema.code == 0);
+  CHECK(schema.out.front() == '{');
+  CHECK(has(schema.out, "step_lap_joint"));
+}

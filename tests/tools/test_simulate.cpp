@@ -1,0 +1,230 @@
+// steplap simulate: options, files, exit codes.
+#include "tests/tools/workbench.h"
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+using namespace steplap::testing;
+
+namespace {
+
+const std::set<std::string> k_files{"events.csv", "model.toml", "summary.json", "trajectory.csv"};
+
+// The built program in a process of its own, both streams into files.
+Outcome program_does(const Workbench& bench, const std::string& arguments,
+                     const std::string& before = "") {
+  const std::string out = bench.at("stdout"), err = bench.at("stderr");
+  const std::string command =
+      before + STEPLAP_PROGRAM " " + arguments + " >" + out + " 2>" + err;
+  const int status = std::system(command.c_str()); // NOLINT: paths of our own
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+}
+
+long count_lines(const std::string& text) {
+  return std::count(text.begin(), text.end(), '\n');
+}
+
+} // namespace
+
+TEST_CASE("a run leaves its four files and one screen") {
+  const Workbench bench;
+  const Outcome outcome =
+      steplap_does({"simulate", bench.write("a.toml", k_bouncer), "-o", bench.at("out")});
+  CHECK(outcome.code == 0);
+  CHECK(outcome.err.empty());
+  for (const char* part : {"a: a bouncing mass", "floor  closes", "floor  opens", "floor.force",
+                           "energy residual", "constraint residual", "evaluations", "CPU time"})
+    CHECK_MESSAGE(has(outcome.out, part), part);
+  CHECK(bench.content("out/a") == k_files);
+  const std::string csv = text_of(bench.at("out/a/trajectory.csv"));
+  CHECK(csv.rfind("t [s],ball.x [m],ball.y [m],ball.theta [rad],ball.vx [m/s]", 0) == 0);
+  CHECK(count_lines(csv) == 22); // header, t = 0 … 2 s
+  CHECK(text_of(bench.at("out/a/events.csv")).rfind("t [s],element,event\n0.14", 0) == 0);
+  const std::string summary = text_of(bench.at("out/a/summary.json"));
+  CHECK(has(summary, "\"completed\": true"));
+  CHECK(has(summary, "\"file\": \"" + bench.at("a.toml") + "\""));
+  CHECK_FALSE(has(summary, "cpu"));
+}
+
+TEST_CASE("two runs give the same bytes") {
+  const Workbench bench;
+  const std::string model = STEPLAP_MODELS "/paper/interference.toml";
+  for (const char* folder : {"one", "two"})
+    CHECK(steplap_does({"simulate", model, "-q", "-o", bench.at(folder)}).code == 0);
+  for (const std::string& name : k_files) {
+    CAPTURE(name);
+    const std::string first = text_of(bench.at("one/interference/" + name));
+    CHECK_FALSE(first.empty());
+    CHECK(first == text_of(bench.at("two/interference/" + name)));
+  }
+}
+
+TEST_CASE("the saved model stands alone and gives the same run") {
+  const Workbench bench;
+  const std::string model = STEPLAP_MODELS "/paper/interference.toml";
+  CHECK(steplap_does({"simulate", model, "-q", "-o", bench.at("one"), "--set",
+                      "element.tank bottom.static_friction=0.3"})
+            .code == 0);
+  const std::string saved = bench.at("one/interference/model.toml");
+  CHECK(steplap_does({"simulate", saved, "-q", "-o", bench.at("two")}).code == 0);
+  CHECK(text_of(bench.at("one/interference/trajectory.csv")) ==
+        text_of(bench.at("two/model/trajectory.csv")));
+}
+
+TEST_CASE("nothing is said when quiet, no progress without a terminal") {
+  const Workbench bench;
+  const std::string model = STEPLAP_MODELS "/paper/no_interference.toml";
+  const Outcome quiet = steplap_does({"simulate", model, "-q", "-o", bench.at("a")}, true);
+  CHECK(quiet.code == 0);
+  CHECK(quiet.out.empty());
+  CHECK(quiet.err.empty());
+  // Long enough that a terminal would see some progress.
+  const std::vector<std::string> slow{"simulate", model, "--step", "1e-6", "--end", "0.06"};
+  auto piped = slow, shown = slow;
+  piped.insert(piped.end(), {"-o", bench.at("b")});
+  shown.insert(shown.end(), {"-o", bench.at("c")});
+  CHECK(steplap_does(piped).err.empty());
+  const std::string progress = steplap_does(shown, true).err;
+  if (!progress.empty()) CHECK(has(progress, "no_interference  "));
+  CHECK_FALSE(has(text_of(bench.at("b/no_interference/trajectory.csv")), "\r"));
+}
+
+TEST_CASE("earlier results are kept unless they may be overwritten") {
+  const Workbench bench;
+  const std::string model = bench.write("a.toml", k_oscillator), out = bench.at("out");
+  CHECK(steplap_does({"simulate", model, "-o", out}).code == 0);
+  const std::string before = text_of(bench.at("out/a/trajectory.csv"));
+  const Outcome refused = steplap_does({"simulate", model, "-o", out, "--end", "0.05"});
+  CHECK(refused.code == 2);
+  CHECK(refused.err == "steplap: error: '" + out + "/a' holds the results of an earlier run: choose " +
+                           "another folder with -o, or overwrite them with --force\n");
+  CHECK(refused.out.empty());
+  CHECK(text_of(bench.at("out/a/trajectory.csv")) == before);
+  bench.write("out/a/notes.txt", "mine");
+  CHECK(steplap_does({"simulate", model, "-o", out, "--end", "0.05", "--force"}).code == 0);
+  CHECK(count_lines(text_of(bench.at("out/a/trajectory.csv"))) == 7);
+  CHECK(text_of(bench.at("out/a/notes.txt")) == "mine");
+  auto expected = k_files;
+  expected.insert("notes.txt");
+  CHECK(bench.content("out/a") == expected);
+  CHECK(bench.content("out").count("a") == 1);
+}
+
+TEST_CASE("options are laid over the model") {
+  const Workbench bench;
+  const std::string model = bench.write("a.toml", k_oscillator);
+  const Outcome outcome =
+      steplap_does({"simulate", model, "-o", bench.at("out"), "--end", "50 ms", "--integrator", "dop853",
+                    "--tolerance", "1e-9", "--set", "body.mass.mass=3 kg", "--set",
+                    "output.channels=[\"mass.x\"]"});
+  CHECK(outcome.code == 0);
+  CHECK(has(outcome.out, "dop853, tolerance 1e-09, t = 0 to 0.05 s"));
+  CHECK(text_of(bench.at("out/a/trajectory.csv")).rfind("t [s],mass.x [m]\n", 0) == 0);
+  const std::string summary = text_of(bench.at("out/a/summary.json"));
+  CHECK(has(summary, "\"simulation.end=50 ms\""));
+  CHECK(has(summary, "\"integrator\": \"dop853\""));
+  CHECK(has(text_of(bench.at("out/a/model.toml")), "mass = \"3 kg\""));
+
+  const auto error = [&](std::vector<std::string> options) {
+    std::vector<std::string> arguments{"simulate", model, "-o", bench.at("none")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome wrong = steplap_does(arguments);
+    CHECK(wrong.code == 3);
+    CHECK_FALSE(fs::exists(bench.at("none")));
+    return wrong.err;
+  };
+  CHECK(has(error({"--step", "1"}), "is larger than 'end'"));
+  CHECK(has(error({"--integrator", "rk5"}), "did you mean 'rk4'?"));
+  CHECK(has(error({"--set", "body.mss.mass=3"}), "there is no body 'mss' (did you mean 'mass'?)"));
+  CHECK(has(error({"--end", "3 kg"}), "a unit like 's' is needed"));
+}
+
+TEST_CASE("several models: each its folder, one table") {
+  const Workbench bench;
+  const std::string first = bench.write("first.toml", k_oscillator);
+  const std::string second = bench.write("second.toml", k_bouncer);
+  const Outcome outcome = steplap_does({"simulate", first, second, "-o", bench.at("out")});
+  CHECK(outcome.code == 0);
+  CHECK(bench.content("out/first") == k_files);
+  CHECK(bench.content("out/second") == k_files);
+  CHECK(has(outcome.out, "Side by side"));
+  CHECK(has(outcome.out, "floor.force"));
+  const std::string same = bench.write("below/first.toml", k_oscillator);
+  const Outcome refused = steplap_does({"simulate", first, same, "-o", bench.at("other")});
+  CHECK(refused.code == 2);
+  CHECK(has(refused.err, "two models are called 'first'"));
+  CHECK_FALSE(fs::exists(bench.at("other")));
+}
+
+TEST_CASE("a failure keeps what there is under marked names and is exit code 4") {
+  const Workbench bench;
+  const std::string bad = bench.write("bad.toml", k_bouncer), good = bench.write("good.toml", k_oscillator);
+  const Outcome outcome = steplap_does({"simulate", bad, "-o", bench.at("out"), "--set",
+                                        "simulation.max_events=2"});
+  CHECK(outcome.code == 4);
+  CHECK(has(outcome.err, "more events than simulation.max_events"));
+  CHECK(has(outcome.err, "partial_"));
+  CHECK(has(outcome.out, "STOPPED"));
+  std::set<std::string> partial;
+  for (const std::string& name : k_files)
+    partial.insert("partial_" + name);
+  CHECK(bench.content("out/bad") == partial);
+  CHECK(has(text_of(bench.at("out/bad/partial_summary.json")), "\"completed\": false"));
+  CHECK(has(text_of(bench.at("out/bad/partial_summary.json")), "\"final_state\""));
+  CHECK(count_lines(text_of(bench.at("out/bad/partial_trajectory.csv"))) > 1);
+
+  // Partial results are results too; a run that succeeds replaces them.
+  CHECK(steplap_does({"simulate", bad, "-o", bench.at("out")}).code == 2);
+  CHECK(steplap_does({"simulate", bad, "-o", bench.at("out"), "--force"}).code == 0);
+  CHECK(bench.content("out/bad") == k_files);
+
+  // One of several fails: the others are run all the same.
+  const Outcome mixed =
+      steplap_does({"simulate", bad, good, "-o", bench.at("mixed"), "--set", "simulation.max_events=2"});
+  CHECK(mixed.code == 4);
+  CHECK(bench.content("mixed/bad") == partial);
+  CHECK(bench.content("mixed/good") == k_files);
+}
+
+TEST_CASE("results that cannot be written are one clear error") {
+  const Workbench bench;
+  const std::string model = bench.write("a.toml", k_oscillator);
+  const Outcome file = steplap_does({"simulate", model, "-o", model});
+  CHECK(file.code == 2);
+  CHECK(file.err == "steplap: error: cannot write results to '" + model + "/a': '" + model +
+                        "' is not a folder\n");
+  const Outcome missing = steplap_does({"simulate", model, "-o", "/proc/steplap"});
+  CHECK(missing.code == 2);
+  CHECK(has(missing.err, "cannot write results to '/proc/steplap/a'"));
+  CHECK(count_lines(missing.err) == 1);
+}
+
+TEST_CASE("a disk that fills up leaves nothing behind") {
+  const Workbench bench;
+  const std::string model = bench.write("a.toml", std::string(k_oscillator));
+  // Files of more than 1 or 2 KiB fail, as on a full disk; the trajectory is larger.
+  const Outcome outcome = program_does(bench, "simulate " + model + " --set output.step=1e-4 -o " + bench.at("out"),
+                                       "trap '' XFSZ; ulimit -f 2; ");
+  CHECK(outcome.code == 2);
+  CHECK(has(outcome.err, "cannot write '" + bench.at("out/a/trajectory.csv") + "': File too large"));
+  CHECK(count_lines(outcome.err) == 1);
+  CHECK(bench.content("out").empty());
+}
+
+TEST_CASE("the program itself: exit codes, and no progress into a pipe") {
+  const Workbench bench;
+  const std::string model = bench.write("a.toml", k_bouncer), out = " -o " + bench.at("out");
+  const Outcome good = program_does(bench, "simulate " + model + out);
+  CHECK(good.code == 0);
+  CHECK(good.err.empty());
+  CHECK_FALSE(has(good.out, "\x1b"));
+  CHECK_FALSE(has(good.out, "\r"));
+  CHECK(program_does(bench, "simulate " + model + out).code == 2);
+  CHECK(program_does(bench, "nonsense").code == 2);
+  CHECK(program_does(bench, "check " + bench.at("none.toml")).code == 3);
+  CHECK(program_does(bench, "simulate " + model + out + " -f --set simulation.max_events=2").code == 4);
+  CHECK(program_does(bench, "--help").code == 0);
+}
