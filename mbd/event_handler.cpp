@@ -42,10 +42,14 @@ void EventHandler::slip_rates(const State& state, int f, double* rate) const {
     rate[r] = evaluate_row<false>(rows[r], motion.data()).rate;
 }
 
-// Element f has got its normal force: anchored here, at rest or sliding as the bodies move.
+// Element f has got its normal force: at the place that the pose asks for (it is not watched while there
+// is no force), anchored there, at rest or sliding as the bodies move.
 void EventHandler::load(State& state, int f) {
   FrictionState& friction = state.friction[f];
   const FrictionElement& element = *system_.frictions[f].friction;
+  if (element.watch_place(dynamics_.evaluation(), friction) < 0.0)
+    element.change_place(dynamics_.evaluation(), friction);
+  if (friction.phase == FrictionPhase::apart) return;
   modes_.set_anchor(state, f);
   double rate[3] = {0, 0, 0};
   slip_rates(state, f, rate);
@@ -71,10 +75,19 @@ void EventHandler::end_slip(State& state, int f) {
   if (rows[0].memory >= 0) state.friction[f].slid += std::abs(state.memory[rows[0].memory] - before);
 }
 
-void EventHandler::start(State& state) {
-  dynamics_.forget_layouts();
+// Joints and drives alone, friction let go: which friction slides depends on the velocities they leave.
+void EventHandler::meet_constraints(State& state) {
+  for (FrictionState& friction : state.friction)
+    if (friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
   dynamics_.set_state(state);
   dynamics_.pack(state, y_.data());
+  dynamics_.project(state.t, y_.data(), k_projection_tolerance);
+  dynamics_.unpack(state.t, y_.data(), state);
+}
+
+void EventHandler::start(State& state) {
+  dynamics_.forget_layouts();
+  meet_constraints(state);
   dynamics_.rates(state.t, y_.data(), dy_.data());
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
@@ -84,9 +97,9 @@ void EventHandler::start(State& state) {
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state.friction[f];
     modes_.set_anchor(state, f);
-    if (!system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction))
-      friction.phase = FrictionPhase::free;
-    else load(state, f);
+    if (friction.phase != FrictionPhase::apart &&
+        system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction))
+      load(state, f);
   }
   modes_.decide(state);
   clear_fresh();

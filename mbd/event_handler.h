@@ -34,6 +34,7 @@ public:
 
 private:
   void evaluate(const State& state);
+  void meet_constraints(State& state);
   bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
   void fire_friction(State& state, int f, int slot);
   void update_loading(State& state);
