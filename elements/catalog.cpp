@@ -6,6 +6,7 @@
 #include "elements/load.h"
 #include "elements/prescribed_motion.h"
 #include "elements/spring_damper.h"
+#include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/io/record_signal.h"
@@ -18,6 +19,7 @@ const Catalogue& element_catalog() {
     c.elements = {&spring_damper_kind(),     &rotational_spring_damper_kind(),
                   &bushing_kind(),           &unilateral_contact_kind(),
                   &coulomb_stick_kind(),     &step_lap_joint_kind(),
+                  &step_lap_interface_kind(),
                   &revolute_kind(),          &prismatic_kind(),
                   &weld_kind(),              &distance_kind(),
                   &point_on_line_kind(),     &prescribed_motion_kind(),

@@ -1,37 +1,18 @@
 #include "elements/step_lap_joint.h"
 
-#include "mbd/system.h"
+#include "elements/step_lap_friction.h"
+#include "elements/step_lap_interface.h"
+
+#include <limits>
 
 namespace steplap {
 
 namespace {
 
-class StepLapFriction final : public FrictionElement {
-public:
-  RowSpec hold[3]; ///< x and y in the active part's axes, angle
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
-  [[nodiscard]] int dimension() const override { return 3; }
-  [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return hold; }
-  [[nodiscard]] bool is_rigid() const override { return true; }
-  void mark_bodies(std::vector<char>&) const override {}
-  [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
-  void slip_wrench(const Evaluation&, const FrictionState&, const double*, double* wrench) const override {
-    wrench[0] = wrench[1] = wrench[2] = 0.0;
-  }
-  void watch_stick(const Evaluation&, const FrictionState&, const double*, double* watch) const override {
-    watch[0] = watch[1] = 1.0;
-  }
-  void begin_slip(const Evaluation&, FrictionState&, const double*) const override {}
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation&, const FrictionState&, const double*,
-                                          const double*, bool) const override {
-    return {};
-  }
-};
-
-void add_channels(SystemBuilder& builder, const StepLapFriction& friction) {
-  const int f = builder.next_friction(), row = builder.next_friction_row();
-  const RowSpec* hold = friction.hold;
-  const int b = hold[0].b;
+void add_wrench_channels(SystemBuilder& builder, const StepLapFriction& friction) {
+  const int row = builder.next_friction_row(), b = friction.hold[0].b;
   builder.add_channel("fx", "N", "force on the limb, ground axes", [row, b](const Snapshot& s) {
     return s.motion[b].c * s.friction_force[row] - s.motion[b].s * s.friction_force[row + 1];
   });
@@ -40,6 +21,33 @@ void add_channels(SystemBuilder& builder, const StepLapFriction& friction) {
   });
   builder.add_channel("m", "N m", "couple on the limb about its centre of gravity",
                       [row](const Snapshot& s) { return s.friction_force[row + 2]; });
+}
+
+void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction, double pressure) {
+  const auto* self = &friction;
+  builder.add_channel("u", "", "share of the friction capacity in use; slides at 1",
+                      [self](const Snapshot& s) { return self->usage(s).u; });
+  builder.add_channel("p_req", "Pa",
+                      "required pressure: all pressures scaled together so that the joint just holds, "
+                      "that of its first interface",
+                      [self, pressure](const Snapshot& s) { return self->usage(s).u * pressure; });
+  builder.add_channel("margin", "", "capacity over what is in use, 1/u; infinite without load",
+                      [self](const Snapshot& s) { return self->usage(s).margin(); });
+  for (const int axis : {0, 1})
+    builder.add_channel(axis == 0 ? "centre_x" : "centre_y", "m",
+                        "centre about which the limb would start to turn, active part's axes about its "
+                        "centre of gravity; not a number at infinity (translation)",
+                        [self, axis](const Snapshot& s) {
+                          const auto& centre = self->usage(s).centre;
+                          return centre ? (*centre)[axis] : k_nan;
+                        });
+  builder.add_channel("area", "m^2", "overlap of one interface of each kind, added",
+                      [self](const Snapshot& s) { return self->area(s); });
+}
+
+void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction) {
+  const int f = builder.next_friction();
+  const RowSpec* hold = friction.hold;
   static constexpr const char* names[] = {"dx", "dy", "theta_acc"};
   for (int r = 0; r < 3; ++r) {
     const double start = evaluate_row<false>(hold[r], &builder.reference(0)).value;
@@ -49,28 +57,68 @@ void add_channels(SystemBuilder& builder, const StepLapFriction& friction) {
                           return sign * (evaluate_row<false>(hold[r], s.motion).value - start);
                         });
   }
-  builder.add_channel("mode", "", "1 sticks, 2 slips", [f](const Snapshot& s) {
+  builder.add_channel("mode", "", "1 sticks, 2 slips, 3 has come apart", [f](const Snapshot& s) {
     return static_cast<double>(s.evaluation->friction[f].phase);
   });
 }
 
-void compile_joint(const Element& element, SystemBuilder& builder) {
-  const auto& e = static_cast<const StepLapJoint&>(element);
-  const int limb = builder.body(e.limb), active = builder.body(e.active_part);
-  if (limb == active) return builder.error("joins a body to itself: name two different bodies");
-  auto friction = std::make_unique<StepLapFriction>();
+// The interfaces that name this joint. What is wrong with an outline is reported at the interface.
+std::vector<const StepLapInterface*> interfaces_of(const StepLapJoint& joint, const SystemBuilder& builder) {
+  std::vector<const StepLapInterface*> found;
+  for (const ElementEntry& entry : builder.model().elements)
+    if (const auto* e = dynamic_cast<const StepLapInterface*>(entry.element.get()); e && e->joint == joint.name)
+      found.push_back(e);
+  return found;
+}
+
+void add_rows(const StepLapJoint& e, SystemBuilder& builder, StepLapFriction& friction) {
   const Vec2 directions[2] = {{1.0, 0.0}, {0.0, 1.0}};
   for (int r = 0; r < 3; ++r) {
-    RowSpec& row = friction->hold[r];
-    row.a = limb;
-    row.b = active;
+    RowSpec& row = friction.hold[r];
+    row.a = builder.body(e.limb);
+    row.b = builder.body(e.active_part);
     row.kind = r < 2 ? MeasureKind::axis : MeasureKind::angle;
     if (r < 2) row.direction = directions[r];
     row.quantity = "joint";
     row.element = builder.element_index();
     row.memory = builder.add_memory(evaluate_row<false>(row, &builder.reference(0)).value);
   }
-  add_channels(builder, *friction);
+}
+
+BodyData mass_of(const std::string& name, const SystemBuilder& builder) {
+  BodyData data;
+  const Body* body = builder.model().find_body(name);
+  if (body && !body->fixed) {
+    data.mass = body->mass;
+    data.inertia = body->inertia;
+  }
+  return data;
+}
+
+void compile_joint(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const StepLapJoint&>(element);
+  if (builder.body(e.limb) == builder.body(e.active_part))
+    return builder.error("joins a body to itself: name two different bodies");
+  const auto interfaces = interfaces_of(e, builder);
+  std::vector<SheetPair> sheets;
+  try {
+    for (const StepLapInterface* i : interfaces)
+      sheets.push_back(make_sheets(*i, e.limb, e.active_part, builder));
+  } catch (const PolygonError&) {
+    return;
+  }
+  auto friction = std::make_unique<StepLapFriction>(builder.next_friction(), builder.next_friction_row(),
+                                                    std::move(sheets), e.mode == "monitor",
+                                                    e.on_apart == "stop");
+  add_rows(e, builder, *friction);
+  const Pose reference = friction->pose_of(&builder.reference(0));
+  if (friction->has_sheets() && friction->patch_at(reference, GripLaw::holding).empty())
+    return builder.error("its sheets do not overlap in the reference pose: check the polygons and the "
+                         "'frame' of its step_lap_interface elements");
+  friction->set_scales(reference, mass_of(e.limb, builder), mass_of(e.active_part, builder));
+  add_wrench_channels(builder, *friction);
+  if (friction->has_sheets()) add_usage_channels(builder, *friction, interfaces.front()->pressure);
+  add_slide_channels(builder, *friction);
   builder.add_friction(std::move(friction));
 }
 
@@ -81,10 +129,18 @@ const ElementKind& step_lap_joint_kind() {
     using T = StepLapJoint;
     ElementKind k;
     k.name = "step_lap_joint";
-    k.doc = "A core limb held to the active part by friction between overlapped sheets.";
+    k.doc = "A core limb held to the active part by friction between overlapped sheets, which are its "
+            "step_lap_interface elements. Sticks exactly while the wrench on the limb is within the limit "
+            "surface of the overlap, else slides; without interfaces it holds whatever it takes.";
     FieldTable& f = k.fields;
     f.add("limb", &T::limb).as(FieldType::body).required().doc("the limb");
     f.add("active_part", &T::active_part).as(FieldType::body).required().doc("the part with the yokes");
+    f.add("mode", &T::mode)
+        .one_of({"slip", "monitor"})
+        .doc("monitor: never slides, but reports the pressure that it would take");
+    f.add("on_apart", &T::on_apart)
+        .one_of({"stop", "continue"})
+        .doc("what happens when no overlap is left: the run ends, or goes on without friction");
     k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
     k.compile = compile_joint;
     return k;

@@ -1,8 +1,11 @@
 // Step-lap joint: a limb held to the active part by friction between overlapped sheets (paper 2.1.2).
 //
 // Sticking, the limb a is held to the active part b by the three constraints (17)–(25) with the slid
-// distances d_x, d_y and the angle θ_acc; the wrench on the limb is reported about its centre of
-// gravity. While it sticks the two bodies are integrated as one. Source: physics.md §4.
+// distances d_x, d_y and the angle θ_acc, and the two bodies are integrated as one; sliding, friction acts
+// over the overlap of the sheets at the present pose (step_lap_friction.h). The sheets come from the
+// step_lap_interface elements that name the joint; without any it holds whatever it takes.
+// Assumes uniform pressure on each interface that does not change while sliding, no butt contact of
+// sheets of one layer, and motion in the plane of the sheets only. Source: physics.md §4.
 #pragma once
 
 #include "mbd/model.h"
@@ -11,6 +14,8 @@ namespace steplap {
 
 struct StepLapJoint : Element {
   std::string limb, active_part;
+  std::string mode = "slip";     ///< "slip" or "monitor": never slides, reports what it would take
+  std::string on_apart = "stop"; ///< "stop" or "continue"
 };
 
 [[nodiscard]] const ElementKind& step_lap_joint_kind();

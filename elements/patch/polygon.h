@@ -6,14 +6,13 @@
 // Coordinates are metres in the axes of whichever body the polygon is fixed to.
 #pragma once
 
-#include <Eigen/Core>
+#include "mbd/types.h"
 
 #include <stdexcept>
 #include <vector>
 
 namespace steplap {
 
-using Vec2 = Eigen::Vector2d;
 using Ring = std::vector<Vec2>;
 
 /// One connected area: an outer ring (counter-clockwise) and holes (clockwise).
@@ -31,11 +30,6 @@ class PolygonError : public std::invalid_argument {
 public:
   using std::invalid_argument::invalid_argument;
 };
-
-/// z component of a × b.
-[[nodiscard]] inline double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 /// Area of a ring [m²], positive when counter-clockwise.
 [[nodiscard]] double signed_area(const Ring& ring);

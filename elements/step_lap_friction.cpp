@@ -1,0 +1,268 @@
+#include "elements/step_lap_friction.h"
+
+#include "elements/patch/admissible_projection.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// u may pass 1 by rounding: below what a load can resolve.
+constexpr double k_bound_slack = 1e-13;
+// Outside this band the certified bounds tell on which side of 1 a wrench is.
+constexpr double k_surely_holds = 0.9, k_surely_slips = 1.1;
+// Onsets are followed down to this time, s: against motions of a millisecond 1e-4 of them, and what is
+// missed is of the second order in that (the slip law of step_lap_friction.h).
+constexpr double k_onset_time = 1e-7;
+// |stiffness × step| of the starting law is 1/this at most: half of what explicit methods of order 4 bear.
+constexpr double k_onset_steps = 0.7;
+constexpr double k_start_reach = 6.0; // |ν|/δ at which a slip no longer counts as starting
+constexpr double k_cone = 0.5;        // cosine of the cone about the direction last looked at
+constexpr double k_rest_of_start = 0.05; // of δ: backward motion that ends a slip still starting
+
+} // namespace
+
+struct StepLapFriction::Fit {
+  Patch patch;
+  Pose pose;
+  Capacity capacity;
+  bool is_valid = false, has_capacity = false;
+
+  /// What a joint that stays at its pose is asked many times.
+  void prepare() {
+    if (has_capacity || patch.empty()) return;
+    patch.prepare();
+    capacity = steplap::capacity(patch);
+    has_capacity = true;
+  }
+};
+
+struct StepLapFriction::Scratch final : FrictionScratch {
+  OverlapWorkspace workspace;
+  Region region;
+  Fit fits[2];
+  Vec3 asked = Vec3::Zero(); ///< wrench of the last usage(), at this pose
+  Pose asked_at;
+  RequiredPressure answer;
+};
+
+StepLapFriction::StepLapFriction(int index, int row, std::vector<SheetPair> sheets, bool is_monitor,
+                                 bool stops_when_apart)
+    : index_(index), row_(row), sheets_(std::move(sheets)), is_monitor_(is_monitor),
+      stops_when_apart_(stops_when_apart) {
+  for (const SheetPair& s : sheets_)
+    if (s.kinetic_traction != s.static_traction) is_one_law_ = false;
+}
+
+std::unique_ptr<FrictionScratch> StepLapFriction::make_scratch() const {
+  if (sheets_.empty()) return nullptr;
+  return std::make_unique<Scratch>();
+}
+
+void StepLapFriction::set_scales(const Pose& reference, const BodyData& limb,
+                                 const BodyData& active_part) {
+  const Patch patch = patch_at(reference, GripLaw::holding);
+  if (patch.empty()) return;
+  arm_ = patch.centroid() - patch.reference();
+  gyration_ = patch.gyration();
+  const auto mobility = [&](const BodyData& body, const Vec2& lever) {
+    if (!(body.mass > 0.0)) return 0.0;
+    return 1.0 / body.mass + (gyration_ * gyration_ + lever.squaredNorm()) / body.inertia;
+  };
+  grip_acceleration_ = patch.force() * (mobility(limb, arm_) + mobility(active_part, patch.centroid()));
+}
+
+// --- pose and overlap -----------------------------------------------------------------------------------
+
+Pose StepLapFriction::pose_of(const Motion<double>* motion) const {
+  const Motion<double>&l = motion[hold[0].a], &p = motion[hold[0].b];
+  const double x = l.x - p.x, y = l.y - p.y;
+  return {p.c * x + p.s * y, p.c * y - p.s * x, l.theta - p.theta};
+}
+
+// While it sticks the rows' bases are the pose, free of the rounding of positions.
+Pose StepLapFriction::anchor(const double* memory) const {
+  return {memory[hold[0].memory], memory[hold[1].memory], memory[hold[2].memory]};
+}
+
+Pose StepLapFriction::present(const Snapshot& s) const {
+  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick;
+  return is_stuck ? anchor(s.memory) : pose_of(s.motion);
+}
+
+void StepLapFriction::build(const Pose& pose, GripLaw law, OverlapWorkspace& workspace, Region& region,
+                            Patch& patch) const {
+  patch.clear({pose.x, pose.y});
+  for (const SheetPair& s : sheets_) {
+    intersect(s.yoke, s.limb, pose, workspace, region);
+    patch.add(region, law == GripLaw::holding ? s.static_traction : s.kinetic_traction);
+  }
+}
+
+Patch StepLapFriction::patch_at(const Pose& pose, GripLaw law) const {
+  OverlapWorkspace workspace;
+  Region region;
+  Patch patch;
+  build(pose, law, workspace, region, patch);
+  return patch;
+}
+
+StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, const Pose& pose,
+                                           GripLaw law) const {
+  auto& own = static_cast<Scratch&>(*scratch[index_]);
+  Fit& f = own.fits[is_one_law_ || law == GripLaw::holding ? 0 : 1];
+  const bool is_same = f.is_valid && f.pose.x == pose.x && f.pose.y == pose.y && f.pose.theta == pose.theta;
+  if (is_same) return f;
+  build(pose, law, own.workspace, own.region, f.patch);
+  f.pose = pose;
+  f.is_valid = true;
+  f.has_capacity = false;
+  return f;
+}
+
+// --- holding ----------------------------------------------------------------------------------------------
+
+void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, const double* wrench,
+                                  double* watch) const {
+  watch[0] = watch[1] = 1.0;
+  if (never_slips()) return;
+  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
+  f.prepare();
+  const Vec3 w(wrench[0], wrench[1], wrench[2]);
+  const UsageBounds bounds = usage_bounds(f.capacity, w);
+  if (bounds.upper <= k_surely_holds) watch[0] = 1.0 - bounds.upper;
+  else if (bounds.lower >= k_surely_slips) watch[0] = 1.0 - bounds.lower;
+  else watch[0] = 1.0 + k_bound_slack - required_pressure(f.patch, w).u;
+}
+
+const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
+  auto& own = static_cast<Scratch&>(*s.evaluation->scratch[index_]);
+  const double* force = s.friction_force + row_;
+  const Vec3 w(force[0], force[1], force[2]);
+  const Pose pose = present(s);
+  const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y &&
+                       own.asked_at.theta == pose.theta;
+  if (is_same) return own.answer;
+  own.answer = required_pressure(fit(s.evaluation->scratch, pose, GripLaw::holding).patch, w);
+  own.asked = w;
+  own.asked_at = pose;
+  return own.answer;
+}
+
+double StepLapFriction::area(const Snapshot& s) const {
+  return fit(s.evaluation->scratch, present(s), GripLaw::holding).patch.area();
+}
+
+FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionState&, const double* a,
+                                           const double* b, bool is_kinetic) const {
+  const GripLaw law = is_kinetic ? GripLaw::sliding : GripLaw::holding;
+  const Fit& f = fit(e.scratch, anchor(e.memory), law);
+  const Mat3 mobility = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a);
+  const AdmissibleWrench w =
+      admissible_wrench(f.patch, 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));
+  FrictionBlock block;
+  block.is_inside = !w.slips;
+  Vec3::Map(block.wrench) = w.wrench;
+  if (const double size = scaled(w.acceleration).norm(); size > 0.0)
+    Vec3::Map(block.direction) = w.acceleration / size;
+  return block;
+}
+
+// --- sliding ----------------------------------------------------------------------------------------------
+
+/// Velocity of the joint's centre, and ω as a velocity at the gyration radius.
+Vec3 StepLapFriction::scaled(const Vec3& nu) const {
+  return {nu[0] - nu[2] * arm_.y(), nu[1] + nu[2] * arm_.x(), gyration_ * nu[2]};
+}
+
+void StepLapFriction::set_direction(FrictionState& state, const Vec3& nu) const {
+  const double size = scaled(nu).norm();
+  Vec3::Map(state.direction) = size > 0.0 ? Vec3(nu / size) : nu;
+}
+
+double StepLapFriction::onset_speed(const Evaluation& e) const {
+  return std::max(k_onset_time, k_onset_steps * e.fixed_step) * grip_acceleration_;
+}
+
+void StepLapFriction::begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const {
+  const Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
+  set_direction(state, -required_pressure(f.patch, Vec3(wrench[0], wrench[1], wrench[2])).direction);
+}
+
+void StepLapFriction::aim(FrictionState& state, const double* rate) const {
+  set_direction(state, Vec3(rate[0], rate[1], rate[2]));
+}
+
+void StepLapFriction::slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
+                                  double* wrench) const {
+  const Vec3 n(state.direction[0], state.direction[1], state.direction[2]);
+  Vec3 nu(rate[0], rate[1], rate[2]);
+  const Vec3 y = scaled(nu);
+  if (state.is_starting) {
+    const double delta = onset_speed(e), reach = k_start_reach * delta;
+    const double left = 1.0 - y.squaredNorm() / (reach * reach);
+    if (left > 0.0) nu += delta * left * left * left * n;
+  } else if (y.dot(scaled(n)) < 0.0) {
+    nu = -nu;
+  }
+  if (nu.isZero(0.0)) nu = n;
+  const Fit& f = fit(e.scratch, pose_of(e.motion), GripLaw::sliding);
+  Vec3::Map(wrench) = -evaluate_gradient(f.patch, nu).gradient;
+}
+
+void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
+                                 double* watch) const {
+  const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
+  const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
+  const double speed = y.norm();
+  watch[0] = 1.0;
+  if (state.is_starting) {
+    const double delta = onset_speed(e);
+    watch[0] = k_start_reach * delta - speed;
+    watch[1] = along + k_rest_of_start * delta;
+  } else {
+    watch[1] = along - k_cone * speed;
+  }
+}
+
+bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate,
+                                       int slot) const {
+  const bool has_started = state.is_starting && slot == 0;
+  const double speed = scaled(Vec3(rate[0], rate[1], rate[2])).norm();
+  if (!has_started && (state.is_starting || speed <= onset_speed(e))) return false;
+  state.is_starting = false;
+  aim(state, rate);
+  return true;
+}
+
+// --- coming apart -------------------------------------------------------------------------------------------
+
+double StepLapFriction::watch_place(const Evaluation& e, const FrictionState& state) const {
+  if (state.phase != FrictionPhase::slip) return 1.0;
+  const Pose pose = pose_of(e.motion);
+  OverlapWorkspace& workspace = static_cast<Scratch&>(*e.scratch[index_]).workspace;
+  double watch = 1.0, deepest = -1.0;
+  for (std::size_t i = 0; i < sheets_.size(); ++i) {
+    const double depth = penetration(sheets_[i].yoke, sheets_[i].limb, pose, workspace);
+    if (i < k_tracked) watch = std::min(watch, is_apart(state, i) ? -depth : depth);
+    deepest = std::max(deepest, depth);
+  }
+  return sheets_.size() > k_tracked ? std::min(watch, deepest) : watch;
+}
+
+void StepLapFriction::change_place(const Evaluation& e, FrictionState& state) const {
+  const Pose pose = pose_of(e.motion);
+  OverlapWorkspace workspace;
+  bool is_any_left = false;
+  state.foot = 0;
+  for (std::size_t i = 0; i < sheets_.size(); ++i) {
+    const bool overlaps = penetration(sheets_[i].yoke, sheets_[i].limb, pose, workspace) > 0.0;
+    if (!overlaps && i < k_tracked) state.foot |= 1u << i;
+    is_any_left = is_any_left || overlaps;
+  }
+  if (!is_any_left) state.phase = FrictionPhase::apart;
+}
+
+} // namespace steplap

@@ -1,0 +1,104 @@
+// The friction of a step-lap joint: three rows that hold the limb, the limit surface of the overlapping
+// sheets that bounds their wrench, and the slip law (physics.md §4).
+//
+// Wrench W = (Fx, Fy, M) on the limb about its centre of gravity and slip twist ν = (vx, vy, ω) of the
+// limb relative to the active part, both in the active part's axes; ν is the rate of the rows.
+//   Sticks while u(W) ≤ 1 by the static coefficients; slides with W = −∇h(ν) by the kinetic ones, the
+//   overlap taken at the present pose.
+//
+// At ν = 0 the law has no value, and near it a stiffness of (grip acceleration)/|ν|. After an onset
+// |ν| grows as the square of time only, so that it matters there. While a slip is *starting*,
+// |ν| below a few times δ = (grip acceleration) × (a time short against all else), the law is
+//   W = −∇h(ν + δ (1 − |ν|²/(k δ)²)³ n),  n the normal of the bound at the onset,
+// which is bounded in stiffness, exact at both ends, dissipates what it does work on (no energy is lost
+// from the account), and whose influence is forgotten as the direction settles. Beyond, and for good, it
+// is −∇h(ν) alone. The time is 1e-7 s, or, for a method with a fixed step, what keeps that step stable.
+//
+// |ν| reaches zero along a line, with no sign change of anything but ν itself: the law is continued
+// through ν = 0 with the wrench it had, ν·n < 0 there, n being the direction as last looked at. An event
+// is where ν leaves the cone of 60° about n: at rest, the mode problem decides between holding and
+// sliding anew; in motion, n is taken anew and the slip goes on.
+#pragma once
+
+#include "elements/patch/required_pressure.h"
+#include "elements/step_lap_interface.h"
+#include "mbd/system.h"
+
+namespace steplap {
+
+/// Which coefficients count.
+enum class GripLaw { holding, sliding };
+
+class StepLapFriction final : public FrictionElement {
+public:
+  /// `index` among the friction elements, `row` its slot in Snapshot::friction_force. Without sheets,
+  /// or as a monitor, it holds whatever it takes.
+  StepLapFriction(int index, int row, std::vector<SheetPair> sheets, bool is_monitor,
+                  bool stops_when_apart);
+
+  RowSpec hold[3]; ///< x and y in the active part's axes, angle
+  /// To be called when the rows are complete: scales of lengths and accelerations at this pose.
+  void set_scales(const Pose& reference, const BodyData& limb, const BodyData& active_part);
+
+  // --- what the joint is like now -------------------------------------------------------------------
+  [[nodiscard]] bool has_sheets() const { return !sheets_.empty(); }
+  [[nodiscard]] Pose pose_of(const Motion<double>* motion) const;
+  /// The overlapping area with its tractions at a pose.
+  [[nodiscard]] Patch patch_at(const Pose& pose, GripLaw law) const;
+  /// Of the wrench in `s`: share of the capacity, direction, centre of rotation.
+  [[nodiscard]] const RequiredPressure& usage(const Snapshot& s) const;
+  [[nodiscard]] double area(const Snapshot& s) const;
+
+  // --- FrictionElement --------------------------------------------------------------------------------
+  [[nodiscard]] int dimension() const override { return 3; }
+  [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return hold; }
+  [[nodiscard]] bool is_rigid() const override { return true; }
+  [[nodiscard]] bool never_slips() const override { return is_monitor_ || sheets_.empty(); }
+  void mark_bodies(std::vector<char>&) const override {}
+  [[nodiscard]] std::unique_ptr<FrictionScratch> make_scratch() const override;
+  [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
+  void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
+                   double* wrench) const override;
+  void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench,
+                   double* watch) const override;
+  void begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const override;
+  void aim(FrictionState& state, const double* rate) const override;
+  void watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
+                  double* watch) const override;
+  [[nodiscard]] bool goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate,
+                                      int slot) const override;
+  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override;
+  void change_place(const Evaluation& e, FrictionState& state) const override;
+  [[nodiscard]] const char* place_change_name() const override { return "parts or meets at an interface"; }
+  [[nodiscard]] bool stops_when_apart() const override { return stops_when_apart_; }
+  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState& state,
+                                          const double* a, const double* b,
+                                          bool is_kinetic) const override;
+
+private:
+  struct Fit;
+  struct Scratch;
+  [[nodiscard]] Fit& fit(FrictionScratch* const* scratch, const Pose& pose, GripLaw law) const;
+  [[nodiscard]] Pose anchor(const double* memory) const;
+  [[nodiscard]] Pose present(const Snapshot& s) const;
+  void build(const Pose& pose, GripLaw law, OverlapWorkspace& workspace, Region& region,
+             Patch& patch) const;
+  [[nodiscard]] Vec3 scaled(const Vec3& nu) const;
+  void set_direction(FrictionState& state, const Vec3& nu) const;
+  [[nodiscard]] double onset_speed(const Evaluation& e) const;
+  [[nodiscard]] bool is_apart(const FrictionState& state, std::size_t i) const {
+    return i < k_tracked && (state.foot >> i & 1u) != 0;
+  }
+
+  static constexpr std::size_t k_tracked = 32; ///< interfaces whose parting is an event of its own
+
+  int index_ = 0, row_ = 0;
+  std::vector<SheetPair> sheets_;
+  bool is_monitor_ = false, stops_when_apart_ = true;
+  bool is_one_law_ = true;         ///< static and kinetic coefficients are the same
+  Vec2 arm_ = Vec2::Zero();        ///< from the limb's centre of gravity to the joint's centre, m
+  double gyration_ = 1.0;          ///< of the traction about the joint's centre, m
+  double grip_acceleration_ = 1.0; ///< about the largest that it can give, m/s²
+};
+
+} // namespace steplap

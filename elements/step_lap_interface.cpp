@@ -1,0 +1,106 @@
+#include "elements/step_lap_interface.h"
+
+#include "elements/step_lap_joint.h"
+#include "mbd/system.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace steplap {
+
+namespace {
+
+/// A point of the model file, in the axes of `body` about its centre of gravity.
+Vec2 in_body(const Vec2& point, bool is_in_body_frame, const std::string& body,
+             const SystemBuilder& builder) {
+  Vec2 ground = point;
+  const Body* frame = builder.model().find_body(body);
+  if (is_in_body_frame && frame) ground = frame->position + rotated(point, frame->angle);
+  const Motion<double>& m = builder.reference(builder.body(body));
+  return rotated(ground - Vec2(m.x, m.y), -m.theta);
+}
+
+// Regular, and of the circle's area: n/2 r² sin(2π/n) = π d²/4.
+Ring round_hole(const Vec2& centre, double diameter, long sides) {
+  const double step = 2.0 * std::numbers::pi / static_cast<double>(sides);
+  const double radius = 0.5 * diameter * std::sqrt(step / std::sin(step));
+  Ring ring;
+  for (long i = 0; i < sides; ++i)
+    ring.push_back(centre + radius * Vec2(std::cos(step * static_cast<double>(i)),
+                                          std::sin(step * static_cast<double>(i))));
+  return ring;
+}
+
+Outline make_sheet(const StepLapInterface& e, const std::vector<Vec2>& outline,
+                   const std::vector<Vec2>& holes, const std::string& body,
+                   const SystemBuilder& builder) {
+  const bool is_in_body_frame = e.frame == "body";
+  Polygon polygon;
+  for (const Vec2& p : outline) polygon.outer.push_back(in_body(p, is_in_body_frame, body, builder));
+  for (const Vec2& p : holes)
+    polygon.holes.push_back(
+        round_hole(in_body(p, is_in_body_frame, body, builder), e.hole_diameter, e.hole_sides));
+  return make_outline(std::move(polygon));
+}
+
+void compile_interface(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const StepLapInterface&>(element);
+  const ElementEntry* entry = builder.element(e.joint);
+  const auto* joint = entry ? dynamic_cast<const StepLapJoint*>(entry->element.get()) : nullptr;
+  if (!joint) return builder.error("'joint': '" + e.joint + "' is no step_lap_joint");
+  if (e.kinetic_friction.value_or(e.static_friction) > e.static_friction)
+    return builder.error("'kinetic_friction' must not exceed 'static_friction'");
+  if (!(e.yoke_holes.empty() && e.limb_holes.empty()) && !(e.hole_diameter > 0.0))
+    return builder.error("has holes: 'hole_diameter' must be more than 0 m");
+  // Each on its own, so that the message can say which of the two.
+  for (const bool is_yoke : {true, false}) try {
+      static_cast<void>(make_sheet(e, is_yoke ? e.yoke : e.limb, is_yoke ? e.yoke_holes : e.limb_holes,
+                                   is_yoke ? joint->active_part : joint->limb, builder));
+    } catch (const PolygonError& error) {
+      builder.error(std::string(is_yoke ? "'yoke'" : "'limb'") + ": " + error.what());
+    }
+}
+
+} // namespace
+
+SheetPair make_sheets(const StepLapInterface& e, const std::string& limb,
+                      const std::string& active_part, const SystemBuilder& builder) {
+  SheetPair pair;
+  pair.yoke = make_sheet(e, e.yoke, e.yoke_holes, active_part, builder);
+  pair.limb = make_sheet(e, e.limb, e.limb_holes, limb, builder);
+  pair.static_traction = e.count * e.pressure * e.static_friction;
+  pair.kinetic_traction = e.count * e.pressure * e.kinetic_friction.value_or(e.static_friction);
+  return pair;
+}
+
+const ElementKind& step_lap_interface_kind() {
+  static const ElementKind kind = [] {
+    using T = StepLapInterface;
+    ElementKind k;
+    k.name = "step_lap_interface";
+    k.stage = 1;
+    k.doc = "A yoke sheet and a limb sheet that overlap: one kind of interface of a step_lap_joint. "
+            "Friction acts where the two polygons overlap at the present relative pose.";
+    FieldTable& f = k.fields;
+    f.add("joint", &T::joint).as(FieldType::element).required().doc("the step_lap_joint it belongs to");
+    f.add("yoke", &T::yoke).in("m").required().doc("corners of the sheet fixed in the active part");
+    f.add("limb", &T::limb).in("m").required().doc("corners of the sheet fixed in the limb");
+    f.add("frame", &T::frame)
+        .one_of({"ground", "body"})
+        .doc("corners in ground coordinates of the reference pose, or each in its body's frame");
+    f.add("yoke_holes", &T::yoke_holes).in("m").doc("centres of round holes in the yoke sheet");
+    f.add("limb_holes", &T::limb_holes).in("m").doc("centres of round holes in the limb sheet");
+    f.add("hole_diameter", &T::hole_diameter).in("m").not_negative().doc("of all of them");
+    f.add("hole_sides", &T::hole_sides).at_least(3).at_most(360).doc("a hole is a polygon of the circle's area");
+    f.add("pressure", &T::pressure).in("Pa").positive().required().doc("clamping pressure, constant");
+    f.add("static_friction", &T::static_friction).positive().required().doc("mu_s");
+    f.add("kinetic_friction", &T::kinetic_friction).positive().doc("mu_k; default: mu_s");
+    f.add("count", &T::count).positive().doc("number of equal interfaces in the stack");
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.compile = compile_interface;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

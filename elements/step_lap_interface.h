@@ -1,0 +1,39 @@
+// One kind of interface of a step-lap joint: a yoke sheet and a limb sheet pressed on each other.
+//
+// The yoke sheet's polygon is fixed in the active part, the limb sheet's in the limb; where they overlap
+// at the present relative pose there is friction (Fig. 2 of the paper). A stack has `count` equal
+// interfaces of the kind, each with the clamping pressure and the friction coefficients given, which do
+// not change while the sheets slide. Several interfaces (corners, regions) make up a joint.
+#pragma once
+
+#include "elements/patch/overlap.h"
+#include "mbd/model.h"
+
+namespace steplap {
+
+struct StepLapInterface : Element {
+  std::string joint;              ///< name of the step_lap_joint it belongs to
+  std::vector<Vec2> yoke, limb;   ///< m, either sense
+  std::string frame = "ground";   ///< "ground": reference pose; "body": each in its own body's frame
+  std::vector<Vec2> yoke_holes, limb_holes; ///< centres of round holes, m, in the same frame
+  double hole_diameter = 0.0;     ///< m
+  long hole_sides = 24;           ///< a hole is a regular polygon of the circle's area
+  double pressure = 0.0;          ///< Pa
+  double static_friction = 0.0;
+  std::optional<double> kinetic_friction;
+  double count = 1.0;             ///< of equal interfaces
+};
+
+/// The two sheets, each in its body's axes about its centre of gravity.
+struct SheetPair {
+  Outline yoke, limb;
+  double static_traction = 0.0, kinetic_traction = 0.0; ///< count · μ · p, N/m²
+};
+
+/// Throws PolygonError for outlines that are none.
+[[nodiscard]] SheetPair make_sheets(const StepLapInterface& interface, const std::string& limb,
+                                    const std::string& active_part, const SystemBuilder& builder);
+
+[[nodiscard]] const ElementKind& step_lap_interface_kind();
+
+} // namespace steplap
