@@ -1,0 +1,112 @@
+// Cost of one evaluation, of one step of each integrator and of a whole run on the paper's
+// transformer, and of the same bodies on springs only: what contacts, friction and constraints cost.
+//
+// Names are scene/what/…, so that lines of two scenes can be divided by each other.
+#include "elements/catalog.h"
+#include "mbd/io/reader.h"
+#include "mbd/simulation.h"
+
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+using namespace steplap;
+
+namespace {
+
+constexpr double k_sliding = 0.10; // s: the active part slides, the load is near its peak
+constexpr double k_stretch = 0.005; // s of motion that the step benchmark goes through again and again
+
+struct Scene {
+  Model model;
+  std::unique_ptr<System> system;
+  State state; ///< at k_sliding
+};
+
+const Scene& scene(const std::string& path) {
+  static std::map<std::string, std::unique_ptr<Scene>> scenes;
+  std::unique_ptr<Scene>& entry = scenes[path];
+  if (entry) return *entry;
+  entry = std::make_unique<Scene>();
+  entry->model = read_model(STEPLAP_MODELS "/" + path, element_catalog());
+  entry->system = compile(entry->model);
+  SimulationOptions options = options_of(entry->model);
+  options.end = k_sliding;
+  entry->state = simulate(*entry->system, entry->system->initial_state(), options).final_state;
+  return *entry;
+}
+
+void evaluation(benchmark::State& state, const std::string& path) {
+  const Scene& s = scene(path);
+  Dynamics dynamics(*s.system);
+  dynamics.set_state(s.state);
+  std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
+  dynamics.pack(s.state, y.data());
+  for (auto _ : state) {
+    dynamics.rates(s.state.t, y.data(), dy.data());
+    benchmark::DoNotOptimize(dy.data());
+    benchmark::ClobberMemory();
+  }
+  state.counters["evaluations"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+
+// Steps without looking for events or samples, over a short stretch again and again.
+void step(benchmark::State& state, const std::string& path, const std::string& method) {
+  const Scene& s = scene(path);
+  Dynamics dynamics(*s.system);
+  dynamics.set_state(s.state);
+  IntegratorSettings settings;
+  settings.step = 1e-4;
+  const auto integrator = make_integrator(method, dynamics, settings);
+  std::vector<double> y(static_cast<std::size_t>(dynamics.dimension()));
+  dynamics.pack(s.state, y.data());
+  integrator->restart(dynamics, s.state.t, y.data());
+  const long before = dynamics.evaluations();
+  const double end = s.state.t + k_stretch;
+  for (auto _ : state) {
+    integrator->step(dynamics, end);
+    if (integrator->t1() < end)
+      integrator->accept();
+    else
+      integrator->restart(dynamics, s.state.t, y.data());
+  }
+  state.counters["evaluations_per_step"] =
+      static_cast<double>(dynamics.evaluations() - before) / static_cast<double>(state.iterations());
+}
+
+// A whole run as the model asks for it, without samples: events found and passed.
+void whole_run(benchmark::State& state, const std::string& path, const std::string& method) {
+  const Scene& s = scene(path);
+  SimulationOptions options = options_of(s.model);
+  options.integrator = method;
+  options.output_step = 0.0;
+  RunStatistics statistics;
+  for (auto _ : state)
+    statistics = simulate(*s.system, s.system->initial_state(), options).statistics;
+  const auto runs = static_cast<double>(state.iterations());
+  state.counters["steps"] = static_cast<double>(statistics.steps);
+  state.counters["evaluations"] = static_cast<double>(statistics.evaluations);
+  state.counters["evaluations_rate"] = benchmark::Counter(
+      static_cast<double>(statistics.evaluations) * runs, benchmark::Counter::kIsRate);
+}
+
+void add_scene(const std::string& name, const std::string& path) {
+  benchmark::RegisterBenchmark((name + "/evaluation").c_str(), evaluation, path);
+  for (const std::string method : {"rk4", "tsit5", "dop853"}) {
+    benchmark::RegisterBenchmark((name + "/step/" + method).c_str(), step, path, method);
+    benchmark::RegisterBenchmark((name + "/run/" + method).c_str(), whole_run, path, method)
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  add_scene("transformer", "paper/no_interference.toml");
+  add_scene("springs", "benchmarks/paper_springs_only.toml");
+  benchmark::RunSpecifiedBenchmarks();
+}
