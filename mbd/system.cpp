@@ -21,12 +21,17 @@ void place_bodies(const std::vector<double>& q, const std::vector<double>& v,
 }
 
 // A drive read as a velocity or an acceleration begins where the body is; one read as an acceleration
-// also begins with the speed that the body has. A position is absolute.
+// also begins with the speed that the body has. A position is absolute: the base is what the signal's
+// increment since t = 0 leaves out.
 void start_drives(const System& system, State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   for (const RowSpec& row : system.rows) {
-    if (!row.drive || row.level == DriveLevel::position) continue;
+    if (!row.drive) continue;
+    if (row.level == DriveLevel::position) {
+      state.memory[row.memory] = row.drive->value(0.0);
+      continue;
+    }
     const auto m = evaluate_row<false>(row, motion.data());
     const SignalJet now = row.drive->drive(state.t, row.level);
     const double base_rate = row.level == DriveLevel::acceleration ? m.rate - now.rate : 0.0;
