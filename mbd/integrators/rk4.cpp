@@ -1,7 +1,8 @@
 // The classical Runge–Kutta method of order 4 with a fixed step, as the paper uses it (§3).
 //
 // Dense output: positions by the quintic that has position, velocity and acceleration of both ends
-// (error O(h⁶)), velocities by its derivative (O(h⁵)), so that events located on it keep the order.
+// (its own error O(h⁶), below the step's O(h⁵)), velocities by its derivative (O(h⁴): the step's error
+// divided by h), so that events located on it keep the order.
 #include "mbd/integrators/explicit_runge_kutta.h"
 #include "mbd/integrators/methods.h"
 
