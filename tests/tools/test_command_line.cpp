@@ -79,6 +79,30 @@ TEST_CASE("check counts the paper's degrees of freedom") {
   CHECK_FALSE(has(outcome.out, "warning"));
 }
 
+TEST_CASE("the model in the README is one") {
+  const Workbench bench;
+  const std::string readme = text_of(STEPLAP_SOURCE "/README.md"), fence = "```toml\n";
+  const std::size_t begin = readme.find(fence);
+  REQUIRE(begin != std::string::npos);
+  const std::size_t from = begin + fence.size();
+  const std::string model = bench.write("readme.toml", readme.substr(from, readme.find("```", from) - from));
+  const Outcome outcome = steplap_does({"check", model});
+  CHECK(outcome.code == 0);
+  CHECK(has(outcome.out, "degrees of freedom  3; 2 while all friction sticks\n"));
+  CHECK_FALSE(has(outcome.out, "warning"));
+}
+
+TEST_CASE("the README names every exit code and command") {
+  const std::string readme = text_of(STEPLAP_SOURCE "/README.md");
+  const std::string help = steplap_does({"--help"}).out;
+  for (const char* command : {"simulate", "check", "equilibrium", "elements", "schema"})
+    CHECK_MESSAGE(has(readme, std::string("`steplap ") + command), command);
+  for (int code = 0; code <= 5; ++code) {
+    CHECK(has(readme, "| " + std::to_string(code) + " | "));
+    CHECK(has(help, "\n  " + std::to_string(code) + "  "));
+  }
+}
+
 TEST_CASE("check names joints that hold what others hold already") {
   const Workbench bench;
   std::string text = k_oscillator;

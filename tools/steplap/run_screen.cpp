@@ -32,7 +32,7 @@ void print_heading(std::ostream& out, const FinishedRun& finished) {
 void print_events(std::ostream& out, const FinishedRun& finished) {
   const std::vector<Event>& events = finished.run.result.events;
   const auto main = std::count_if(events.begin(), events.end(), is_main_event);
-  out << "\nEvents: " << events.size();
+  out << "\nEvents: " << (events.empty() ? "none" : std::to_string(events.size()));
   if (main < static_cast<long>(events.size()))
     out << "; without changes of foot and kinks of a force " << main;
   out << "\n";
@@ -73,7 +73,7 @@ void print_reactions(std::ostream& out, const RunSummary& summary) {
     table.add_row({range.channel->name, value_text(range, range.low), sample_time_text(range.low.t),
                    value_text(range, range.high), sample_time_text(range.high.t)});
   }
-  if (is_any) out << "\nReactions, extremes over the samples\n" << table;
+  if (is_any) out << "\nReactions and required pressures, extremes over the samples\n" << table;
 }
 
 void print_slides(std::ostream& out, const RunSummary& summary) {
@@ -170,7 +170,7 @@ void print_reactions_side_by_side(std::ostream& out, const std::vector<FinishedR
   table.add_row(heads);
   for (const std::string& name : names)
     add_range_row(table, runs, name);
-  out << "Reactions, extremes over the samples (their times: summary.json)\n" << table;
+  out << "Reactions and required pressures, extremes over the samples (their times: summary.json)\n" << table;
 }
 
 } // namespace

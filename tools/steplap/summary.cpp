@@ -48,7 +48,8 @@ RunSummary summarise(const Run& run) {
 }
 
 bool is_reaction(const Channel& channel) {
-  return (channel.unit == "N" || channel.unit == "N m") && last_part(channel.name) != "capacity";
+  const bool is_load = channel.unit == "N" || channel.unit == "N m" || channel.unit == "Pa";
+  return is_load && last_part(channel.name) != "capacity";
 }
 
 bool is_slide(const Channel& channel) {

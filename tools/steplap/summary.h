@@ -36,7 +36,8 @@ struct RunSummary {
 
 [[nodiscard]] RunSummary summarise(const Run& run);
 
-/// A reaction: a force or couple of an element, by its unit; what a joint could bear is none.
+/// What an element has to bear, told by its unit: a force, a couple, the pressure that a joint would
+/// need. What it could bear is none.
 [[nodiscard]] bool is_reaction(const Channel& channel);
 /// A path slid in friction.
 [[nodiscard]] bool is_slide(const Channel& channel);
