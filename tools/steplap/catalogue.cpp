@@ -1,11 +1,11 @@
 #include "tools/steplap/catalogue.h"
 
-#include "elements/catalog.h"
+#include "transformer/catalog.h"
 
 namespace steplap {
 
 const Catalogue& program_catalogue() {
-  return element_catalog();
+  return transformer_catalog();
 }
 
 } // namespace steplap

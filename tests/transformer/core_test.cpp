@@ -1,0 +1,336 @@
+// A core's joints from its dimensions: the paper's polygons and capacity, the book of a step-lap stack,
+// what is refused.
+#include "elements/patch/overlap.h"
+#include "elements/patch/polygon.h"
+#include "elements/step_lap_friction.h"
+#include "elements/step_lap_interface.h"
+#include "elements/step_lap_joint.h"
+#include "mbd/io/reader.h"
+#include "mbd/system.h"
+#include "transformer/book.h"
+#include "transformer/catalog.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace steplap;
+
+namespace {
+
+const std::string k_bodies = R"(
+[simulation]
+step = 1e-3
+[[body]]
+name = "active part"
+mass = 47000
+inertia = 65200
+position = [0.0, 1.95]
+[[body]]
+name = "front limb"
+mass = 9000
+inertia = 6500
+position = [1.25, 1.95]
+[[body]]
+name = "back limb"
+mass = 9000
+inertia = 6500
+position = [-1.25, 1.95]
+)";
+
+const std::string k_shape = R"(
+[[core]]
+name = "core"
+active_part = "active part"
+limbs = ["front limb", "back limb"]
+limb_width = 0.5
+core_height = 3.3
+yoke_height = 0.5
+pressure = "0.1 MPa"
+static_friction = 0.25
+)";
+
+const std::string k_counted = "overlap = 0.01\ninterfaces = 1165\n";
+const std::string k_built = "stack_depth = 0.585\nstacking_factor = 0.96\nsheet_thickness = \"0.27 mm\"\n"
+                            "steps = 5\nstep_pitch = \"5 mm\"\n";
+
+Model model_of(const std::string& core, const std::vector<std::string>& overrides = {}) {
+  return parse_model(k_bodies + core, "core.toml", transformer_catalog(), overrides);
+}
+
+std::vector<const StepLapInterface*> interfaces_of(const Model& model) {
+  std::vector<const StepLapInterface*> found;
+  for (const ElementEntry& entry : model.elements)
+    if (const auto* e = dynamic_cast<const StepLapInterface*>(entry.element.get())) found.push_back(e);
+  return found;
+}
+
+/// Friction of the i-th joint over its overlap in the reference pose.
+Patch patch_of(const Model& model, std::size_t i = 0, const Pose& moved = {0, 0, 0}) {
+  const auto system = compile(model);
+  const auto& friction = dynamic_cast<const StepLapFriction&>(*system->frictions.at(i).friction);
+  const State state = system->initial_state();
+  std::vector<Motion<double>> motion(static_cast<std::size_t>(system->body_count()));
+  place_bodies(state.q, state.v, motion);
+  Pose pose = friction.pose_of(motion.data());
+  pose.x += moved.x;
+  pose.y += moved.y;
+  pose.theta += moved.theta;
+  return friction.patch_at(pose, GripLaw::holding);
+}
+
+double overlap_area(const StepLapInterface& e) {
+  const Outline yoke = make_outline({e.yoke, {}}), limb = make_outline({e.limb, {}});
+  OverlapWorkspace workspace;
+  Region region;
+  intersect(yoke, limb, {0, 0, 0}, workspace, region);
+  return area(region);
+}
+
+/// The message that a core is refused with; "" if it is not.
+std::string refusal(const std::string& core, const std::vector<std::string>& overrides = {}) {
+  try {
+    static_cast<void>(model_of(core, overrides));
+  } catch (const ModelError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+} // namespace
+
+TEST_CASE("the paper's dimensions give the paper's sheets") {
+  const Model model = model_of(k_shape + k_counted);
+  const auto interfaces = interfaces_of(model);
+  REQUIRE(interfaces.size() == 4);
+  const double l = std::sqrt(0.5), r = 1.0 / std::sqrt(2.0), w = 0.01;
+  for (const StepLapInterface* e : interfaces) {
+    CAPTURE(e->name);
+    const double side = e->joint == "front limb joint" ? 1.0 : -1.0;
+    const double level = has(e->name, "top") ? 1.0 : -1.0;
+    const Vec2 centre(1.25 * side, 1.95), corner(-0.25 * side, 1.15 * level);
+    const Vec2 t(side * r, level * r), n(side * r, -level * r);
+    const auto at = [&](double s, double q) { return Vec2(centre + corner + s * t + q * n); };
+    const std::vector<Vec2> limb = {at(0, -w / 2), at(l, -w / 2), at(l, 0.05), at(0, 0.05)};
+    const std::vector<Vec2> yoke = {at(-0.02, -0.05), at(l + 0.02, -0.05), at(l + 0.02, w / 2), at(-0.02, w / 2)};
+    // A few roundings of coordinates up to 4 m.
+    for (std::size_t i = 0; i < 4; ++i) {
+      CHECK((e->limb.at(i) - limb[i]).norm() < 2e-15);
+      CHECK((e->yoke.at(i) - yoke[i]).norm() < 2e-15);
+    }
+    CHECK(e->frame == "ground");
+    CHECK(e->count == 1165.0);
+    CHECK(e->pressure == 1e5);
+    CHECK(e->static_friction == 0.25);
+    CHECK(overlap_area(*e) == doctest::Approx(l * w).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("the paper's joint bears 411.9 kN") {
+  const Model model = model_of(k_shape + k_counted);
+  for (const std::size_t joint : {0u, 1u}) {
+    const Patch patch = patch_of(model, joint);
+    // 2 corners · 1165 · 0.25 · 0.1 MPa · 10 mm · √0.5 m; 411.9 as printed
+    CHECK(patch.force() == doctest::Approx(2 * 1165 * 0.25 * 1e5 * 0.01 * std::sqrt(0.5)).epsilon(1e-12));
+    CHECK(std::abs(patch.force() / 1e3 - 411.9) < 0.05);
+    CHECK((patch.centroid() - patch.reference()).norm() < 1e-13); // symmetric about the limb's centre
+  }
+}
+
+TEST_CASE("joints get the names asked for, or those of their limbs") {
+  const Model own = model_of(k_shape + k_counted), named =
+      model_of(k_shape + k_counted + "joints = [\"front joint\", \"back joint\"]\nmode = \"monitor\"\n");
+  const auto names = [](const Model& model) {
+    std::vector<std::string> found;
+    for (const ElementEntry& entry : model.elements)
+      if (dynamic_cast<const StepLapJoint*>(entry.element.get())) found.push_back(entry.element->name);
+    return found;
+  };
+  CHECK(names(own) == std::vector<std::string>{"front limb joint", "back limb joint"});
+  CHECK(names(named) == std::vector<std::string>{"front joint", "back joint"});
+  for (const ElementEntry& entry : named.elements)
+    if (const auto* joint = dynamic_cast<const StepLapJoint*>(entry.element.get())) CHECK(joint->mode == "monitor");
+}
+
+TEST_CASE("packets of a core share the joints") {
+  const std::string second = "[[core]]\nname = \"packet 2\"\nactive_part = \"active part\"\n"
+                             "limbs = [\"front limb\", \"back limb\"]\nlimb_width = 0.4\ncore_height = 3.2\n"
+                             "yoke_height = 0.4\npressure = 5e4\nstatic_friction = 0.25\noverlap = 0.01\n"
+                             "interfaces = 300\n";
+  const Model model = model_of(k_shape + k_counted + second);
+  CHECK(compile(model)->frictions.size() == 2);
+  CHECK(interfaces_of(model).size() == 8);
+  const double both = 2 * 0.25 * 0.01 * (1165 * 1e5 * std::sqrt(0.5) + 300 * 5e4 * 0.4 * std::sqrt(2.0));
+  CHECK(patch_of(model).force() == doctest::Approx(both).epsilon(1e-12));
+}
+
+TEST_CASE("a joint of the model is used as it stands") {
+  const std::string joint = "[[element]]\nkind = \"step_lap_joint\"\nname = \"front limb joint\"\n"
+                            "limb = \"front limb\"\nactive_part = \"active part\"\non_apart = \"continue\"\n";
+  const Model model = model_of(k_shape + k_counted + joint);
+  CHECK(compile(model)->frictions.size() == 2);
+  for (const ElementEntry& entry : model.elements)
+    if (entry.element->name == "front limb joint")
+      CHECK(dynamic_cast<const StepLapJoint&>(*entry.element).on_apart == "continue");
+  const std::string other = "[[element]]\nkind = \"step_lap_joint\"\nname = \"front limb joint\"\n"
+                            "limb = \"back limb\"\nactive_part = \"active part\"\n";
+  CHECK(has(refusal(k_shape + k_counted + other), "holds 'back limb' to 'active part', not 'front limb'"));
+}
+
+// --- the book ---------------------------------------------------------------------------------------------
+
+TEST_CASE("a book of n steps has a mean overlap of 2(n-1)/n step pitches, less the clearance") {
+  Book book;
+  book.stack_depth = 0.6;
+  book.sheet_thickness = 0.3e-3;
+  book.step_pitch = 5e-3;
+  for (const long n : {2L, 3L, 5L, 7L, 10L}) {
+    book.steps = n;
+    const double steps = static_cast<double>(n);
+    for (const double clearance : {0.0, 0.5e-3}) {
+      book.clearance = clearance;
+      CHECK(mean_overlap(book) == doctest::Approx(2 * (steps - 1) / steps * 5e-3 - clearance).epsilon(1e-14));
+      const auto bands = each_band(book);
+      CHECK(static_cast<long>(bands.size()) == n);
+      double count = 0, width = 0, first = 0;
+      for (const LapBand& b : bands) {
+        count += b.count;
+        width += b.count * (b.outer - b.inner);
+        first += b.count * 0.5 * (b.outer + b.inner);
+      }
+      const LapBand mean = mean_band(book).front();
+      CHECK(count == doctest::Approx(mean.count).epsilon(1e-14));
+      CHECK(width == doctest::Approx(mean.count * (mean.outer - mean.inner)).epsilon(1e-13));
+      CHECK(std::abs(first) < 1e-12); // about the middle of the mitre
+    }
+  }
+}
+
+// Layers laid down one by one, their overlaps measured sheet against sheet.
+TEST_CASE("the bands of a book are those of a stack built layer by layer") {
+  Book book;
+  book.stack_depth = 0.3;
+  book.sheet_thickness = 0.3e-3;
+  book.step_pitch = 5e-3;
+  book.steps = 5;
+  book.clearance = 0.6e-3;
+  book.sheets_per_layer = 2;
+  const long layers = sheets_in(book) / 2;
+  CHECK(layers == 500);
+  double total = 0;
+  for (long k = 0; k + 1 < layers; ++k) {
+    const double here = static_cast<double>(k % 5 - 2) * 5e-3, next = static_cast<double>((k + 1) % 5 - 2) * 5e-3;
+    // either the yoke sheet of the next layer covers the limb sheet of this one, or the other way round
+    total += std::max({0.0, (next - 0.3e-3) - (here + 0.3e-3), (here - 0.3e-3) - (next + 0.3e-3)});
+  }
+  // 499 interfaces are not a whole number of books: off by one narrow or wide band at most.
+  CHECK(interfaces_in(book) == 499);
+  CHECK(std::abs(total - 499 * mean_overlap(book)) < 4 * 5e-3);
+}
+
+TEST_CASE("a stack as it is built: sheets, interfaces, capacity") {
+  // D = 0.585 m deep, 827 mm mitre: 2080 sheets, 5 steps of 5 mm, 8 mm of overlap in the mean
+  const Model model = model_of(k_shape + k_built, {"core.core.limb_width=0.585", "core.core.yoke_height=0.585"});
+  const auto interfaces = interfaces_of(model);
+  REQUIRE(interfaces.size() == 4);
+  CHECK(interfaces[0]->count == 2079.0);
+  CHECK(overlap_area(*interfaces[0]) == doctest::Approx(0.008 * 0.585 * std::sqrt(2.0)).epsilon(1e-12));
+  // one corner, mu 0.2, p 0.1 MPa: 275 kN
+  CHECK(std::abs(patch_of(model).force() / 2 * 0.2 / 0.25 - 275e3) < 0.5e3);
+  // with two sheets in a layer half of the interfaces carry none
+  const Model pairs = model_of(k_shape + k_built, {"core.core.sheets_per_layer=2"});
+  CHECK(interfaces_of(pairs)[0]->count == 1039.0);
+}
+
+TEST_CASE("each band where it is: same capacity, parts earlier") {
+  const Model mean = model_of(k_shape + k_built),
+              each = model_of(k_shape + k_built, {"core.core.bands=each"});
+  CHECK(interfaces_of(each).size() == 20);
+  CHECK(patch_of(each).force() == doctest::Approx(patch_of(mean).force()).epsilon(1e-12));
+  // Drawn forward, off both mitres, by a third of the pitch: the corners' bands narrow alike. By 6 mm
+  // across the mitre the narrow ones, 5 mm wide, have parted, of the wide one 14 mm are left.
+  const double d = 6e-3 * std::sqrt(2.0);
+  CHECK(patch_of(mean, 0, {d / 3, 0, 0}).force() ==
+        doctest::Approx(patch_of(each, 0, {d / 3, 0, 0}).force()).epsilon(1e-12));
+  const double whole = patch_of(mean).force();
+  CHECK(patch_of(mean, 0, {d, 0, 0}).force() / whole < 0.26);
+  CHECK(patch_of(each, 0, {d, 0, 0}).force() / whole > 0.34);
+}
+
+TEST_CASE("top and bottom may differ") {
+  const Model model = model_of(k_shape + k_counted + "bottom_pressure = 5e4\nbottom_static_friction = 0.2\n");
+  for (const StepLapInterface* e : interfaces_of(model)) {
+    CHECK(e->pressure == (has(e->name, "bottom") ? 5e4 : 1e5));
+    CHECK(e->static_friction == (has(e->name, "bottom") ? 0.2 : 0.25));
+  }
+}
+
+// --- geometry -------------------------------------------------------------------------------------------------
+
+TEST_CASE("a core that stands aslant has the same joints, turned") {
+  const double angle = 0.3;
+  const auto turned = [&](double x, double y) {
+    const Vec2 p = Vec2(0, 1.95) + rotated(Vec2(x, y - 1.95), angle);
+    return "[" + std::to_string(p.x()) + "," + std::to_string(p.y()) + "]";
+  };
+  const Model upright = model_of(k_shape + k_counted);
+  const Model aslant = model_of(k_shape + k_counted,
+                                {"body.active part.angle=0.3", "body.front limb.angle=0.3", "body.back limb.angle=0.3",
+                                 "body.front limb.position=" + turned(1.25, 1.95),
+                                 "body.back limb.position=" + turned(-1.25, 1.95)});
+  const Patch a = patch_of(upright), b = patch_of(aslant);
+  CHECK(b.force() == doctest::Approx(a.force()).epsilon(1e-12));
+  CHECK(b.gyration() == doctest::Approx(a.gyration()).epsilon(1e-12));
+}
+
+TEST_CASE("a mitre that does not run from corner to corner ends where limb or yoke does") {
+  const auto length = [](const std::vector<std::string>& overrides) {
+    const Model model = model_of(k_shape + k_counted, overrides);
+    const StepLapInterface& e = *interfaces_of(model).front();
+    return (e.limb[1] - e.limb[0]).norm();
+  };
+  CHECK(length({"core.core.yoke_height=0.6"}) == doctest::Approx(std::hypot(0.5, 0.6)).epsilon(1e-12));
+  CHECK(length({"core.core.yoke_height=0.6", "core.core.mitre_angle=45 degree"}) ==
+        doctest::Approx(0.5 * std::sqrt(2.0)).epsilon(1e-12));
+  CHECK(length({"core.core.yoke_height=0.4", "core.core.mitre_angle=45 degree"}) ==
+        doctest::Approx(0.4 * std::sqrt(2.0)).epsilon(1e-12));
+}
+
+// --- what is refused ---------------------------------------------------------------------------------------------
+
+TEST_CASE("impossible cores are refused, with what would be right") {
+  const std::string counted = k_shape + k_counted, built = k_shape + k_built;
+  CHECK(refusal(counted) == "");
+  CHECK(refusal(built) == "");
+  CHECK(has(refusal(counted, {"core.core.limbs=[\"front lim\"]"}),
+            "core.toml:20:1: error: core 'core': limb 'front lim' is no body (did you mean 'front limb'?)"));
+  CHECK(has(refusal(counted, {"core.core.limbs=[\"active part\"]"}), "is the active part itself"));
+  CHECK(has(refusal(counted, {"core.core.limbs=[\"back limb\",\"back limb\"]"}), "twice"));
+  CHECK(has(refusal(counted, {"core.core.limbs=[]"}), "at least one"));
+  CHECK(has(refusal(counted, {"core.core.active_part=ground"}), "not 'ground'"));
+  CHECK(has(refusal(counted, {"core.core.active_part=active"}), "active"));
+  CHECK(has(refusal(counted, {"core.core.joints=[\"a\"]"}), "one joint for each of the 2 limbs, got 1"));
+  CHECK(has(refusal(counted, {"body.front limb.position=[0.1,1.95]"}), "in the middle of the active part"));
+  CHECK(has(refusal(counted, {"core.core.yoke_height=1.7"}), "leave no window"));
+  CHECK(has(refusal(counted, {"core.core.yoke_height=0.05"}), "must be 10° to 80°"));
+  CHECK(has(refusal(counted, {"core.core.mitre_angle=85 degree"}), "a mitre at 85°"));
+  CHECK(has(refusal(counted, {"core.core.overlap=0.11"}), "wider than the sheets"));
+  CHECK(has(refusal(counted, {"core.core.overlap=-0.01"}), "greater than 0"));
+  CHECK(has(refusal(counted, {"core.core.kinetic_friction=0.3"}), "must not exceed 'static_friction'"));
+  CHECK(has(refusal(counted + "steps = 5\n"), "not both"));
+  CHECK(has(refusal(k_shape + "overlap = 0.01\n"), "needs 'interfaces' besides 'overlap'"));
+  CHECK(has(refusal(k_shape), "needs either 'overlap' and 'interfaces', or 'stack_depth'"));
+  CHECK(has(refusal(built, {"core.core.clearance=6 mm"}), "leaves no overlap"));
+  CHECK(has(refusal(built, {"core.core.stack_depth=1 mm"}), "3 sheets"));
+  CHECK(has(refusal(built, {"core.core.bands=each", "core.core.steps=30"}), "wider than the sheets"));
+  CHECK(has(refusal(counted + "limb_wdth = 3\n"), "did you mean 'limb_width'?"));
+}
+
+TEST_CASE("all that is wrong with a core is said at once") {
+  const std::string all = refusal(k_shape, {"core.core.limbs=[\"nobody\"]", "core.core.yoke_height=1.7"});
+  CHECK(has(all, "'nobody' is no body"));
+  CHECK(has(all, "leave no window"));
+  CHECK(has(all, "needs either"));
+}

@@ -1,0 +1,17 @@
+#include "transformer/catalog.h"
+
+#include "elements/catalog.h"
+#include "transformer/core.h"
+
+namespace steplap {
+
+const Catalogue& transformer_catalog() {
+  static const Catalogue catalogue = [] {
+    Catalogue c = element_catalog();
+    c.tables.push_back(&core_kind());
+    return c;
+  }();
+  return catalogue;
+}
+
+} // namespace steplap

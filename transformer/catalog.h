@@ -1,0 +1,10 @@
+// All that a model of a power transformer may contain: the elements' kinds and the tables of this room.
+#pragma once
+
+#include "mbd/model.h"
+
+namespace steplap {
+
+[[nodiscard]] const Catalogue& transformer_catalog();
+
+} // namespace steplap

@@ -1,0 +1,49 @@
+// [[core]]: the step-lap joints between the outer limbs of a core and its yokes, from the core's
+// dimensions.
+//
+// For each limb named there is one step_lap_joint, and at its top and bottom corner one
+// step_lap_interface for each band of overlap (book.h), its sheets in ground coordinates of the reference
+// pose:
+//   limb sheet 0 ≤ s ≤ l, inner ≤ q ≤ tongue, fixed in the limb;
+//   yoke sheet −margin ≤ s ≤ l + margin, −tongue ≤ q ≤ outer, fixed in the active part
+// (s, q along and across the mitre, l its length: corner.h). The limb's centre is its centre of gravity.
+// Assumes rectangular yokes and limbs of one sheet width (a core of several packets is several [[core]]
+// tables that name the same joints), limbs ahead of and behind the active part's centre (no T-joints),
+// pressure uniform over a corner. Source and assumptions: docs/core.md.
+#pragma once
+
+#include "mbd/model.h"
+
+namespace steplap {
+
+struct Core : Element {
+  std::string active_part;         ///< body with the yokes
+  std::vector<std::string> limbs;  ///< bodies
+  std::vector<std::string> joints; ///< one for each limb; default "<limb> joint"
+
+  double limb_width = 0.0, core_height = 0.0, yoke_height = 0.0; ///< m
+  std::optional<double> mitre_angle; ///< rad against the yoke; default: from corner to corner
+  double tongue = 0.05;              ///< m, sheet on either side of the middle of the mitre
+  double margin = 0.02;              ///< m, of the yoke sheet beyond the limb's at both ends of the mitre
+
+  // Overlaps: either counted and measured, …
+  std::optional<double> overlap, interfaces; ///< m; number a corner
+  // … or as the stack is built.
+  std::optional<double> stack_depth, sheet_thickness, step_pitch; ///< m
+  std::optional<long> steps;
+  double stacking_factor = 0.96;
+  long sheets_per_layer = 1;
+  double clearance = 0.0;    ///< m
+  std::string bands = "mean"; ///< "mean" or "each"
+
+  double pressure = 0.0; ///< Pa
+  double static_friction = 0.0;
+  std::optional<double> kinetic_friction;
+  std::optional<double> bottom_pressure, bottom_static_friction, bottom_kinetic_friction;
+
+  std::string mode = "slip", on_apart = "stop"; ///< of the joints added
+};
+
+[[nodiscard]] const TableKind& core_kind();
+
+} // namespace steplap

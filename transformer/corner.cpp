@@ -1,0 +1,28 @@
+#include "transformer/corner.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+CornerFrame corner_frame(const Mitre& mitre, double side, double level) {
+  const double diagonal = std::hypot(mitre.limb_width, mitre.yoke_height);
+  double c = mitre.limb_width / diagonal, s = mitre.yoke_height / diagonal;
+  if (mitre.angle) {
+    c = std::cos(*mitre.angle);
+    s = std::sin(*mitre.angle);
+  }
+  CornerFrame frame;
+  frame.origin = {-0.5 * side * mitre.limb_width, level * (0.5 * mitre.core_height - mitre.yoke_height)};
+  frame.along = {side * c, level * s};
+  frame.across = {side * s, -level * c};
+  frame.length = mitre.angle ? std::min(mitre.limb_width / c, mitre.yoke_height / s) : diagonal;
+  return frame;
+}
+
+std::vector<Vec2> band(const CornerFrame& frame, double s0, double s1, double q0, double q1) {
+  const auto at = [&](double s, double q) { return Vec2(frame.origin + s * frame.along + q * frame.across); };
+  return {at(s0, q0), at(s1, q0), at(s1, q1), at(s0, q1)};
+}
+
+} // namespace steplap
