@@ -55,7 +55,8 @@ void EventHandler::load(State& state, int f) {
   slip_rates(state, f, rate);
   double largest = 0.0;
   for (const double r : rate) largest = std::max(largest, std::abs(r));
-  friction.phase = largest > k_rest_velocity ? FrictionPhase::slip : FrictionPhase::stick;
+  const bool is_sliding = largest > k_rest_velocity && !element.never_slips();
+  friction.phase = is_sliding ? FrictionPhase::slip : FrictionPhase::stick;
   friction.is_starting = false;
   element.aim(friction, rate);
 }
@@ -201,15 +202,27 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
   forget_moved_layouts(state);
   evaluate(state);
   const bool is_contact_changed = switch_units(state, fired, events);
-  for (const int slot : fired)
-    if (const int f = friction_of_slot_[slot]; f >= 0) fire_friction(state, f, slot);
+  bool is_any_at_rest = false;
+  for (const int slot : fired) {
+    const int f = friction_of_slot_[slot];
+    if (f < 0) continue;
+    fire_friction(state, f, slot);
+    is_any_at_rest = is_any_at_rest || state.friction[f].phase == FrictionPhase::stick;
+  }
+  // The mode problem is one of elements at rest: what little is left of a slip that has ended goes first.
+  if (is_any_at_rest) settle(state);
   if (is_contact_changed) {
     evaluate(state);
     update_loading(state);
   }
   modes_.decide(state);
   note_friction(before, state, events);
-  // What sticks now had a relative velocity up to rounding: projecting it away books what is lost.
+  settle(state);
+}
+
+// What sticks may still have a relative velocity of the size of errors: projecting it away books what
+// is lost as dissipated.
+void EventHandler::settle(State& state) {
   dynamics_.set_state(state);
   dynamics_.pack(state, y_.data());
   const double energy = system_.kinetic_energy(state);

@@ -44,6 +44,7 @@ private:
   void load(State& state, int f);
   void slip_rates(const State& state, int f, double* rate) const;
   void end_slip(State& state, int f);
+  void settle(State& state);
 
   const System& system_;
   Dynamics& dynamics_;
