@@ -21,6 +21,11 @@ constexpr double k_onset_steps = 0.7;
 constexpr double k_start_reach = 6.0; // |ν|/δ at which a slip no longer counts as starting
 constexpr double k_cone = 0.5;        // cosine of the cone about the direction last looked at
 constexpr double k_rest_of_start = 0.05; // of δ: backward motion that ends a slip still starting
+// |ν| over grip acceleration that counts as rest, s: early enough that the ever quicker turning of the
+// last instants does not set off other joints, and, with a fixed step, that a direction which the step no
+// longer follows does not keep |ν| from falling (it then hovers at about a third of step × acceleration).
+constexpr double k_rest_time = 1e-9;
+constexpr double k_rest_steps = 0.5;
 
 } // namespace
 
@@ -186,6 +191,10 @@ double StepLapFriction::onset_speed(const Evaluation& e) const {
   return std::max(k_onset_time, k_onset_steps * e.fixed_step) * grip_acceleration_;
 }
 
+double StepLapFriction::rest_speed(const Evaluation& e) const {
+  return std::max(k_rest_time, k_rest_steps * e.fixed_step) * grip_acceleration_;
+}
+
 void StepLapFriction::begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const {
   const Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
   set_direction(state, -required_pressure(f.patch, Vec3(wrench[0], wrench[1], wrench[2])).direction);
@@ -217,21 +226,22 @@ void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state
   const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
   const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
   const double speed = y.norm();
-  watch[0] = 1.0;
   if (state.is_starting) {
     const double delta = onset_speed(e);
     watch[0] = k_start_reach * delta - speed;
     watch[1] = along + k_rest_of_start * delta;
   } else {
+    watch[0] = speed - rest_speed(e);
     watch[1] = along - k_cone * speed;
   }
 }
 
 bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate,
                                        int slot) const {
-  const bool has_started = state.is_starting && slot == 0;
   const double speed = scaled(Vec3(rate[0], rate[1], rate[2])).norm();
-  if (!has_started && (state.is_starting || speed <= onset_speed(e))) return false;
+  const bool has_started = state.is_starting && slot == 0;
+  const bool has_turned = !state.is_starting && slot == 1 && speed > onset_speed(e);
+  if (!has_started && !has_turned) return false;
   state.is_starting = false;
   aim(state, rate);
   return true;

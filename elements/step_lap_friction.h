@@ -14,10 +14,11 @@
 // from the account), and whose influence is forgotten as the direction settles. Beyond, and for good, it
 // is −∇h(ν) alone. The time is 1e-7 s, or, for a method with a fixed step, what keeps that step stable.
 //
-// |ν| reaches zero along a line, with no sign change of anything but ν itself: the law is continued
-// through ν = 0 with the wrench it had, ν·n < 0 there, n being the direction as last looked at. An event
-// is where ν leaves the cone of 60° about n: at rest, the mode problem decides between holding and
-// sliding anew; in motion, n is taken anew and the slip goes on.
+// |ν| reaches zero with no sign change of anything but ν itself. The slip is at rest where |ν| falls below
+// a hundredth of δ (with a fixed step: most of δ); so that a step may pass through ν = 0, the law is continued there with the wrench it
+// had, ν·n < 0, n being the direction as last looked at. An event is also where ν leaves the cone of 60°
+// about n: at rest (|ν| < δ) the mode problem decides between holding and sliding anew; in motion n is
+// taken anew and the slip goes on.
 #pragma once
 
 #include "elements/patch/required_pressure.h"
@@ -42,6 +43,8 @@ public:
 
   // --- what the joint is like now -------------------------------------------------------------------
   [[nodiscard]] bool has_sheets() const { return !sheets_.empty(); }
+  /// One pair for each interface, in the order of the model.
+  [[nodiscard]] const std::vector<SheetPair>& sheets() const { return sheets_; }
   [[nodiscard]] Pose pose_of(const Motion<double>* motion) const;
   /// The overlapping area with its tractions at a pose.
   [[nodiscard]] Patch patch_at(const Pose& pose, GripLaw law) const;
@@ -86,6 +89,7 @@ private:
   [[nodiscard]] Vec3 scaled(const Vec3& nu) const;
   void set_direction(FrictionState& state, const Vec3& nu) const;
   [[nodiscard]] double onset_speed(const Evaluation& e) const;
+  [[nodiscard]] double rest_speed(const Evaluation& e) const;
   [[nodiscard]] bool is_apart(const FrictionState& state, std::size_t i) const {
     return i < k_tracked && (state.foot >> i & 1u) != 0;
   }
