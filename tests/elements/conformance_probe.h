@@ -1,0 +1,180 @@
+// Evaluates a compiled two-body scene at any pose and velocity, outside of Dynamics: forces of all
+// groups, watch values, energy, rows.
+#pragma once
+
+#include "elements/catalog.h"
+#include "mbd/io/reader.h"
+#include "mbd/system.h"
+#include "tests/elements/conformance_scenes.h"
+
+#include <limits>
+#include <random>
+
+namespace steplap::testing {
+
+using Vec9 = Eigen::Matrix<double, 9, 1>; ///< (x, y, θ) of ground, a, b
+
+struct Pose {
+  Vec9 q = Vec9::Zero(), v = Vec9::Zero();
+};
+
+inline std::string conformance_text(const ConformanceScene& scene, bool is_mirrored, bool is_swapped = false) {
+  std::string text = k_conformance_bodies;
+  text += "kind = \"" + std::string(scene.kind) + "\"\n" + scene.text;
+  for (std::size_t at = text.find('@'); at != std::string::npos; at = text.find('@')) {
+    if (is_mirrored) text[at + 1] = text[at + 1] == '+' ? '-' : '+';
+    text.erase(at, 1);
+  }
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  };
+  replace("\"A\"", is_swapped ? "\"on b\"" : "\"on a\"");
+  replace("\"B\"", is_swapped ? "\"on a\"" : "\"on b\"");
+  return text;
+}
+
+class Probe {
+public:
+  explicit Probe(const ConformanceScene& scene, bool is_mirrored = false, bool is_swapped = false)
+      : system_(compile(parse_model(conformance_text(scene, is_mirrored, is_swapped), scene.kind, element_catalog()))),
+        state_(system_->initial_state()) {
+    motion_.resize(3);
+    force_.resize(3);
+    contact_force_.assign(system_->contact_count, 0.0);
+    watch_.assign(system_->watch_count, 1.0);
+    watch_rate_.assign(system_->watch_count, std::numeric_limits<double>::quiet_NaN());
+    for (const FrictionUnit& unit : system_->frictions) {
+      scratch_.push_back(unit.friction->make_scratch());
+      scratch_pointers_.push_back(scratch_.back().get());
+    }
+    e_.t = 0.1;
+    e_.motion = motion_.data();
+    e_.force = force_.data();
+    e_.mode = state_.mode.data();
+    e_.friction = state_.friction.data();
+    e_.memory = state_.memory.data();
+    e_.scratch = scratch_pointers_.data();
+    e_.contact_force = contact_force_.data();
+    e_.watch = watch_.data();
+    e_.watch_rate = watch_rate_.data();
+  }
+
+  [[nodiscard]] const System& system() const { return *system_; }
+  [[nodiscard]] const Evaluation& evaluation() const { return e_; }
+  [[nodiscard]] State& state() { return state_; }
+  [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
+  [[nodiscard]] const std::vector<double>& watch() const { return watch_; }
+  [[nodiscard]] const std::vector<double>& watch_rate() const { return watch_rate_; }
+
+  void place(const Pose& pose) {
+    const std::vector<double> q(pose.q.data(), pose.q.data() + 9), v(pose.v.data(), pose.v.data() + 9);
+    place_bodies(q, v, motion_);
+  }
+  /// Modes as the laws choose them at this pose; they stay for later poses.
+  void choose_modes(const Pose& pose) {
+    place(pose);
+    for (std::size_t u = 0; u < system_->units.size(); ++u)
+      state_.mode[u] = system_->units[u].group->initial_mode(system_->units[u].index, e_);
+  }
+  /// Generalised forces on ground, a and b, each about its own centre.
+  Vec9 forces(const Pose& pose) {
+    place(pose);
+    std::fill(force_.begin(), force_.end(), BodyForce{});
+    e_.dissipation = e_.work = 0.0;
+    for (const auto& group : system_->groups) group->add_forces(e_);
+    Vec9 f;
+    for (int i = 0; i < 3; ++i) f.segment<3>(3 * i) << force_[i].fx, force_[i].fy, force_[i].m;
+    return f;
+  }
+  double potential(const Pose& pose) {
+    place(pose);
+    return system_->potential_energy(motion_.data());
+  }
+  MeasureValue<double> row(const RowSpec& spec, const Pose& pose) {
+    place(pose);
+    return evaluate_row<true>(spec, motion_.data());
+  }
+  /// All rows: bilateral, driven, and those along which friction sticks.
+  [[nodiscard]] std::vector<RowSpec> rows() const {
+    std::vector<RowSpec> all = system_->rows;
+    for (std::size_t f = 0; f < system_->frictions.size(); ++f)
+      for (std::uint8_t foot = 0; foot < 2; ++foot) {
+        if (foot == 1 && system_->element_kinds[system_->frictions[f].element] != "coulomb_stick") continue;
+        FrictionState state = state_.friction[f];
+        state.foot = foot;
+        for (int r = 0; r < system_->frictions[f].friction->dimension(); ++r)
+          all.push_back(system_->frictions[f].friction->rows(state)[r]);
+      }
+    return all;
+  }
+
+private:
+  std::unique_ptr<System> system_;
+  State state_;
+  std::vector<Motion<double>> motion_;
+  std::vector<BodyForce> force_;
+  std::vector<double> contact_force_, watch_, watch_rate_;
+  std::vector<std::unique_ptr<FrictionScratch>> scratch_;
+  std::vector<FrictionScratch*> scratch_pointers_;
+  Evaluation e_;
+};
+
+/// Poses around the reference: displacements up to 0.05 (m, rad), velocities up to 1 (m/s, rad/s), which
+/// takes contacts and dead bands through all their modes. The ground stays.
+class RandomPoses {
+public:
+  explicit RandomPoses(const System& system, bool is_mirrored = false) : mirror_(is_mirrored ? -1.0 : 1.0) {
+    for (int i = 1; i < 3; ++i) reference_.segment<3>(3 * i) = system.bodies[i].pose;
+  }
+  Pose next() {
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    Pose pose;
+    pose.q = reference_;
+    for (int i = 3; i < 9; ++i) {
+      const double sign = i % 3 == 1 ? 1.0 : mirror_;
+      pose.q[i] += sign * 0.05 * unit(generator_);
+      pose.v[i] = sign * unit(generator_);
+    }
+    return pose;
+  }
+
+private:
+  double mirror_;
+  Vec9 reference_ = Vec9::Zero();
+  std::mt19937 generator_{20240611};
+};
+
+/// Unit wrench of a measure on ground, a and b: its gradient by all coordinates.
+inline Vec9 gradient_of(const RowSpec& row, const MeasureValue<double>& m) {
+  Vec9 g = Vec9::Zero();
+  g.segment<3>(3 * row.a) += Vec3(m.direction.x, m.direction.y, cross(m.lever_a, m.direction) + m.couple);
+  g.segment<3>(3 * row.b) -= Vec3(m.direction.x, m.direction.y, cross(m.lever_b, m.direction) + m.couple);
+  return g;
+}
+
+/// Pose and velocity of everything, the ground too, turned about the origin by `angle` and moved.
+inline Pose moved(const Pose& pose, double angle, const Vec2& shift) {
+  Pose result = pose;
+  for (int i = 0; i < 3; ++i) {
+    result.q.segment<2>(3 * i) = rotated(pose.q.segment<2>(3 * i), angle) + shift;
+    result.q[3 * i + 2] += angle;
+    result.v.segment<2>(3 * i) = rotated(pose.v.segment<2>(3 * i), angle);
+  }
+  return result;
+}
+
+inline Vec9 turned(const Vec9& wrenches, double angle) {
+  Vec9 result = wrenches;
+  for (int i = 0; i < 3; ++i) result.segment<2>(3 * i) = rotated(wrenches.segment<2>(3 * i), angle);
+  return result;
+}
+
+/// x and couples change sign.
+inline Vec9 mirrored(Vec9 f) {
+  for (int i = 0; i < 9; ++i)
+    if (i % 3 != 1) f[i] = -f[i];
+  return f;
+}
+
+} // namespace steplap::testing

@@ -1,0 +1,99 @@
+// The conformance suite's scenes: two bodies a and b and one element of each kind between them, with
+// typical values. A new kind needs one entry here and gets the whole suite.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace steplap::testing {
+
+struct ConformanceScene {
+  const char* kind;
+  /// TOML of the element (and of what it needs). Numbers written @+1.0 or @-1.0 change sign when the
+  /// scene is mirrored in x: x of points and axes, angles, couples.
+  const char* text;
+  bool is_external = false;   ///< acts on one body only, or in fixed axes: no third law, no invariance
+  bool is_reversible = false; ///< its measure treats a and b alike: swapping them changes no force
+};
+
+// Markers off the centres of gravity with turned axes, so that every lever arm and every turn shows.
+inline const char* k_conformance_bodies = R"(
+gravity = [0.0, 0.0]
+[simulation]
+step = 1e-3
+[[body]]
+name = "a"
+mass = 2.0
+inertia = 0.5
+position = [@+0.3, 0.4]
+angle = @+0.2
+[[body]]
+name = "b"
+mass = 3.0
+inertia = 0.8
+position = [@-0.2, -0.5]
+angle = @-0.1
+[[marker]]
+name = "on a"
+body = "a"
+point = [@+0.15, -0.2]
+angle = @+0.3
+[[marker]]
+name = "on b"
+body = "b"
+point = [@-0.1, 0.25]
+angle = @-0.15
+[[signal]]
+name = "wave"
+kind = "harmonics"
+offset = 1.5
+amplitudes = [0.5]
+frequencies = [2.0]
+[[element]]
+name = "tested"
+)";
+
+inline const std::vector<ConformanceScene>& conformance_scenes() {
+  static const std::vector<ConformanceScene> list = {
+      {"spring_damper", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nfree_length = 0.3\n", false, true},
+      {"spring_damper", "a = \"A\"\nb = \"B\"\naxis = [@+0.6, 0.8]\nstiffness = 800.0\ndamping = 30.0\npreload = 20.0\n"},
+      {"spring_damper", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\ngap = 0.06\n", false, true},
+      {"spring_damper",
+       "a = \"A\"\nb = \"B\"\nforce_table = [[-0.1, -90.0], [-0.02, -10.0], [0.03, 20.0], [0.1, 120.0]]\n"
+       "damping_table = [[-1.0, -40.0], [0.0, 0.0], [1.0, 15.0]]\ncount = 2\n", false, true},
+      {"rotational_spring_damper", "a = \"A\"\nb = \"B\"\nstiffness = 70.0\ndamping = 3.0\nfree_angle = @+0.1\n", false, false},
+      {"bushing",
+       "a = \"A\"\nb = \"B\"\nstiffness = [500.0, 900.0]\ndamping = [20.0, 30.0]\nrotational_stiffness = 60.0\n"
+       "rotational_damping = 2.0\n"},
+      {"unilateral_contact", "a = \"A\"\nb = \"B\"\nnormal = [@+0.1, 1.0]\nstiffness = 900.0\ndamping = 25.0\ngap = 0.02\n"},
+      {"unilateral_contact",
+       "a = \"A\"\nb = \"B\"\naxis = [@-0.2, 1.0]\nstiffness = 900.0\ndamping = 25.0\ninterference = 0.02\ncount = 2\n"},
+      {"unilateral_contact",
+       "a = \"A\"\nb = \"B\"\naxis = [@+0.1, 1.0]\nlaw = \"literal\"\nstiffness = 900.0\ndamping = 25.0\npreload = 10.0\n"},
+      {"unilateral_contact",
+       "a = \"A\"\nb = \"B\"\nlaw = \"hunt_crossley\"\nexponent = 1.5\ndissipation = 0.6\nstiffness = 9000.0\npreload = 15.0\n"},
+      {"coulomb_stick",
+       "contacts = [\"rear\", \"front\"]\nstatic_friction = 0.4\nkinetic_friction = 0.3\n"
+       "[[element]]\nkind = \"unilateral_contact\"\nname = \"rear\"\na = \"A\"\nb = \"B\"\naxis = [@+0.1, 1.0]\n"
+       "stiffness = 900.0\ndamping = 25.0\npreload = 40.0\n"
+       "[[element]]\nkind = \"unilateral_contact\"\nname = \"front\"\na = { body = \"a\", point = [@+0.4, -0.3], angle = @+0.3 }\n"
+       "b = \"B\"\naxis = [@+0.1, 1.0]\nstiffness = 900.0\ndamping = 25.0\npreload = 60.0\n"},
+      {"step_lap_joint", "limb = \"a\"\nactive_part = \"b\"\n"},
+      {"step_lap_interface",
+       "joint = \"joint\"\nframe = \"body\"\nyoke = [[@-0.5, 0.3], [@+0.6, 0.3], [@+0.6, 0.9], [@-0.5, 0.9]]\n"
+       "limb = [[@-0.4, -0.6], [@+0.3, -0.6], [@+0.3, 0.2], [@-0.4, 0.2]]\npressure = 1000.0\n"
+       "static_friction = 0.3\ncount = 10.0\n"
+       "[[element]]\nkind = \"step_lap_joint\"\nname = \"joint\"\nlimb = \"a\"\nactive_part = \"b\"\n"},
+      {"revolute", "a = \"A\"\nb = \"B\"\n"},
+      {"prismatic", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
+      {"weld", "a = \"A\"\nb = \"B\"\n"},
+      {"distance", "a = \"A\"\nb = \"B\"\nlength = 0.6\n", false, true},
+      {"point_on_line", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
+      {"prescribed_motion", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\nsignal = \"wave\"\nas = \"velocity\"\n"},
+      {"prescribed_motion", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nsignal = \"wave\"\n", false, true},
+      {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @+0.7\nforce_y = \"wave\"\n", true},
+      {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @-0.7\nforce_y = \"wave\"\nframe = \"body\"\n", true}};
+  return list;
+}
+
+} // namespace steplap::testing
