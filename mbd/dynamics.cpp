@@ -89,7 +89,7 @@ void Dynamics::pack(const State& state, double* y) const {
     double* v = q + n;
     const double* bq = &state.q[3 * i];
     const double* bv = &state.v[3 * i];
-    if (place.is_trivial) {
+    if (place.is_alone) {
       std::copy(bq, bq + 3, q);
       std::copy(bv, bv + 3, v);
       continue;
@@ -260,41 +260,66 @@ double Dynamics::cluster_bias(const RowSpec& spec, const MeasureValue<double>& m
   return bias;
 }
 
-// Rows at the placed motion: J, and either γ in right_side_ or values and rates for projection.
-void Dynamics::evaluate_rows(bool with_position) {
-  Layout& layout = *layout_;
-  const double* memory = state_->memory.data();
-  for (std::size_t r = 0; r < layout.active.size(); ++r) {
-    const RowSpec& spec = *layout.active[r].spec;
-    const SignalJet target = row_target(spec, memory, evaluation_.t);
-    if (with_position) {
-      const auto m = evaluate_row<false>(spec, motion_.data());
-      to_clusters(spec, m, layout.schur_rows[r]);
-      row_value_[r] = m.value - target.value;
-      row_rate_[r] = m.rate - target.rate;
-    } else {
-      const auto m = evaluate_row<true>(spec, motion_.data());
-      to_clusters(spec, m, layout.schur_rows[r]);
-      right_side_[r] = target.acceleration - cluster_bias(spec, m);
-      target_rate_[r] = target.rate;
-    }
+// Row r at the placed motion: J and W J in the clusters' coordinates. Most rows are between bodies that
+// are clusters of their own: no lever to add.
+template <bool WithBias> STEPLAP_INLINE MeasureValue<double> Dynamics::load_row(std::size_t r) {
+  const ActiveRow& active = layout_->active[r];
+  MeasureValue<double> m = evaluate_row<WithBias>(*active.spec, motion_.data());
+  SchurRow& row = layout_->schur_rows[r];
+  if (!active.is_simple) {
+    to_clusters(*active.spec, m, row);
+    if constexpr (WithBias) m.bias = cluster_bias(*active.spec, m);
+    return m;
+  }
+  const auto fill = [&](int side, double sign, const Pair<double>& lever) {
+    if (row.body[side] < 0) return;
+    const double* w = layout_->clusters[row.body[side]].w;
+    double* j = row.j[side];
+    double* wj = row.wj[side];
+    j[0] = sign * m.direction.x;
+    j[1] = sign * m.direction.y;
+    j[2] = sign * (cross(lever, m.direction) + m.couple);
+    wj[0] = w[0] * j[0];
+    wj[1] = w[1] * j[1];
+    wj[2] = w[2] * j[2];
+  };
+  fill(0, 1.0, m.lever_a);
+  fill(1, -1.0, m.lever_b);
+  return m;
+}
+
+// Values and rates of all active rows against their targets, for projection.
+void Dynamics::evaluate_rows() {
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) {
+    const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), evaluation_.t);
+    const MeasureValue<double> m = load_row<false>(r);
+    row_value_[r] = m.value - target.value;
+    row_rate_[r] = m.rate - target.rate;
   }
 }
 
-// J (a_f + W Jᵀλ) = γ; leaves λ in right_side_, Jᵀλ in reaction_, and adds W Jᵀλ to a.
+// J (a_f + W Jᵀλ) = γ; leaves λ in right_side_, Jᵀλ in reaction_ (if there are locks, which need it),
+// and adds W Jᵀλ to a.
 void Dynamics::solve_constraints(double* a) {
   Layout& layout = *layout_;
-  const int n = coordinate_count();
-  std::fill(reaction_.begin(), reaction_.begin() + n, 0.0);
+  const bool has_locks = !layout.locks.empty();
+  if (has_locks) std::fill(reaction_.begin(), reaction_.begin() + coordinate_count(), 0.0);
   if (layout.active.empty()) return;
-  evaluate_rows(false);
-  for (std::size_t r = 0; r < layout.schur_rows.size(); ++r) {
+  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+    const MeasureValue<double> m = load_row<true>(r);
+    double right_side = -m.bias;
+    if (layout.active[r].spec->drive) {
+      const SignalJet target = row_target(*layout.active[r].spec, state_->memory.data(), evaluation_.t);
+      right_side += target.acceleration;
+      target_rate_[r] = target.rate;
+    }
     const SchurRow& row = layout.schur_rows[r];
     for (int side = 0; side < 2; ++side) {
       if (row.body[side] < 0) continue;
       const double* ak = a + 3 * row.body[side];
-      right_side_[r] -= row.j[side][0] * ak[0] + row.j[side][1] * ak[1] + row.j[side][2] * ak[2];
+      right_side -= row.j[side][0] * ak[0] + row.j[side][1] * ak[1] + row.j[side][2] * ak[2];
     }
+    right_side_[r] = right_side;
   }
   layout.schur.factor(layout.schur_rows);
   is_factored_ = true;
@@ -304,10 +329,11 @@ void Dynamics::solve_constraints(double* a) {
     const double lambda = right_side_[r];
     for (int side = 0; side < 2; ++side) {
       if (row.body[side] < 0) continue;
-      for (int c = 0; c < 3; ++c) {
-        reaction_[3 * row.body[side] + c] += row.j[side][c] * lambda;
-        a[3 * row.body[side] + c] += row.wj[side][c] * lambda;
-      }
+      double* ak = a + 3 * row.body[side];
+      for (int c = 0; c < 3; ++c) ak[c] += row.wj[side][c] * lambda;
+      if (!has_locks) continue;
+      double* rk = &reaction_[3 * row.body[side]];
+      for (int c = 0; c < 3; ++c) rk[c] += row.j[side][c] * lambda;
     }
   }
 }
@@ -384,7 +410,7 @@ Residual Dynamics::constraint_values(double t, const double* y) {
   t = std::min(t, time_cap_);
   evaluation_.t = t;
   place(t, y, y + coordinate_count());
-  evaluate_rows(true);
+  evaluate_rows();
   Residual residual;
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
     residual.position = std::max(residual.position, std::abs(row_value_[r]));

@@ -82,7 +82,8 @@ private:
   void place_member(int body);
   void apply_sliding();
   void gather_forces(double* total) const;
-  void evaluate_rows(bool with_position);
+  template <bool WithBias> MeasureValue<double> load_row(std::size_t r);
+  void evaluate_rows();
   void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
   [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
   void solve_constraints(double* a);

@@ -176,7 +176,8 @@ void EventHandler::note_friction(const State& before, const State& state, std::v
     const FrictionUnit& unit = system_.frictions[f];
     for (int w = 0; w < k_friction_watches; ++w) fresh_[unit.watch + w] = 1;
     const std::string& name = system_.element_names[unit.element];
-    if (old.foot != now.foot) events.push_back({state.t, name, unit.friction->place_change_name()});
+    if (old.foot != now.foot && now.phase != FrictionPhase::apart)
+      events.push_back({state.t, name, unit.friction->place_change_name(old, now)});
     if (old.phase == now.phase && is_same_slip) continue;
     const char* what = "";
     switch (now.phase) {

@@ -8,6 +8,9 @@ namespace steplap {
 
 namespace {
 
+// Centres of gravity closer than this coincide, m: rounding of sums of metres.
+constexpr double k_same_place = 1e-14;
+
 // A rigid joint that may merge its two bodies.
 struct RigidJoint {
   int a, b, block, friction;
@@ -81,9 +84,9 @@ void make_clusters(const System& system, const State& state, std::vector<int>& p
   for (int i = 1; i < n; ++i) {
     Cluster& cluster = layout.clusters[cluster_of[i]];
     Placement& place = layout.placements[i];
-    place.is_trivial = size[cluster_of[i]] == 1;
+    place.is_alone = place.is_trivial = size[cluster_of[i]] == 1;
     cluster.inertia += system.bodies[i].inertia;
-    if (place.is_trivial) continue;
+    if (place.is_alone) continue;
     const double root_angle = state.q[3 * cluster.root + 2];
     const Vec2 lever = Vec2(state.q[3 * i], state.q[3 * i + 1]) - centre[cluster_of[i]];
     place.offset = rotated(lever, -root_angle);
@@ -95,7 +98,10 @@ void make_clusters(const System& system, const State& state, std::vector<int>& p
   int extra = n;
   for (int k = 0; k < layout.cluster_count(); ++k) {
     Cluster& cluster = layout.clusters[k];
-    cluster.motion = size[k] == 1 ? cluster.root : extra++;
+    // The body that carries the angle often lies at the common centre (limbs on both sides of a core).
+    Placement& root = layout.placements[cluster.root];
+    if (root.offset.norm() < k_same_place) root.is_trivial = true;
+    cluster.motion = root.is_trivial ? cluster.root : extra++;
     cluster.w[0] = cluster.w[1] = 1.0 / cluster.mass;
     cluster.w[2] = 1.0 / cluster.inertia;
   }
@@ -131,6 +137,10 @@ void add_active(Layout& layout, const ActiveRow& row) {
   schur.body[0] = layout.placements[row.spec->a].cluster;
   schur.body[1] = layout.placements[row.spec->b].cluster;
   layout.active.push_back(row);
+  for (const int body : {row.spec->a, row.spec->b}) {
+    const Placement& place = layout.placements[body];
+    if (place.cluster >= 0 && !place.is_trivial) layout.active.back().is_simple = false;
+  }
   layout.schur_rows.push_back(schur);
   if (row.spec->drive) layout.has_drives = true;
 }
@@ -146,7 +156,7 @@ void add_bilateral(const System& system, const std::vector<char>& is_block_merge
       layout.redundant_blocks.push_back(i);
       continue;
     }
-    const bool is_free = block.coordinate >= 0 && place.is_trivial &&
+    const bool is_free = block.coordinate >= 0 && place.is_alone &&
                          layout.clusters[place.cluster].w[block.coordinate] > 0.0;
     if (is_free) {
       layout.clusters[place.cluster].w[block.coordinate] = 0.0;

@@ -23,7 +23,8 @@ struct Cluster {
 /// Place of a body in its cluster.
 struct Placement {
   int cluster = -1;        ///< −1: the ground
-  bool is_trivial = true;  ///< alone in its cluster
+  bool is_alone = true;    ///< the only body of its cluster
+  bool is_trivial = true;  ///< it moves as its cluster does: alone, or placed at its centre of gravity
   Vec2 offset = Vec2::Zero(); ///< centre of gravity in the cluster's axes
   double angle = 0.0, c = 1.0, s = 0.0; ///< against the cluster's
 };
@@ -34,6 +35,7 @@ struct ActiveRow {
   int row = -1;        ///< bilateral row, or −1
   int friction = -1;   ///< friction element and which of its rows, or −1
   int friction_row = 0;
+  bool is_simple = true; ///< both bodies are clusters of their own, or the ground
 };
 
 /// A driven coordinate of a cluster that consists of one body.

@@ -21,28 +21,26 @@ template <class S> struct MeasureValue {
 };
 
 /// e·(p_A − p_B) with e fixed in b: force e at p_A.
+///
+/// With r the vector from b's centre of gravity to p_A, e·(p_A − p_B) = e·r − e·point_b, and the last
+/// term is a constant of b's frame.
 struct AxisMeasure {
   Vec2 point_a, point_b, axis; ///< in the frames of a, b, b
   template <bool WithBias, class S>
-  MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
     MeasureValue<S> m;
-    const Pair<S> ra = to_ground(a, point_a), rb = to_ground(b, point_b);
+    const Pair<S> ra = to_ground(a, point_a);
     const Pair<S> e = to_ground(b, axis);
-    const Pair<S> offset{b.x, b.y};
-    const Pair<S> reach = Pair<S>{a.x, a.y} - offset + ra; // from b's centre to p_A
-    const Pair<S> d = reach - rb;
-    m.value = dot(e, d);
+    const Pair<S> reach{a.x - b.x + ra.x, a.y - b.y + ra.y};
+    const Pair<S> velocity = point_velocity(a, ra) - point_velocity(b, reach); // seen from b
+    m.value = dot(e, reach) - S(axis.dot(point_b));
     m.direction = e;
     m.lever_a = ra;
     m.lever_b = reach;
-    m.rate = dot(e, point_velocity(a, ra) - point_velocity(b, reach));
-    if constexpr (WithBias) {
-      // d̈ = −ωA² ra + ωB² rb, ė = ωB ẑ×e, ë = −ωB² e
-      const Pair<S> ddot = point_velocity(a, ra) - point_velocity(b, rb);
-      const S wa2 = a.omega * a.omega, wb2 = b.omega * b.omega;
-      m.bias = wb2 * dot(e, rb) - wa2 * dot(e, ra) + S(2) * b.omega * dot(perp(e), ddot) -
-               wb2 * m.value;
-    }
+    m.rate = dot(e, velocity);
+    if constexpr (WithBias) // relative acceleration in b's turning frame, accelerations zero
+      m.bias = b.omega * b.omega * dot(e, reach) - a.omega * a.omega * dot(e, ra) -
+               S(2) * b.omega * cross(velocity, e);
     return m;
   }
 };
@@ -51,7 +49,7 @@ struct AxisMeasure {
 struct DistanceMeasure {
   Vec2 point_a, point_b;
   template <bool WithBias, class S>
-  MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
     using std::sqrt;
     MeasureValue<S> m;
     const Pair<S> ra = to_ground(a, point_a), rb = to_ground(b, point_b);
@@ -74,7 +72,7 @@ struct DistanceMeasure {
 /// θ_A − θ_B.
 struct AngleMeasure {
   template <bool WithBias, class S>
-  MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
     MeasureValue<S> m;
     m.value = a.theta - b.theta;
     m.rate = a.omega - b.omega;
@@ -94,7 +92,7 @@ template <class S> struct ContactFrame {
 };
 
 template <class S>
-ContactFrame<S> contact_frame(const Motion<S>& a, const Motion<S>& b, const Vec2& point_a,
+STEPLAP_INLINE ContactFrame<S> contact_frame(const Motion<S>& a, const Motion<S>& b, const Vec2& point_a,
                               const Vec2& point_b, const Vec2& normal, const Vec2& axis,
                               bool is_axis_in_a) {
   ContactFrame<S> k;
@@ -122,22 +120,28 @@ struct GapMeasure {
   Vec2 axis = Vec2::Zero();      ///< in the frame of a, if is_axis_in_a
   bool is_axis_in_a = false;
   template <bool WithBias, class S>
-  MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+    // n through p_A and n through the tip act along the same line: the plain gap is an axis measure.
+    if (!is_axis_in_a) return AxisMeasure{point_a, point_b, normal}.at<WithBias>(a, b);
     MeasureValue<S> m;
-    const auto k = detail::contact_frame(a, b, point_a, point_b, normal, axis, is_axis_in_a);
-    m.value = k.gap;
-    m.direction = (S(1) / k.alpha) * k.n;
-    m.lever_a = k.tip_a;
-    m.lever_b = k.tip_b;
-    m.rate = dot(m.direction, point_velocity(a, k.tip_a) - point_velocity(b, k.tip_b));
+    const Pair<S> ra = to_ground(a, point_a), n = to_ground(b, normal), shaft = to_ground(a, axis);
+    const Pair<S> reach{a.x - b.x + ra.x, a.y - b.y + ra.y}; // from b's centre to p_A
+    const S inverse_alpha = S(1) / dot(n, shaft);
+    m.value = (dot(n, reach) - S(normal.dot(point_b))) * inverse_alpha;
+    const Pair<S> back = m.value * shaft;
+    m.direction = inverse_alpha * n;
+    m.lever_a = ra - back;
+    m.lever_b = reach - back;
+    const Pair<S> velocity = point_velocity(a, m.lever_a) - point_velocity(b, m.lever_b);
+    m.rate = dot(m.direction, velocity);
     if constexpr (WithBias) {
-      // (n·d)'' = δ'' α + 2 δ' α' + δ α'', with α' = β Ω, α'' = −α Ω² (axis in a; else α = 1)
-      const S wa2 = a.omega * a.omega, wb2 = b.omega * b.omega;
-      const Pair<S> ddot = point_velocity(a, k.ra) - point_velocity(b, k.rb);
-      const S second = wb2 * dot(k.n, k.rb) - wa2 * dot(k.n, k.ra) +
-                       S(2) * b.omega * dot(perp(k.n), ddot) - wb2 * dot(k.n, k.d);
-      const S spin = is_axis_in_a ? a.omega - b.omega : S(0);
-      m.bias = (second - S(2) * m.rate * k.beta * spin + m.value * k.alpha * spin * spin) / k.alpha;
+      // n·(p_A − p_B) = δ α differentiated twice, α' = β Ω, α'' = −α Ω² with β = t·a
+      const S beta = cross(shaft, n); // t·a, t = (n_y, −n_x)
+      const S spin = a.omega - b.omega;
+      const Pair<S> seen = point_velocity(a, ra) - point_velocity(b, reach);
+      const S second = b.omega * b.omega * dot(n, reach) - a.omega * a.omega * dot(n, ra) -
+                       S(2) * b.omega * cross(seen, n);
+      m.bias = (second - S(2) * m.rate * beta * spin) * inverse_alpha + m.value * spin * spin;
     }
     return m;
   }
@@ -150,7 +154,7 @@ struct SlideMeasure {
   Vec2 axis = Vec2::Zero();
   bool is_axis_in_a = false;
   template <bool WithBias, class S>
-  MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
     MeasureValue<S> m;
     const auto k = detail::contact_frame(a, b, point_a, point_b, normal, axis, is_axis_in_a);
     const S cross_da = is_axis_in_a ? cross(k.d, k.axis) : dot(k.t, k.d);

@@ -59,7 +59,7 @@ struct Evaluation {
   double work = 0.0;                      ///< W, of loads and drives
 };
 
-inline void apply_force(Evaluation& e, int a, int b, const MeasureValue<double>& m, double f) {
+STEPLAP_INLINE void apply_force(Evaluation& e, int a, int b, const MeasureValue<double>& m, double f) {
   const Pair<double> d = f * m.direction;
   BodyForce& fa = e.force[a];
   BodyForce& fb = e.force[b];
@@ -148,7 +148,10 @@ public:
   [[nodiscard]] virtual double watch_place(const Evaluation&, const FrictionState&) const { return 1.0; }
   /// Changes the place, or the phase to apart, after watch_place fell below zero.
   virtual void change_place(const Evaluation&, FrictionState&) const {}
-  [[nodiscard]] virtual const char* place_change_name() const { return "changes foot"; }
+  [[nodiscard]] virtual const char* place_change_name(const FrictionState& /*from*/,
+                                                      const FrictionState& /*to*/) const {
+    return "changes foot";
+  }
   /// Does coming apart end the run?
   [[nodiscard]] virtual bool stops_when_apart() const { return false; }
   /// min ½ wᵀA w + bᵀw over admissible w (A: dimension × dimension, row-major); `kinetic`: with the

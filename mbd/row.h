@@ -29,7 +29,7 @@ struct RowSpec {
 };
 
 template <bool WithBias>
-inline MeasureValue<double> evaluate_row(const RowSpec& row, const Motion<double>* motion) {
+STEPLAP_INLINE MeasureValue<double> evaluate_row(const RowSpec& row, const Motion<double>* motion) {
   const Motion<double>& a = motion[row.a];
   const Motion<double>& b = motion[row.b];
   switch (row.kind) {

@@ -51,12 +51,18 @@ std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled
 void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
   n_ = static_cast<int>(rows.size());
   const std::vector<Coupling> coupled = couplings(rows);
-  order_.resize(n_);
-  // Few rows: elimination order does not matter, and the given one is the most predictable.
-  if (n_ > 6) order_ = fill_reducing_order(n_, coupled);
-  else
-    for (int k = 0; k < n_; ++k) order_[k] = k;
   position_.resize(n_);
+  inverse_d_.assign(n_, 0.0);
+  if (n_ <= k_max_dense) {
+    dense_products_.clear();
+    for (int k = 0; k < n_; ++k) position_[k] = k;
+    for (const Coupling& c : coupled)
+      if (c.j <= c.i)
+        dense_products_.push_back({static_cast<unsigned char>(c.i), static_cast<unsigned char>(c.j),
+                                   c.side_i, c.side_j});
+    return;
+  }
+  order_ = fill_reducing_order(n_, coupled);
   for (int k = 0; k < n_; ++k) position_[order_[k]] = k;
 
   // Upper triangle of the permuted matrix, column by column: products that make up A(i, k), i ≤ k.
@@ -101,12 +107,72 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
   column_fill_.assign(n_, 0);
   l_.assign(column_begin_.back(), 0.0);
   d_.assign(n_, 0.0);
-  inverse_d_.assign(n_, 0.0);
   work_.assign(n_, 0.0);
   permuted_.assign(n_, 0.0);
 }
 
 void SchurSolver::factor(const std::vector<SchurRow>& rows) {
+  switch (n_) {
+  case 0: break;
+  case 1: factor_dense<1>(rows); break;
+  case 2: factor_dense<2>(rows); break;
+  case 3: factor_dense<3>(rows); break;
+  case 4: factor_dense<4>(rows); break;
+  default:
+    if (n_ <= k_max_dense) factor_dense<0>(rows);
+    else factor_sparse(rows);
+  }
+}
+
+// N: the number of rows if it is small enough to be unrolled, else 0.
+template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& rows) {
+  dependent_count_ = 0;
+  smallest_pivot_ = 1.0;
+  double* const m = dense_.data();
+  const int n = N > 0 ? N : n_;
+  for (int i = 0; i < n * n; ++i) m[i] = 0.0;
+  for (const DenseProduct& p : dense_products_) {
+    const double* a = rows[p.row].wj[p.side_row];
+    const double* b = rows[p.column].j[p.side_column];
+    m[p.row * n + p.column] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+  // Row by row: below the diagonal first L D, then L.
+  for (int i = 0; i < n; ++i) {
+    double* const mi = m + i * n;
+    const double diagonal = mi[i];
+    double d = diagonal;
+    for (int j = 0; j < i; ++j) {
+      double sum = mi[j];
+      for (int k = 0; k < j; ++k) sum -= mi[k] * m[j * n + k];
+      mi[j] = sum;
+    }
+    for (int j = 0; j < i; ++j) {
+      const double l = mi[j] * inverse_d_[j];
+      d -= l * mi[j];
+      mi[j] = l;
+    }
+    if (!(d > k_pivot_tolerance * diagonal)) {
+      inverse_d_[i] = 0.0;
+      ++dependent_count_;
+      smallest_pivot_ = 0.0;
+    } else {
+      inverse_d_[i] = 1.0 / d;
+      if (d < smallest_pivot_ * diagonal) smallest_pivot_ = d / diagonal;
+    }
+  }
+}
+
+template <int N> void SchurSolver::solve_dense(double* x) const {
+  const double* const m = dense_.data();
+  const int n = N > 0 ? N : n_;
+  for (int i = 1; i < n; ++i)
+    for (int j = 0; j < i; ++j) x[i] -= m[i * n + j] * x[j];
+  for (int i = 0; i < n; ++i) x[i] *= inverse_d_[i];
+  for (int i = n - 1; i > 0; --i)
+    for (int j = 0; j < i; ++j) x[j] -= m[i * n + j] * x[i];
+}
+
+void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
   dependent_count_ = 0;
   smallest_pivot_ = 1.0;
   double* const y = work_.data();
@@ -146,6 +212,15 @@ void SchurSolver::factor(const std::vector<SchurRow>& rows) {
 }
 
 void SchurSolver::solve(double* x) const {
+  switch (n_) {
+  case 0: return;
+  case 1: return solve_dense<1>(x);
+  case 2: return solve_dense<2>(x);
+  case 3: return solve_dense<3>(x);
+  case 4: return solve_dense<4>(x);
+  default: break;
+  }
+  if (n_ <= k_max_dense) return solve_dense<0>(x);
   double* const y = permuted_.data();
   for (int k = 0; k < n_; ++k) y[k] = x[order_[k]];
   for (int k = 0; k < n_; ++k)

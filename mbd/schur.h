@@ -2,11 +2,12 @@
 //
 // A is symmetric, positive semidefinite and sparse: two rows meet where they share a moving body.
 // Pattern, fill-reducing order and elimination tree are found once for a set of rows; a factorisation
-// L D Lᵀ then runs over precomputed lists, without allocation. A pivot that vanishes against its
+// L D Lᵀ then runs over precomputed lists, without allocation; up to eight rows it is dense. A pivot that vanishes against its
 // diagonal marks a row as dependent on the earlier ones: its multiplier is set to zero and the row's
 // index is reported (redundant constraints; least-norm multipliers are found apart, on demand).
 #pragma once
 
+#include <array>
 #include <vector>
 
 namespace steplap {
@@ -37,6 +38,17 @@ public:
   static constexpr double k_pivot_tolerance = 1e-11;
 
 private:
+  template <int N> void factor_dense(const std::vector<SchurRow>& rows);
+  void factor_sparse(const std::vector<SchurRow>& rows);
+  template <int N> void solve_dense(double* x) const;
+
+  static constexpr int k_max_dense = 8;
+  struct DenseProduct {
+    unsigned char row, column, side_row, side_column;
+  };
+  std::vector<DenseProduct> dense_products_;
+  std::array<double, k_max_dense * k_max_dense> dense_{};
+
   struct Product {
     int row;                   ///< the earlier row in elimination order
     int position;              ///< its position in elimination order

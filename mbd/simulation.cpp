@@ -167,6 +167,12 @@ bool Simulation::advance() {
   return true;
 }
 
+State Simulation::current_state() const {
+  State state = state_;
+  dynamics_.unpack(integrator_->t0(), integrator_->y0(), state);
+  return state;
+}
+
 void Simulation::run() {
   while (advance()) {
   }

@@ -56,7 +56,10 @@ public:
   /// One accepted step, or up to an event and through it. False at the end.
   bool advance();
 
-  [[nodiscard]] const State& state() const { return state_; }
+  [[nodiscard]] const State& state() const { return state_; } ///< at the last event or the end
+  /// The state after the last step, whether or not an event ended it.
+  [[nodiscard]] State current_state() const;
+  [[nodiscard]] double kinetic_energy() const { return system_.kinetic_energy(current_state()); }
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   [[nodiscard]] const Trajectory& trajectory() const { return *trajectory_; }
   /// Not empty if an element ended the run before its time ("'front joint' came apart").

@@ -1,0 +1,193 @@
+#include "mbd/equilibrium.h"
+
+#include "mbd/simulation.h"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_acceleration_tolerance = 1e-9; // m/s²: 1e-10 of gravity
+constexpr int k_max_newton = 60;
+constexpr int k_max_damped_swings = 400;
+constexpr double k_swing_time = 20.0; // s of motion before giving up on a swing
+
+// Accelerations at rest as a function of the clusters' coordinates.
+class RestProblem {
+public:
+  RestProblem(const System& system, State state)
+      : system_(system), state_(std::move(state)), dynamics_(system),
+        y_(6 * system.bodies.size() + 2), dy_(y_.size()) {
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
+  }
+
+  // Modes from the gaps as they are now; friction sticks where it is loaded.
+  void update_modes() {
+    evaluate_state();
+    for (std::size_t u = 0; u < system_.units.size(); ++u)
+      state_.mode[u] = system_.units[u].group->initial_mode(system_.units[u].index, dynamics_.evaluation());
+    for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
+      FrictionState& friction = state_.friction[f];
+      if (friction.phase == FrictionPhase::apart) continue;
+      const bool is_loaded = system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction);
+      friction.phase = is_loaded ? FrictionPhase::stick : FrictionPhase::free;
+    }
+    evaluate_state();
+  }
+
+  double newton_step() {
+    const int n = dynamics_.coordinate_count();
+    const Eigen::VectorXd a = accelerations();
+    const double before = scaled_norm(a);
+    Eigen::MatrixXd jacobian(n, n);
+    std::vector<double> moved(y_);
+    for (int i = 0; i < n; ++i) {
+      const double h = 1e-7;
+      moved = y_;
+      moved[i] += h;
+      const Eigen::VectorXd up = accelerations(moved);
+      moved[i] -= 2.0 * h;
+      jacobian.col(i) = (up - accelerations(moved)) / (2.0 * h);
+    }
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+    decomposition.setThreshold(1e-10);
+    decomposition.compute(jacobian);
+    const Eigen::VectorXd step = decomposition.solve(-a);
+    const std::vector<double> start = y_;
+    for (double factor = 1.0; factor > 1e-3; factor *= 0.5) {
+      for (int i = 0; i < n; ++i) y_[i] = start[i] + factor * step[i];
+      dynamics_.project(state_.t, y_.data(), 1e-12);
+      std::fill(y_.begin() + n, y_.begin() + 2 * n, 0.0);
+      dynamics_.unpack(state_.t, y_.data(), state_);
+      std::fill(state_.v.begin(), state_.v.end(), 0.0);
+      update_modes();
+      if (scaled_norm(accelerations()) < before || factor < 2e-3) break;
+    }
+    return scaled_norm(accelerations());
+  }
+
+  [[nodiscard]] double residual() { return scaled_norm(accelerations()); }
+  [[nodiscard]] State& state() { return state_; }
+  [[nodiscard]] int fastest_body() {
+    const Snapshot snapshot = dynamics_.snapshot(dy_.data());
+    int worst = 1;
+    const auto size = [&](int i) {
+      return std::hypot(snapshot.acceleration[3 * i], snapshot.acceleration[3 * i + 1]);
+    };
+    for (int i = 2; i < system_.body_count(); ++i)
+      if (size(i) > size(worst)) worst = i;
+    return worst;
+  }
+  /// Friction elements whose sticking wrench is beyond their bound.
+  [[nodiscard]] std::vector<std::string> slipping() {
+    evaluate_state();
+    std::vector<std::string> names;
+    for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
+      const FrictionUnit& unit = system_.frictions[f];
+      if (state_.friction[f].phase != FrictionPhase::stick) continue;
+      if (dynamics_.watch()[unit.watch] < 0.0 || dynamics_.watch()[unit.watch + 1] < 0.0)
+        names.push_back(system_.element_names[unit.element]);
+    }
+    return names;
+  }
+
+private:
+  void evaluate_state() {
+    dynamics_.set_state(state_);
+    dynamics_.pack(state_, y_.data());
+    dynamics_.rates(state_.t, y_.data(), dy_.data());
+    dynamics_.watch_merged(dy_.data());
+  }
+  Eigen::VectorXd accelerations() { return accelerations(y_); }
+  Eigen::VectorXd accelerations(const std::vector<double>& y) {
+    const int n = dynamics_.coordinate_count();
+    dynamics_.rates(state_.t, y.data(), dy_.data());
+    return Eigen::Map<const Eigen::VectorXd>(dy_.data() + n, n);
+  }
+  // Driven coordinates move as they must: their accelerations are not a matter of equilibrium.
+  [[nodiscard]] double scaled_norm(const Eigen::VectorXd& a) const {
+    double largest = 0.0;
+    const Layout& layout = dynamics_.layout();
+    for (int k = 0; k < layout.cluster_count(); ++k)
+      for (int c = 0; c < 3; ++c)
+        if (layout.clusters[k].w[c] > 0.0) largest = std::max(largest, std::abs(a[3 * k + c]));
+    return largest;
+  }
+
+  const System& system_;
+  State state_;
+  Dynamics dynamics_;
+  std::vector<double> y_, dy_;
+};
+
+bool newton(RestProblem& problem, Equilibrium& result) {
+  problem.update_modes();
+  result.residual = problem.residual();
+  double best = result.residual;
+  for (int stalled = 0; result.iterations < k_max_newton && stalled < 6; ++result.iterations) {
+    if (result.residual <= k_acceleration_tolerance) return true;
+    result.residual = problem.newton_step();
+    if (!std::isfinite(result.residual)) return false;
+    stalled = result.residual < 0.7 * best ? 0 : stalled + 1;
+    best = std::min(best, result.residual);
+  }
+  return result.residual <= k_acceleration_tolerance;
+}
+
+// One swing: from rest until the kinetic energy has passed its first peak.
+State swing(const System& system, const State& start) {
+  SimulationOptions options;
+  options.integrator = "dop853";
+  options.settings.tolerance = 1e-6;
+  options.end = start.t + k_swing_time;
+  Simulation simulation(system, start, options);
+  double peak = 0.0;
+  while (simulation.advance()) {
+    const double energy = simulation.kinetic_energy();
+    if (energy < peak) break;
+    peak = energy;
+  }
+  State state = simulation.current_state();
+  state.t = start.t;
+  std::fill(state.v.begin(), state.v.end(), 0.0);
+  return state;
+}
+
+} // namespace
+
+Equilibrium find_equilibrium(const System& system, const State& start) {
+  Equilibrium result;
+  State from = start;
+  start_drives(system, from);
+  for (int attempt = 0; attempt < k_max_damped_swings; ++attempt) {
+    RestProblem problem(system, from);
+    result.iterations = 0;
+    bool is_found = false;
+    // Newton is tried at once, then after every few swings.
+    if (attempt % 5 == 0) is_found = newton(problem, result);
+    if (is_found) {
+      result.slipping = problem.slipping();
+      result.state = problem.state();
+      result.state.v = start.v;
+      for (std::size_t i = 3; i < start.q.size(); ++i)
+        if (i % 3 < 2) result.moved = std::max(result.moved, std::abs(result.state.q[i] - start.q[i]));
+      return result;
+    }
+    const State next = swing(system, from);
+    double moved = 0.0;
+    for (std::size_t i = 0; i < next.q.size(); ++i) moved = std::max(moved, std::abs(next.q[i] - from.q[i]));
+    if (moved > 1e3) break;
+    from = next;
+    from.dissipated = from.work = 0.0;
+  }
+  RestProblem problem(system, from);
+  problem.update_modes();
+  throw NumericalFailure("no static equilibrium found: '" + system.bodies[problem.fastest_body()].name +
+                         "' keeps moving; is something missing that holds it?");
+}
+
+} // namespace steplap
