@@ -1,7 +1,7 @@
 // Scenes for tests of the step-lap joint, as text of a model file.
 #pragma once
 
-#include "elements/catalog.h"
+#include "transformer/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation.h"
 
@@ -41,12 +41,16 @@ inline Run run(const steplap::Model& model) {
 }
 
 inline Run run_text(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return run(steplap::parse_model(text, "scene.toml", steplap::element_catalog(), overrides));
+  return run(steplap::parse_model(text, "scene.toml", steplap::transformer_catalog(), overrides));
+}
+
+inline steplap::Model read(const std::string& path, const std::vector<std::string>& overrides = {}) {
+  return steplap::read_model(std::string(STEPLAP_MODELS) + "/" + path, steplap::transformer_catalog(),
+                             overrides);
 }
 
 inline Run run_file(const std::string& path, const std::vector<std::string>& overrides = {}) {
-  return run(steplap::read_model(std::string(STEPLAP_MODELS) + "/" + path, steplap::element_catalog(),
-                                 overrides));
+  return run(read(path, overrides));
 }
 
 inline std::string number(double x) {

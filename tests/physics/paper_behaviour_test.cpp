@@ -28,7 +28,7 @@ Observed observe(Condition condition, double friction_factor = 1.0) {
   if (friction_factor != 1.0)
     overrides.push_back("element.tank bottom.static_friction=" + std::to_string(0.35 * friction_factor));
   const Model model = read_model(std::string(STEPLAP_MODELS) + "/paper/" + name_of(condition) + ".toml",
-                                 element_catalog(), overrides);
+                                 transformer_catalog(), overrides);
   Observed o;
   o.run = run(model, {"dop853", 1e-9, 0.8, 1e-3});
   o.t = o.run.times();

@@ -14,7 +14,7 @@ inline const char* name_of(Condition condition) {
 }
 
 inline Model paper_model(Condition condition) {
-  return read_model(std::string(STEPLAP_MODELS) + "/paper/" + name_of(condition) + ".toml", element_catalog());
+  return read_model(std::string(STEPLAP_MODELS) + "/paper/" + name_of(condition) + ".toml", transformer_catalog());
 }
 
 inline CsvTable paper_reference(Condition condition) {

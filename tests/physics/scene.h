@@ -1,7 +1,7 @@
 // Scenes for tests: a model from TOML text, run to its end with the settings that a test chooses.
 #pragma once
 
-#include "elements/catalog.h"
+#include "transformer/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation.h"
 
@@ -42,7 +42,7 @@ struct Settings {
   double output_step = 0.0; ///< 0: start and end only
 };
 
-inline Model scene(const std::string& text) { return parse_model(text, "scene.toml", element_catalog()); }
+inline Model scene(const std::string& text) { return parse_model(text, "scene.toml", transformer_catalog()); }
 
 inline SimulationOptions options(const Settings& settings) {
   SimulationOptions o;

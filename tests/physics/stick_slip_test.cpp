@@ -131,7 +131,7 @@ TEST_CASE("Den Hartog's oscillator: twenty phases of slip and stick in ten secon
 TEST_CASE("the mode at the start is found: at rest, loaded beyond and within the bound") {
   // 8 N at t = 0 against 2.943 N: it slips at once; with μ = 0.9 it holds until the spring… never here.
   CHECK(run(den_hartog(), {"dop853", 1e-8, 1e-3}).last("friction.mode") == 2.0);
-  Model held = parse_model(den_hartog() + "\n[simulation]\nstep = 1e-3\n", "scene.toml", element_catalog(),
+  Model held = parse_model(den_hartog() + "\n[simulation]\nstep = 1e-3\n", "scene.toml", transformer_catalog(),
                            {"element.friction.static_friction=0.9"});
   const Run r = run(held, {"dop853", 1e-10, 10.0, 0.1});
   CHECK(r.event_times("friction").empty());

@@ -2,7 +2,7 @@
 // transformer, and of the same bodies on springs only: what contacts, friction and constraints cost.
 //
 // Names are scene/what/…, so that lines of two scenes can be divided by each other.
-#include "elements/catalog.h"
+#include "transformer/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation.h"
 
@@ -30,7 +30,7 @@ const Scene& scene(const std::string& path) {
   std::unique_ptr<Scene>& entry = scenes[path];
   if (entry) return *entry;
   entry = std::make_unique<Scene>();
-  entry->model = read_model(STEPLAP_MODELS "/" + path, element_catalog());
+  entry->model = read_model(STEPLAP_MODELS "/" + path, transformer_catalog());
   entry->system = compile(entry->model);
   SimulationOptions options = options_of(entry->model);
   options.end = k_sliding;
