@@ -1,0 +1,222 @@
+#include "tools/steplap/joint.h"
+
+#include "elements/step_lap_friction.h"
+#include "elements/step_lap_joint.h"
+#include "mbd/io/units.h"
+#include "mbd/number_text.h"
+#include "tools/steplap/run.h"
+#include "tools/steplap/text_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <ostream>
+#include <sstream>
+
+namespace steplap {
+
+namespace {
+
+using Align = TextTable::Align;
+
+struct JointOptions {
+  std::string model;
+  std::vector<std::string> overrides;
+  std::vector<std::string> joints;
+  std::optional<std::string> wrench;
+};
+
+/// A joint of the model as it lies in the reference pose.
+struct JointView {
+  const StepLapJoint* joint = nullptr;
+  std::vector<const StepLapInterface*> interfaces;
+  Patch patch;               ///< by the static coefficients; reference: the limb's centre of gravity
+  std::vector<double> areas; ///< of one interface of each kind, m²
+};
+
+JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, const LoadedModel& loaded) {
+  JointView view;
+  view.joint = &joint;
+  for (const ElementEntry& entry : loaded.model.elements)
+    if (const auto* e = dynamic_cast<const StepLapInterface*>(entry.element.get()); e && e->joint == joint.name)
+      view.interfaces.push_back(e);
+  const State state = loaded.system->initial_state();
+  std::vector<Motion<double>> motion(static_cast<std::size_t>(loaded.system->body_count()));
+  place_bodies(state.q, state.v, motion);
+  const Pose pose = friction.pose_of(motion.data());
+  view.patch = friction.patch_at(pose, GripLaw::holding);
+  OverlapWorkspace workspace;
+  Region region;
+  for (const SheetPair& sheets : friction.sheets()) {
+    intersect(sheets.yoke, sheets.limb, pose, workspace, region);
+    view.areas.push_back(area(region));
+  }
+  return view;
+}
+
+std::vector<JointView> joints_of(const LoadedModel& loaded) {
+  const System& system = *loaded.system;
+  std::vector<JointView> views;
+  for (const FrictionUnit& unit : system.frictions) {
+    const auto* friction = dynamic_cast<const StepLapFriction*>(unit.friction.get());
+    if (!friction) continue;
+    for (const ElementEntry& entry : loaded.model.elements)
+      if (entry.element->name == system.element_names[static_cast<std::size_t>(unit.element)])
+        views.push_back(look_at(dynamic_cast<const StepLapJoint&>(*entry.element), *friction, loaded));
+  }
+  return views;
+}
+
+std::vector<JointView> chosen_joints(const JointOptions& options, const LoadedModel& loaded) {
+  std::vector<JointView> all = joints_of(loaded), chosen;
+  if (all.empty()) throw UsageError("'" + loaded.path + "' has no step-lap joint");
+  if (options.joints.empty()) return all;
+  std::vector<std::string> known;
+  for (const JointView& view : all) known.push_back(view.joint->name);
+  for (const std::string& name : options.joints) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+      throw UsageError("'" + loaded.path + "' has no step-lap joint '" + name + "'" + did_you_mean(name, known));
+    chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
+  }
+  return chosen;
+}
+
+// "53 kN, 0, 1.2e4": SI where there is no unit.
+Vec3 parse_wrench(const std::string& text) {
+  static const std::array<const char*, 3> units = {"N", "N", "N m"};
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  if (parts.size() != 3 || text.back() == ',')
+    throw UsageError("--wrench '" + text + "': expected three values Fx,Fy,M, as in \"53 kN,-88 kN,0\"");
+  Vec3 wrench;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::istringstream number(parts[i]);
+    std::string rest;
+    if (number >> wrench[static_cast<int>(i)] && std::isfinite(wrench[static_cast<int>(i)]) && !(number >> rest)) continue;
+    const Quantity quantity = parse_quantity(parts[i], units[i]);
+    if (!quantity.problem.empty())
+      throw UsageError("--wrench '" + text + "': " + quantity.problem);
+    wrench[static_cast<int>(i)] = quantity.value;
+  }
+  return wrench;
+}
+
+// --- on the screen -----------------------------------------------------------------------------------
+
+std::string area_text(double area) {
+  return area < 0.1 ? number_text(std::round(area * 1e10) / 1e4) + " mm²" : quantity_text(area, "m²");
+}
+
+std::string point_text(const Vec2& point) {
+  // Places closer than an atom are rounding.
+  const auto coordinate = [](double x) { return quantity_text(std::abs(x) < 1e-10 ? 0.0 : x, "m"); };
+  return "(" + coordinate(point.x()) + ", " + coordinate(point.y()) + ")";
+}
+
+void print_interfaces(std::ostream& out, const JointView& view) {
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
+  table.add_row({"interface", "overlap", "number", "area", "pressure", "mu_s"});
+  double area = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < view.interfaces.size(); ++i) {
+    const StepLapInterface& e = *view.interfaces[i];
+    table.add_row({e.name, area_text(view.areas[i]), quantity_text(e.count, ""), area_text(view.areas[i] * e.count),
+                   quantity_text(e.pressure, "Pa"), quantity_text(e.static_friction, "")});
+    area += view.areas[i] * e.count;
+    count += e.count;
+  }
+  table.add_row({"together", "", quantity_text(count, ""), area_text(area), "", ""});
+  out << table;
+}
+
+// Sliding that way: h of the unit twist. Alone: the longest wrench of that direction inside the limit
+// surface, less where the friction's centre is not the limb's.
+void print_capacity(std::ostream& out, const Patch& patch) {
+  static const std::array<const char*, 3> rows = {"along x", "along y", "turning"};
+  TextTable table({Align::left, Align::right, Align::right});
+  table.add_row({"capacity", "sliding", "alone"});
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 unit = Vec3::Unit(i);
+    const std::string what = i < 2 ? "N" : "N m";
+    table.add_row({rows[static_cast<std::size_t>(i)], quantity_text(evaluate_gradient(patch, unit).h, what),
+                   quantity_text(1.0 / required_pressure(patch, unit).u, what)});
+  }
+  out << table;
+}
+
+void print_usage(std::ostream& out, const JointView& view, const Vec3& wrench) {
+  const RequiredPressure required = required_pressure(view.patch, wrench);
+  if (!required.converged)
+    throw NumericalFailure("the required pressure of '" + view.joint->name + "' was not found to the last digit; "
+                           "the wrench may be out of all proportion");
+  TextTable table({Align::left, Align::left});
+  table.add_row({"wrench", "Fx " + quantity_text(wrench[0], "N") + ", Fy " + quantity_text(wrench[1], "N") + ", M " +
+                               quantity_text(wrench[2], "N m")});
+  table.add_row({"u", quantity_text(required.u, "") + (required.u > 1.0 ? ": slides" : ": holds")});
+  table.add_row({"p_req", quantity_text(required.u * view.interfaces.front()->pressure, "Pa") + " of " +
+                              quantity_text(view.interfaces.front()->pressure, "Pa") +
+                              (view.interfaces.size() > 1 ? " at the first interface" : "")});
+  table.add_row({"margin", quantity_text(required.margin(), "")});
+  table.add_row({"centre of rotation", required.centre ? point_text(*required.centre) : "at infinity"});
+  out << table;
+}
+
+void print_joint(std::ostream& out, const JointView& view, const std::optional<Vec3>& wrench) {
+  out << view.joint->name << ": '" << view.joint->limb << "' on '" << view.joint->active_part << "'"
+      << (view.joint->mode == "monitor" ? ", never slides (monitor)" : "") << "\n";
+  if (view.interfaces.empty()) {
+    out << "  no interfaces: holds whatever it takes\n";
+    return;
+  }
+  print_interfaces(out, view);
+  out << "\n";
+  print_capacity(out, view.patch);
+  TextTable table({Align::left, Align::left});
+  table.add_row({"centre of friction", point_text(view.patch.centroid())});
+  table.add_row({"radius of gyration", quantity_text(view.patch.gyration(), "m")});
+  out << table;
+  if (!wrench) return;
+  out << "\n";
+  print_usage(out, view, *wrench);
+}
+
+ExitCode joint(const JointOptions& options, Console& console) {
+  std::optional<Vec3> wrench;
+  if (options.wrench) wrench = parse_wrench(*options.wrench);
+  const auto loaded = load_model(options.model, options.overrides);
+  const std::vector<JointView> views = chosen_joints(options, *loaded);
+  if (console.verbosity == Verbosity::quiet) return ExitCode::done;
+  console.out << "Step-lap joints in the reference pose. Wrenches and twists are about the limb's centre of gravity,\n"
+                 "in the active part's axes; points are from the active part's centre of gravity.\n";
+  for (const JointView& view : views) {
+    console.out << "\n";
+    print_joint(console.out, view, wrench);
+  }
+  return ExitCode::done;
+}
+
+} // namespace
+
+Command joint_command() {
+  const auto o = std::make_shared<JointOptions>();
+  Command command;
+  command.name = "joint";
+  command.summary = "what the step-lap joints of a model can bear, and the pressure that a wrench takes";
+  command.examples = R"(  steplap joint models/paper/no_interference.toml
+  steplap joint my.toml --joint "front joint" --wrench "53 kN,-88 kN,0"
+  steplap joint my.toml --wrench 0,-88290,-2e3 --set core.core.pressure="60 kPa"
+Capacity "sliding": the friction while the limb slides that way and no other; "alone": the largest such
+force through the limb's centre of gravity, or couple, that the joint holds. A wrench is the one on the limb.
+)";
+  command.options = {
+      {"MODEL", &o->model, "FILE", "model file (TOML)", true},
+      {"--joint", &o->joints, "NAME", "this joint; may be repeated (default: all)"},
+      {"--wrench", &o->wrench, "FX,FY,M", "force and couple on the limb: say u, p_req, margin, centre of rotation"},
+      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
+  command.run = [o](Console& console) { return joint(*o, console); };
+  return command;
+}
+
+} // namespace steplap

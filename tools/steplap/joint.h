@@ -1,0 +1,10 @@
+// steplap joint MODEL
+#pragma once
+
+#include "tools/steplap/command.h"
+
+namespace steplap {
+
+[[nodiscard]] Command joint_command();
+
+} // namespace steplap
