@@ -47,8 +47,8 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   const ContactGeometry g = contact_geometry(e, builder);
   const Motion<double>&a = builder.reference(g.a), &b = builder.reference(g.b);
   if (g.gap.is_axis_in_a) {
-    const auto frame = detail::contact_frame(a, b, g.gap.point_a, g.gap.point_b, g.gap.normal, g.gap.axis, true);
-    if (!(frame.alpha > 0.0))
+    const Pair<double> normal = to_ground(b, g.gap.normal), axis = to_ground(a, g.gap.axis);
+    if (!(dot(normal, axis) > 0.0))
       return builder.error("the contact axis must point away from the line: normal · axis > 0 is required");
   }
   const double now = g.gap.at<false, double>(a, b).value;

@@ -505,20 +505,22 @@ double* Dynamics::joint_multipliers(const RigidEdge& edge) {
 // Newton–Euler from the leaves of each merged cluster: what an edge carries is what its subtree lacks.
 void Dynamics::merged_wrenches() {
   const Layout& layout = *layout_;
-  for (const RigidEdge& edge : layout.edges)
-    for (const int i : {edge.child, edge.parent}) {
-      const double* a = &acceleration_[3 * i];
-      const BodyData& body = system_.bodies[i];
-      wrench_[i] = {body.mass * (a[0] - system_.gravity.x()), body.mass * (a[1] - system_.gravity.y()),
-                    body.inertia * a[2]};
-      if (!layout.is_placed[i]) continue;
-      wrench_[i].fx -= force_[i].fx;
-      wrench_[i].fy -= force_[i].fy;
-      wrench_[i].m -= force_[i].m;
-    }
+  for (const RigidEdge& edge : layout.edges) {
+    const int i = edge.child;
+    if (!layout.is_carried[edge.parent]) wrench_[edge.parent] = {}; // a root's is not asked for
+    const double* a = &acceleration_[3 * i];
+    const BodyData& body = system_.bodies[i];
+    wrench_[i] = {body.mass * (a[0] - system_.gravity.x()), body.mass * (a[1] - system_.gravity.y()),
+                  body.inertia * a[2]};
+    if (!layout.is_placed[i]) continue;
+    wrench_[i].fx -= force_[i].fx;
+    wrench_[i].fy -= force_[i].fy;
+    wrench_[i].m -= force_[i].m;
+  }
   if (layout.edges.empty()) return;
   for (std::size_t r = 0; r < layout.active.size(); ++r) {
     const RowSpec& spec = *layout.active[r].spec;
+    if (!layout.is_carried[spec.a] && !layout.is_carried[spec.b]) continue;
     const auto m = evaluate_row<false>(spec, motion_.data());
     const double lambda = right_side_[r];
     const int body[2] = {spec.a, spec.b};

@@ -28,6 +28,7 @@ public:
   std::vector<Entry> entries;
 
   void add_forces(Evaluation& e) const override {
+    double dissipation = 0.0; // in a register: a sum in memory would chain the elements to each other
     for (const Entry& entry : entries) {
       const auto m =
           entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
@@ -37,8 +38,9 @@ public:
         entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch,
                         e.watch_rate + entry.watch);
       if (f != 0.0) apply_force(e, entry.a, entry.b, m, f);
-      e.dissipation += (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
+      dissipation += (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
     }
+    e.dissipation += dissipation;
   }
 
   [[nodiscard]] double potential(const Motion<double>* motion) const override {

@@ -126,6 +126,7 @@ void order_edges(const std::vector<RigidJoint>& joints, const std::vector<char>&
         if (is_seen[other]) continue;
         is_seen[other] = 1;
         layout.edges.push_back({queue[next], other, joints[i].block, joints[i].friction});
+        layout.is_carried[other] = 1;
         queue.push_back(other);
       }
   }
@@ -217,6 +218,7 @@ Layout make_layout(const System& system, const State& state) {
   std::vector<int> parent;
   const std::vector<char> is_merged = merge(system, joints, parent);
   make_clusters(system, state, parent, layout);
+  layout.is_carried.assign(system.bodies.size(), 0);
   if (std::find(is_merged.begin(), is_merged.end(), 1) != is_merged.end())
     order_edges(joints, is_merged, system.body_count(), layout);
   std::vector<char> is_block_merged(system.row_blocks.size(), 0);

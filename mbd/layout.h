@@ -61,6 +61,7 @@ struct Layout {
   std::vector<ActiveRow> active;
   std::vector<Lock> locks;
   std::vector<RigidEdge> edges;
+  std::vector<char> is_carried;      ///< per body: child of an edge, whose wrench balance is wanted
   std::vector<int> redundant_blocks; ///< rigid blocks inside one cluster that close a loop
   std::vector<int> sliding;          ///< friction elements in phase slip
   std::vector<int> holding;          ///< friction elements in phase stick that are not merged

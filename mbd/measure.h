@@ -81,38 +81,6 @@ struct AngleMeasure {
   }
 };
 
-namespace detail {
-
-// What gap and slide share: the line of b with normal n and tangent t (t × n = 1), the contact axis a
-// (fixed in body a, or n itself), α = n·a, β = t·a, and the tip p_A − δ a.
-template <class S> struct ContactFrame {
-  Pair<S> ra, rb, d, n, t, axis;
-  S alpha, beta, gap;
-  Pair<S> tip_a, tip_b; // levers to the tip
-};
-
-template <class S>
-STEPLAP_INLINE ContactFrame<S> contact_frame(const Motion<S>& a, const Motion<S>& b, const Vec2& point_a,
-                              const Vec2& point_b, const Vec2& normal, const Vec2& axis,
-                              bool is_axis_in_a) {
-  ContactFrame<S> k;
-  k.ra = to_ground(a, point_a);
-  k.rb = to_ground(b, point_b);
-  const Pair<S> centres{a.x - b.x, a.y - b.y};
-  k.d = centres + k.ra - k.rb;
-  k.n = to_ground(b, normal);
-  k.t = {k.n.y, -k.n.x};
-  k.axis = is_axis_in_a ? to_ground(a, axis) : k.n;
-  k.alpha = is_axis_in_a ? dot(k.n, k.axis) : S(1);
-  k.beta = is_axis_in_a ? dot(k.t, k.axis) : S(0);
-  k.gap = dot(k.n, k.d) / k.alpha;
-  k.tip_a = k.ra - k.gap * k.axis;
-  k.tip_b = centres + k.tip_a;
-  return k;
-}
-
-} // namespace detail
-
 /// Gap of a contact, δ = n·(p_A − p_B)/(n·a): force n/(n·a) at the tip p_A − δ a (physics.md §2). With
 /// the axis n itself this is the ordinary distance from b's line. n·a > 0 is required.
 struct GapMeasure {
@@ -148,31 +116,37 @@ struct GapMeasure {
 };
 
 /// Tangential coordinate of the same tip on b's line, s = t·(p_A − δ a − p_B) = (d × a)/(n·a), d = p_A −
-/// p_B; with the axis a = body a's y axis it equals Eq. (8). Its gradient is t − (β/α) n at the tip.
+/// p_B; with the axis a = body a's y axis it equals Eq. (8). Its gradient is −ẑ×a/(n·a) at the tip. With
+/// the axis n itself it is t·(p_A − p_B), held at p_A.
 struct SlideMeasure {
   Vec2 point_a, point_b, normal;
   Vec2 axis = Vec2::Zero();
   bool is_axis_in_a = false;
   template <bool WithBias, class S>
   STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+    if (!is_axis_in_a)
+      return AxisMeasure{point_a, point_b, Vec2(normal.y(), -normal.x())}.at<WithBias>(a, b);
     MeasureValue<S> m;
-    const auto k = detail::contact_frame(a, b, point_a, point_b, normal, axis, is_axis_in_a);
-    const S cross_da = is_axis_in_a ? cross(k.d, k.axis) : dot(k.t, k.d);
-    m.value = cross_da / k.alpha;
-    m.direction = k.t - (k.beta / k.alpha) * k.n;
-    m.lever_a = k.tip_a;
-    m.lever_b = k.tip_b;
-    m.rate = dot(m.direction, point_velocity(a, k.tip_a) - point_velocity(b, k.tip_b));
+    const Pair<S> ra = to_ground(a, point_a), rb = to_ground(b, point_b);
+    const Pair<S> n = to_ground(b, normal), shaft = to_ground(a, axis);
+    const Pair<S> reach{a.x - b.x + ra.x, a.y - b.y + ra.y}; // from b's centre to p_A
+    const Pair<S> d = reach - rb;
+    const S inverse_alpha = S(1) / dot(n, shaft);
+    const S turned = cross(d, shaft);
+    m.value = turned * inverse_alpha;
+    m.direction = {shaft.y * inverse_alpha, -shaft.x * inverse_alpha};
+    const Pair<S> back = dot(n, d) * inverse_alpha * shaft; // δ a
+    m.lever_a = ra - back;
+    m.lever_b = reach - back;
+    m.rate = dot(m.direction, point_velocity(a, m.lever_a) - point_velocity(b, m.lever_b));
     if constexpr (WithBias) {
-      // s α = d × a twice differentiated; a turns with body a (or with b when it is the normal)
+      // s α = d × a twice differentiated, with ȧ = ωA ẑ×a and α' = β Ω, α'' = −α Ω², β = t·a
       const S wa2 = a.omega * a.omega, wb2 = b.omega * b.omega;
-      const Pair<S> ddot = point_velocity(a, k.ra) - point_velocity(b, k.rb);
-      const Pair<S> dddot = wb2 * k.rb - wa2 * k.ra;
-      const S w = is_axis_in_a ? a.omega : b.omega;
-      const S second = cross(dddot, k.axis) + S(2) * w * cross(ddot, perp(k.axis)) -
-                       w * w * cross(k.d, k.axis);
-      const S spin = is_axis_in_a ? a.omega - b.omega : S(0);
-      m.bias = (second - S(2) * m.rate * k.beta * spin + m.value * k.alpha * spin * spin) / k.alpha;
+      const Pair<S> velocity = point_velocity(a, ra) - point_velocity(b, rb);
+      const S second = wb2 * cross(rb, shaft) - wa2 * cross(ra, shaft) +
+                       S(2) * a.omega * dot(velocity, shaft) - wa2 * turned;
+      const S spin = a.omega - b.omega;
+      m.bias = (second - S(2) * m.rate * cross(shaft, n) * spin) * inverse_alpha + m.value * spin * spin;
     }
     return m;
   }
