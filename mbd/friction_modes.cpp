@@ -147,9 +147,19 @@ void FrictionModes::decide(State& state) {
   for (std::size_t pass = 0; pass <= system_.frictions.size(); ++pass) {
     solve(state, candidates);
     std::vector<int> more = violated(state);
-    std::erase_if(more, [&](int f) {
+    const std::size_t violations = more.size();
+    const auto is_candidate = [&](int f) {
       return std::find(candidates.begin(), candidates.end(), f) != candidates.end();
-    });
+    };
+    std::erase_if(more, is_candidate);
+    // A candidate that was found to stick and yet is violated shares its load with others that stick
+    // (their rows depend on each other): what they can bear together, only the whole problem tells.
+    if (more.empty() && violations > 0) {
+      for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f)
+        if (state.friction[f].phase == FrictionPhase::stick && !system_.frictions[f].friction->never_slips() &&
+            !is_candidate(f))
+          more.push_back(f);
+    }
     if (more.empty()) return;
     candidates.insert(candidates.end(), more.begin(), more.end());
   }
