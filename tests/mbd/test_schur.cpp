@@ -1,0 +1,144 @@
+// The solver of the constraint equations against dense algebra: random rows between random bodies, rows
+// that depend on others, locked coordinates, loops.
+#include "mbd/schur.h"
+#include "mbd/types.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+using namespace steplap;
+
+namespace {
+
+struct Problem {
+  std::vector<SchurRow> rows;
+  MatX j, w; ///< rows × 3·bodies; diagonal inverse masses
+  [[nodiscard]] MatX matrix() const { return j * w * j.transpose(); }
+};
+
+// `rows` rows, each between two of `bodies` bodies or one and the ground; some coordinates locked.
+Problem random_problem(int rows, int bodies, double locked_share, std::mt19937& generator) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::uniform_int_distribution<int> pick(-1, bodies - 1);
+  Problem p;
+  p.j = MatX::Zero(rows, 3 * bodies);
+  p.w = MatX::Zero(3 * bodies, 3 * bodies);
+  for (int i = 0; i < 3 * bodies; ++i)
+    p.w(i, i) = 0.5 * (unit(generator) + 1.0) < locked_share ? 0.0 : std::exp(2.0 * unit(generator));
+  for (int r = 0; r < rows; ++r) {
+    SchurRow row;
+    do {
+      row.body[0] = pick(generator);
+      row.body[1] = pick(generator);
+    } while (row.body[0] == row.body[1]);
+    for (int side = 0; side < 2; ++side) {
+      if (row.body[side] < 0) continue;
+      for (int c = 0; c < 3; ++c) {
+        const int k = 3 * row.body[side] + c;
+        row.j[side][c] = p.j(r, k) = unit(generator);
+        row.wj[side][c] = p.w(k, k) * row.j[side][c];
+      }
+    }
+    p.rows.push_back(row);
+  }
+  return p;
+}
+
+void copy_row(Problem& p, int from, int to, double factor) {
+  p.rows[to] = p.rows[from];
+  p.j.row(to) = factor * p.j.row(from);
+  for (int side = 0; side < 2; ++side)
+    for (int c = 0; c < 3; ++c) {
+      p.rows[to].j[side][c] *= factor;
+      p.rows[to].wj[side][c] *= factor;
+    }
+}
+
+VecX solve(SchurSolver& solver, const Problem& p, VecX right) {
+  solver.factor(p.rows);
+  solver.solve(right.data());
+  return right;
+}
+
+} // namespace
+
+TEST_CASE("constraint equations: independent rows of all sizes against a dense factorisation") {
+  std::mt19937 generator(1);
+  int compared = 0;
+  for (int rows = 1; rows <= 40; ++rows)
+    for (int draw = 0; draw < 10; ++draw) {
+      Problem p = random_problem(rows, std::max(2, rows), 0.0, generator);
+      const MatX a = p.matrix();
+      const double condition = [&] {
+        const Eigen::SelfAdjointEigenSolver<MatX> eigen(a, Eigen::EigenvaluesOnly);
+        return eigen.eigenvalues()[rows - 1] / std::max(1e-300, eigen.eigenvalues()[0]);
+      }();
+      if (condition > 1e6) continue;
+      ++compared;
+      SchurSolver solver;
+      solver.analyze(p.rows);
+      const VecX right = VecX::Random(rows);
+      const VecX expected = a.ldlt().solve(right), x = solve(solver, p, right);
+      CHECK(!solver.is_singular());
+      // Rounding of a factorisation: rows · 1e-16 · condition.
+      CHECK((x - expected).norm() < 1e-15 * rows * condition * expected.norm());
+      // New numbers in the same pattern.
+      for (SchurRow& row : p.rows)
+        for (int side = 0; side < 2; ++side)
+          for (int c = 0; c < 3; ++c) {
+            row.j[side][c] *= 1.5;
+            row.wj[side][c] *= 1.5;
+          }
+      CHECK((2.25 * solve(solver, p, right) - x).norm() < 1e-14 * rows * condition * x.norm());
+    }
+  CHECK(compared > 200);
+}
+
+TEST_CASE("constraint equations: a dependent row is reported, its multiplier is zero, the rest solves what can be solved") {
+  std::mt19937 generator(2);
+  for (const int rows : {2, 3, 5, 7, 8, 9, 15, 30})
+    for (int draw = 0; draw < 10; ++draw) {
+      Problem p = random_problem(rows, rows + 1, 0.0, generator);
+      copy_row(p, 0, rows - 1, draw % 2 ? -1.7 : 1.0);
+      const MatX a = p.matrix();
+      SchurSolver solver;
+      solver.analyze(p.rows);
+      const VecX right = a * VecX::Random(rows); // in the range of A
+      const VecX x = solve(solver, p, right);
+      CHECK(solver.is_singular());
+      int dependent = 0;
+      for (int r = 0; r < rows; ++r) {
+        if (!solver.is_dependent(r)) continue;
+        ++dependent;
+        CHECK(x[r] == 0.0);
+        CHECK((r == 0 || r == rows - 1));
+      }
+      CHECK(dependent == 1);
+      CHECK((a * x - right).norm() < 1e-9 * (1.0 + right.norm())); // random rows: conditions up to 1e6
+    }
+}
+
+TEST_CASE("constraint equations: locked coordinates carry no compliance; a row on nothing else drops out") {
+  std::mt19937 generator(3);
+  for (int draw = 0; draw < 50; ++draw) {
+    const int rows = 4 + draw % 12;
+    const Problem p = random_problem(rows, 2 * rows, 0.3, generator);
+    const MatX a = p.matrix();
+    const VecX right = a * VecX::Random(rows);
+    SchurSolver solver;
+    solver.analyze(p.rows);
+    const VecX x = solve(solver, p, right);
+    CHECK((a * x - right).norm() < 1e-8 * (1.0 + right.norm()));
+  }
+  Problem p = random_problem(1, 2, 0.0, generator);
+  for (int side = 0; side < 2; ++side)
+    for (double& value : p.rows[0].wj[side]) value = 0.0;
+  SchurSolver solver;
+  solver.analyze(p.rows);
+  CHECK(solve(solver, p, VecX::Ones(1))[0] == 0.0);
+  CHECK(solver.is_dependent(0));
+}
