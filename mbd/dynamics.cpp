@@ -273,7 +273,7 @@ template <bool WithBias> STEPLAP_INLINE MeasureValue<double> Dynamics::load_row(
   }
   const auto fill = [&](int side, double sign, const Pair<double>& lever) {
     if (row.body[side] < 0) return;
-    const double* w = layout_->clusters[row.body[side]].w;
+    const double* w = row.w[side];
     double* j = row.j[side];
     double* wj = row.wj[side];
     j[0] = sign * m.direction.x;
@@ -305,11 +305,14 @@ void Dynamics::solve_constraints(double* a) {
   const bool has_locks = !layout.locks.empty();
   if (has_locks) std::fill(reaction_.begin(), reaction_.begin() + coordinate_count(), 0.0);
   if (layout.active.empty()) return;
-  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+  const std::size_t count = layout.active.size();
+  double* const right = right_side_.data();
+  for (std::size_t r = 0; r < count; ++r) {
     const MeasureValue<double> m = load_row<true>(r);
     double right_side = -m.bias;
-    if (layout.active[r].spec->drive) {
-      const SignalJet target = row_target(*layout.active[r].spec, state_->memory.data(), evaluation_.t);
+    const RowSpec& spec = *layout.active[r].spec;
+    if (spec.drive) {
+      const SignalJet target = row_target(spec, state_->memory.data(), evaluation_.t);
       right_side += target.acceleration;
       target_rate_[r] = target.rate;
     }
@@ -319,14 +322,14 @@ void Dynamics::solve_constraints(double* a) {
       const double* ak = a + 3 * row.body[side];
       right_side -= row.j[side][0] * ak[0] + row.j[side][1] * ak[1] + row.j[side][2] * ak[2];
     }
-    right_side_[r] = right_side;
+    right[r] = right_side;
   }
   layout.schur.factor(layout.schur_rows);
   is_factored_ = true;
-  layout.schur.solve(right_side_.data());
-  for (std::size_t r = 0; r < layout.schur_rows.size(); ++r) {
+  layout.schur.solve(right);
+  for (std::size_t r = 0; r < count; ++r) {
     const SchurRow& row = layout.schur_rows[r];
-    const double lambda = right_side_[r];
+    const double lambda = right[r];
     for (int side = 0; side < 2; ++side) {
       if (row.body[side] < 0) continue;
       double* ak = a + 3 * row.body[side];

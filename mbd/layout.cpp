@@ -231,6 +231,9 @@ Layout make_layout(const System& system, const State& state) {
   add_bilateral(system, is_block_merged, layout);
   add_frictions(system, state, is_friction_merged, layout);
   find_placed(system, state, layout);
+  for (SchurRow& row : layout.schur_rows)
+    for (int side = 0; side < 2; ++side)
+      if (row.body[side] >= 0) std::copy_n(layout.clusters[row.body[side]].w, 3, row.w[side]);
   layout.schur.analyze(layout.schur_rows);
   return layout;
 }

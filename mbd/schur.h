@@ -15,6 +15,7 @@ namespace steplap {
 /// Row in the coordinates of the moving bodies ("clusters") of one layout.
 struct SchurRow {
   int body[2] = {-1, -1};     ///< cluster on either side, −1: the ground
+  double w[2][3] = {};        ///< inverse masses of either side, 0 where locked
   double j[2][3] = {};        ///< ∂measure/∂(x, y, θ) of either side
   double wj[2][3] = {};       ///< W times that
 };
