@@ -70,20 +70,19 @@ TEST_CASE("weak clamping: both joints slide and hold again, with the tank bottom
     REQUIRE(tsit5.times(name, "slips").size() == 2);
     REQUIRE(tsit5.times(name, "sticks").size() == 2);
     for (int i = 0; i < 2; ++i) {
-      CHECK(std::abs(dop853.times(name, "slips")[i] - tsit5.times(name, "slips")[i]) < 1e-6);
-      CHECK(std::abs(dop853.times(name, "sticks")[i] - tsit5.times(name, "sticks")[i]) < 1e-6);
+      CHECK(std::abs(dop853.times(name, "slips")[i] - tsit5.times(name, "slips")[i]) < 1e-8);
+      CHECK(std::abs(dop853.times(name, "sticks")[i] - tsit5.times(name, "sticks")[i]) < 1e-8);
       // at rest half a fixed step × (grip acceleration, 53 m/s²)/(deceleration, 3 m/s²) early
       CHECK(std::abs(rk4.times(name, "sticks")[i] - tsit5.times(name, "sticks")[i]) < 2e-4);
     }
-    // 0.85 mm slid: adaptive to 2e-5 of it, the fixed step to 1e-4
+    // 0.85 mm slid: adaptive to 1e-8 of it, the fixed step, of the first order at onset and rest, to 1e-4
     for (const char* along : {".dx", ".dy"}) {
-      CHECK(std::abs(dop853.last(name + along) - tsit5.last(name + along)) < 2e-8);
+      CHECK(std::abs(dop853.last(name + along) - tsit5.last(name + along)) < 1e-11);
       CHECK(std::abs(rk4.last(name + along) - tsit5.last(name + along)) < 1e-7);
     }
   }
   for (const Run* r : {&tsit5, &dop853, &rk4}) {
-    // the contacts' opening and closing sets the level, as without slip (1e-7 of what is exchanged)
-    CHECK(r->relative_energy_residual() < 5e-7);
+    CHECK(r->relative_energy_residual() < (r == &rk4 ? 1e-7 : 1e-10));
     for (const std::string joint : {"front joint", "back joint"}) {
       const auto u = r->series(joint + ".u"), mode = r->series(joint + ".mode"), area = r->series(joint + ".area");
       for (std::size_t i = 0; i < u.size(); ++i) {
