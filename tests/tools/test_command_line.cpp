@@ -116,6 +116,37 @@ TEST_CASE("check names joints that hold what others hold already") {
   CHECK(has(outcome.out, "degrees of freedom  0\n"));
 }
 
+TEST_CASE("equilibrium gives the pose of rest and what holds it") {
+  const Workbench bench;
+  std::string text = k_oscillator;
+  text.replace(text.find("gravity = [0, 0]"), 16, "gravity = [8, 0]");
+  text += R"([[element]]
+name = "rail"
+kind = "prismatic"
+a = "mass"
+b = "ground"
+axis = [1, 0]
+)";
+  const Outcome outcome = steplap_does({"equilibrium", bench.write("a.toml", text)});
+  CHECK(outcome.code == 0);
+  CHECK(has(outcome.out, "a: in equilibrium"));
+  CHECK(has(outcome.out, "20 mm")); // 2 kg · 8 m/s² / 800 N/m
+  CHECK(has(outcome.out, "-16 N"));
+  const Outcome none = steplap_does({"equilibrium", bench.write("b.toml", k_falling)});
+  CHECK(none.code == 4);
+  CHECK(has(none.err, "no static equilibrium found: 'stone'"));
+}
+
+TEST_CASE("the paper's transformer is given in its pose of rest") {
+  for (const char* name : {"no_interference", "interference"}) {
+    const Outcome outcome =
+        steplap_does({"equilibrium", STEPLAP_MODELS "/paper/" + std::string(name) + ".toml"});
+    CHECK(outcome.code == 0);
+    CHECK(has(outcome.out, "moved at most 0 m\n"));
+    CHECK(outcome.err.empty());
+  }
+}
+
 TEST_CASE("elements is the reference of a kind") {
   const Outcome all = steplap_does({"elements"});
   CHECK(all.code == 0);

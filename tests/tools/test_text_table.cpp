@@ -26,6 +26,8 @@ TEST_CASE("quantities get a prefix that suits") {
   CHECK(quantity_text(0.0, "m") == "0 m");
   CHECK(quantity_text(-0.0, "N") == "0 N");
   CHECK(quantity_text(12.5, "") == "12.5");
+  CHECK(quantity_text(3e-6, "N", 1e5) == "0 N");
+  CHECK(quantity_text(3.0, "N", 1e5) == "3 N");
   CHECK(time_text(0.0851426519) == "0.085143");
   CHECK(small_text(2.04e-7) == "2e-07");
 }

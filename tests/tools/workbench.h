@@ -87,6 +87,15 @@ stiffness = 1e5
 damping = 10
 )";
 
+/// Nothing holds it.
+inline constexpr const char* k_falling = R"([simulation]
+step = 1e-3
+[[body]]
+name = "stone"
+mass = 1
+inertia = 1
+)";
+
 /// Removed with all that is in it.
 class Workbench {
 public:

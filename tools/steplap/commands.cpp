@@ -2,6 +2,7 @@
 
 #include "tools/steplap/check.h"
 #include "tools/steplap/elements.h"
+#include "tools/steplap/equilibrium.h"
 #include "tools/steplap/joint.h"
 #include "tools/steplap/schema.h"
 #include "tools/steplap/simulate.h"
@@ -12,6 +13,7 @@ std::vector<Command> all_commands() {
   std::vector<Command> commands;
   commands.push_back(simulate_command());
   commands.push_back(check_command());
+  commands.push_back(equilibrium_command());
   commands.push_back(joint_command());
   commands.push_back(elements_command());
   commands.push_back(schema_command());

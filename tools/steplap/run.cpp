@@ -3,6 +3,7 @@
 #include "mbd/io/reader.h"
 #include "tools/steplap/catalogue.h"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace steplap {
@@ -34,7 +35,17 @@ load_models(const std::vector<std::string>& paths, const std::vector<std::string
   return models;
 }
 
+Equilibrium equilibrium_of(const LoadedModel& loaded) {
+  const State given = loaded.system->initial_state();
+  State still = given;
+  std::fill(still.v.begin(), still.v.end(), 0.0);
+  Equilibrium found = find_equilibrium(*loaded.system, still);
+  found.state.v = given.v;
+  return found;
+}
+
 State initial_state_of(const LoadedModel& loaded) {
+  if (loaded.model.simulation.initial == "equilibrium") return equilibrium_of(loaded).state;
   return loaded.system->initial_state();
 }
 

@@ -1,6 +1,7 @@
 // A model from its file to the end of its run.
 #pragma once
 
+#include "mbd/equilibrium.h"
 #include "mbd/simulation.h"
 
 #include <memory>
@@ -26,6 +27,9 @@ load_model(const std::string& path, const std::vector<std::string>& overrides = 
 [[nodiscard]] std::vector<std::shared_ptr<const LoadedModel>>
 load_models(const std::vector<std::string>& paths, const std::vector<std::string>& overrides = {});
 
+/// Where the model rests, found from its poses without its initial velocities, which are given back
+/// with the pose. Throws NumericalFailure if there is no equilibrium.
+[[nodiscard]] Equilibrium equilibrium_of(const LoadedModel& loaded);
 /// The state a run of the model begins at. Throws NumericalFailure if there is no equilibrium.
 [[nodiscard]] State initial_state_of(const LoadedModel& loaded);
 

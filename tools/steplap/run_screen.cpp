@@ -4,7 +4,6 @@
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <ostream>
 
 namespace steplap {
@@ -14,7 +13,6 @@ namespace {
 using Align = TextTable::Align;
 
 constexpr std::size_t k_most_events_shown = 30;
-constexpr double k_rounding = 1e-9;
 
 void print_heading(std::ostream& out, const FinishedRun& finished) {
   const LoadedModel& loaded = *finished.run.loaded;
@@ -53,10 +51,8 @@ bool is_shown(const ChannelRange& range) {
   return is_reaction(*range.channel) && range.largest().value != 0.0;
 }
 
-// A value as the screen gives it; what is rounding beside the channel's other values is zero.
 std::string value_text(const ChannelRange& range, const Extreme& extreme) {
-  const bool is_rounding = std::abs(extreme.value) < k_rounding * std::abs(range.largest().value);
-  return quantity_text(is_rounding ? 0.0 : extreme.value, range.channel->unit);
+  return quantity_text(extreme.value, range.channel->unit, range.largest().value);
 }
 
 std::string sample_time_text(double t) {

@@ -9,6 +9,8 @@ namespace steplap {
 
 namespace {
 
+constexpr double k_rounding = 1e-9;
+
 // UTF-8: continuation bytes take no room.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
@@ -72,6 +74,10 @@ std::string quantity_text(double value, const std::string& unit) {
   const Prefix prefix = prefix_for(value, unit);
   const std::string number = formatted("%.6g", value * prefix.factor + 0.0);
   return unit.empty() ? number : number + " " + prefix.text + unit;
+}
+
+std::string quantity_text(double value, const std::string& unit, double scale) {
+  return quantity_text(std::abs(value) < k_rounding * std::abs(scale) ? 0.0 : value, unit);
 }
 
 std::string time_text(double t) {

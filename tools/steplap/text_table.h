@@ -28,6 +28,8 @@ private:
 
 /// Six digits with a prefix that suits: 259822.17 N -> "259.822 kN", 7.9e-4 m -> "0.791366 mm".
 [[nodiscard]] std::string quantity_text(double value, const std::string& unit);
+/// The same; what is rounding beside `scale` (below 1e-9 of it) is zero.
+[[nodiscard]] std::string quantity_text(double value, const std::string& unit, double scale);
 /// "0.085143"; microseconds are enough to tell events apart on a screen.
 [[nodiscard]] std::string time_text(double t);
 /// Few digits, for residuals: "2.0e-07".

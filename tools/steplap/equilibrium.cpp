@@ -1,0 +1,103 @@
+#include "tools/steplap/equilibrium.h"
+
+#include "tools/steplap/log.h"
+#include "tools/steplap/run.h"
+#include "tools/steplap/summary.h"
+#include "tools/steplap/text_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <ostream>
+
+namespace steplap {
+
+namespace {
+
+using Align = TextTable::Align;
+
+constexpr double k_unit = 1e-3; // m, rad: what is below a billionth of it counts as rounding
+
+struct EquilibriumOptions {
+  std::vector<std::string> models;
+  std::vector<std::string> overrides;
+};
+
+void print_poses(std::ostream& out, const System& system, const State& start, const State& found) {
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right,
+                   Align::right});
+  table.add_row({"body", "x", "y", "angle", "moved x", "moved y", "turned"});
+  for (std::size_t i = 1; i < system.bodies.size(); ++i) {
+    const double* q = &found.q[3 * i];
+    const double* q0 = &start.q[3 * i];
+    std::vector<std::string> row{system.bodies[i].name};
+    for (int k = 0; k < 3; ++k)
+      row.push_back(quantity_text(q[k], k < 2 ? "m" : "rad", k_unit));
+    for (int k = 0; k < 3; ++k)
+      row.push_back(quantity_text(q[k] - q0[k], k < 2 ? "m" : "rad", k_unit));
+    table.add_row(row);
+  }
+  out << table;
+}
+
+void print_reactions(std::ostream& out, const System& system, State found) {
+  std::fill(found.v.begin(), found.v.end(), 0.0);
+  Dynamics dynamics(system);
+  dynamics.set_state(found);
+  std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
+  dynamics.pack(found, y.data());
+  dynamics.rates(found.t, y.data(), dy.data());
+  const Snapshot snapshot = dynamics.snapshot(dy.data());
+  std::map<std::string, double> scale; // by unit
+  for (const Channel& channel : system.channels)
+    scale[channel.unit] = std::max(scale[channel.unit], std::abs(channel.value(snapshot)));
+  TextTable table({Align::left, Align::right});
+  for (const Channel& channel : system.channels)
+    if (is_reaction(channel))
+      table.add_row({channel.name,
+                     quantity_text(channel.value(snapshot), channel.unit, scale[channel.unit])});
+  if (!table.is_empty()) out << "\nReactions\n" << table;
+}
+
+void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equilibrium& found) {
+  out << loaded.name << ": in equilibrium after " << found.iterations << " iterations; acceleration left "
+      << small_text(found.residual) << " m/s²; moved at most " << quantity_text(found.moved, "m", k_unit) << "\n\n";
+  print_poses(out, *loaded.system, loaded.system->initial_state(), found.state);
+  print_reactions(out, *loaded.system, found.state);
+}
+
+ExitCode equilibrium(const EquilibriumOptions& options, Console& console) {
+  ExitCode code = ExitCode::done;
+  for (const auto& loaded : load_models(options.models, options.overrides)) {
+    try {
+      const Equilibrium found = equilibrium_of(*loaded);
+      if (console.verbosity != Verbosity::quiet) print_equilibrium(console.out, *loaded, found);
+      for (const std::string& name : found.slipping)
+        log_warning("'" + loaded->path + "': '" + name +
+                    "' would have to hold more than its friction can: it slips when released");
+    } catch (const NumericalFailure& failure) {
+      log_error("'" + loaded->path + "': " + failure.what());
+      code = ExitCode::numerical_failure;
+    }
+  }
+  return code;
+}
+
+} // namespace
+
+Command equilibrium_command() {
+  const auto o = std::make_shared<EquilibriumOptions>();
+  Command command;
+  command.name = "equilibrium";
+  command.summary = "the pose in which models rest, and the reactions there";
+  command.examples = R"(  steplap equilibrium models/paper/no_interference.toml
+Friction that is loaded holds where it is; what cannot hold is named.
+)";
+  command.options = {{"MODEL", &o->models, "FILE", "model files (TOML)", true},
+                     {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
+  command.run = [o](Console& console) { return equilibrium(*o, console); };
+  return command;
+}
+
+} // namespace steplap
