@@ -2,8 +2,11 @@
 
 #include "mbd/number_text.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/joint_assessment.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <ostream>
 
 namespace steplap {
@@ -59,6 +62,13 @@ std::string sample_time_text(double t) {
   return quantity_text(t, "s");
 }
 
+std::string small_margin_text(double margin) {
+  if (!std::isfinite(margin)) return "–";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", margin);
+  return text;
+}
+
 void print_reactions(std::ostream& out, const RunSummary& summary) {
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
   table.add_row({"", "lowest", "at", "highest", "at"});
@@ -79,6 +89,20 @@ void print_slides(std::ostream& out, const RunSummary& summary) {
       table.add_row({range.channel->name, quantity_text(range.largest().value, range.channel->unit),
                      "at " + sample_time_text(range.largest().t)});
   if (!table.is_empty()) out << "\nLargest slides\n" << table;
+}
+
+void print_joints(std::ostream& out, const FinishedRun& finished) {
+  const auto joints = assess_joints(finished.run.loaded->model, finished.run.result);
+  TextTable table({Align::left, Align::left, Align::right, Align::right, Align::right, Align::right,
+                   Align::right, Align::right});
+  table.add_row({"", "verdict", "first slip", "largest p_req", "at", "margin", "slid", "area lost"});
+  for (const JointAssessment& a : joints)
+    table.add_row({a.joint, a.verdict, a.first_slip ? time_text(*a.first_slip) + " s" : "–",
+                   quantity_text(a.largest_required_pressure, "Pa"), sample_time_text(a.time_of_largest),
+                   small_margin_text(a.smallest_margin),
+                   quantity_text(std::hypot(a.slid_x, a.slid_y), "m", 1e-3),
+                   quantity_text(a.area_lost, "m^2", 1.0)});
+  if (!joints.empty()) out << "\nStep-lap joints\n" << table;
 }
 
 // Rows of the last table: name and how a run's value reads.
@@ -176,6 +200,7 @@ void print_run(std::ostream& out, const FinishedRun& finished) {
   print_events(out, finished);
   print_reactions(out, finished.summary);
   print_slides(out, finished.summary);
+  print_joints(out, finished);
   TextTable table({Align::left, Align::right});
   for (const Figure& figure : accuracy_and_cost())
     table.add_row({figure.name, figure.text(finished)});
@@ -187,6 +212,7 @@ void print_comparison(std::ostream& out, const std::vector<FinishedRun>& runs) {
   for (const FinishedRun& run : runs) {
     print_heading(out, run);
     print_events(out, run);
+    print_joints(out, run);
     out << "\n";
   }
   std::vector<Align> columns(runs.size() + 1, Align::right);

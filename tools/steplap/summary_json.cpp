@@ -1,7 +1,10 @@
 #include "tools/steplap/result_files.h"
 #include "tools/steplap/version.h"
+#include "transformer/joint_assessment.h"
 
 #include <nlohmann/json.hpp>
+
+#include <cmath>
 
 namespace steplap {
 
@@ -50,6 +53,26 @@ Json extremes_json(const RunSummary& summary) {
   return json;
 }
 
+// Numbers that do not exist (no sample, no such channel, an infinite margin) are null.
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json joints_json(const Run& run) {
+  Json json = Json::object();
+  for (const JointAssessment& a : assess_joints(run.loaded->model, run.result))
+    json[a.joint] = {{"verdict", a.verdict},
+                     {"slipped", a.has_slipped},
+                     {"monitored", a.is_monitored},
+                     {"first_slip", a.first_slip ? Json(*a.first_slip) : Json()},
+                     {"largest_required_pressure", number_json(a.largest_required_pressure)},
+                     {"t_largest_required_pressure", a.time_of_largest},
+                     {"smallest_margin", number_json(a.smallest_margin)},
+                     {"slid_x", number_json(a.slid_x)},
+                     {"slid_y", number_json(a.slid_y)},
+                     {"slid_angle", number_json(a.slid_angle)},
+                     {"area_lost", number_json(a.area_lost)}};
+  return json;
+}
+
 Json state_json(const System& system, const State& state) {
   Json bodies = Json::object();
   for (std::size_t i = 1; i < system.bodies.size(); ++i) {
@@ -78,6 +101,7 @@ std::string summary_json(const Run& run, const RunSummary& summary) {
   json["statistics"] = statistics_json(statistics);
   json["accuracy"] = accuracy_json(statistics, summary);
   json["events"] = {{"count", run.result.events.size()}, {"by_kind", summary.event_counts}};
+  if (Json joints = joints_json(run); !joints.empty()) json["joints"] = std::move(joints);
   json["extremes"] = extremes_json(summary);
   json["final_state"] = state_json(*loaded.system, run.result.final_state);
   // Names may hold bytes that are no UTF-8: replaced, not an exception at the end of a long run.
