@@ -28,7 +28,8 @@ double cubic(double theta, double w0, double s0, double w1, double s1) {
 } // namespace
 
 EventFinder::EventFinder(const System& system, int max_dimension)
-    : slots_(system.watch_count), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), low_(slots_, 1.0),
+    : slots_(system.watch_count),
+      unit_slots_(system.frictions.empty() ? slots_ : system.frictions.front().watch), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), low_(slots_, 1.0),
       high_(low_), middle_(low_), armed_(slots_, 1) {}
 
 void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double theta,
@@ -39,6 +40,12 @@ void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double th
   watch = dynamics.watch();
 }
 
+// Rounding, or the projection at another event, can leave a gap negative before it was seen to cross. Not
+// asked of friction: elements that share a load are at rest with bounds of their own already passed.
+bool EventFinder::starts_negative(const Integrator& integrator, int slot) const {
+  return slot < unit_slots_ && integrator.watch0()[slot] < 0.0;
+}
+
 EventFinder::Suspicion EventFinder::suspicion(const Integrator& integrator,
                                               const std::vector<char>& fresh) {
   look_at_.clear();
@@ -47,8 +54,8 @@ EventFinder::Suspicion EventFinder::suspicion(const Integrator& integrator,
   for (int i = 0; i < slots_; ++i) {
     const double w0 = integrator.watch0()[i], w1 = integrator.watch1()[i];
     if (w1 < 0.0) {
-      // A plain crossing; a fresh value has to be followed from its start.
-      worst = std::max(worst, fresh[i] ? Suspicion::inside : Suspicion::at_end);
+      // A plain crossing; a value that is fresh, or negative from the start, has to be followed.
+      worst = std::max(worst, fresh[i] || starts_negative(integrator, i) ? Suspicion::inside : Suspicion::at_end);
       continue;
     }
     if (fresh[i]) continue;
@@ -85,10 +92,10 @@ EventFinder::Bracket EventFinder::bracket_whole(const Integrator& integrator) {
 
 EventFinder::Bracket EventFinder::scan(Integrator& integrator, Dynamics& dynamics,
                                        const std::vector<char>& fresh) {
-  for (int i = 0; i < slots_; ++i) armed_[i] = !fresh[i];
+  for (int i = 0; i < slots_; ++i) armed_[i] = !fresh[i] && !starts_negative(integrator, i);
   for (int p = 1; p < k_scan_points; ++p) look_at_.push_back(static_cast<double>(p) / k_scan_points);
   // Fresh values often turn within the first fraction of a step.
-  if (std::find(fresh.begin(), fresh.end(), 1) != fresh.end())
+  if (std::find(armed_.begin(), armed_.end(), 0) != armed_.end())
     for (const double theta : {1e-4, 1e-3, 1e-2}) look_at_.push_back(theta);
   look_at_.push_back(1.0);
   std::sort(look_at_.begin(), look_at_.end());

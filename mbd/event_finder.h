@@ -37,7 +37,10 @@ private:
   void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, std::vector<double>& watch);
   [[nodiscard]] bool crosses(const std::vector<double>& low, const std::vector<double>& high);
 
+  [[nodiscard]] bool starts_negative(const Integrator& integrator, int slot) const;
+
   int slots_;
+  int unit_slots_; ///< those of contacts and springs come first
   double theta_ = 0.0;
   double theta_low_ = 0.0, theta_high_ = 1.0;
   std::vector<double> y_, dy_, low_, high_, middle_;
