@@ -172,3 +172,33 @@ static_friction = 0.5
     CHECK(run(tilted(0.002, height), {"rk4", 1e-4, end}).result.final_state.friction[0].foot == 0);
   }
 }
+
+TEST_CASE("events: a gap that rounding left negative at the start of a step still closes") {
+  const auto system = compile(scene(R"(
+[simulation]
+step = 1e-3
+[[body]]
+name = "ball"
+mass = 1.0
+inertia = 1.0
+velocity = [0.0, -1.0]
+[[element]]
+kind = "unilateral_contact"
+name = "floor"
+a = "ball"
+stiffness = 1e4
+)"));
+  State state = system->initial_state();
+  state.q[4] = -1e-15; // y of the ball, the contact open
+  Dynamics dynamics(*system);
+  dynamics.set_state(state);
+  std::vector<double> y(dynamics.dimension());
+  dynamics.pack(state, y.data());
+  const auto integrator = make_integrator("rk4", dynamics, options({"rk4", 1e-3, 1.0}).settings);
+  integrator->restart(dynamics, 0.0, y.data());
+  integrator->step(dynamics, 1.0);
+  EventFinder finder(*system, dynamics.dimension());
+  CHECK(finder.find(*integrator, dynamics, std::vector<char>(system->watch_count, 0)));
+  CHECK(finder.theta() < 1e-3); // at once
+  CHECK(finder.fired() == std::vector<int>{0});
+}
