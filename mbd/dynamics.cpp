@@ -458,9 +458,10 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
       for (std::size_t r = 1; r < layout.active.size(); ++r)
         if (!(std::abs(row_value_[r]) <= std::abs(row_value_[worst]))) worst = static_cast<int>(r);
       const RowSpec& spec = *layout.active[worst].spec;
-      throw NumericalFailure("constraint " + std::string(spec.quantity) + " of '" +
-                             system_.element_names[spec.element] + "' cannot be met at t = " +
-                             std::to_string(t) + " s: residual " + std::to_string(row_value_[worst]));
+      throw ConstraintFailure("constraint " + std::string(spec.quantity) + " of '" +
+                                  system_.element_names[spec.element] + "' cannot be met at t = " +
+                                  std::to_string(t) + " s: residual " + std::to_string(row_value_[worst]),
+                              spec.element, row_value_[worst], spec.kind == MeasureKind::angle);
     }
     if (!is_factored_ || iteration % k_iterations_per_factorization == k_iterations_per_factorization - 1) {
       layout.schur.factor(layout.schur_rows);

@@ -21,6 +21,15 @@ struct Residual {
   double velocity = 0.0;
 };
 
+/// A constraint that projection cannot meet.
+struct ConstraintFailure : NumericalFailure {
+  ConstraintFailure(const std::string& message, int element_, double residual_, bool is_angle_)
+      : NumericalFailure(message), element(element_), residual(residual_), is_angle(is_angle_) {}
+  int element;     ///< the one that is off most
+  double residual; ///< m, or rad
+  bool is_angle;
+};
+
 class Dynamics {
 public:
   explicit Dynamics(const System& system);
@@ -46,7 +55,7 @@ public:
   /// dy/dt. Also leaves watch values, multipliers and forces for the functions below.
   void rates(double t, const double* y, double* dy);
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
-  /// residuals found before. Stops at `tolerance`; throws NumericalFailure if that cannot be reached.
+  /// residuals found before. Stops at `tolerance`; throws ConstraintFailure if that cannot be reached.
   Residual project(double t, double* y, double tolerance);
   /// Residuals at y without moving it.
   [[nodiscard]] Residual residual(double t, const double* y);

@@ -2,6 +2,7 @@
 
 #include "mbd/simulation.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
 #include <algorithm>
@@ -82,6 +83,51 @@ public:
       if (size(i) > size(worst)) worst = i;
     return worst;
   }
+  /// A direction in which the pose would run away, as displacements of the clusters' coordinates; empty
+  /// if it is stable. Displacements are taken along the constraints.
+  [[nodiscard]] Eigen::VectorXd unstable_direction() {
+    const int n = dynamics_.coordinate_count();
+    const std::vector<double> start = y_;
+    const double h = 1e-5;
+    Eigen::MatrixXd moved(n, n), answer(n, n);
+    for (int i = 0; i < n; ++i) {
+      std::vector<double> y = start;
+      y[i] += h;
+      dynamics_.rates(state_.t, y.data(), dy_.data());
+      dynamics_.project(state_.t, y.data(), 1e-12);
+      answer.col(i) = accelerations(y);
+      for (int k = 0; k < n; ++k) moved(k, i) = y[k] - start[k];
+    }
+    const Eigen::VectorXd rest = accelerations();
+    answer.colwise() -= rest;
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> range;
+    range.setThreshold(1e-3);
+    range.compute(moved / h);
+    const Eigen::Index rank = range.rank();
+    if (rank == 0) return {};
+    const Eigen::MatrixXd basis =
+        Eigen::MatrixXd(range.householderQ()).leftCols(rank);
+    const Eigen::MatrixXd inverse = moved.completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::MatrixXd stiffness = basis.transpose() * answer * inverse * basis;
+    const Eigen::EigenSolver<Eigen::MatrixXd> modes(stiffness);
+    Eigen::Index worst = 0;
+    modes.eigenvalues().real().maxCoeff(&worst);
+    // 1/s²: neutral directions have zero up to differences of h.
+    if (modes.eigenvalues()[worst].real() < 1e-4) return {};
+    return basis * modes.eigenvectors().col(worst).real();
+  }
+  /// The pose moved a little along `direction`.
+  [[nodiscard]] State nudged(const Eigen::VectorXd& direction) {
+    std::vector<double> y = y_;
+    const double scale = 1e-3 / direction.cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 0; i < direction.size(); ++i) y[i] += scale * direction[i];
+    dynamics_.rates(state_.t, y.data(), dy_.data());
+    dynamics_.project(state_.t, y.data(), 1e-12);
+    State state = state_;
+    dynamics_.unpack(state_.t, y.data(), state);
+    std::fill(state.v.begin(), state.v.end(), 0.0);
+    return state;
+  }
   /// Friction elements whose sticking wrench is beyond their bound.
   [[nodiscard]] std::vector<std::string> slipping() {
     evaluate_state();
@@ -138,7 +184,7 @@ bool newton(RestProblem& problem, Equilibrium& result) {
   return result.residual <= k_acceleration_tolerance;
 }
 
-// One swing: from rest until the kinetic energy has passed its first peak.
+// One swing: from rest to the first peak of the kinetic energy, as near as steps come to it.
 State swing(const System& system, const State& start) {
   SimulationOptions options;
   options.integrator = "dop853";
@@ -146,12 +192,14 @@ State swing(const System& system, const State& start) {
   options.end = start.t + k_swing_time;
   Simulation simulation(system, start, options);
   double peak = 0.0;
+  State state = start;
   while (simulation.advance()) {
-    const double energy = simulation.kinetic_energy();
+    const State now = simulation.current_state();
+    const double energy = system.kinetic_energy(now);
     if (energy < peak) break;
     peak = energy;
+    state = now;
   }
-  State state = simulation.current_state();
   state.t = start.t;
   std::fill(state.v.begin(), state.v.end(), 0.0);
   return state;
@@ -170,6 +218,12 @@ Equilibrium find_equilibrium(const System& system, const State& start) {
     // Newton is tried at once, then after every few swings.
     if (attempt % 5 == 0) is_found = newton(problem, result);
     if (is_found) {
+      // A pose that the least nudge would leave is no rest: it is left, and the swing goes on.
+      if (const Eigen::VectorXd away = problem.unstable_direction(); away.size() > 0) {
+        from = swing(system, problem.nudged(away));
+        from.dissipated = from.work = 0.0;
+        continue;
+      }
       result.slipping = problem.slipping();
       result.state = problem.state();
       result.state.v = start.v;

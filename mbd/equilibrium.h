@@ -4,7 +4,7 @@
 // it can is reported. Newton on the constrained accelerations a(q) = 0 from finite differences of them,
 // least-norm where the pose is not unique; where Newton gets nowhere (a body that must first fall onto
 // its contacts), motion with kinetic damping brings it near: velocities are dropped whenever the kinetic
-// energy has passed a peak.
+// energy has passed a peak. A pose that balances but would run away at a nudge is not taken.
 #pragma once
 
 #include "mbd/dynamics.h"

@@ -59,7 +59,6 @@ public:
   [[nodiscard]] const State& state() const { return state_; } ///< at the last event or the end
   /// The state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
-  [[nodiscard]] double kinetic_energy() const { return system_.kinetic_energy(current_state()); }
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   [[nodiscard]] const Trajectory& trajectory() const { return *trajectory_; }
   /// Not empty if an element ended the run before its time ("'front joint' came apart").

@@ -1,5 +1,6 @@
 #include "tools/steplap/run.h"
 
+#include "mbd/assembly.h"
 #include "mbd/io/reader.h"
 #include "tools/steplap/catalogue.h"
 
@@ -17,6 +18,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path,
   loaded->model = read_model(path, program_catalogue(), overrides);
   loaded->text = effective_model_text(path, program_catalogue(), overrides);
   loaded->system = compile(loaded->model);
+  (void)assemble(loaded->model, *loaded->system); // joints that cannot be met are the model's error
   return loaded;
 }
 

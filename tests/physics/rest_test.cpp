@@ -1,0 +1,124 @@
+// Static equilibrium and assembly: closed forms, contacts to be fallen upon, poses that would run away,
+// joints that cannot be met.
+#include "mbd/assembly.h"
+#include "mbd/equilibrium.h"
+#include "tests/physics/scene.h"
+
+#include <cmath>
+#include <doctest/doctest.h>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+const std::string k_head = "[simulation]\nstep = 1e-3\n";
+
+Equilibrium settle(const Model& model) {
+  const auto system = compile(model);
+  return find_equilibrium(*system, system->initial_state());
+}
+
+} // namespace
+
+TEST_CASE("a mass dropped on two contacts settles where they carry its weight") {
+  const Model model = scene(k_head + R"(
+[[body]]
+name = "block"
+mass = 1000
+inertia = 100
+position = [0.2, 1.3]
+[[element]]
+kind = "unilateral_contact"
+name = "left"
+a = { body = "block", point = [-0.5, -0.5] }
+stiffness = 1e6
+damping = 1e4
+[[element]]
+kind = "unilateral_contact"
+name = "right"
+a = { body = "block", point = [0.5, -0.5] }
+stiffness = 1e6
+damping = 1e4
+)");
+  const Equilibrium rest = settle(model);
+  // Both springs at m g / 2k = 4.905 mm; 1e-9 m/s² left over k/m = 2000 /s² is 5e-13 m.
+  CHECK(std::abs(rest.state.q[4] - (0.5 - 1000 * 9.81 / 2e6)) < 1e-12);
+  CHECK(std::abs(rest.state.q[5]) < 1e-12);
+  CHECK(rest.residual < 1e-9);
+}
+
+TEST_CASE("a pendulum given upside down does not rest there") {
+  const std::string body = "[[body]]\nname = \"bob\"\nmass = 2\ninertia = 0.1\nposition = ";
+  const std::string rod = R"(
+[[element]]
+kind = "revolute"
+name = "pin"
+a = { body = "bob", at = [0.0, 0.0] }
+)";
+  for (const char* place : {"[0.0, 1.0]", "[0.6, 0.8]", "[1.0, 0.0]"}) {
+    CAPTURE(place);
+    const Equilibrium rest = settle(scene(k_head + body + place + rod));
+    CHECK(std::abs(rest.state.q[3]) < 1e-9); // 1e-9 m/s² over g/L
+    CHECK(std::abs(rest.state.q[4] + 1.0) < 1e-12);
+  }
+}
+
+TEST_CASE("what nothing holds has no equilibrium, and the body is named") {
+  const Model model = scene(k_head + "[[body]]\nname = \"stone\"\nmass = 1\ninertia = 1\n");
+  const auto system = compile(model);
+  CHECK_THROWS_WITH_AS((void)find_equilibrium(*system, system->initial_state()),
+                       "no static equilibrium found: 'stone' keeps moving; is something missing that holds it?",
+                       NumericalFailure);
+}
+
+TEST_CASE("poses given roughly are moved onto the joints, no further than needed") {
+  const Model model = scene(k_head + R"(
+[[body]]
+name = "bob"
+mass = 2
+inertia = 0.1
+position = [1.1, 0.0]
+[[element]]
+kind = "distance"
+name = "rod"
+a = "bob"
+length = 1.0
+)");
+  const auto system = compile(model);
+  const State state = assemble(model, *system);
+  // The least motion is along the rod; the projection tolerance is 1e-12 m.
+  CHECK(std::abs(state.q[3] - 1.0) < 1e-12);
+  CHECK(state.q[4] == 0.0);
+  CHECK(state.q[5] == 0.0);
+}
+
+TEST_CASE("joints that no motion meets are an error at the joint") {
+  const Model model = scene(k_head + R"(
+[[body]]
+name = "bob"
+mass = 2
+inertia = 0.1
+position = [1.0, 0.0]
+[[element]]
+kind = "distance"
+name = "left rod"
+a = "bob"
+length = 1.0
+[[element]]
+kind = "distance"
+name = "right rod"
+a = "bob"
+b = { body = "ground", at = [5.0, 0.0] }
+length = 1.0
+)");
+  const auto system = compile(model);
+  try {
+    (void)assemble(model, *system);
+    FAIL("was assembled");
+  } catch (const ModelError& error) {
+    REQUIRE(error.diagnostics().size() == 1);
+    CHECK(error.diagnostics()[0].where.line == 14); // the second rod's [[element]]
+    CHECK(std::string(error.what()).find("rod' cannot be assembled") != std::string::npos);
+  }
+}
