@@ -29,8 +29,12 @@ void compile_bushing(const Element& element, SystemBuilder& builder) {
     return builder.error("'stiffness' and 'damping' must not be negative");
   const AxisMeasure x{a.point, b.point, builder.direction(b, {1.0, 0.0})};
   const AxisMeasure y{a.point, b.point, builder.direction(b, {0.0, 1.0})};
-  add(builder, a.body, b.body, x, e.stiffness.x(), e.damping.x(), "force_x", "N");
-  add(builder, a.body, b.body, y, e.stiffness.y(), e.damping.y(), "force_y", "N");
+  with_cheapest(x, [&](const auto& m) {
+    add(builder, a.body, b.body, m, e.stiffness.x(), e.damping.x(), "force_x", "N");
+  });
+  with_cheapest(y, [&](const auto& m) {
+    add(builder, a.body, b.body, m, e.stiffness.y(), e.damping.y(), "force_y", "N");
+  });
   add(builder, a.body, b.body, AngleMeasure{}, e.rotational_stiffness, e.rotational_damping, "couple", "N m");
 }
 

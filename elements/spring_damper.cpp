@@ -73,6 +73,8 @@ void add_with_law(const SpringDamper& e, SystemBuilder& builder, int a, int b, c
         TabulatedSpring{PiecewiseLinear(spring), PiecewiseLinear(damper), free, n});
   } else if (e.gap > 0.0) {
     add(builder, a, b, measure, GapSpring{k, c, free, 0.5 * e.gap});
+  } else if constexpr (std::is_same_v<Measure, AxisMeasure>) {
+    with_cheapest(measure, [&](const auto& m) { add(builder, a, b, m, LinearSpring{k, c, free}); });
   } else {
     add(builder, a, b, measure, LinearSpring{k, c, free});
   }

@@ -63,13 +63,21 @@ StepLapFriction::StepLapFriction(int index, int row, std::vector<SheetPair> shee
 
 std::unique_ptr<FrictionScratch> StepLapFriction::make_scratch() const {
   if (sheets_.empty()) return nullptr;
-  return std::make_unique<Scratch>();
+  auto scratch = std::make_unique<Scratch>();
+  if (reference_) scratch->fits[0] = *reference_;
+  return scratch;
 }
 
 void StepLapFriction::set_scales(const Pose& reference, const BodyData& limb,
                                  const BodyData& active_part) {
   const Patch patch = patch_at(reference, GripLaw::holding);
   if (patch.empty()) return;
+  auto fit = std::make_shared<Fit>();
+  fit->patch = patch;
+  fit->pose = reference;
+  fit->is_valid = true;
+  if (!never_slips()) fit->prepare();
+  reference_ = std::move(fit);
   arm_ = patch.centroid() - patch.reference();
   gyration_ = patch.gyration();
   const auto mobility = [&](const BodyData& body, const Vec2& lever) {

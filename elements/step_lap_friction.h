@@ -99,6 +99,7 @@ private:
 
   static constexpr std::size_t k_tracked = 32; ///< interfaces whose parting is an event of its own
 
+  std::shared_ptr<const Fit> reference_; ///< in the reference pose, where most joints stay: made once
   int index_ = 0, row_ = 0;
   std::vector<SheetPair> sheets_;
   bool is_monitor_ = false, stops_when_apart_ = true;

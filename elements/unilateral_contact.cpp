@@ -7,11 +7,11 @@ namespace steplap {
 
 namespace {
 
-template <class Law>
-void add(const ContactGeometry& g, const Law& law, SystemBuilder& builder) {
-  using Group = LawGroup<GapMeasure, Law>;
+template <class Measure, class Law>
+void add(const ContactGeometry& g, const Measure& measure, const Law& law, SystemBuilder& builder) {
+  using Group = LawGroup<Measure, Law>;
   Group& group = builder.group<Group>();
-  group.entries.push_back({g.a, g.b, g.gap, law});
+  group.entries.push_back({g.a, g.b, measure, law});
   builder.add_unit(group, Law::k_watches);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
@@ -57,10 +57,14 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   if (e.gap) offset = now - *e.gap;
   if (e.interference) offset = now + *e.interference;
   if (e.preload) offset = now + std::pow(*e.preload / k, 1.0 / e.exponent);
-  if (e.law == "literal") add(g, LiteralContact{k, n * e.damping, offset}, builder);
+  const KelvinVoigtContact kelvin_voigt{k, n * e.damping, offset};
+  if (e.law == "literal") add(g, g.gap, LiteralContact{k, n * e.damping, offset}, builder);
   else if (e.law == "hunt_crossley")
-    add(g, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
-  else add(g, KelvinVoigtContact{k, n * e.damping, offset}, builder);
+    add(g, g.gap, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
+  else if (g.gap.is_axis_in_a) add(g, g.gap, kelvin_voigt, builder);
+  else // n through p_A and n through the tip act along the same line
+    with_cheapest(AxisMeasure{g.gap.point_a, g.gap.point_b, g.gap.normal},
+                  [&](const auto& measure) { add(g, measure, kelvin_voigt, builder); });
 }
 
 } // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace steplap {
@@ -15,24 +14,33 @@ constexpr int k_iterations_per_factorization = 3;
 // what rises and falls by so much within a step is not resolved anyway.
 constexpr double k_near_limit = 0.5;
 
+// From b's axes into the ground's.
+MeasureValue<double> turned(MeasureValue<double> m, const Motion<double>& b) {
+  for (Pair<double>* p : {&m.direction, &m.lever_a, &m.lever_b})
+    *p = {b.c * p->x - b.s * p->y, b.s * p->x + b.c * p->y};
+  return m;
+}
+
 } // namespace
 
 Dynamics::Dynamics(const System& system) : system_(system) {
   const std::size_t n = system.bodies.size();
   motion_.resize(2 * n);
   force_.resize(n);
+  link_motion_.resize(system.links.size());
+  link_force_.resize(system.links.size());
   contact_force_.assign(system.contact_count, 0.0);
   watch_.assign(system.watch_count, 1.0);
   watch_rate_.assign(system.watch_count, std::numeric_limits<double>::quiet_NaN());
-  y_.resize(6 * n);
   total_.resize(3 * n);
-  reaction_.assign(3 * n, 0.0);
   acceleration_.assign(3 * n, 0.0);
   wrench_.resize(n);
   row_force_.assign(system.rows.size(), 0.0);
   friction_force_.assign(system.friction_row_count, 0.0);
   evaluation_.motion = motion_.data();
   evaluation_.force = force_.data();
+  evaluation_.link_motion = link_motion_.data();
+  evaluation_.link_force = link_force_.data();
   evaluation_.contact_force = contact_force_.data();
   evaluation_.watch = watch_.data();
   evaluation_.watch_rate = watch_rate_.data();
@@ -69,8 +77,10 @@ void Dynamics::set_state(const State& state) {
     row_rate_.resize(rows);
     target_rate_.resize(rows);
   }
-  if (lock_acceleration_.size() < layout_->locks.size())
+  if (lock_acceleration_.size() < layout_->locks.size()) {
     lock_acceleration_.resize(layout_->locks.size());
+    lock_rate_.resize(layout_->locks.size());
+  }
 }
 
 void Dynamics::set_time_limit(double limit) {
@@ -137,33 +147,30 @@ void Dynamics::unpack(double t, const double* y, State& state) const {
 
 void Dynamics::place(double t, const double* q, const double* v) {
   const Layout& layout = *layout_;
-  const int n = coordinate_count();
-  if (!layout.locks.empty()) {
-    std::memcpy(y_.data(), q, sizeof(double) * n);
-    std::memcpy(y_.data() + n, v, sizeof(double) * n);
-    for (std::size_t i = 0; i < layout.locks.size(); ++i) {
-      const Lock& lock = layout.locks[i];
-      const SignalJet target = row_target(system_.rows[lock.row], state_->memory.data(), t);
-      const int k = 3 * lock.cluster + lock.coordinate;
-      y_[k] = target.value;
-      y_[n + k] = target.rate;
-      lock_acceleration_[i] = target.acceleration;
-    }
-    q = y_.data();
-    v = y_.data() + n;
-  }
-  for (int k = 0; k < layout.cluster_count(); ++k) {
+  const int clusters = layout.cluster_count();
+  for (int k = 0; k < clusters; ++k) {
     Motion<double>& m = motion_[layout.clusters[k].motion];
     m.x = q[3 * k];
     m.y = q[3 * k + 1];
-    m.theta = q[3 * k + 2];
     m.vx = v[3 * k];
     m.vy = v[3 * k + 1];
     m.omega = v[3 * k + 2];
-    m.c = std::cos(m.theta);
-    m.s = std::sin(m.theta);
+    set_angle(m, q[3 * k + 2]);
+  }
+  for (std::size_t i = 0; i < layout.locks.size(); ++i) {
+    const Lock& lock = layout.locks[i];
+    const SignalJet target = row_target(system_.rows[lock.row], state_->memory.data(), t);
+    Motion<double>& m = motion_[layout.clusters[lock.cluster].motion];
+    if (lock.coordinate == 2) set_angle(m, target.value);
+    else (lock.coordinate == 0 ? m.x : m.y) = target.value;
+    (lock.coordinate == 0 ? m.vx : lock.coordinate == 1 ? m.vy : m.omega) = target.rate;
+    lock_rate_[i] = target.rate;
+    lock_acceleration_[i] = target.acceleration;
   }
   for (const int i : layout.placed) place_member(i);
+  for (const ActiveLink& link : layout.links)
+    link_motion_[link.link] =
+        link.b == k_ground ? motion_[link.a] : seen_from(motion_[link.a], motion_[link.b]);
 }
 
 // A body that moves with others: from its cluster's motion.
@@ -184,7 +191,8 @@ void Dynamics::place_member(int i) {
 }
 
 void Dynamics::apply_sliding() {
-  for (const int f : layout_->sliding) {
+  for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
+    const int f = layout_->sliding[i], link = layout_->sliding_link[i];
     const FrictionUnit& unit = system_.frictions[f];
     const FrictionState& friction = state_->friction[f];
     const RowSpec* rows = unit.friction->rows(friction);
@@ -192,12 +200,12 @@ void Dynamics::apply_sliding() {
     MeasureValue<double> m[3];
     double rate[3], wrench[3];
     for (int r = 0; r < n; ++r) {
-      m[r] = evaluate_row<false>(rows[r], motion_.data());
+      m[r] = evaluate_row<false>(rows[r], link_motion_[link], Origin{});
       rate[r] = m[r].rate;
     }
     unit.friction->slip_wrench(evaluation_, friction, rate, wrench);
     for (int r = 0; r < n; ++r) {
-      apply_force(evaluation_, rows[r].a, rows[r].b, m[r], wrench[r]);
+      apply_force(link_force_[link], m[r], wrench[r]);
       evaluation_.dissipation -= wrench[r] * rate[r];
       friction_force_[unit.row + r] = wrench[r];
     }
@@ -205,13 +213,32 @@ void Dynamics::apply_sliding() {
   }
 }
 
-void Dynamics::gather_forces(double* total) const {
+// Forces of all elements, on bodies.
+void Dynamics::apply_forces() {
   const Layout& layout = *layout_;
-  for (int k = 0; k < layout.cluster_count(); ++k) {
-    total[3 * k] = layout.clusters[k].mass * system_.gravity.x();
-    total[3 * k + 1] = layout.clusters[k].mass * system_.gravity.y();
-    total[3 * k + 2] = 0.0;
+  for (const int i : layout.placed) force_[i] = {};
+  for (const ActiveLink& link : layout.links) link_force_[link.link] = {};
+  for (const auto& group : system_.groups) group->add_forces(evaluation_);
+  if (!layout.sliding.empty()) apply_sliding();
+  for (const ActiveLink& link : layout.links) {
+    const BodyForce& f = link_force_[link.link];
+    BodyForce& on_a = force_[link.a];
+    if (link.b == k_ground) {
+      on_a.fx += f.fx;
+      on_a.fy += f.fy;
+      on_a.m += f.m;
+    } else {
+      add_link_force(f, link_motion_[link.link], motion_[link.b], on_a, force_[link.b]);
+    }
   }
+}
+
+// Their sum on each cluster, with the weight.
+void Dynamics::gather_forces() {
+  const Layout& layout = *layout_;
+  double* const total = total_.data();
+  const int n = coordinate_count();
+  for (int i = 0; i < n; ++i) total[i] = layout.weight[i];
   for (const int i : layout.placed) {
     const Placement& place = layout.placements[i];
     const BodyForce& f = force_[i];
@@ -264,27 +291,33 @@ double Dynamics::cluster_bias(const RowSpec& spec, const MeasureValue<double>& m
 // are clusters of their own: no lever to add.
 template <bool WithBias> STEPLAP_INLINE MeasureValue<double> Dynamics::load_row(std::size_t r) {
   const ActiveRow& active = layout_->active[r];
-  MeasureValue<double> m = evaluate_row<WithBias>(*active.spec, motion_.data());
+  const Motion<double>& link = link_motion_[active.link];
+  const Motion<double>& b = motion_[active.spec->b];
+  MeasureValue<double> m = evaluate_row<WithBias>(*active.spec, link, Origin{});
+  if constexpr (WithBias) m.bias += dot(m.direction, frame_acceleration(link, b.omega));
   SchurRow& row = layout_->schur_rows[r];
+  if (active.spec->kind == MeasureKind::angle) return m; // its gradient never changes: make_layout
   if (!active.is_simple) {
+    m = turned(m, b);
     to_clusters(*active.spec, m, row);
     if constexpr (WithBias) m.bias = cluster_bias(*active.spec, m);
     return m;
   }
-  const auto fill = [&](int side, double sign, const Pair<double>& lever) {
+  const double dx = b.c * m.direction.x - b.s * m.direction.y, dy = b.s * m.direction.x + b.c * m.direction.y;
+  const auto fill = [&](int side, double fx, double fy, double couple) {
     if (row.body[side] < 0) return;
     const double* w = row.w[side];
     double* j = row.j[side];
     double* wj = row.wj[side];
-    j[0] = sign * m.direction.x;
-    j[1] = sign * m.direction.y;
-    j[2] = sign * (cross(lever, m.direction) + m.couple);
-    wj[0] = w[0] * j[0];
-    wj[1] = w[1] * j[1];
-    wj[2] = w[2] * j[2];
+    j[0] = fx;
+    j[1] = fy;
+    j[2] = couple;
+    wj[0] = w[0] * fx;
+    wj[1] = w[1] * fy;
+    wj[2] = w[2] * couple;
   };
-  fill(0, 1.0, m.lever_a);
-  fill(1, -1.0, m.lever_b);
+  fill(0, dx, dy, cross(m.lever_a, m.direction) + m.couple);
+  fill(1, -dx, -dy, -(cross(m.lever_b, m.direction) + m.couple));
   return m;
 }
 
@@ -298,18 +331,14 @@ void Dynamics::evaluate_rows() {
   }
 }
 
-// J (a_f + W Jᵀλ) = γ; leaves λ in right_side_, Jᵀλ in reaction_ (if there are locks, which need it),
-// and adds W Jᵀλ to a.
+// J (a_f + W Jᵀλ) = γ; leaves λ in right_side_ and adds W Jᵀλ to a.
 void Dynamics::solve_constraints(double* a) {
   Layout& layout = *layout_;
-  const bool has_locks = !layout.locks.empty();
-  if (has_locks) std::fill(reaction_.begin(), reaction_.begin() + coordinate_count(), 0.0);
   if (layout.active.empty()) return;
   const std::size_t count = layout.active.size();
   double* const right = right_side_.data();
   for (std::size_t r = 0; r < count; ++r) {
-    const MeasureValue<double> m = load_row<true>(r);
-    double right_side = -m.bias;
+    double right_side = -load_row<true>(r).bias;
     const RowSpec& spec = *layout.active[r].spec;
     if (spec.drive) {
       const SignalJet target = row_target(spec, state_->memory.data(), evaluation_.t);
@@ -333,29 +362,34 @@ void Dynamics::solve_constraints(double* a) {
     for (int side = 0; side < 2; ++side) {
       if (row.body[side] < 0) continue;
       double* ak = a + 3 * row.body[side];
-      for (int c = 0; c < 3; ++c) ak[c] += row.wj[side][c] * lambda;
-      if (!has_locks) continue;
-      double* rk = &reaction_[3 * row.body[side]];
-      for (int c = 0; c < 3; ++c) rk[c] += row.j[side][c] * lambda;
+      ak[0] += row.wj[side][0] * lambda;
+      ak[1] += row.wj[side][1] * lambda;
+      ak[2] += row.wj[side][2] * lambda;
     }
   }
 }
 
-// Work of drives: multiplier times the rate of the target; a lock's multiplier is what is missing in
-// its equation of motion.
+// What is missing in the equation of motion of a locked coordinate.
+double Dynamics::lock_reaction(const Lock& lock, const double* a) const {
+  const Layout& layout = *layout_;
+  const int k = 3 * lock.cluster + lock.coordinate;
+  const Cluster& cluster = layout.clusters[lock.cluster];
+  double force = (lock.coordinate < 2 ? cluster.mass : cluster.inertia) * a[k] - total_[k];
+  for (std::size_t r = 0; r < layout.active.size(); ++r)
+    for (int side = 0; side < 2; ++side)
+      if (layout.schur_rows[r].body[side] == lock.cluster)
+        force -= layout.schur_rows[r].j[side][lock.coordinate] * right_side_[r];
+  return force;
+}
+
+// Work of drives: multiplier times the rate of the target.
 void Dynamics::finish_power(const double* a) {
   const Layout& layout = *layout_;
   if (!layout.has_drives) return;
   for (std::size_t r = 0; r < layout.active.size(); ++r)
     if (layout.active[r].spec->drive) evaluation_.work += right_side_[r] * target_rate_[r];
-  const int n = coordinate_count();
-  for (const Lock& lock : layout.locks) {
-    const int k = 3 * lock.cluster + lock.coordinate;
-    const Cluster& cluster = layout.clusters[lock.cluster];
-    const double inertia = lock.coordinate < 2 ? cluster.mass : cluster.inertia;
-    const double force = inertia * a[k] - total_[k] - reaction_[k];
-    evaluation_.work += force * y_[n + k];
-  }
+  for (std::size_t i = 0; i < layout.locks.size(); ++i)
+    evaluation_.work += lock_reaction(layout.locks[i], a) * lock_rate_[i];
 }
 
 void Dynamics::finish_watches() {
@@ -386,19 +420,18 @@ void Dynamics::rates(double t, const double* y, double* dy) {
   evaluation_.dissipation = 0.0;
   evaluation_.work = 0.0;
   place(t, y, y + n);
-  for (const int i : layout.placed) force_[i] = {};
-  for (const auto& group : system_.groups) group->add_forces(evaluation_);
-  if (!layout.sliding.empty()) apply_sliding();
-  gather_forces(total_.data());
+  apply_forces();
+  gather_forces();
 
   double* a = dy + n;
-  for (int k = 0; k < layout.cluster_count(); ++k)
-    for (int c = 0; c < 3; ++c) a[3 * k + c] = layout.clusters[k].w[c] * total_[3 * k + c];
-  std::memcpy(dy, y + n, sizeof(double) * n);
+  for (int i = 0; i < n; ++i) {
+    dy[i] = y[n + i];
+    a[i] = layout.inverse_mass[i] * total_[i];
+  }
   for (std::size_t i = 0; i < layout.locks.size(); ++i) {
     const int k = 3 * layout.locks[i].cluster + layout.locks[i].coordinate;
     a[k] = lock_acceleration_[i];
-    dy[k] = y_[n + k];
+    dy[k] = lock_rate_[i];
   }
   solve_constraints(a);
   finish_power(a);
@@ -521,10 +554,8 @@ void Dynamics::merged_wrenches() {
     wrench_[i].fy -= force_[i].fy;
     wrench_[i].m -= force_[i].m;
   }
-  if (layout.edges.empty()) return;
-  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+  for (const int r : layout.carried_rows) {
     const RowSpec& spec = *layout.active[r].spec;
-    if (!layout.is_carried[spec.a] && !layout.is_carried[spec.b]) continue;
     const auto m = evaluate_row<false>(spec, motion_.data());
     const double lambda = right_side_[r];
     const int body[2] = {spec.a, spec.b};
@@ -596,12 +627,7 @@ Snapshot Dynamics::snapshot(const double* dy) {
   const int n = coordinate_count();
   for (std::size_t r = 0; r < layout.active.size(); ++r)
     if (layout.active[r].row >= 0) row_force_[layout.active[r].row] = right_side_[r];
-  for (const Lock& lock : layout.locks) {
-    const int k = 3 * lock.cluster + lock.coordinate;
-    const Cluster& cluster = layout.clusters[lock.cluster];
-    const double inertia = lock.coordinate < 2 ? cluster.mass : cluster.inertia;
-    row_force_[lock.row] = inertia * dy[n + k] - total_[k] - reaction_[k];
-  }
+  for (const Lock& lock : layout.locks) row_force_[lock.row] = lock_reaction(lock, dy + n);
   for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
     const FrictionPhase phase = state_->friction[f].phase;
     if (phase == FrictionPhase::stick || phase == FrictionPhase::slip) continue;
@@ -623,12 +649,9 @@ double Dynamics::mechanical_energy(double t, const double* y) {
   const int n = coordinate_count();
   place(std::min(t, time_cap_), y, y + n);
   double kinetic = 0.0, potential = 0.0;
-  const double* v = layout_->locks.empty() ? y + n : y_.data() + n;
-  for (int k = 0; k < layout_->cluster_count(); ++k) {
-    const Cluster& c = layout_->clusters[k];
+  for (const Cluster& c : layout_->clusters) {
     const Motion<double>& m = motion_[c.motion];
-    kinetic += 0.5 * c.mass * (v[3 * k] * v[3 * k] + v[3 * k + 1] * v[3 * k + 1]) +
-               0.5 * c.inertia * v[3 * k + 2] * v[3 * k + 2];
+    kinetic += 0.5 * c.mass * (m.vx * m.vx + m.vy * m.vy) + 0.5 * c.inertia * m.omega * m.omega;
     potential -= c.mass * (system_.gravity.x() * m.x + system_.gravity.y() * m.y);
   }
   for (const auto& group : system_.groups) potential += group->potential(motion_.data());

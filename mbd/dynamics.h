@@ -90,12 +90,14 @@ private:
   void place(double t, const double* q, const double* v);
   void place_member(int body);
   void apply_sliding();
-  void gather_forces(double* total) const;
+  void apply_forces();
+  void gather_forces();
   template <bool WithBias> MeasureValue<double> load_row(std::size_t r);
   void evaluate_rows();
   void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
   [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
   void solve_constraints(double* a);
+  [[nodiscard]] double lock_reaction(const Lock& lock, const double* a) const;
   void finish_power(const double* a);
   void finish_watches();
   Residual constraint_values(double t, const double* y);
@@ -117,11 +119,11 @@ private:
   std::vector<FrictionScratch*> scratch_pointers_;
   std::vector<Motion<double>> motion_;  ///< bodies, then clusters of several
   std::vector<BodyForce> force_;
+  std::vector<Motion<double>> link_motion_;
+  std::vector<BodyForce> link_force_;
   std::vector<double> contact_force_, watch_, watch_rate_;
-  std::vector<double> y_;               ///< coordinates and rates with locks applied
   std::vector<double> total_;           ///< force on each cluster coordinate
-  std::vector<double> reaction_;        ///< constraint force on each cluster coordinate
-  std::vector<double> lock_acceleration_;
+  std::vector<double> lock_rate_, lock_acceleration_;
   std::vector<double> right_side_;      ///< then multipliers of active rows
   std::vector<double> row_value_, row_rate_, target_rate_;
   std::vector<double> acceleration_;    ///< 3 per body

@@ -36,7 +36,7 @@ void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double th
                            std::vector<double>& watch) {
   integrator.dense(dynamics, theta, y_.data());
   dynamics.rates(integrator.t0() + theta * integrator.h(), y_.data(), dy_.data());
-  dynamics.watch_merged(dy_.data());
+  dynamics.watch_merged_if_near(dy_.data());
   watch = dynamics.watch();
 }
 

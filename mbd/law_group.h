@@ -21,6 +21,7 @@ public:
     int a = k_ground, b = k_ground;
     Measure measure;
     Law law;
+    int link = 0;    ///< index of (a, b)
     int unit = 0;    ///< index of its mode
     int watch = 0;   ///< index of its first watch value
     int contact = 0; ///< index of its normal force
@@ -31,13 +32,13 @@ public:
     double dissipation = 0.0; // in a register: a sum in memory would chain the elements to each other
     for (const Entry& entry : entries) {
       const auto m =
-          entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
+          entry.measure.template at<false, double>(e.link_motion[entry.link], Origin{});
       const double f = entry.law.force(m.value, m.rate, mode_of(entry, e));
       if constexpr (Law::k_is_contact) e.contact_force[entry.contact] = f;
       if constexpr (Law::k_watches > 0)
         entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch,
                         e.watch_rate + entry.watch);
-      if (f != 0.0) apply_force(e, entry.a, entry.b, m, f);
+      if (f != 0.0) apply_force(e.link_force[entry.link], m, f);
       dissipation += (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
     }
     e.dissipation += dissipation;
@@ -72,6 +73,10 @@ public:
 
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  }
+
+  void enter_links(LinkTable& links) override {
+    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
 
   [[nodiscard]] std::uint8_t initial_mode(int element, const Evaluation& e) const override {

@@ -187,6 +187,23 @@ void add_frictions(const System& system, const State& state,
   }
 }
 
+// Links of force elements are needed always, those of rows while they hold.
+void find_links(const System& system, const State& state, Layout& layout) {
+  std::vector<char> is_needed(system.links.size(), 0);
+  std::fill_n(is_needed.begin(), system.force_link_count, 1);
+  for (ActiveRow& row : layout.active) {
+    row.link = system.links.index_of(row.spec->a, row.spec->b);
+    is_needed[row.link] = 1;
+  }
+  for (const int f : layout.sliding) {
+    const RowSpec& row = *system.frictions[f].friction->rows(state.friction[f]);
+    layout.sliding_link.push_back(system.links.index_of(row.a, row.b));
+    is_needed[layout.sliding_link.back()] = 1;
+  }
+  for (int i = 0; i < system.links.size(); ++i)
+    if (is_needed[i]) layout.links.push_back({i, system.links[i].a, system.links[i].b});
+}
+
 void find_placed(const System& system, const State& state, Layout& layout) {
   std::vector<char>& is_needed = layout.is_placed;
   is_needed = system.is_body_used;
@@ -197,7 +214,6 @@ void find_placed(const System& system, const State& state, Layout& layout) {
   }
   for (int i = 1; i < system.body_count(); ++i)
     if (is_needed[i]) layout.placed.push_back(i);
-
 }
 
 } // namespace
@@ -231,9 +247,28 @@ Layout make_layout(const System& system, const State& state) {
   add_bilateral(system, is_block_merged, layout);
   add_frictions(system, state, is_friction_merged, layout);
   find_placed(system, state, layout);
+  find_links(system, state, layout);
+  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+    const RowSpec& spec = *layout.active[r].spec;
+    if (layout.is_carried[spec.a] || layout.is_carried[spec.b])
+      layout.carried_rows.push_back(static_cast<int>(r));
+  }
+  for (const Cluster& cluster : layout.clusters) {
+    layout.weight.insert(layout.weight.end(),
+                         {cluster.mass * system.gravity.x(), cluster.mass * system.gravity.y(), 0.0});
+    layout.inverse_mass.insert(layout.inverse_mass.end(), cluster.w, cluster.w + 3);
+  }
   for (SchurRow& row : layout.schur_rows)
     for (int side = 0; side < 2; ++side)
       if (row.body[side] >= 0) std::copy_n(layout.clusters[row.body[side]].w, 3, row.w[side]);
+  // An angle's gradient is the same in every pose: Dynamics leaves it as it is here.
+  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+    if (layout.active[r].spec->kind != MeasureKind::angle) continue;
+    SchurRow& row = layout.schur_rows[r];
+    row.j[0][2] = 1.0;
+    row.j[1][2] = -1.0;
+    for (int side = 0; side < 2; ++side) row.wj[side][2] = row.w[side][2] * row.j[side][2];
+  }
   layout.schur.analyze(layout.schur_rows);
   return layout;
 }

@@ -35,6 +35,7 @@ struct ActiveRow {
   int row = -1;        ///< bilateral row, or −1
   int friction = -1;   ///< friction element and which of its rows, or −1
   int friction_row = 0;
+  int link = 0;          ///< of the row's bodies
   bool is_simple = true; ///< both bodies are clusters of their own, or the ground
 };
 
@@ -42,6 +43,11 @@ struct ActiveRow {
 struct Lock {
   int cluster = 0, coordinate = 0;
   int row = 0; ///< the bilateral row it stands for
+};
+
+/// A link that an evaluation needs, with its bodies at hand.
+struct ActiveLink {
+  int link = 0, a = 0, b = 0;
 };
 
 /// A rigid joint inside a cluster: `child` hangs on `parent`; leaves first.
@@ -60,10 +66,14 @@ struct Layout {
 
   std::vector<ActiveRow> active;
   std::vector<Lock> locks;
+  std::vector<double> weight, inverse_mass; ///< per cluster coordinate: m g and W
   std::vector<RigidEdge> edges;
   std::vector<char> is_carried;      ///< per body: child of an edge, whose wrench balance is wanted
+  std::vector<int> carried_rows;     ///< active rows that act on such a body
   std::vector<int> redundant_blocks; ///< rigid blocks inside one cluster that close a loop
+  std::vector<ActiveLink> links;
   std::vector<int> sliding;          ///< friction elements in phase slip
+  std::vector<int> sliding_link;     ///< of each of those
   std::vector<int> holding;          ///< friction elements in phase stick that are not merged
   std::vector<int> merged;           ///< friction elements in phase stick that are merged
   bool is_merged_watched = false;    ///< some of those can slip

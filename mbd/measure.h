@@ -26,34 +26,69 @@ template <class S> struct MeasureValue {
 /// term is a constant of b's frame.
 struct AxisMeasure {
   Vec2 point_a, point_b, axis; ///< in the frames of a, b, b
-  template <bool WithBias, class S>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  template <bool WithBias, class S, class B>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     MeasureValue<S> m;
     const Pair<S> ra = to_ground(a, point_a);
     const Pair<S> e = to_ground(b, axis);
-    const Pair<S> reach{a.x - b.x + ra.x, a.y - b.y + ra.y};
+    const Pair<S> reach = offset(a, b) + ra;
     const Pair<S> velocity = point_velocity(a, ra) - point_velocity(b, reach); // seen from b
     m.value = dot(e, reach) - S(axis.dot(point_b));
     m.direction = e;
     m.lever_a = ra;
     m.lever_b = reach;
     m.rate = dot(e, velocity);
-    if constexpr (WithBias) // relative acceleration in b's turning frame, accelerations zero
-      m.bias = b.omega * b.omega * dot(e, reach) - a.omega * a.omega * dot(e, ra) -
-               S(2) * b.omega * cross(velocity, e);
+    if constexpr (WithBias) { // relative acceleration in b's turning frame, accelerations zero
+      m.bias = -(a.omega * a.omega * dot(e, ra));
+      if constexpr (!k_is_origin<B>)
+        m.bias += b.omega * b.omega * dot(e, reach) - S(2) * b.omega * cross(velocity, e);
+    }
     return m;
   }
 };
 
+/// Value and rate of a coordinate in the link's frame: half of its gradient is zero.
+template <int K> struct CoordinateValue {
+  double value = 0.0, rate = 0.0;
+  Pair<double> lever_a;
+};
+
+/// The same along b's own x axis (K = 0) or y axis (K = 1), as most supports and blocks are: seen from b
+/// the direction never turns, and only one coordinate counts.
+template <int K> struct CoordinateMeasure {
+  Vec2 point_a, point_b;
+  [[nodiscard]] AxisMeasure along_axis() const { return {point_a, point_b, Vec2::Unit(K)}; }
+  template <bool WithBias, class S>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+    return along_axis().template at<WithBias, S>(a, b);
+  }
+  template <bool WithBias, class S>
+  STEPLAP_INLINE CoordinateValue<K> at(const Motion<double>& a, Origin) const {
+    static_assert(!WithBias, "rows take AxisMeasure");
+    CoordinateValue<K> m;
+    m.lever_a = to_ground(a, point_a);
+    m.value = K == 0 ? a.x + m.lever_a.x - point_b.x() : a.y + m.lever_a.y - point_b.y();
+    m.rate = K == 0 ? a.vx - a.omega * m.lever_a.y : a.vy + a.omega * m.lever_a.x;
+    return m;
+  }
+};
+
+/// Calls f with the cheapest measure that does the same.
+template <class F> void with_cheapest(const AxisMeasure& m, F&& f) {
+  if (m.axis == Vec2(1.0, 0.0)) f(CoordinateMeasure<0>{m.point_a, m.point_b});
+  else if (m.axis == Vec2(0.0, 1.0)) f(CoordinateMeasure<1>{m.point_a, m.point_b});
+  else f(m);
+}
+
 /// |p_A − p_B|; undefined at zero length (the rate then is not finite, and the caller says so).
 struct DistanceMeasure {
   Vec2 point_a, point_b;
-  template <bool WithBias, class S>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  template <bool WithBias, class S, class B>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     using std::sqrt;
     MeasureValue<S> m;
     const Pair<S> ra = to_ground(a, point_a), rb = to_ground(b, point_b);
-    const Pair<S> d = Pair<S>{a.x - b.x, a.y - b.y} + ra - rb;
+    const Pair<S> d = offset(a, b) + ra - rb;
     const Pair<S> ddot = point_velocity(a, ra) - point_velocity(b, rb);
     m.value = sqrt(dot(d, d));
     m.direction = (S(1) / m.value) * d;
@@ -61,9 +96,8 @@ struct DistanceMeasure {
     m.lever_b = rb;
     m.rate = dot(m.direction, ddot);
     if constexpr (WithBias) {
-      const S wa2 = a.omega * a.omega, wb2 = b.omega * b.omega;
-      m.bias = wb2 * dot(m.direction, rb) - wa2 * dot(m.direction, ra) +
-               (dot(ddot, ddot) - m.rate * m.rate) / m.value;
+      m.bias = (dot(ddot, ddot) - m.rate * m.rate) / m.value - a.omega * a.omega * dot(m.direction, ra);
+      if constexpr (!k_is_origin<B>) m.bias += b.omega * b.omega * dot(m.direction, rb);
     }
     return m;
   }
@@ -71,11 +105,11 @@ struct DistanceMeasure {
 
 /// θ_A − θ_B.
 struct AngleMeasure {
-  template <bool WithBias, class S>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  template <bool WithBias, class S, class B>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     MeasureValue<S> m;
-    m.value = a.theta - b.theta;
-    m.rate = a.omega - b.omega;
+    m.value = relative_angle(a, b);
+    m.rate = relative_spin(a, b);
     m.couple = S(1);
     return m;
   }
@@ -87,13 +121,13 @@ struct GapMeasure {
   Vec2 point_a, point_b, normal; ///< in the frames of a, b, b
   Vec2 axis = Vec2::Zero();      ///< in the frame of a, if is_axis_in_a
   bool is_axis_in_a = false;
-  template <bool WithBias, class S>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  template <bool WithBias, class S, class B>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     // n through p_A and n through the tip act along the same line: the plain gap is an axis measure.
-    if (!is_axis_in_a) return AxisMeasure{point_a, point_b, normal}.at<WithBias>(a, b);
+    if (!is_axis_in_a) return AxisMeasure{point_a, point_b, normal}.at<WithBias, S>(a, b);
     MeasureValue<S> m;
     const Pair<S> ra = to_ground(a, point_a), n = to_ground(b, normal), shaft = to_ground(a, axis);
-    const Pair<S> reach{a.x - b.x + ra.x, a.y - b.y + ra.y}; // from b's centre to p_A
+    const Pair<S> reach = offset(a, b) + ra; // from b's centre to p_A
     const S inverse_alpha = S(1) / dot(n, shaft);
     m.value = (dot(n, reach) - S(normal.dot(point_b))) * inverse_alpha;
     const Pair<S> back = m.value * shaft;
@@ -105,10 +139,12 @@ struct GapMeasure {
     if constexpr (WithBias) {
       // n·(p_A − p_B) = δ α differentiated twice, α' = β Ω, α'' = −α Ω² with β = t·a
       const S beta = cross(shaft, n); // t·a, t = (n_y, −n_x)
-      const S spin = a.omega - b.omega;
-      const Pair<S> seen = point_velocity(a, ra) - point_velocity(b, reach);
-      const S second = b.omega * b.omega * dot(n, reach) - a.omega * a.omega * dot(n, ra) -
-                       S(2) * b.omega * cross(seen, n);
+      const S spin = relative_spin(a, b);
+      S second = -(a.omega * a.omega * dot(n, ra));
+      if constexpr (!k_is_origin<B>) {
+        const Pair<S> seen = point_velocity(a, ra) - point_velocity(b, reach);
+        second += b.omega * b.omega * dot(n, reach) - S(2) * b.omega * cross(seen, n);
+      }
       m.bias = (second - S(2) * m.rate * beta * spin) * inverse_alpha + m.value * spin * spin;
     }
     return m;
@@ -122,14 +158,14 @@ struct SlideMeasure {
   Vec2 point_a, point_b, normal;
   Vec2 axis = Vec2::Zero();
   bool is_axis_in_a = false;
-  template <bool WithBias, class S>
-  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+  template <bool WithBias, class S, class B>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
     if (!is_axis_in_a)
-      return AxisMeasure{point_a, point_b, Vec2(normal.y(), -normal.x())}.at<WithBias>(a, b);
+      return AxisMeasure{point_a, point_b, Vec2(normal.y(), -normal.x())}.at<WithBias, S>(a, b);
     MeasureValue<S> m;
     const Pair<S> ra = to_ground(a, point_a), rb = to_ground(b, point_b);
     const Pair<S> n = to_ground(b, normal), shaft = to_ground(a, axis);
-    const Pair<S> reach{a.x - b.x + ra.x, a.y - b.y + ra.y}; // from b's centre to p_A
+    const Pair<S> reach = offset(a, b) + ra; // from b's centre to p_A
     const Pair<S> d = reach - rb;
     const S inverse_alpha = S(1) / dot(n, shaft);
     const S turned = cross(d, shaft);
@@ -141,11 +177,11 @@ struct SlideMeasure {
     m.rate = dot(m.direction, point_velocity(a, m.lever_a) - point_velocity(b, m.lever_b));
     if constexpr (WithBias) {
       // s α = d × a twice differentiated, with ȧ = ωA ẑ×a and α' = β Ω, α'' = −α Ω², β = t·a
-      const S wa2 = a.omega * a.omega, wb2 = b.omega * b.omega;
+      const S wa2 = a.omega * a.omega;
       const Pair<S> velocity = point_velocity(a, ra) - point_velocity(b, rb);
-      const S second = wb2 * cross(rb, shaft) - wa2 * cross(ra, shaft) +
-                       S(2) * a.omega * dot(velocity, shaft) - wa2 * turned;
-      const S spin = a.omega - b.omega;
+      S second = S(2) * a.omega * dot(velocity, shaft) - wa2 * (cross(ra, shaft) + turned);
+      if constexpr (!k_is_origin<B>) second += b.omega * b.omega * cross(rb, shaft);
+      const S spin = relative_spin(a, b);
       m.bias = (second - S(2) * m.rate * cross(shaft, n) * spin) * inverse_alpha + m.value * spin * spin;
     }
     return m;

@@ -8,7 +8,7 @@
 // falls below zero.
 #pragma once
 
-#include "mbd/motion.h"
+#include "mbd/link.h"
 #include "mbd/row.h"
 
 #include <array>
@@ -47,6 +47,8 @@ struct Evaluation {
   double t = 0.0;
   const Motion<double>* motion = nullptr; ///< per body
   BodyForce* force = nullptr;             ///< per body, accumulated
+  const Motion<double>* link_motion = nullptr; ///< per link (link.h): of a, seen from b
+  BodyForce* link_force = nullptr;        ///< per link: on a, about its centre, in b's axes; accumulated
   const std::uint8_t* mode = nullptr;     ///< per unit
   const FrictionState* friction = nullptr;
   const double* memory = nullptr;         ///< of the state: anchors of rows
@@ -59,16 +61,18 @@ struct Evaluation {
   double work = 0.0;                      ///< W, of loads and drives
 };
 
-STEPLAP_INLINE void apply_force(Evaluation& e, int a, int b, const MeasureValue<double>& m, double f) {
+/// Adds f along the gradient of a measure taken in the link's frame (Origin).
+STEPLAP_INLINE void apply_force(BodyForce& link_force, const MeasureValue<double>& m, double f) {
   const Pair<double> d = f * m.direction;
-  BodyForce& fa = e.force[a];
-  BodyForce& fb = e.force[b];
-  fa.fx += d.x;
-  fa.fy += d.y;
-  fa.m += cross(m.lever_a, d) + f * m.couple;
-  fb.fx -= d.x;
-  fb.fy -= d.y;
-  fb.m -= cross(m.lever_b, d) + f * m.couple;
+  link_force.fx += d.x;
+  link_force.fy += d.y;
+  link_force.m += cross(m.lever_a, d) + f * m.couple;
+}
+
+template <int K>
+STEPLAP_INLINE void apply_force(BodyForce& link_force, const CoordinateValue<K>& m, double f) {
+  (K == 0 ? link_force.fx : link_force.fy) += f;
+  link_force.m += K == 0 ? -m.lever_a.y * f : m.lever_a.x * f;
 }
 
 /// ∂(force on a, force on b)/∂(pose a, pose b) and /∂(velocity a, velocity b) of one element.
@@ -85,6 +89,8 @@ public:
   [[nodiscard]] virtual double potential(const Motion<double>* motion) const = 0;
   virtual void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const = 0;
   virtual void mark_bodies(std::vector<char>& is_used) const = 0;
+  /// Enters the pairs of bodies that it acts between, and remembers their indices.
+  virtual void enter_links(LinkTable& /*links*/) {}
 
   /// Modes, for groups whose elements are units. `slot` is the watch value that fell below zero.
   [[nodiscard]] virtual std::uint8_t initial_mode(int /*element*/, const Evaluation&) const { return 0; }

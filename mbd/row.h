@@ -28,10 +28,9 @@ struct RowSpec {
   int element = -1;              ///< index of the element it belongs to
 };
 
-template <bool WithBias>
-STEPLAP_INLINE MeasureValue<double> evaluate_row(const RowSpec& row, const Motion<double>* motion) {
-  const Motion<double>& a = motion[row.a];
-  const Motion<double>& b = motion[row.b];
+/// The row's measure of a against b: another body's motion, or Origin where a is seen from b.
+template <bool WithBias, class B>
+STEPLAP_INLINE MeasureValue<double> evaluate_row(const RowSpec& row, const Motion<double>& a, const B& b) {
   switch (row.kind) {
   case MeasureKind::axis:
     return AxisMeasure{row.point_a, row.point_b, row.direction}.at<WithBias>(a, b);
@@ -44,6 +43,11 @@ STEPLAP_INLINE MeasureValue<double> evaluate_row(const RowSpec& row, const Motio
   }
   return SlideMeasure{row.point_a, row.point_b, row.direction, row.contact_axis, row.is_axis_in_a}
       .at<WithBias>(a, b);
+}
+
+template <bool WithBias>
+STEPLAP_INLINE MeasureValue<double> evaluate_row(const RowSpec& row, const Motion<double>* motion) {
+  return evaluate_row<WithBias>(row, motion[row.a], motion[row.b]);
 }
 
 /// Where the row is held at time t: value, rate, acceleration of the target.

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace steplap {
@@ -56,10 +57,14 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
   if (n_ <= k_max_dense) {
     dense_products_.clear();
     for (int k = 0; k < n_; ++k) position_[k] = k;
+    const auto place = [](int row, std::size_t member, int side) {
+      return static_cast<std::uint16_t>((row * sizeof(SchurRow) + member) / sizeof(double) + 3 * side);
+    };
     for (const Coupling& c : coupled)
       if (c.j <= c.i)
-        dense_products_.push_back({static_cast<unsigned char>(c.i), static_cast<unsigned char>(c.j),
-                                   c.side_i, c.side_j});
+        dense_products_.push_back({static_cast<std::uint16_t>(c.i * n_ + c.j),
+                                   place(c.i, offsetof(SchurRow, wj), c.side_i),
+                                   place(c.j, offsetof(SchurRow, j), c.side_j)});
     return;
   }
   order_ = fill_reducing_order(n_, coupled);
@@ -131,10 +136,11 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
   double* const m = dense_.data();
   const int n = N > 0 ? N : n_;
   for (int i = 0; i < n * n; ++i) m[i] = 0.0;
+  const auto* const first = reinterpret_cast<const double*>(rows.data());
   for (const DenseProduct& p : dense_products_) {
-    const double* a = rows[p.row].wj[p.side_row];
-    const double* b = rows[p.column].j[p.side_column];
-    m[p.row * n + p.column] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const double* a = first + p.wj;
+    const double* b = first + p.j;
+    m[p.entry] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
   // Row by row: below the diagonal first L D, then L.
   for (int i = 0; i < n; ++i) {

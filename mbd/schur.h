@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace steplap {
@@ -44,8 +45,9 @@ private:
   template <int N> void solve_dense(double* x) const;
 
   static constexpr int k_max_dense = 8;
+  /// wj of one row times j of another, which share a body, makes part of one entry of A.
   struct DenseProduct {
-    unsigned char row, column, side_row, side_column;
+    std::uint16_t entry, wj, j; ///< wj, j: as doubles from the first row's start
   };
   std::vector<DenseProduct> dense_products_;
   std::array<double, k_max_dense * k_max_dense> dense_{};

@@ -11,9 +11,7 @@ void place_bodies(const std::vector<double>& q, const std::vector<double>& v,
     Motion<double>& m = motion[i];
     m.x = q[3 * i];
     m.y = q[3 * i + 1];
-    m.theta = q[3 * i + 2];
-    m.c = std::cos(m.theta);
-    m.s = std::sin(m.theta);
+    set_angle(m, q[3 * i + 2]);
     m.vx = v[3 * i];
     m.vy = v[3 * i + 1];
     m.omega = v[3 * i + 2];
@@ -161,6 +159,13 @@ void SystemBuilder::finish() {
   s.is_body_used.assign(s.bodies.size(), 0);
   for (const auto& group : s.groups) group->mark_bodies(s.is_body_used);
   for (const FrictionUnit& unit : s.frictions) unit.friction->mark_bodies(s.is_body_used);
+  for (const auto& group : s.groups) group->enter_links(s.links);
+  s.force_link_count = s.links.size();
+  for (const RowSpec& row : s.rows) s.links.add(row.a, row.b);
+  for (const FrictionUnit& unit : s.frictions) {
+    const RowSpec& row = *unit.friction->rows({}); // the same two bodies at each of its places
+    s.links.add(row.a, row.b);
+  }
   std::sort(s.breakpoints.begin(), s.breakpoints.end());
   s.breakpoints.erase(std::unique(s.breakpoints.begin(), s.breakpoints.end()), s.breakpoints.end());
 }

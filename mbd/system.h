@@ -88,6 +88,8 @@ public:
   std::vector<std::unique_ptr<ForceGroup>> groups;
   std::vector<RowSpec> rows; ///< bilateral and driven
   std::vector<RowBlock> row_blocks;
+  LinkTable links;           ///< those of force elements first
+  int force_link_count = 0;
   std::vector<Unit> units;
   std::vector<FrictionUnit> frictions;
   std::vector<Channel> channels;

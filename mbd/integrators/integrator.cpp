@@ -57,8 +57,10 @@ void Integrator::finish_step(Dynamics& dynamics) {
 
 void Integrator::note_stage_watches(Dynamics& dynamics, const double* dy) {
   dynamics.watch_merged_if_near(dy);
-  const std::vector<double>& watch = dynamics.watch();
-  for (std::size_t i = 0; i < watch.size(); ++i) watch_low_[i] = std::min(watch_low_[i], watch[i]);
+  const double* const watch = dynamics.watch().data();
+  double* const low = watch_low_.data();
+  const std::size_t n = watch_low_.size();
+  for (std::size_t i = 0; i < n; ++i) low[i] = watch[i] < low[i] ? watch[i] : low[i];
 }
 
 void Integrator::update_weights(const Dynamics& dynamics) {
