@@ -1,0 +1,53 @@
+// Evaluates the equations of motion of one model many times and does nothing else: to be run under a
+// profiler (tools/profile). The state is that of the model's run at a given time.
+//   profile_evaluation MODEL TIME COUNT
+#include "transformer/catalog.h"
+#include "mbd/io/reader.h"
+#include "mbd/simulation.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <limits>
+#include <vector>
+
+using namespace steplap;
+
+namespace {
+
+constexpr int k_batches = 20; // the least of them is the figure least disturbed by other processes
+
+void profile(const char* path, double time, long count) {
+  const Model model = read_model(path, transformer_catalog());
+  const auto system = compile(model);
+  SimulationOptions options = options_of(model);
+  options.end = time;
+  const State state = simulate(*system, system->initial_state(), options).final_state;
+  Dynamics dynamics(*system);
+  dynamics.set_state(state);
+  std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
+  dynamics.pack(state, y.data());
+  double best = std::numeric_limits<double>::infinity();
+  for (int batch = 0; batch < k_batches; ++batch) {
+    const double start = thread_cpu_seconds();
+    for (long i = 0; i < count / k_batches; ++i) dynamics.rates(state.t, y.data(), dy.data());
+    best = std::min(best, thread_cpu_seconds() - start);
+  }
+  std::printf("%.1f ns per evaluation\n", 1e9 * best / static_cast<double>(count / k_batches));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    std::fprintf(stderr, "usage: profile_evaluation MODEL TIME COUNT\n");
+    return 2;
+  }
+  try {
+    profile(argv[1], std::atof(argv[2]), std::max(static_cast<long>(k_batches), std::atol(argv[3])));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 3;
+  }
+}
