@@ -1,5 +1,6 @@
 #include "tools/steplap/commands.h"
 
+#include "tools/steplap/accuracy.h"
 #include "tools/steplap/check.h"
 #include "tools/steplap/elements.h"
 #include "tools/steplap/equilibrium.h"
@@ -15,6 +16,7 @@ std::vector<Command> all_commands() {
   commands.push_back(check_command());
   commands.push_back(equilibrium_command());
   commands.push_back(joint_command());
+  commands.push_back(accuracy_command());
   commands.push_back(elements_command());
   commands.push_back(schema_command());
   return commands;

@@ -105,6 +105,32 @@ void print_joints(std::ostream& out, const FinishedRun& finished) {
   if (!joints.empty()) out << "\nStep-lap joints\n" << table;
 }
 
+std::string finer_text(const SimulationOptions& finer, const SimulationSettings& run) {
+  const bool is_step = run.step && finer.settings.step != *run.step;
+  return finer.integrator + (is_step ? ", step " + number_text(finer.settings.step) + " s"
+                                     : ", tolerance " + number_text(finer.settings.tolerance));
+}
+
+void print_global_error(std::ostream& out, const FinishedRun& finished) {
+  if (!finished.summary.global_error) return;
+  const GlobalErrorEstimate& estimate = *finished.summary.global_error;
+  out << "\nGlobal error, estimated from a second run (" << finer_text(estimate.finer, finished.run.loaded->model.simulation)
+      << "); of each channel's range\n";
+  TextTable table({Align::left, Align::right, Align::left});
+  for (std::size_t k = 0; k < k_error_kinds; ++k) {
+    const WorstError& worst = estimate.error.worst[k];
+    table.add_row({name_of(static_cast<ErrorKind>(k)), small_text(worst.value),
+                   worst.where.empty() ? "" : worst.where + " at " + sample_time_text(worst.t)});
+  }
+  out << table;
+  const SimulationOptions asked = options_of(finished.run.loaded->model);
+  const double times_tolerance = estimate.error.largest() / asked.settings.tolerance;
+  if (estimate.finer.settings.step == asked.settings.step && times_tolerance > 1.0)
+    out << "  the largest is " << small_text(times_tolerance) << " times the tolerance, which is meant for each step\n";
+  if (estimate.error.unmatched_events > 0)
+    out << "  " << estimate.error.unmatched_events << " events are in one of the two runs only: the run is not converged there\n";
+}
+
 // Rows of the last table: name and how a run's value reads.
 struct Figure {
   std::string name;
@@ -201,6 +227,7 @@ void print_run(std::ostream& out, const FinishedRun& finished) {
   print_reactions(out, finished.summary);
   print_slides(out, finished.summary);
   print_joints(out, finished);
+  print_global_error(out, finished);
   TextTable table({Align::left, Align::right});
   for (const Figure& figure : accuracy_and_cost())
     table.add_row({figure.name, figure.text(finished)});
@@ -213,6 +240,7 @@ void print_comparison(std::ostream& out, const std::vector<FinishedRun>& runs) {
     print_heading(out, run);
     print_events(out, run);
     print_joints(out, run);
+    print_global_error(out, run);
     out << "\n";
   }
   std::vector<Align> columns(runs.size() + 1, Align::right);

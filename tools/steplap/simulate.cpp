@@ -18,7 +18,7 @@ struct SimulateOptions {
   std::vector<std::string> overrides;
   std::string output = "out";
   std::optional<std::string> end, step, integrator, tolerance;
-  bool is_overwriting = false;
+  bool is_overwriting = false, is_error_estimated = false;
 
   /// --set and its short forms.
   [[nodiscard]] std::vector<std::string> all_overrides() const {
@@ -49,8 +49,22 @@ void check_folders(const SimulateOptions& options, const Models& models) {
   }
 }
 
-FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const LoadedModel>& loaded,
-                    Console& console) {
+// A second, finer run; where it fails the first stands, without an estimate.
+void estimate_error(FinishedRun& finished) {
+  const LoadedModel& loaded = *finished.run.loaded;
+  if (!finished.run.failure.empty()) return;
+  try {
+    finished.summary.global_error =
+        estimate_global_error(*loaded.system, initial_state_of(loaded), options_of(loaded.model),
+                              finished.run.result, is_main_event);
+  } catch (const NumericalFailure& failure) {
+    log_warning("'" + loaded.path +
+                "': the global error is not known: the finer run failed: " + failure.what());
+  }
+}
+
+FinishedRun run_one(const SimulateOptions& options,
+                    const std::shared_ptr<const LoadedModel>& loaded, Console& console) {
   log_detail("'" + loaded->name + "': " + std::to_string(loaded->system->body_count() - 1) +
              " bodies, " + std::to_string(loaded->system->rows.size()) + " constraint rows, " +
              std::to_string(loaded->system->frictions.size()) + " joints with friction");
@@ -60,14 +74,15 @@ FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const 
     finished.run = run_model(loaded, std::ref(progress));
   }
   finished.summary = summarise(finished.run);
+  if (options.is_error_estimated) estimate_error(finished);
   finished.folder = options.folder_of(*loaded);
   for (const Event& event : finished.run.result.events)
     log_detail("t = " + std::to_string(event.t) + " s: '" + event.element + "' " + event.what);
   write_results(finished.folder, result_files(finished.run, finished.summary),
                 options.is_overwriting);
   if (!finished.run.failure.empty())
-    log_error("'" + loaded->path + "': " + finished.run.failure + " What was computed up to there is in '" +
-              finished.folder + "' as partial_*");
+    log_error("'" + loaded->path + "': " + finished.run.failure +
+              " What was computed up to there is in '" + finished.folder + "' as partial_*");
   return finished;
 }
 
@@ -114,8 +129,13 @@ exit code is 4.
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
       {"--end", &o->end, "T", "end of the run, s; short for --set simulation.end=T"},
       {"--step", &o->step, "H", "step of a fixed-step integrator, s"},
-      {"--integrator", &o->integrator, "NAME", "integration method; see steplap elements simulation"},
-      {"--tolerance", &o->tolerance, "TOL", "relative tolerance of an adaptive integrator"},
+      {"--integrator", &o->integrator, "NAME",
+       "integration method; see steplap elements simulation"},
+      {"--tolerance", &o->tolerance, "TOL",
+       "relative tolerance of an adaptive integrator, for each step; --estimate-error tells what "
+       "it comes to"},
+      {"--estimate-error", &o->is_error_estimated, "",
+       "tell the global error, from a second run at a finer tolerance or step"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
   command.run = [o](Console& console) { return simulate(*o, console); };
   return command;

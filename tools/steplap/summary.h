@@ -2,9 +2,11 @@
 // for whoever reads a run in code.
 #pragma once
 
+#include "mbd/global_error.h"
 #include "tools/steplap/run.h"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,7 @@ struct RunSummary {
   std::vector<ChannelRange> ranges;          ///< of all channels, in the order of the trajectory
   std::map<std::string, long> event_counts;  ///< by what happened
   double relative_energy_residual = 0.0;     ///< of the energy exchanged
+  std::optional<GlobalErrorEstimate> global_error; ///< if it was asked for
 
   /// nullptr if there is no such channel.
   [[nodiscard]] const ChannelRange* find(const std::string& channel) const;

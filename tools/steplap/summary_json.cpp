@@ -42,6 +42,18 @@ Json accuracy_json(const RunStatistics& s, const RunSummary& summary) {
           {"max_velocity_residual", s.max_velocity_residual}};
 }
 
+// Errors scaled as in mbd/run_comparison.h.
+Json global_error_json(const GlobalErrorEstimate& estimate) {
+  Json json;
+  for (std::size_t k = 0; k < k_error_kinds; ++k) {
+    const WorstError& worst = estimate.error.worst[k];
+    json[name_of(static_cast<ErrorKind>(k))] = {{"error", worst.value}, {"where", worst.where}, {"t", worst.t}};
+  }
+  json["unmatched_events"] = estimate.error.unmatched_events;
+  json["evaluations_of_second_run"] = estimate.cost.evaluations;
+  return json;
+}
+
 Json extremes_json(const RunSummary& summary) {
   Json json = Json::object();
   for (const ChannelRange& range : summary.ranges)
@@ -100,6 +112,7 @@ std::string summary_json(const Run& run, const RunSummary& summary) {
   json["settings"] = settings_json(loaded.model);
   json["statistics"] = statistics_json(statistics);
   json["accuracy"] = accuracy_json(statistics, summary);
+  if (summary.global_error) json["global_error"] = global_error_json(*summary.global_error);
   json["events"] = {{"count", run.result.events.size()}, {"by_kind", summary.event_counts}};
   if (Json joints = joints_json(run); !joints.empty()) json["joints"] = std::move(joints);
   json["extremes"] = extremes_json(summary);

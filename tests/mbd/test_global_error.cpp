@@ -1,0 +1,226 @@
+// Global error estimates against problems whose solution is known: an estimate has to be neither
+// smaller than the error nor much larger.
+#include "mbd/accuracy_study.h"
+#include "mbd/global_error.h"
+#include "tests/physics/scene.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+// 1 kg on 100 N/m, drawn by 0.1 m and let go: x = 0.1 cos 10 t.
+const char* k_oscillator = R"(
+gravity = [0, 0]
+[simulation]
+step = 1e-3
+[[body]]
+name = "mass"
+mass = 1.0
+inertia = 1.0
+position = [0.1, 0.0]
+[[element]]
+kind = "spring_damper"
+name = "spring"
+a = "mass"
+axis = [1.0, 0.0]
+preload = -10.0
+stiffness = 100.0
+)";
+
+// The same on a belt of 0.2 m/s, μ = 0.3: sticks, slips, sticks no more
+// (tests/physics/stick_slip_test.cpp).
+const char* k_belt = R"(
+[simulation]
+step = 1e-3
+[[signal]]
+name = "speed"
+kind = "constant"
+value = 0.2
+[[body]]
+name = "mass"
+mass = 1.0
+inertia = 1.0
+[[body]]
+name = "belt"
+mass = 5.0
+inertia = 1.0
+[[element]]
+kind = "prismatic"
+name = "rollers"
+a = "belt"
+[[element]]
+kind = "prescribed_motion"
+name = "motor"
+a = "belt"
+signal = "speed"
+as = "velocity"
+[[element]]
+kind = "prismatic"
+name = "guide"
+a = "mass"
+[[element]]
+kind = "spring_damper"
+name = "spring"
+a = "mass"
+axis = [1.0, 0.0]
+stiffness = 100.0
+[[element]]
+kind = "unilateral_contact"
+name = "sole"
+a = "mass"
+b = "belt"
+stiffness = 1e5
+preload = 9.81
+[[element]]
+kind = "coulomb_stick"
+name = "friction"
+contacts = ["sole"]
+static_friction = 0.3
+)";
+
+// Slides from rest on the belt with 2.943 N: x = a (1 − cos ωt); sticks at t₁ where v = 0.2 m/s;
+// slips again where the spring holds 2.943 N; from there about x = a with amplitude 0.2/ω.
+double on_belt(double t) {
+  const double omega = 10.0, a = 0.02943, speed = 0.2;
+  const double t1 = std::asin(speed / (a * omega)) / omega, x1 = a * (1.0 - std::cos(omega * t1));
+  const double t2 = t1 + (a - x1) / speed;
+  if (t < t1) return a * (1.0 - std::cos(omega * t));
+  if (t < t2) return x1 + speed * (t - t1);
+  return a + speed / omega * std::sin(omega * (t - t2));
+}
+
+struct Honesty {
+  double error = 0.0, estimate = 0.0;
+};
+
+// `exact` is mass.x; both errors relative to its range.
+Honesty honesty(const std::string& text, const std::function<double(double)>& exact,
+                const SimulationOptions& options) {
+  const auto system = compile(scene(text));
+  const State initial = system->initial_state();
+  const RunResult run = simulate(*system, initial, options);
+  const std::vector<double> x = run.trajectory->series("mass.x");
+  double low = INFINITY, high = -INFINITY;
+  Honesty h;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double e = exact(run.trajectory->times()[i]);
+    h.error = std::max(h.error, std::abs(x[i] - e));
+    low = std::min(low, e);
+    high = std::max(high, e);
+  }
+  h.error /= high - low;
+  h.estimate =
+      estimate_global_error(*system, initial, options, run).error.of(ErrorKind::position).value;
+  return h;
+}
+
+} // namespace
+
+TEST_CASE("an estimated global error is honest where the solution is known") {
+  struct Problem {
+    const char* name;
+    const char* text;
+    double (*exact)(double);
+  };
+  for (const Problem& p :
+       {Problem{"oscillator", k_oscillator, [](double t) { return 0.1 * std::cos(10.0 * t); }},
+        Problem{"belt", k_belt, on_belt}})
+    for (const Settings& s :
+         {Settings{"tsit5", 1e-4, 10.0, 0.05}, Settings{"tsit5", 1e-7, 10.0, 0.05},
+          Settings{"dop853", 1e-4, 10.0, 0.05}, Settings{"dop853", 1e-7, 10.0, 0.05},
+          Settings{"rk4", 1e-2, 10.0, 0.05}, Settings{"rk4", 2e-3, 10.0, 0.05}}) {
+      CAPTURE(std::string(p.name));
+      CAPTURE(s.integrator);
+      CAPTURE(s.step_or_tolerance);
+      const Honesty h = honesty(p.text, p.exact, options(s));
+      CAPTURE(h.error);
+      CAPTURE(h.estimate);
+      CHECK(h.error > 1e-12); // something to estimate
+      // The second run's error, a hundredth (or less, rk4: a sixteenth) of the first's, may have
+      // either sign.
+      CHECK(h.estimate > 0.9 * h.error);
+      CHECK(h.estimate < 2.5 * h.error); // rk4 is taken as of order 1, which doubles
+    }
+}
+
+TEST_CASE("runs are compared by events too: a run without the last ones misses them") {
+  const auto system = compile(scene(k_belt));
+  const State initial = system->initial_state();
+  const RunResult whole = simulate(*system, initial, options({"dop853", 1e-10, 1.0, 0.01}));
+  const RunResult part = simulate(*system, initial, options({"tsit5", 1e-10, 0.1, 0.01}));
+  const RunDifference d = compare_runs(*system, part, whole);
+  CHECK(whole.events.size() == 2); // sticks, slips
+  CHECK(d.unmatched_events == 1);
+  CHECK(d.compared_until == doctest::Approx(0.1));
+  CHECK(d.of(ErrorKind::event_time).value < 1e-9); // that of "sticks"
+}
+
+TEST_CASE("a study: cheapest setting, Pareto set, slopes, failures") {
+  const auto system = compile(scene(k_belt));
+  const State initial = system->initial_state();
+  SimulationOptions base = options({"dop853", 1e-8, 1.0, 0.01});
+  AccuracyOptions study_options;
+  study_options.ladder = usual_ladder(*system, {"tsit5", "dop853"}, 1e-3);
+  study_options.repeats = 1;
+  const AccuracyStudy study = study_accuracy(*system, initial, base, study_options);
+  REQUIRE(study.entries.size() == 20);
+  for (const WorstError& worst : study.resolution.worst) {
+    CAPTURE(worst.where);
+    CAPTURE(worst.t);
+    // The sole's 1e5 N/m makes 1e-10 N of 1e-15 m of rounding, and the rollers' force hardly varies
+    // otherwise.
+    CHECK(worst.value < 1e-7);
+  }
+  const AccuracyEntry* cheapest = study.cheapest(1e-6);
+  REQUIRE(cheapest != nullptr);
+  CHECK(study.error_of(*cheapest) <= 1e-6);
+  for (const AccuracyEntry& e : study.entries) {
+    CHECK(e.failure.empty());
+    if (study.error_of(e) <= 1e-6) CHECK(e.cpu_seconds >= cheapest->cpu_seconds);
+  }
+  CHECK(std::any_of(study.entries.begin(), study.entries.end(),
+                    [](const AccuracyEntry& e) { return e.is_pareto; }));
+  CHECK(study.cheapest(1e-16) == nullptr); // no setting is better than the reference can tell
+
+  study_options.ladder = {{"tsit5", 1e-8}};
+  study_options.cpu_limit = 1e-9; // not even the reference
+  CHECK_THROWS_AS((void)study_accuracy(*system, initial, base, study_options), NumericalFailure);
+}
+
+// A pencil on its tip, held by nothing: e-folding of 0.14 s magnifies rounding 1e15 times in 5 s.
+TEST_CASE("where two methods do not agree nothing is said") {
+  const auto system = compile(scene(R"(
+[simulation]
+step = 1e-3
+[[body]]
+name = "pencil"
+mass = 1.0
+inertia = 0.01
+position = [0.0, 0.2]
+[[element]]
+kind = "revolute"
+name = "tip"
+a = { body = "pencil", at = [0.0, 0.0] }
+[[signal]]
+name = "nudge"
+kind = "harmonics"
+amplitudes = [1e-9]
+frequencies = [0.7]
+[[element]]
+kind = "load"
+name = "breath"
+at = "pencil"
+force_x = "nudge"
+)"));
+  AccuracyOptions study_options;
+  study_options.first_reference = {"dop853", 1e-4};
+  study_options.second_reference = {"tsit5", 1e-4};
+  SimulationOptions base = options({"dop853", 1e-8, 20.0, 0.01});
+  CHECK_THROWS_AS((void)study_accuracy(*system, system->initial_state(), base, study_options),
+                  NumericalFailure);
+}

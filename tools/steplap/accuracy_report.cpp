@@ -1,0 +1,270 @@
+#include "tools/steplap/accuracy_report.h"
+
+#include "mbd/io/csv.h"
+#include "mbd/number_text.h"
+#include "tools/steplap/text_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+
+namespace steplap {
+
+namespace {
+
+using Align = TextTable::Align;
+
+constexpr ErrorKind k_kinds[] = {ErrorKind::position, ErrorKind::velocity, ErrorKind::reaction,
+                                 ErrorKind::event_time};
+
+std::string milliseconds(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", 1e3 * seconds);
+  return text;
+}
+
+// "3.1e-09", "<2e-12" below what the reference resolves, "–" where it does not agree with itself.
+std::string error_text(const AccuracyStudy& study, const AccuracyEntry& entry, ErrorKind kind) {
+  if (!study.is_resolved(kind)) return "–";
+  const double error = entry.error.of(kind).value, resolution = study.resolution.of(kind).value;
+  return error < resolution ? "<" + small_text(resolution) : small_text(error);
+}
+
+std::string events_text(const AccuracyStudy& study, const AccuracyEntry& entry) {
+  std::string text = std::to_string(entry.cost.events);
+  if (study.is_resolved(ErrorKind::event_time) && entry.error.unmatched_events > 0)
+    text += " (" + std::to_string(entry.error.unmatched_events) + " differ)";
+  return text;
+}
+
+void print_reference(std::ostream& out, const AccuracyStudy& study) {
+  out << "  reference: " << study.first_reference.text() << " and " << study.second_reference.text()
+      << " differ by at most\n";
+  for (const ErrorKind kind : k_kinds) {
+    const WorstError& worst = study.resolution.of(kind);
+    out << "    " << small_text(worst.value) << " in " << name_of(kind);
+    if (!worst.where.empty()) out << " (" << worst.where << " at " << number_text(worst.t) << " s)";
+    if (!study.is_resolved(kind)) out << ": too much, nothing is said of them";
+    out << "\n";
+  }
+  if (study.resolution.unmatched_events > 0)
+    out << "    " << study.resolution.unmatched_events
+        << " events have no partner: nothing is said of event times\n";
+}
+
+std::string sentence(const AccuracyStudy& study, double wanted) {
+  const AccuracyEntry* best = study.cheapest(wanted);
+  const std::string head = "for " + number_text(wanted) + " ";
+  if (!best) return head + "none of these";
+  return head + best->setting.text() + " (" + milliseconds(best->cpu_seconds) + " ms)";
+}
+
+// --- diagram ------------------------------------------------------------------------------------
+
+constexpr double k_width = 640.0, k_height = 440.0, k_left = 70.0, k_right = 120.0, k_top = 40.0,
+                 k_bottom = 55.0;
+constexpr const char* k_colours[] = {"#1b6ca8", "#c8553d", "#3a7d44",
+                                     "#7b4fa3", "#b8860b", "#4a4a4a"};
+
+// A logarithmic axis from whole decade to whole decade.
+struct Axis {
+  double low = INFINITY, high = -INFINITY; ///< decades
+  double from = 0.0, to = 1.0;             ///< on the paper
+  void take(double value) {
+    if (!(value > 0.0)) return;
+    low = std::min(low, std::floor(std::log10(value)));
+    high = std::max(high, std::ceil(std::log10(value)));
+  }
+  void close() {
+    if (!(low < high)) high = low + 1.0;
+  }
+  [[nodiscard]] double at(double value) const {
+    return from + (to - from) * (std::log10(value) - low) / (high - low);
+  }
+};
+
+std::string fixed(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", value);
+  return text;
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '&')
+      out += "&amp;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string label(double x, double y, const std::string& anchor, const std::string& content,
+                  const std::string& more = "") {
+  return "<text x=\"" + fixed(x) + "\" y=\"" + fixed(y) + "\" text-anchor=\"" + anchor + "\"" +
+         more + ">" + content + "</text>\n";
+}
+
+std::string line(double x1, double y1, double x2, double y2, const std::string& style) {
+  return "<line x1=\"" + fixed(x1) + "\" y1=\"" + fixed(y1) + "\" x2=\"" + fixed(x2) + "\" y2=\"" +
+         fixed(y2) + "\" " + style + "/>\n";
+}
+
+std::string power_of_ten(double exponent) {
+  return "10<tspan dy=\"-5\" font-size=\"9\">" + std::to_string(static_cast<int>(exponent)) +
+         "</tspan>";
+}
+
+std::string grid(const Axis& x, const Axis& y) {
+  std::string svg;
+  const std::string style = "stroke=\"#dddddd\"";
+  for (double d = x.low; d <= x.high + 0.5; d += 1.0) {
+    const double at = x.at(std::pow(10.0, d));
+    svg += line(at, y.from, at, y.to, style) + label(at, y.from + 18.0, "middle", power_of_ten(d));
+  }
+  for (double d = y.low; d <= y.high + 0.5; d += 1.0) {
+    const double at = y.at(std::pow(10.0, d));
+    svg +=
+        line(x.from, at, x.to, at, style) + label(x.from - 8.0, at + 4.0, "end", power_of_ten(d));
+  }
+  svg += label(0.5 * (x.from + x.to), k_height - 12.0, "middle", "largest scaled error");
+  const double middle = 0.5 * (y.from + y.to);
+  svg += label(18.0, middle, "middle", "CPU time, ms",
+               " transform=\"rotate(-90 18 " + fixed(middle) + ")\"");
+  return svg;
+}
+
+struct Drawn {
+  const AccuracyEntry* entry;
+  double error;
+};
+
+std::vector<Drawn> drawn(const AccuracyStudy& study) {
+  std::vector<Drawn> list;
+  for (const AccuracyEntry& entry : study.entries)
+    if (entry.failure.empty() && study.error_of(entry) > 0.0)
+      list.push_back({&entry, study.error_of(entry)});
+  return list;
+}
+
+std::string curve(const std::vector<Drawn>& points, const std::string& integrator,
+                  const std::string& colour, const Axis& x, const Axis& y) {
+  std::string path, dots;
+  for (const Drawn& p : points) {
+    if (p.entry->setting.integrator != integrator) continue;
+    const std::string px = fixed(x.at(p.error)), py = fixed(y.at(1e3 * p.entry->cpu_seconds));
+    path += (path.empty() ? "M" : "L") + px + " " + py;
+    dots += "<circle cx=\"" + px + "\" cy=\"" + py + "\" r=\"4\" stroke=\"" + colour +
+            "\" fill=\"" + (p.entry->is_pareto ? colour : "white") + "\"><title>" +
+            escaped(p.entry->setting.text()) + "</title></circle>\n";
+  }
+  return "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colour +
+         "\" stroke-width=\"1.5\"/>\n" + dots;
+}
+
+std::vector<std::string> integrators_of(const std::vector<Drawn>& points) {
+  std::vector<std::string> names;
+  for (const Drawn& p : points)
+    if (std::find(names.begin(), names.end(), p.entry->setting.integrator) == names.end())
+      names.push_back(p.entry->setting.integrator);
+  return names;
+}
+
+} // namespace
+
+void print_accuracy(std::ostream& out, const AccuracyStudy& study,
+                    const std::vector<double>& wanted) {
+  print_reference(out, study);
+  std::vector<Align> columns(14, Align::right);
+  columns[0] = columns[13] = Align::left;
+  TextTable table(columns);
+  table.add_row({"setting", "CPU ms", "steps", "rejected", "evaluations", "events", "positions",
+                 "velocities", "reactions", "event times", "energy", "constraints", "", ""});
+  for (const AccuracyEntry& e : study.entries) {
+    if (!e.failure.empty()) continue;
+    table.add_row({e.setting.text(), milliseconds(e.cpu_seconds), std::to_string(e.cost.steps),
+                   std::to_string(e.cost.rejections), std::to_string(e.cost.evaluations),
+                   events_text(study, e), error_text(study, e, ErrorKind::position),
+                   error_text(study, e, ErrorKind::velocity),
+                   error_text(study, e, ErrorKind::reaction),
+                   error_text(study, e, ErrorKind::event_time), small_text(e.energy_residual),
+                   small_text(e.constraint_residual), "", e.is_pareto ? "Pareto" : ""});
+  }
+  out << table;
+  for (const AccuracyEntry& e : study.entries)
+    if (!e.failure.empty())
+      out << "  " << e.setting.text() << " gave nothing: " << e.failure << "\n";
+  for (const ErrorSlope& s : study.slopes())
+    out << "  " << s.integrator << ": error of positions ~ " << (s.is_step ? "step" : "tolerance")
+        << "^" << small_text(s.slope) << " over " << small_text(s.decades) << " decades\n";
+  out << "  cheapest: ";
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    out << (i > 0 ? "; " : "") << sentence(study, wanted[i]);
+  out << "\n";
+}
+
+std::string accuracy_csv(const AccuracyStudy& study) {
+  std::string csv =
+      "integrator,tolerance,step [s],cpu [s],steps,rejected,evaluations,events,unmatched events,"
+      "positions,velocities,reactions,event times,energy,constraints,pareto,failure\n";
+  for (const AccuracyEntry& e : study.entries) {
+    const std::string value = number_text(e.setting.value);
+    csv += e.setting.integrator + (e.setting.is_step ? ",," + value : "," + value + ",");
+    if (!e.failure.empty()) {
+      csv += ",,,,,,,,,,,,," + csv_field(e.failure) + "\n";
+      continue;
+    }
+    csv += "," + number_text(e.cpu_seconds);
+    for (const long count : {e.cost.steps, e.cost.rejections, e.cost.evaluations, e.cost.events,
+                             static_cast<long>(e.error.unmatched_events)})
+      csv += "," + std::to_string(count);
+    for (const ErrorKind kind : k_kinds)
+      csv += "," + (study.is_resolved(kind) ? number_text(e.error.of(kind).value) : std::string());
+    csv += "," + number_text(e.energy_residual) + "," + number_text(e.constraint_residual) +
+           (e.is_pareto ? ",1," : ",0,") + "\n";
+  }
+  return csv;
+}
+
+std::string work_precision_svg(const AccuracyStudy& study, const std::string& title) {
+  const std::vector<Drawn> points = drawn(study);
+  Axis x, y;
+  x.from = k_left;
+  x.to = k_width - k_right;
+  y.from = k_height - k_bottom;
+  y.to = k_top;
+  for (const Drawn& p : points) {
+    x.take(p.error);
+    y.take(1e3 * p.entry->cpu_seconds);
+  }
+  if (points.empty()) x.low = y.low = 0.0;
+  x.close();
+  y.close();
+  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + fixed(k_width) +
+                    "\" height=\"" + fixed(k_height) +
+                    "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" "
+                    "height=\"100%\" fill=\"white\"/>\n" +
+                    label(k_left, 22.0, "start", escaped(title), " font-size=\"14\"") + grid(x, y);
+  double resolution = 0.0;
+  for (const ErrorKind kind : k_kinds)
+    if (study.is_resolved(kind)) resolution = std::max(resolution, study.resolution.of(kind).value);
+  if (resolution > 0.0 && std::log10(resolution) >= x.low && std::log10(resolution) <= x.high)
+    svg += line(x.at(resolution), y.from, x.at(resolution), y.to,
+                "stroke=\"#888888\" stroke-dasharray=\"4 3\"");
+  const std::vector<std::string> names = integrators_of(points);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string colour = k_colours[i % std::size(k_colours)];
+    svg += curve(points, names[i], colour, x, y);
+    svg += label(k_width - k_right + 14.0, k_top + 16.0 + 18.0 * static_cast<double>(i), "start",
+                 escaped(names[i]), " fill=\"" + colour + "\"");
+  }
+  return svg + "</svg>\n";
+}
+
+} // namespace steplap
