@@ -65,6 +65,8 @@ public:
   [[nodiscard]] const std::vector<double>& watch_rate() const { return watch_rate_; }
   [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
+  /// Multipliers of the layout's active rows.
+  [[nodiscard]] const std::vector<double>& multipliers() const { return right_side_; }
   /// Adds the watch values of joints that are merged: costs a pass over the merged bodies.
   void watch_merged(const double* dy);
   /// The same at a stage inside a step, where only values near their limit are worth the pass.

@@ -64,6 +64,10 @@ public:
       PairJacobian& j = out.emplace_back();
       j.a = entry.a;
       j.b = entry.b;
+      if constexpr (Law::k_is_contact) {
+        j.contact = entry.contact;
+        j.normal = f.d.matrix();
+      }
       for (int i = 0; i < 6; ++i) {
         j.stiffness.row(i) = rows[i].d.template head<6>().matrix().transpose();
         j.damping.row(i) = rows[i].d.template tail<6>().matrix().transpose();

@@ -80,6 +80,8 @@ struct PairJacobian {
   int a = 0, b = 0;
   Eigen::Matrix<double, 6, 6> stiffness; ///< ∂F/∂q
   Eigen::Matrix<double, 6, 6> damping;   ///< ∂F/∂v
+  int contact = -1;                      ///< index of its normal force, if it is one
+  Eigen::Matrix<double, 12, 1> normal;   ///< ∂(normal force)/∂(pose a, pose b, velocity a, velocity b)
 };
 
 class ForceGroup {

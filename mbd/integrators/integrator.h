@@ -88,7 +88,7 @@ protected:
   double length_scale_ = 1.0;
 };
 
-/// "rk4", "tsit5", "dop853". Throws std::invalid_argument for an unknown name.
+/// "rk4", "tsit5", "dop853", "rodas5p". Throws std::invalid_argument for an unknown name.
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(const std::string& name,
                                                           const Dynamics& dynamics,
                                                           const IntegratorSettings& settings);

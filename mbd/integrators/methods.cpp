@@ -10,6 +10,7 @@ std::unique_ptr<Integrator> make_integrator(const std::string& name, const Dynam
   if (name == "rk4") return make_rk4(dynamics, settings, max_dimension);
   if (name == "tsit5") return make_tsit5(dynamics, settings, max_dimension);
   if (name == "dop853") return make_dop853(dynamics, settings, max_dimension);
+  if (name == "rodas5p") return make_rodas5p(dynamics, settings, max_dimension);
   throw std::invalid_argument("unknown integrator '" + name + "'");
 }
 

@@ -1,0 +1,199 @@
+// Rodas5P (tableau_rodas5p.h): linearly implicit, L-stable, of order 5, for stiff scenes.
+//
+// Applied to the equations of motion with the multipliers eliminated (index 1), the stages' linear systems
+// with the exact linearisation and the constraints beside it (stage_system.h). One linearisation and one
+// factorisation a step, eight evaluations of the accelerations. Explicit time dependence (drives, loads)
+// enters through ∂F/∂t at the step's begin: a difference forward over a fraction of the step, of order 4,
+// so that it costs the method no order; F is smooth within a step.
+//
+// Energy dissipated and work are integrals along the motion: taken by Lobatto's rule with four points
+// (order 6) over the dense output. The two points inside also serve as looks inside the step for events:
+// the stages of such a method are no approximations of the motion.
+#include "mbd/integrators/explicit_runge_kutta.h"
+#include "mbd/integrators/methods.h"
+#include "mbd/integrators/stage_system.h"
+#include "mbd/integrators/tableau_rodas5p.h"
+
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_time_step = 1.0 / 32.0; // of h, between the points of ∂F/∂t
+const double k_lobatto[2] = {0.5 - std::sqrt(0.05), 0.5 + std::sqrt(0.05)};
+
+class Rodas5p final : public Integrator {
+public:
+  Rodas5p(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
+      : Integrator(dynamics, settings, max_dimension), k_(2 * max_dimension), u_(8 * max_dimension),
+        rate_(max_dimension), slope_(max_dimension), right_(max_dimension), raw_(max_dimension),
+        stride_(max_dimension), next_h_(settings.step) {
+    set_rate_storage(k_.data(), k_.data() + stride_);
+    control_.order = 5;
+  }
+  [[nodiscard]] const char* name() const override { return "rodas5p"; }
+  [[nodiscard]] bool is_adaptive() const override { return true; }
+
+  void step(Dynamics& dynamics, double t_limit) override;
+
+  void dense(Dynamics&, double theta, double* out) override {
+    interpolate(theta, out);
+    // The integral of the cubic through the powers at Lobatto's points.
+    const int e = n_ - 2;
+    for (int i = 0; i < 2; ++i) out[e + i] = y0_[e + i] + h_ * power_integral(theta, power_[i]);
+  }
+
+protected:
+  void on_restart(Dynamics&) override { control_.previous_error = 1e-4; }
+
+private:
+  double* u(int i) { return u_.data() + i * stride_; }
+  double try_step(Dynamics& dynamics);
+  void find_time_slope(Dynamics& dynamics);
+  void finish_powers(Dynamics& dynamics);
+  void interpolate(double theta, double* out);
+  static double power_integral(double theta, const double* power);
+
+  std::vector<double> k_, u_, rate_, slope_, right_, raw_;
+  int stride_;
+  double power_[2][4] = {}; ///< of dissipation and work at 0, the two points inside, 1
+  Linearization linearization_;
+  StageSystem system_of_stages_;
+  StepControl control_;
+  double next_h_ = 0.0;
+};
+
+// ∂F/∂t at (t0, y0) from five points forward (order 4).
+void Rodas5p::find_time_slope(Dynamics& dynamics) {
+  const double d = k_time_step * h_;
+  const int n = n_ - 2;
+  constexpr double weights[4] = {4.0, -3.0, 4.0 / 3.0, -0.25};
+  double* const f = rate_.data();
+  bool is_still = true;
+  for (int i = 0; i < n; ++i) slope_[i] = -25.0 / 12.0 * k0_[i] / d;
+  for (int p = 3; p >= 0; --p) {
+    dynamics.rates(t0_ + (p + 1) * d, y0_.data(), f);
+    is_still = is_still && std::equal(f, f + n, k0_);
+    if (is_still && p < 3) break; // the same at three instants: no explicit time
+    for (int i = 0; i < n; ++i) slope_[i] += weights[p] / d * f[i];
+  }
+  if (is_still) std::fill(slope_.begin(), slope_.end(), 0.0);
+}
+
+double Rodas5p::try_step(Dynamics& dynamics) {
+  using namespace rodas5p;
+  const int n = n_ - 2;
+  find_time_slope(dynamics);
+  if (!system_of_stages_.factor(gamma * h_)) return std::numeric_limits<double>::infinity();
+  double* const y = scratch_.data();
+  std::copy(y0_.begin(), y0_.begin() + n_, y);
+  for (std::size_t i = 0; i < 8; ++i) {
+    for (int k = 0; k < n; ++k) {
+      double sum = 0.0, carried = 0.0;
+      for (std::size_t j = 0; j < i; ++j) {
+        sum += a[i][j] * u_[j * stride_ + k];
+        carried += C[i][j] * u_[j * stride_ + k];
+      }
+      y[k] = y0_[k] + sum;
+      right_[k] = carried / h_ + gamma_i[i] * h_ * slope_[k];
+    }
+    const double* f = k0_;
+    if (i > 0) {
+      dynamics.rates(t0_ + c[i] * h_, y, rate_.data());
+      f = rate_.data();
+    }
+    for (int k = 0; k < n; ++k) right_[k] += f[k];
+    system_of_stages_.solve(right_.data(), u(static_cast<int>(i)));
+  }
+  // The argument of the last stage is the embedded solution, its u the error estimate.
+  const double* const last = u(7);
+  for (int k = 0; k < n; ++k) y1_[k] = y[k] + last[k];
+  std::copy(last, last + n, scratch_.begin());
+  scratch_[n] = scratch_[n + 1] = 0.0;
+  y1_[n] = y0_[n];
+  y1_[n + 1] = y0_[n + 1];
+  std::copy(y1_.begin(), y1_.begin() + n_, raw_.begin());
+  return error_norm(scratch_.data());
+}
+
+void Rodas5p::interpolate(double theta, double* out) {
+  using namespace rodas5p;
+  const double s = theta, r = 1.0 - theta;
+  double weight[8];
+  for (std::size_t j = 0; j < 8; ++j) weight[j] = s * r * (H[0][j] + s * (H[1][j] + s * H[2][j]));
+  // What projection moved is spread over the step, so that the output meets the projected end.
+  const double blend = s * s * (3.0 - 2.0 * s);
+  for (int i = 0; i < n_ - 2; ++i) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < 8; ++j) sum += weight[j] * u_[j * stride_ + i];
+    out[i] = r * y0_[i] + s * raw_[i] + sum + blend * (y1_[i] - raw_[i]);
+  }
+}
+
+// ∫₀^θ of the cubic through (0, a, 1 − a, 1): by Newton's divided differences.
+double Rodas5p::power_integral(double theta, const double* power) {
+  const double x[4] = {0.0, k_lobatto[0], k_lobatto[1], 1.0};
+  double d[4] = {power[0], power[1], power[2], power[3]};
+  for (int level = 1; level < 4; ++level)
+    for (int i = 3; i >= level; --i) d[i] = (d[i] - d[i - 1]) / (x[i] - x[i - level]);
+  const double t2 = theta * theta / 2.0, t3 = theta * theta * theta / 3.0, t4 = theta * theta * theta * theta / 4.0;
+  const double s = x[1] + x[2], p = x[1] * x[2];
+  return d[0] * theta + d[1] * t2 + d[2] * (t3 - x[1] * t2) + d[3] * (t4 - s * t3 + p * t2);
+}
+
+void Rodas5p::finish_powers(Dynamics& dynamics) {
+  const int e = n_ - 2;
+  for (int i = 0; i < 2; ++i) power_[i][0] = k0_[e + i];
+  std::vector<double>& y = scratch_;
+  y[e] = y[e + 1] = 0.0;
+  for (int p = 0; p < 2; ++p) {
+    interpolate(k_lobatto[p], y.data());
+    dynamics.rates(t0_ + k_lobatto[p] * h_, y.data(), rate_.data());
+    note_stage_watches(dynamics, rate_.data());
+    for (int i = 0; i < 2; ++i) power_[i][p + 1] = rate_[e + i];
+  }
+  for (int i = 0; i < 2; ++i) {
+    power_[i][3] = k1_[e + i];
+    y1_[e + i] = y0_[e + i] + h_ * power_integral(1.0, power_[i]);
+  }
+}
+
+void Rodas5p::step(Dynamics& dynamics, double t_limit) {
+  const double left = t_limit - t0_;
+  const double h_max = settings_.max_step > 0.0 ? settings_.max_step : left;
+  if (next_h_ <= 0.0) next_h_ = first_step(dynamics, 4, std::min(left, h_max));
+  update_weights(dynamics);
+  linearization_.evaluate(dynamics, t0_, y0_.data());
+  system_of_stages_.set(linearization_, dynamics.layout());
+  double h = std::min(next_h_, h_max);
+  for (bool is_retry = false;; is_retry = true) {
+    const bool is_last = h >= left * (1.0 - 1e-10);
+    h_ = is_last ? left : (2.0 * h > left ? 0.5 * left : h);
+    t1_ = is_last ? t_limit : t0_ + h_;
+    const double error = try_step(dynamics);
+    if (error <= 1.0) {
+      const double factor = control_.factor(error, is_retry);
+      next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
+      std::fill(watch_low_.begin(), watch_low_.end(), 1.0);
+      finish_step(dynamics);
+      finish_powers(dynamics);
+      return;
+    }
+    ++rejections_;
+    h = std::isfinite(error) ? h_ * std::clamp(0.9 * std::pow(error, -1.0 / control_.order), 0.1, 0.9) : 0.2 * h_;
+    if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
+      throw NumericalFailure("step size fell to " + std::to_string(h) + " s at t = " +
+                             std::to_string(t0_) +
+                             " s: the motion becomes singular there, or the tolerance is too small");
+  }
+}
+
+} // namespace
+
+std::unique_ptr<Integrator> make_rodas5p(const Dynamics& dynamics, const IntegratorSettings& settings,
+                                         int max_dimension) {
+  return std::make_unique<Rodas5p>(dynamics, settings, max_dimension);
+}
+
+} // namespace steplap

@@ -1,0 +1,196 @@
+// The linearised equations of motion against central differences of Dynamics::rates.
+#include "mbd/linearization.h"
+#include "tests/physics/scene.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+// Central differences over h: truncation h² f'''/6 and rounding 1e-16 f/h meet near h = 1e-5 of what f varies
+// over; two steps and Richardson's extrapolation leave about 1e-9 of the largest entry of the same kind.
+constexpr double k_step = 2e-5;
+
+// Largest deviation of ∂a/∂q and ∂a/∂v from differences, each against the largest entry of its matrix.
+double deviation(Dynamics& dynamics, const State& state, double pose_step, double rate_step) {
+  dynamics.set_state(state);
+  std::vector<double> y(dynamics.dimension()), ahead(y), behind(y);
+  dynamics.pack(state, y.data());
+  Linearization linear;
+  linear.evaluate(dynamics, state.t, y.data());
+  MatX exact[2];
+  linear.acceleration_by_state(exact[0], exact[1]);
+  const int n = dynamics.coordinate_count();
+  double worst = 0.0;
+  for (int kind = 0; kind < 2; ++kind) {
+    MatX difference = MatX::Zero(n, n);
+    const auto slope = [&](int column, double h) {
+      std::vector<double> moved = y;
+      moved[kind * n + column] += h;
+      dynamics.rates(state.t, moved.data(), ahead.data());
+      moved[kind * n + column] -= 2.0 * h;
+      dynamics.rates(state.t, moved.data(), behind.data());
+      return VecX((VecX::Map(ahead.data() + n, n) - VecX::Map(behind.data() + n, n)) / (2.0 * h));
+    };
+    const double h = kind == 0 ? pose_step : rate_step;
+    for (int c = 0; c < n; ++c) difference.col(c) = (4.0 * slope(c, h) - slope(c, 2.0 * h)) / 3.0;
+    const double size = std::max(1.0, difference.cwiseAbs().maxCoeff());
+    worst = std::max(worst, (exact[kind] - difference).cwiseAbs().maxCoeff() / size);
+  }
+  return worst;
+}
+
+const char* k_joints = R"(
+[simulation]
+step = 1e-3
+[[signal]]
+name = "wave"
+kind = "harmonics"
+amplitudes = [0.5]
+frequencies = [0.8]
+[[body]]
+name = "carriage"
+mass = 3.0
+inertia = 0.4
+position = [0.0, 0.2]
+angle = 0.3
+[[body]]
+name = "arm"
+mass = 2.0
+inertia = 0.3
+position = [0.6, 0.4]
+velocity = [0.3, -0.2]
+angular_velocity = 0.7
+[[body]]
+name = "tip"
+mass = 1.0
+inertia = 0.1
+position = [1.3, -0.1]
+velocity = [-0.5, 0.4]
+angular_velocity = -1.1
+[[body]]
+name = "tail"
+mass = 0.7
+inertia = 0.05
+position = [1.7, 0.3]
+[[body]]
+name = "slider"
+mass = 1.4
+inertia = 0.2
+position = [0.4, 1.2]
+[[element]]
+kind = "prescribed_motion"
+name = "drive"
+a = "carriage"
+coordinate = "x"
+signal = "wave"
+as = "velocity"
+[[element]]
+kind = "revolute"
+name = "shoulder"
+a = { body = "arm", at = [0.1, 0.3] }
+b = { body = "carriage", at = [0.1, 0.3] }
+[[element]]
+kind = "distance"
+name = "rod"
+a = { body = "tip", at = [1.2, 0.1] }
+b = { body = "arm", at = [0.8, 0.5] }
+[[element]]
+kind = "weld"
+name = "tail weld"
+a = "tail"
+b = "tip"
+[[element]]
+kind = "prismatic"
+name = "guide"
+a = "slider"
+b = { body = "arm", at = [0.5, 0.8] }
+axis = [0.6, 0.8]
+[[element]]
+kind = "bushing"
+name = "mount"
+a = { body = "carriage", at = [0.0, 0.0] }
+b = "ground"
+stiffness = [500.0, 900.0]
+damping = [20.0, 30.0]
+rotational_stiffness = 60.0
+rotational_damping = 2.0
+[[element]]
+kind = "spring_damper"
+name = "tie"
+a = { body = "tail", at = [1.8, 0.4] }
+b = { body = "carriage", at = [-0.2, 0.3] }
+stiffness = 300.0
+damping = 12.0
+[[element]]
+kind = "spring_damper"
+name = "return"
+a = "slider"
+b = { body = "tip", at = [1.3, 0.2] }
+stiffness = 200.0
+damping = 5.0
+)";
+
+} // namespace
+
+TEST_CASE("linearisation: joints, welded bodies off their common centre, a driven body") {
+  const auto system = compile(scene(k_joints));
+  SimulationOptions options;
+  options.integrator = "dop853";
+  options.settings.tolerance = 1e-10;
+  options.end = 1.0;
+  Simulation simulation(*system, system->initial_state(), options);
+  Dynamics dynamics(*system);
+  dynamics.set_time_limit(2.0);
+  int looks = 0;
+  for (double next = 0.0; simulation.advance(); ) {
+    const State state = simulation.current_state();
+    if (state.t < next) continue;
+    next = state.t + 0.2;
+    CAPTURE(state.t);
+    CHECK(deviation(dynamics, state, k_step, k_step) < 3e-8);
+    ++looks;
+  }
+  CHECK(looks >= 4);
+}
+
+// Stiffness over mass is 1e5 1/s² and more here, and friction sits on springs of 1.6e9 N/m.
+TEST_CASE("linearisation: the paper's transformer sticking, sliding, with feet lifted and blocks pressed") {
+  for (const char* name : {"paper/no_interference", "paper/weak_clamping"}) {
+    CAPTURE(std::string(name));
+    const Model model = read_model(std::string(STEPLAP_MODELS) + "/" + name + ".toml", transformer_catalog());
+    const auto system = compile(model);
+    SimulationOptions options = options_of(model);
+    options.integrator = "tsit5";
+    options.settings.tolerance = 1e-7;
+    options.output_step = 0.0;
+    options.settings.max_step = 0.01;
+    options.end = 0.3;
+    Simulation simulation(*system, system->initial_state(), options);
+    Dynamics dynamics(*system);
+    dynamics.set_time_limit(1.0);
+    int phases[4] = {}, open = 0, looks = 0;
+    for (double next = 0.0; simulation.advance();) {
+      const State state = simulation.current_state();
+      bool is_starting = false;
+      for (std::size_t f = 0; f < state.friction.size(); ++f)
+        if (system->frictions[f].friction->dimension() == 3 && state.friction[f].is_starting) is_starting = true;
+      if (state.t < next || is_starting) continue; // a starting joint's law bends within 1e-7 s
+      next = state.t + 0.01;
+      for (const FrictionState& f : state.friction) ++phases[static_cast<int>(f.phase)];
+      for (const std::uint8_t mode : state.mode) open += mode == k_contact_open ? 1 : 0;
+      CAPTURE(state.t);
+      CHECK(deviation(dynamics, state, 1e-6, 1e-6) < 1e-6);
+      ++looks;
+    }
+    CHECK(looks >= 15);
+    CHECK(phases[static_cast<int>(FrictionPhase::stick)] > 0);
+    CHECK(phases[static_cast<int>(FrictionPhase::slip)] > 0);
+    CHECK(open > 0);
+  }
+}
