@@ -471,6 +471,11 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
     y[n + 3 * lock.cluster + lock.coordinate] = target.rate;
   }
   if (layout.active.empty()) return {};
+  // Kilometres from the origin a position is not known to a picometre.
+  double farthest = 0.0;
+  for (int i = 0; i < n; ++i)
+    if (i % 3 != 2) farthest = std::max(farthest, std::abs(y[i]));
+  tolerance = std::max(tolerance, 8.0 * std::numeric_limits<double>::epsilon() * farthest);
   Residual first = constraint_values(t, y);
   Residual now = first;
   const auto move = [&](const std::vector<double>& residual, double* target) {

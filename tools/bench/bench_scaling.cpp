@@ -1,0 +1,109 @@
+// What a body costs in scenes of 10 to 100 000 of them: reading, compiling, starting, a step of rk4, memory.
+// Chains of pendulums (two constraint rows a body: sparse constraint algebra) and square grids of masses on
+// springs (no constraints). Linear cost shows as columns that do not change with n.
+//   bench_scaling [largest number of bodies, default 100000]
+#include "elements/catalog.h"
+#include "mbd/io/reader.h"
+#include "mbd/simulation.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <limits>
+#include <sstream>
+#include <string>
+
+using namespace steplap;
+
+namespace {
+
+constexpr int k_batches = 3;
+
+const char* const k_header = "gravity = [0.0, -9.81]\n[simulation]\nend = 10.0\nintegrator = \"rk4\"\nstep = 1e-4\n";
+
+// A horizontal chain that falls, each link pinned to the one before it.
+std::string chain(int n) {
+  std::ostringstream text;
+  text << k_header;
+  for (int i = 1; i <= n; ++i)
+    text << "[[body]]\nname = \"" << i << "\"\nmass = 1.0\ninertia = 0.083\nposition = [" << i - 1 << ".5, 0.0]\n";
+  for (int i = 1; i <= n; ++i) {
+    text << "[[element]]\nkind = \"revolute\"\nname = \"pin " << i << "\"\na = { body = \"" << i << "\", at = ["
+         << i - 1 << ".0, 0.0] }\nb = { body = \"";
+    if (i == 1) text << "ground";
+    else text << i - 1;
+    text << "\", at = [" << i - 1 << ".0, 0.0] }\n";
+  }
+  return text.str();
+}
+
+// A square net of masses, 1 m apart, that hangs from its first row.
+std::string grid(int n) {
+  const int side = std::max(2, static_cast<int>(std::lround(std::sqrt(n))));
+  std::ostringstream text;
+  text << k_header;
+  const auto name = [&](int row, int column) { return std::to_string(row * side + column); };
+  for (int r = 0; r < side; ++r)
+    for (int c = 0; c < side; ++c) {
+      text << "[[body]]\nname = \"" << name(r, c) << "\"\nmass = 1.0\ninertia = 0.01\nposition = [" << c << ".0, "
+           << -r << ".0]\n";
+    }
+  const auto spring = [&](const std::string& a, const std::string& b, double x, double y) {
+    text << "[[element]]\nkind = \"spring_damper\"\nname = \"" << a << " to " << b << "\"\na = \"" << a << "\"\nb = ";
+    if (b == "ground") text << "{ body = \"ground\", at = [" << x << ", " << y << "] }";
+    else text << '"' << b << '"';
+    text << "\nstiffness = 1e4\ndamping = 1.0\n";
+  };
+  for (int r = 0; r < side; ++r)
+    for (int c = 0; c < side; ++c) {
+      if (r == 0) spring(name(r, c), "ground", c, 1.0);
+      else spring(name(r, c), name(r - 1, c), 0.0, 0.0);
+      if (c > 0) spring(name(r, c), name(r, c - 1), 0.0, 0.0);
+    }
+  return text.str();
+}
+
+double allocated() { return static_cast<double>(mallinfo2().uordblks); }
+
+void measure(const char* scene, const std::string& text) {
+  const double empty = allocated();
+  const double start = thread_cpu_seconds();
+  const Model model = parse_model(text, scene, element_catalog());
+  const double read = thread_cpu_seconds();
+  const auto system = compile(model);
+  const double compiled = thread_cpu_seconds();
+  const double n = system->body_count() - 1.0;
+  SimulationOptions options = options_of(model);
+  options.output_step = 0.0;
+  Simulation simulation(*system, system->initial_state(), options);
+  const double started = thread_cpu_seconds();
+  const double memory = allocated() - empty;
+  const int steps = std::max(3, static_cast<int>(20000 / n));
+  double best = std::numeric_limits<double>::infinity();
+  for (int batch = 0; batch < k_batches; ++batch) {
+    const double begin = thread_cpu_seconds();
+    for (int i = 0; i < steps; ++i) simulation.advance();
+    best = std::min(best, (thread_cpu_seconds() - begin) / steps);
+  }
+  std::printf("%-6s %7.0f %10.1f %10.2f %10.2f %10.3f %10.2f\n", scene, n, 1e6 * (read - start) / n,
+              1e6 * (compiled - read) / n, 1e6 * (started - compiled) / n, 1e6 * best / n, memory / n / 1024.0);
+  std::fflush(stdout);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  const int largest = argc > 1 ? std::atoi(argv[1]) : 100000;
+  std::printf("per body, µs: %15s %10s %10s %10s   kB\n", "read", "compile", "start", "step (rk4)");
+  try {
+    for (int n = 10; n <= largest; n *= 10) measure("chain", chain(n));
+    for (int n = 10; n <= largest; n *= 10) measure("grid", grid(n));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 4;
+  }
+}
