@@ -46,6 +46,8 @@ public:
   /// Tells slip laws the step of a method that does not control it (Evaluation::fixed_step).
   void set_fixed_step(double step) { evaluation_.fixed_step = step; }
 
+  /// As last set.
+  [[nodiscard]] const State& state() const { return *state_; }
   [[nodiscard]] const Layout& layout() const { return *layout_; }
   [[nodiscard]] int dimension() const { return 6 * layout_->cluster_count() + 2; }
   [[nodiscard]] int coordinate_count() const { return 3 * layout_->cluster_count(); }

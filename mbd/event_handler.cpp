@@ -197,6 +197,17 @@ void EventHandler::note_friction(const State& before, const State& state, std::v
   }
 }
 
+void EventHandler::note_changes(const State& before, const State& state, std::vector<Event>& events) {
+  for (std::size_t u = 0; u < system_.units.size(); ++u) {
+    const Unit& unit = system_.units[u];
+    if (before.mode[u] != state.mode[u])
+      events.push_back({state.t, system_.element_names[unit.element],
+                        unit.group->transition_name(before.mode[u], state.mode[u])});
+  }
+  note_friction(before, state, events);
+  clear_fresh();
+}
+
 void EventHandler::handle(State& state, const std::vector<int>& fired, std::vector<Event>& events) {
   clear_fresh();
   const State before = state;

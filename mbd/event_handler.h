@@ -26,6 +26,9 @@ public:
   /// signal, at which loads may jump). Changes modes, phases and anchors, notes what changed.
   void handle(State& state, const std::vector<int>& fired, std::vector<Event>& events);
 
+  /// Notes what has changed between two states, for a method that decides modes and phases itself.
+  void note_changes(const State& before, const State& state, std::vector<Event>& events);
+
   /// Slots whose unit or friction changed in the last handle(), for EventFinder.
   [[nodiscard]] const std::vector<char>& fresh() const { return fresh_; }
   /// Not empty once an element has ended the run: which, and why.

@@ -142,6 +142,7 @@ bool Simulation::advance() {
   if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
   const double limit = next_limit();
   integrator_->step(dynamics_, limit);
+  if (integrator_->stepped_state()) return pass_stepped();
   if (finder_.find(*integrator_, dynamics_, handler_.fresh())) {
     const double t = integrator_->t0() + finder_.theta() * integrator_->h();
     const std::vector<double> at_event = finder_.state();
@@ -165,6 +166,21 @@ bool Simulation::advance() {
   state_.t = t1;
   integrator_->accept();
   return true;
+}
+
+// A step that has decided the modes itself: they are taken over, and noted where they changed.
+bool Simulation::pass_stepped() {
+  const State before = state_;
+  state_ = *integrator_->stepped_state();
+  const double t1 = integrator_->t1();
+  sample_until(t1);
+  const std::size_t known = events_.size();
+  handler_.note_changes(before, state_, events_);
+  statistics_.events += static_cast<long>(events_.size() - known);
+  account_energy(t1, integrator_->y1());
+  dynamics_.set_time_limit(next_limit());
+  restart();
+  return t1 < options_.end;
 }
 
 State Simulation::current_state() const {

@@ -72,6 +72,7 @@ private:
   void record_sample(double t);
   void account_energy(double t, const double* y);
   void pass_event(double t, const double* y, const std::vector<int>& fired);
+  bool pass_stepped();
   void guard_against_chatter(double t);
   [[nodiscard]] double next_limit() const;
 

@@ -266,7 +266,7 @@ private:
 };
 
 bool has_fixed_step(const std::string& integrator) {
-  return integrator == "rk4";
+  return integrator == "rk4" || integrator == "moreau";
 }
 
 void Validation::check_settings() {

@@ -38,6 +38,9 @@ public:
   virtual void dense(Dynamics& dynamics, double theta, double* out) = 0;
   /// Goes on from the end of the step.
   void accept();
+  /// Of a method that locates no events but decides contact modes and friction phases itself: the state at
+  /// the end of the step, which `dynamics` then has; null for all others.
+  [[nodiscard]] virtual const State* stepped_state() const { return nullptr; }
 
   // --- the step made ------------------------------------------------------------------------------
   [[nodiscard]] double t0() const { return t0_; }
@@ -88,7 +91,7 @@ protected:
   double length_scale_ = 1.0;
 };
 
-/// "rk4", "tsit5", "dop853", "rodas5p". Throws std::invalid_argument for an unknown name.
+/// "rk4", "tsit5", "dop853", "rodas5p", "moreau". Throws std::invalid_argument for an unknown name.
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(const std::string& name,
                                                           const Dynamics& dynamics,
                                                           const IntegratorSettings& settings);

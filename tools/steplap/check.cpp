@@ -53,7 +53,7 @@ std::string run_text(const Model& model) {
   std::string text = s.integrator + ", 0 to " + number_text(s.end) + " s";
   if (s.step) {
     text += ", step " + number_text(*s.step) + " s";
-    if (s.integrator == "rk4") text += " (" + number_text(std::ceil(s.end / *s.step - 1e-9)) + " steps)";
+    if (has_fixed_step(s.integrator)) text += " (" + number_text(std::ceil(s.end / *s.step - 1e-9)) + " steps)";
   }
   if (s.tolerance) text += ", tolerance " + number_text(*s.tolerance);
   return text + "; starts " + (s.initial == "equilibrium" ? "from equilibrium" : "as given");

@@ -23,8 +23,8 @@ void print_heading(std::ostream& out, const FinishedRun& finished) {
   out << loaded.name;
   if (!loaded.model.header.title.empty()) out << ": " << loaded.model.header.title;
   out << "\n  " << s.integrator;
-  if (s.step && s.integrator == "rk4") out << ", step " << number_text(*s.step) << " s";
-  if (s.tolerance && s.integrator != "rk4") out << ", tolerance " << number_text(*s.tolerance);
+  if (s.step && has_fixed_step(s.integrator)) out << ", step " << number_text(*s.step) << " s";
+  if (s.tolerance && !has_fixed_step(s.integrator)) out << ", tolerance " << number_text(*s.tolerance);
   out << ", t = 0 to " << number_text(finished.run.result.final_state.t) << " s\n";
   if (!finished.run.failure.empty())
     out << "  STOPPED before the end: " << finished.run.failure << "\n";

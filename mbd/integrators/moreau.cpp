@@ -1,0 +1,57 @@
+// TimeStepping (time_stepping.h) as an integrator: it decides contact modes and friction phases itself.
+#include "mbd/integrators/methods.h"
+#include "mbd/integrators/time_stepping.h"
+
+namespace steplap {
+
+namespace {
+
+class Moreau final : public Integrator {
+public:
+  Moreau(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
+      : Integrator(dynamics, settings, max_dimension), stepping_(system_), k_(2 * max_dimension) {
+    set_rate_storage(k_.data(), k_.data() + max_dimension);
+  }
+  [[nodiscard]] const char* name() const override { return "moreau"; }
+  [[nodiscard]] bool is_adaptive() const override { return false; }
+  [[nodiscard]] const State* stepped_state() const override { return &state_; }
+
+  void step(Dynamics& dynamics, double t_limit) override {
+    const double left = t_limit - t0_;
+    const bool is_last = left <= settings_.step * (1.0 + 1e-9);
+    h_ = is_last ? left : settings_.step;
+    t1_ = is_last ? t_limit : t0_ + h_;
+    state_ = dynamics.state();
+    dynamics.unpack(t0_, y0_.data(), state_);
+    const State start = state_;
+    stepping_.step(dynamics, state_, t1_, settings_.projection_tolerance);
+    residual_.position = std::max(residual_.position, stepping_.residual().position);
+    residual_.velocity = std::max(residual_.velocity, stepping_.residual().velocity);
+    // Both ends in the layout of the new phases, so that one can interpolate between them.
+    n_ = dynamics.dimension();
+    dynamics.pack(start, y0_.data());
+    dynamics.pack(state_, y1_.data());
+    dynamics.rates(t1_, y1_.data(), k1_);
+    std::fill(watch1_.begin(), watch1_.end(), 1.0);
+    ++steps_;
+  }
+
+  /// Straight between the ends, as the method sees the motion.
+  void dense(Dynamics&, double theta, double* out) override {
+    for (int i = 0; i < n_; ++i) out[i] = y0_[i] + theta * (y1_[i] - y0_[i]);
+  }
+
+private:
+  TimeStepping stepping_;
+  State state_;
+  std::vector<double> k_;
+};
+
+} // namespace
+
+std::unique_ptr<Integrator> make_moreau(const Dynamics& dynamics, const IntegratorSettings& settings,
+                                        int max_dimension) {
+  return std::make_unique<Moreau>(dynamics, settings, max_dimension);
+}
+
+} // namespace steplap
