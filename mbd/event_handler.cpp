@@ -197,6 +197,14 @@ void EventHandler::note_friction(const State& before, const State& state, std::v
   }
 }
 
+void EventHandler::settle_phases(State& state) {
+  clear_fresh();
+  forget_moved_layouts(state);
+  settle(state);
+  modes_.decide(state);
+  std::fill(fresh_.begin(), fresh_.end(), 1); // none of the watch values was followed up to here
+}
+
 void EventHandler::note_changes(const State& before, const State& state, std::vector<Event>& events) {
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];

@@ -26,6 +26,8 @@ public:
   /// signal, at which loads may jump). Changes modes, phases and anchors, notes what changed.
   void handle(State& state, const std::vector<int>& fired, std::vector<Event>& events);
 
+  /// After a method that decides modes and phases itself: those that hold at the accelerations' level.
+  void settle_phases(State& state);
   /// Notes what has changed between two states, for a method that decides modes and phases itself.
   void note_changes(const State& before, const State& state, std::vector<Event>& events);
 

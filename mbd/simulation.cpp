@@ -13,6 +13,8 @@ namespace {
 // limit means that modes chase each other without the motion getting anywhere.
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
+constexpr double k_storm_step = 1e-5;      // s, of time stepping through a storm
+constexpr int k_storm_steps = 200;         // of one interval
 constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
 
 } // namespace
@@ -133,8 +135,40 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
   dynamics_.unpack(t, y_.data(), state_);
   if (fired.empty()) dynamics_.set_time_limit(next_limit()); // on the far side of the breakpoint
+  const std::size_t known = events_.size();
   handler_.handle(state_, fired, events_);
+  if (options_.integrator == "auto" && handler_.stop_reason().empty())
+    for (std::size_t i = known; i < events_.size(); ++i)
+      if (storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
   if (!fired.empty()) guard_against_chatter(t);
+  restart();
+}
+
+// An element whose events crowd is not followed from one to the next: time stepping goes over an interval,
+// in which modes change where they will, and the usual methods go on from its end.
+void Simulation::step_through_storm(const std::string& element) {
+  if (!stepping_) stepping_ = std::make_unique<TimeStepping>(system_);
+  const double begin = state_.t;
+  const double end = std::min(next_limit(), begin + k_storm_steps * k_storm_step);
+  events_.push_back({begin, element, "changes " + std::to_string(EventStorm::k_limit) +
+                                         " times within 1 ms: time stepping for " +
+                                         std::to_string(1e3 * (end - begin)) + " ms"});
+  while (state_.t < end) {
+    double t1 = std::min(end, state_.t + k_storm_step);
+    const double due = static_cast<double>(sample_) * options_.output_step;
+    const bool is_sample = options_.output_step > 0.0 && due > state_.t && due <= t1;
+    if (is_sample) t1 = due;
+    stepping_->step(dynamics_, state_, t1, options_.settings.projection_tolerance);
+    ++statistics_.steps;
+    if (!is_sample) continue;
+    dynamics_.pack(state_, y_.data());
+    record_sample(t1);
+  }
+  handler_.settle_phases(state_);
+  events_.push_back({state_.t, element, "is followed event by event again"});
+  storm_.clear();
+  events_at_once_ = 0;
+  dynamics_.set_time_limit(next_limit());
   restart();
 }
 
@@ -196,7 +230,7 @@ void Simulation::run() {
 
 RunStatistics Simulation::statistics() const {
   RunStatistics s = statistics_;
-  s.steps = integrator_->steps();
+  s.steps += integrator_->steps();
   s.rejections = integrator_->rejections();
   s.evaluations = dynamics_.evaluations();
   s.max_position_residual = integrator_->max_position_residual();

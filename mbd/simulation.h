@@ -3,7 +3,9 @@
 
 #include "mbd/event_finder.h"
 #include "mbd/event_handler.h"
+#include "mbd/event_storm.h"
 #include "mbd/integrators/integrator.h"
+#include "mbd/integrators/time_stepping.h"
 #include "mbd/trajectory.h"
 
 #include <functional>
@@ -73,6 +75,7 @@ private:
   void account_energy(double t, const double* y);
   void pass_event(double t, const double* y, const std::vector<int>& fired);
   bool pass_stepped();
+  void step_through_storm(const std::string& element);
   void guard_against_chatter(double t);
   [[nodiscard]] double next_limit() const;
 
@@ -85,6 +88,8 @@ private:
   std::unique_ptr<Integrator> integrator_;
   std::unique_ptr<Trajectory> trajectory_;
   std::vector<Event> events_;
+  EventStorm storm_;
+  std::unique_ptr<TimeStepping> stepping_; ///< made where a storm asks for it
   std::vector<double> y_, dy_;
   long sample_ = 0;
   double energy_start_ = 0.0, kinetic_start_ = 0.0;

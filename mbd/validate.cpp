@@ -8,6 +8,10 @@
 
 namespace steplap {
 
+bool has_fixed_step(const std::string& integrator) {
+  return integrator == "rk4" || integrator == "moreau";
+}
+
 std::string subject_text(const std::string& kind, const std::string& name) {
   if (!name.empty()) return kind + " '" + name + "'";
   const bool vowel = std::string("aeiou").find(kind.front()) != std::string::npos;
@@ -264,10 +268,6 @@ private:
   std::vector<Diagnostic> problems_;
   FieldChecker checker_;
 };
-
-bool has_fixed_step(const std::string& integrator) {
-  return integrator == "rk4" || integrator == "moreau";
-}
 
 void Validation::check_settings() {
   const SimulationSettings& s = model_.simulation;

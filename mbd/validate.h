@@ -60,6 +60,8 @@ private:
 /// "body 'tank'", or "a body" for an empty name.
 [[nodiscard]] std::string subject_text(const std::string& kind, const std::string& name);
 
+/// True for methods that take 'step' and not 'tolerance'.
+[[nodiscard]] bool has_fixed_step(const std::string& integrator);
 /// True for fields that an object may leave out although the table requires them: mass and inertia
 /// of a fixed body.
 [[nodiscard]] bool is_excused(const Body& body, const Field& field);

@@ -29,6 +29,13 @@ public:
                                           s * (r[4 * m + i] + u * (r[5 * m + i] + s * r[6 * m + i]))))));
   }
 
+  [[nodiscard]] double stability_share(Dynamics&) override {
+    double* const y = scratch_.data();
+    combine<dop853::a, 11, 11>(y0_.data(), h_, k_.data(), stride_, n_, y);
+    for (int i = 0; i < n_; ++i) y[i] = y1_[i] - y[i];
+    return rate_of_stages(12, 11, y) / 6.1; // stable for hρ up to 6.1 on the negative axis
+  }
+
 protected:
   double try_step(Dynamics& dynamics) override {
     using namespace dop853;

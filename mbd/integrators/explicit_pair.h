@@ -23,6 +23,18 @@ protected:
     dynamics.rates(t0_ + c * h_, scratch_.data(), k(Row));
     note_stage_watches(dynamics, k(Row));
   }
+  /// h ‖k_i − k_j‖/‖y_i − y_j‖ of two stages at the step's end: the fastest rate in the steps' direction
+  /// (Hairer, Wanner, Solving ODEs II, IV.2). `difference`: y_i − y_j.
+  [[nodiscard]] double rate_of_stages(std::size_t i, std::size_t j, const double* difference) {
+    double rates = 0.0, states = 0.0;
+    for (int l = 0; l < n_ - 2; ++l) {
+      const double f = (k(i)[l] - k(j)[l]) * weight_[l], y = difference[l] * weight_[l];
+      rates += f * f;
+      states += y * y;
+    }
+    // Differences far below the tolerance (bodies at rest) are rounding.
+    return states > 1e-6 ? h_ * std::sqrt(rates / states) : 0.0;
+  }
   double* k(std::size_t i) { return k_.data() + i * stride_; }
 
   std::vector<double> k_;

@@ -37,7 +37,10 @@ public:
   /// State at t + theta·h of the step made, 0 ≤ theta ≤ 1. May evaluate.
   virtual void dense(Dynamics& dynamics, double theta, double* out) = 0;
   /// Goes on from the end of the step.
-  void accept();
+  virtual void accept();
+  /// Of an explicit method: h times the fastest rate met, over what the method bears; above 1 stability
+  /// and not accuracy limits the step. 0: not known.
+  [[nodiscard]] virtual double stability_share(Dynamics& /*dynamics*/) { return 0.0; }
   /// Of a method that locates no events but decides contact modes and friction phases itself: the state at
   /// the end of the step, which `dynamics` then has; null for all others.
   [[nodiscard]] virtual const State* stepped_state() const { return nullptr; }
@@ -91,7 +94,7 @@ protected:
   double length_scale_ = 1.0;
 };
 
-/// "rk4", "tsit5", "dop853", "rodas5p", "moreau". Throws std::invalid_argument for an unknown name.
+/// "rk4", "tsit5", "dop853", "rodas5p", "moreau", "auto". Throws std::invalid_argument for an unknown name.
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(const std::string& name,
                                                           const Dynamics& dynamics,
                                                           const IntegratorSettings& settings);

@@ -12,6 +12,7 @@ std::unique_ptr<Integrator> make_integrator(const std::string& name, const Dynam
   if (name == "dop853") return make_dop853(dynamics, settings, max_dimension);
   if (name == "rodas5p") return make_rodas5p(dynamics, settings, max_dimension);
   if (name == "moreau") return make_moreau(dynamics, settings, max_dimension);
+  if (name == "auto") return make_automatic(dynamics, settings, max_dimension);
   throw std::invalid_argument("unknown integrator '" + name + "'");
 }
 

@@ -8,6 +8,7 @@ namespace steplap {
 std::unique_ptr<Integrator> make_rk4(const Dynamics&, const IntegratorSettings&, int max_dimension);
 std::unique_ptr<Integrator> make_tsit5(const Dynamics&, const IntegratorSettings&, int max_dimension);
 std::unique_ptr<Integrator> make_dop853(const Dynamics&, const IntegratorSettings&, int max_dimension);
+std::unique_ptr<Integrator> make_automatic(const Dynamics&, const IntegratorSettings&, int max_dimension);
 std::unique_ptr<Integrator> make_moreau(const Dynamics&, const IntegratorSettings&, int max_dimension);
 std::unique_ptr<Integrator> make_rodas5p(const Dynamics&, const IntegratorSettings&, int max_dimension);
 

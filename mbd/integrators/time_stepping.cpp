@@ -1,5 +1,7 @@
 #include "mbd/integrators/time_stepping.h"
 
+#include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +12,7 @@ namespace {
 constexpr int k_max_mode_passes = 12;   // contacts that still change after so many keep their last mode
 constexpr int k_max_force_passes = 30;  // repetitions for the normal forces of the step's end
 constexpr int k_max_sweeps = 500;
+constexpr int k_joint_sweeps = 10; // the first sweeps are followed by a common solution of all that stick
 constexpr double k_settled = 1e-9;      // relative change of a wrench: far below the method's own error
 
 double value_of_row(const RowSpec& row, const State& state) {
@@ -25,6 +28,11 @@ TimeStepping::TimeStepping(const System& system) : system_(system) {
   for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_, &change_}) v->assign(n, 0.0);
 }
 
+// Stuck before this step at the same place: its anchor stays, and with it what an element has worked out there.
+bool TimeStepping::has_held(const FrictionState& friction, int f) const {
+  return start_.friction[f].phase == FrictionPhase::stick && start_.friction[f].foot == friction.foot;
+}
+
 // Elements that can bear anything, anchored where they are; their rows are forces here, not constraints.
 void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
   parts_.clear();
@@ -37,7 +45,7 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
       element.change_place(dynamics.evaluation(), friction);
     if (friction.phase == FrictionPhase::apart) continue;
     const RowSpec* rows = element.rows(friction);
-    for (int r = 0; r < element.dimension(); ++r)
+    for (int r = 0; r < element.dimension() && !has_held(friction, f); ++r)
       if (rows[r].memory >= 0) state.memory[rows[r].memory] = value_of_row(rows[r], state);
     parts_.push_back({f, first, element.dimension(), false, {}});
     first += element.dimension();
@@ -91,6 +99,26 @@ void TimeStepping::respond(const Dynamics& dynamics, const double* y0) {
     }
 }
 
+// The wrenches of all elements that stick at once, those that slip as they are: where the guess of who sticks
+// is right, the next sweep changes nothing.
+void TimeStepping::hold_together() {
+  std::vector<int> held;
+  for (const FrictionPart& part : parts_)
+    for (int i = 0; part.block.is_inside && i < part.dimension; ++i) held.push_back(part.first + i);
+  const int count = static_cast<int>(held.size()), rows = static_cast<int>(rate_.size());
+  if (count == 0) return;
+  MatX a(count, count);
+  VecX b(count);
+  for (const int r : held) wrench_[r] = 0.0;
+  for (int i = 0; i < count; ++i) {
+    b[i] = -rate_[held[i]];
+    for (int j = 0; j < rows; ++j) b[i] -= compliance_[held[i] * rows + j] * wrench_[j];
+    for (int j = 0; j < count; ++j) a(i, j) = compliance_[held[i] * rows + held[j]];
+  }
+  const VecX w = a.completeOrthogonalDecomposition().solve(b); // least norm where rows depend on each other
+  for (int i = 0; i < count; ++i) wrench_[held[i]] = w[i];
+}
+
 // Block Gauss–Seidel: each element's wrench for the others' as they are; those that slip get their kinetic
 // coefficients and stay with them.
 void TimeStepping::balance_friction(const Dynamics& dynamics) {
@@ -126,6 +154,7 @@ void TimeStepping::balance_friction(const Dynamics& dynamics) {
         part.block = block;
       }
       if (change <= k_settled * size) break;
+      if (sweep < k_joint_sweeps) hold_together();
     }
     bool is_changed = false;
     for (FrictionPart& part : parts_)
@@ -210,10 +239,11 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     const RowSpec* rows = element.rows(friction);
     if (!element.is_loaded(dynamics.evaluation(), friction)) continue; // stays free
     double rate[3] = {0, 0, 0};
+    const bool stays = part.block.is_inside && has_held(friction, part.friction);
     for (int r = 0; r < part.dimension; ++r) {
       const auto m = evaluate_row<false>(rows[r], dynamics.motion().data());
       rate[r] = m.rate;
-      if (rows[r].memory >= 0) state.memory[rows[r].memory] = m.value;
+      if (rows[r].memory >= 0 && !stays) state.memory[rows[r].memory] = m.value;
     }
     friction.is_starting = false;
     friction.phase = part.block.is_inside ? FrictionPhase::stick : FrictionPhase::slip;

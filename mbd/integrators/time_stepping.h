@@ -37,9 +37,11 @@ private:
     FrictionBlock block;
   };
   void collect_friction(Dynamics& dynamics, State& state);
+  [[nodiscard]] bool has_held(const FrictionState& friction, int f) const;
   void load_row(const Dynamics& dynamics, const RowSpec& spec, std::size_t r);
   void respond(const Dynamics& dynamics, const double* y0);
   void balance_friction(const Dynamics& dynamics);
+  void hold_together();
   bool update_modes(Dynamics& dynamics, State& state);
   void finish_phases(Dynamics& dynamics, State& state, double h);
 

@@ -30,6 +30,13 @@ public:
     }
   }
 
+  [[nodiscard]] double stability_share(Dynamics&) override {
+    double* const y = scratch_.data();
+    combine<tsit5::a, 5, 5>(y0_.data(), h_, k_.data(), stride_, n_, y);
+    for (int i = 0; i < n_; ++i) y[i] = y1_[i] - y[i];
+    return rate_of_stages(6, 5, y) / 3.5; // stable for hρ up to 3.5 on the negative axis
+  }
+
 protected:
   double try_step(Dynamics& dynamics) override {
     using namespace tsit5;

@@ -2,6 +2,7 @@
 
 #include "mbd/freedom.h"
 #include "mbd/number_text.h"
+#include "mbd/validate.h"
 #include "tools/steplap/run.h"
 #include "tools/steplap/text_table.h"
 #include "tools/steplap/warnings.h"

@@ -1,6 +1,7 @@
 #include "tools/steplap/run_screen.h"
 
 #include "mbd/number_text.h"
+#include "mbd/validate.h"
 #include "tools/steplap/text_table.h"
 #include "transformer/joint_assessment.h"
 
