@@ -1,5 +1,7 @@
 #include "mbd/dynamics.h"
 
+#include "mbd/number_text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +15,18 @@ constexpr int k_iterations_per_factorization = 3;
 // A merged joint with more of its capacity left than this at a step's ends is not looked at in between:
 // what rises and falls by so much within a step is not resolved anyway.
 constexpr double k_near_limit = 0.5;
+
+// Damping of a projection near a singular position, at most this fraction of the diagonal.
+constexpr double k_largest_damping = 1e-3;
+// Below this smallest pivot an error estimate is freed from what projection will take away.
+constexpr double k_removal_pivot = 1e-2;
+// What rounding leaves of a residual: a position is a sum of a few terms as large as the scene.
+constexpr double k_rounded_terms = 32.0;
+double position_rounding(const double* q, int n) {
+  double size = 0.0;
+  for (int i = 0; i < n; ++i) size = std::max(size, std::abs(q[i]));
+  return k_rounded_terms * std::numeric_limits<double>::epsilon() * size;
+}
 
 // From b's axes into the ground's.
 MeasureValue<double> turned(MeasureValue<double> m, const Motion<double>& b) {
@@ -355,7 +369,7 @@ void Dynamics::solve_constraints(double* a) {
   }
   layout.schur.factor(layout.schur_rows);
   is_factored_ = true;
-  layout.schur.solve(right);
+  layout.schur.solve(layout.schur_rows, right);
   for (std::size_t r = 0; r < count; ++r) {
     const SchurRow& row = layout.schur_rows[r];
     const double lambda = right[r];
@@ -461,6 +475,56 @@ Residual Dynamics::residual(double t, const double* y) {
   return constraint_values(t, y);
 }
 
+void Dynamics::fail_projection(double t) const {
+  const Layout& layout = *layout_;
+  int worst = 0;
+  for (std::size_t r = 1; r < layout.active.size(); ++r)
+    if (!(std::abs(row_value_[r]) <= std::abs(row_value_[worst]))) worst = static_cast<int>(r);
+  const RowSpec& spec = *layout.active[worst].spec;
+  throw ConstraintFailure("constraint " + std::string(spec.quantity) + " of '" +
+                              system_.element_names[spec.element] + "' cannot be met at t = " +
+                              std::to_string(t) + " s: residual " + number_text(row_value_[worst]),
+                          spec.element, row_value_[worst], spec.kind == MeasureKind::angle);
+}
+
+void Dynamics::factor_rows(double shift) {
+  layout_->schur.factor(layout_->schur_rows, shift);
+  is_factored_ = true;
+}
+
+// change += W Jᵀ A⁻¹ right_side_.
+void Dynamics::add_response(double* change) {
+  const Layout& layout = *layout_;
+  layout.schur.solve(layout.schur_rows, right_side_.data());
+  for (std::size_t r = 0; r < layout.active.size(); ++r)
+    for (int side = 0; side < 2; ++side) {
+      const SchurRow& row = layout.schur_rows[r];
+      if (row.body[side] < 0) continue;
+      for (int c = 0; c < 3; ++c)
+        change[3 * row.body[side] + c] += row.wj[side][c] * right_side_[r];
+    }
+}
+
+bool Dynamics::is_near_singular() const {
+  return !layout_->active.empty() && is_factored_ && layout_->schur.smallest_pivot() < k_removal_pivot;
+}
+
+void Dynamics::remove_held(double* change) {
+  const Layout& layout = *layout_;
+  if (!is_near_singular()) return;
+  for (double* part : {change, change + coordinate_count()}) {
+    for (std::size_t r = 0; r < layout.active.size(); ++r) {
+      const SchurRow& row = layout.schur_rows[r];
+      double sum = 0.0;
+      for (int side = 0; side < 2; ++side)
+        if (row.body[side] >= 0)
+          for (int c = 0; c < 3; ++c) sum -= row.j[side][c] * part[3 * row.body[side] + c];
+      right_side_[r] = sum;
+    }
+    add_response(part);
+  }
+}
+
 Residual Dynamics::project(double t, double* y, double tolerance) {
   Layout& layout = *layout_;
   const int n = coordinate_count();
@@ -480,39 +544,26 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
   Residual now = first;
   const auto move = [&](const std::vector<double>& residual, double* target) {
     for (std::size_t r = 0; r < layout.active.size(); ++r) right_side_[r] = -residual[r];
-    layout.schur.solve(right_side_.data());
-    for (std::size_t r = 0; r < layout.active.size(); ++r)
-      for (int side = 0; side < 2; ++side) {
-        const SchurRow& row = layout.schur_rows[r];
-        if (row.body[side] < 0) continue;
-        for (int c = 0; c < 3; ++c)
-          target[3 * row.body[side] + c] += row.wj[side][c] * right_side_[r];
-      }
+    add_response(target);
   };
-  // The factorisation of the step's last evaluation serves while it converges fast.
+  // The factorisation of the step's last evaluation serves while it converges fast. Near a singular position
+  // it does not serve, and Newton's steps would be as long as the residual is to the distance from there:
+  // damped by the residual itself they stay short, and still converge quadratically (J. Fan, Y. Yuan,
+  // Computing 74 (2005) 23, for Levenberg–Marquardt with this choice).
   for (int iteration = 0; now.position > tolerance; ++iteration) {
-    if (iteration == k_max_projection_iterations || !std::isfinite(now.position)) {
-      int worst = 0;
-      for (std::size_t r = 1; r < layout.active.size(); ++r)
-        if (!(std::abs(row_value_[r]) <= std::abs(row_value_[worst]))) worst = static_cast<int>(r);
-      const RowSpec& spec = *layout.active[worst].spec;
-      throw ConstraintFailure("constraint " + std::string(spec.quantity) + " of '" +
-                                  system_.element_names[spec.element] + "' cannot be met at t = " +
-                                  std::to_string(t) + " s: residual " + std::to_string(row_value_[worst]),
-                              spec.element, row_value_[worst], spec.kind == MeasureKind::angle);
-    }
+    if (iteration == k_max_projection_iterations || !std::isfinite(now.position)) fail_projection(t);
+    if (is_factored_ && layout.schur.is_near_singular()) is_factored_ = false;
     if (!is_factored_ || iteration % k_iterations_per_factorization == k_iterations_per_factorization - 1) {
-      layout.schur.factor(layout.schur_rows);
-      is_factored_ = true;
+      factor_rows();
+      if (layout.schur.is_near_singular()) factor_rows(std::min(now.position, k_largest_damping));
     }
+    const double before = now.position;
     move(row_value_, y);
     now = constraint_values(t, y);
+    if (now.position >= 0.5 * before && now.position <= position_rounding(y, n)) break;
   }
   for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
-    if (!is_factored_ || iteration > 0) {
-      layout.schur.factor(layout.schur_rows);
-      is_factored_ = true;
-    }
+    if (!is_factored_ || iteration > 0 || layout.schur.is_near_singular()) factor_rows();
     const double before = now.velocity;
     move(row_rate_, y + n);
     now = constraint_values(t, y);
@@ -704,7 +755,7 @@ void Dynamics::respond(Candidates& candidates, const double* dy) {
     if (!layout.active.empty()) {
       for (std::size_t r = 0; r < layout.active.size(); ++r)
         lambda[r] = -along(layout.schur_rows[r], response);
-      layout.schur.solve(lambda.data());
+      layout.schur.solve(layout.schur_rows, lambda.data());
       for (std::size_t r = 0; r < layout.active.size(); ++r) add_response(layout.schur_rows[r], lambda[r]);
     }
     for (std::size_t d = 0; d < n; ++d) candidates.compliance[d * n + c] = along(rows[d], response);

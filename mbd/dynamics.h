@@ -59,6 +59,12 @@ public:
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
   /// residuals found before. Stops at `tolerance`; throws ConstraintFailure if that cannot be reached.
   Residual project(double t, double* y, double tolerance);
+  /// Takes from a small change of y what the constraints at the last evaluation do not allow, if that was
+  /// near a singular position; else leaves it. There accelerations across the constraints are as uncertain
+  /// as rounding over the distance from the singularity, but projection takes that part away.
+  void remove_held(double* change);
+  /// Was the last evaluation that near?
+  [[nodiscard]] bool is_near_singular() const;
   /// Residuals at y without moving it.
   [[nodiscard]] Residual residual(double t, const double* y);
 
@@ -105,6 +111,9 @@ private:
   void finish_power(const double* a);
   void finish_watches();
   Residual constraint_values(double t, const double* y);
+  [[noreturn]] void fail_projection(double t) const;
+  void factor_rows(double shift = 0.0);
+  void add_response(double* change);
   void body_accelerations(const double* dy);
   void merged_wrenches();
   [[nodiscard]] double* joint_multipliers(const RigidEdge& edge);

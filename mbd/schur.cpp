@@ -4,7 +4,9 @@
 #include <Eigen/SparseCore>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace steplap {
@@ -19,9 +21,15 @@ struct Coupling {
   unsigned char side_i, side_j;
 };
 
-std::vector<Coupling> couplings(const std::vector<SchurRow>& rows) {
-  int body_count = 0;
-  for (const SchurRow& row : rows) body_count = std::max({body_count, row.body[0] + 1, row.body[1] + 1});
+constexpr int k_max_refinements = 4;
+
+int count_bodies(const std::vector<SchurRow>& rows) {
+  int count = 0;
+  for (const SchurRow& row : rows) count = std::max({count, row.body[0] + 1, row.body[1] + 1});
+  return count;
+}
+
+std::vector<Coupling> couplings(const std::vector<SchurRow>& rows, int body_count) {
   std::vector<std::vector<std::pair<int, unsigned char>>> at_body(body_count);
   for (int i = 0; i < static_cast<int>(rows.size()); ++i)
     for (unsigned char side = 0; side < 2; ++side)
@@ -51,7 +59,11 @@ std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled
 
 void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
   n_ = static_cast<int>(rows.size());
-  const std::vector<Coupling> coupled = couplings(rows);
+  body_count_ = count_bodies(rows);
+  const std::vector<Coupling> coupled = couplings(rows, body_count_);
+  right_.assign(n_, 0.0);
+  correction_.assign(n_, 0.0);
+  response_.assign(3 * static_cast<std::size_t>(body_count_), 0.0);
   position_.resize(n_);
   inverse_d_.assign(n_, 0.0);
   if (n_ <= k_max_dense) {
@@ -116,7 +128,8 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
   permuted_.assign(n_, 0.0);
 }
 
-void SchurSolver::factor(const std::vector<SchurRow>& rows) {
+void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
+  shift_ = shift;
   switch (n_) {
   case 0: break;
   case 1: factor_dense<1>(rows); break;
@@ -145,7 +158,7 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
   // Row by row: below the diagonal first L D, then L.
   for (int i = 0; i < n; ++i) {
     double* const mi = m + i * n;
-    const double diagonal = mi[i];
+    const double diagonal = mi[i] * (1.0 + shift_);
     double d = diagonal;
     for (int j = 0; j < i; ++j) {
       double sum = mi[j];
@@ -160,7 +173,6 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
     if (!(d > k_pivot_tolerance * diagonal)) {
       inverse_d_[i] = 0.0;
       ++dependent_count_;
-      smallest_pivot_ = 0.0;
     } else {
       inverse_d_[i] = 1.0 / d;
       if (d < smallest_pivot_ * diagonal) smallest_pivot_ = d / diagonal;
@@ -191,7 +203,7 @@ void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
       const double* b = rows[product.row].j[product.side_i];
       y[product.position] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     }
-    const double diagonal = y[k];
+    const double diagonal = y[k] * (1.0 + shift_);
     double d = diagonal;
     y[k] = 0.0;
     for (int p = pattern_begin_[k]; p < pattern_begin_[k + 1]; ++p) {
@@ -209,7 +221,6 @@ void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
     if (!(d > k_pivot_tolerance * diagonal)) {
       inverse_d_[k] = 0.0;
       ++dependent_count_;
-      smallest_pivot_ = 0.0;
     } else {
       inverse_d_[k] = 1.0 / d;
       smallest_pivot_ = std::min(smallest_pivot_, d / diagonal);
@@ -217,7 +228,45 @@ void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
   }
 }
 
-void SchurSolver::solve(double* x) const {
+void SchurSolver::solve(const std::vector<SchurRow>& rows, double* x) const {
+  if (smallest_pivot_ >= k_refined_pivot || shift_ > 0.0) [[likely]]
+    return eliminate(x);
+  std::copy(x, x + n_, right_.begin());
+  eliminate(x);
+  refine(rows, right_.data(), x);
+}
+
+// x += A⁻¹ (right − J (W Jᵀ x)) while that makes the correction smaller.
+void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right, double* x) const {
+  double* const correction = correction_.data();
+  double previous = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < k_max_refinements; ++iteration) {
+    std::fill(response_.begin(), response_.end(), 0.0);
+    for (int r = 0; r < n_; ++r)
+      for (int side = 0; side < 2; ++side)
+        if (rows[r].body[side] >= 0)
+          for (int c = 0; c < 3; ++c) response_[3 * rows[r].body[side] + c] += rows[r].wj[side][c] * x[r];
+    for (int r = 0; r < n_; ++r) {
+      double sum = right[r];
+      for (int side = 0; side < 2; ++side)
+        if (rows[r].body[side] >= 0)
+          for (int c = 0; c < 3; ++c) sum -= rows[r].j[side][c] * response_[3 * rows[r].body[side] + c];
+      correction[r] = sum;
+    }
+    eliminate(correction);
+    double size = 0.0, scale = 0.0;
+    for (int r = 0; r < n_; ++r) {
+      size = std::max(size, std::abs(correction[r]));
+      scale = std::max(scale, std::abs(x[r]));
+    }
+    if (!(size < 0.5 * previous)) return;
+    for (int r = 0; r < n_; ++r) x[r] += correction[r];
+    if (size <= std::numeric_limits<double>::epsilon() * scale) return;
+    previous = size;
+  }
+}
+
+void SchurSolver::eliminate(double* x) const {
   switch (n_) {
   case 0: return;
   case 1: return solve_dense<1>(x);

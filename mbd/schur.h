@@ -5,6 +5,10 @@
 // L D Lᵀ then runs over precomputed lists, without allocation; up to eight rows it is dense. A pivot that vanishes against its
 // diagonal marks a row as dependent on the earlier ones: its multiplier is set to zero and the row's
 // index is reported (redundant constraints; least-norm multipliers are found apart, on demand).
+//
+// Near a singular position a pivot is small without being zero. A carries the square of the rows' own
+// condition, so elimination alone would lose twice the digits that the problem takes: there the solution is
+// refined against J W Jᵀ itself, factor by factor, whose rounding is that of the rows.
 #pragma once
 
 #include <array>
@@ -25,21 +29,26 @@ class SchurSolver {
 public:
   /// Pattern from the rows' bodies. Body −1 couples nothing.
   void analyze(const std::vector<SchurRow>& rows);
-  /// Numbers from the rows' j and wj. Allocates nothing.
-  void factor(const std::vector<SchurRow>& rows);
-  /// In place: x = A⁻¹ x.
-  void solve(double* x) const;
+  /// Numbers from the rows' j and wj, the diagonal raised by the fraction `shift` (damping). Allocates nothing.
+  void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
+  /// In place: x = A⁻¹ x. `rows`: those factored.
+  void solve(const std::vector<SchurRow>& rows, double* x) const;
 
   [[nodiscard]] int size() const { return n_; }
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
   [[nodiscard]] bool is_dependent(int row) const { return inverse_d_[position_[row]] == 0.0; }
-  /// Smallest pivot relative to its diagonal in the last factorisation: near 0 close to a singularity.
+  /// Smallest pivot kept, relative to its diagonal, in the last factorisation: near 0 close to a singularity.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
+  [[nodiscard]] bool is_near_singular() const { return smallest_pivot_ < k_refined_pivot; }
 
   /// A pivot below this fraction of its diagonal counts as zero.
-  static constexpr double k_pivot_tolerance = 1e-11;
+  static constexpr double k_pivot_tolerance = 1e-13;
+  /// Below this one a solution is refined: the square root of what elimination can lose.
+  static constexpr double k_refined_pivot = 1e-4;
 
 private:
+  void eliminate(double* x) const;
+  void refine(const std::vector<SchurRow>& rows, const double* right, double* x) const;
   template <int N> void factor_dense(const std::vector<SchurRow>& rows);
   void factor_sparse(const std::vector<SchurRow>& rows);
   template <int N> void solve_dense(double* x) const;
@@ -58,6 +67,8 @@ private:
     unsigned char side_k, side_i;
   };
   int n_ = 0;
+  int body_count_ = 0;
+  double shift_ = 0.0;
   int dependent_count_ = 0;
   double smallest_pivot_ = 1.0;
   std::vector<int> order_;     ///< order_[k]: row eliminated as k-th
@@ -69,6 +80,7 @@ private:
   std::vector<int> column_fill_;
   std::vector<double> l_, d_, inverse_d_, work_;
   mutable std::vector<double> permuted_;
+  mutable std::vector<double> right_, correction_, response_; ///< of refine
 };
 
 } // namespace steplap

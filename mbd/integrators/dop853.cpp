@@ -45,9 +45,9 @@ protected:
     }(std::make_index_sequence<11>{});
     combine<a, 12, 12>(y0_.data(), h_, k_.data(), stride_, n_, y1_.data());
     weighted_sum<e5, 12>(k_.data(), stride_, n_, scratch_.data());
-    const double fifth = error_norm(scratch_.data());
+    const double fifth = projected_error_norm(dynamics, scratch_.data());
     weighted_sum<e3, 12>(k_.data(), stride_, n_, scratch_.data());
-    const double third = error_norm(scratch_.data());
+    const double third = projected_error_norm(dynamics, scratch_.data());
     const double denominator = std::sqrt(fifth * fifth + 0.01 * third * third);
     return denominator > 0.0 ? h_ * fifth * fifth / denominator : h_ * fifth;
   }

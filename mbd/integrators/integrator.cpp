@@ -11,6 +11,8 @@ namespace {
 // at 10 Hz. Beyond that errors are relative to displacement and velocity.
 constexpr double k_displacement_floor = 1e-3;
 constexpr double k_rate_floor = 60.0;
+// What projection takes away counts by this share: it leaves what directions turn by within a step, twice.
+constexpr double k_turned_share = 1e-4;
 
 } // namespace
 
@@ -87,6 +89,12 @@ double Integrator::error_norm(const double* error) const {
     sum += e * e;
   }
   return std::sqrt(sum / n_);
+}
+
+double Integrator::projected_error_norm(Dynamics& dynamics, double* error) const {
+  const double all = error_norm(error);
+  dynamics.remove_held(error);
+  return std::max(error_norm(error), k_turned_share * all);
 }
 
 // Hairer, Nørsett, Wanner, Solving ODEs I, II.4: from the size of y, f and a difference of f.

@@ -79,6 +79,10 @@ protected:
   /// Weights of the error norm: 1/(tolerance · scale) per coordinate, 0 where locked.
   void update_weights(const Dynamics& dynamics);
   [[nodiscard]] double error_norm(const double* error) const;
+  /// The same without most of what the projection will take away, near singular positions of the joints.
+  /// A share stays: the directions turn within a step. Changes `error`; the last evaluation must have been
+  /// near the step's end.
+  [[nodiscard]] double projected_error_norm(Dynamics& dynamics, double* error) const;
   [[nodiscard]] double first_step(Dynamics& dynamics, int order, double h_max);
 
   const System& system_;

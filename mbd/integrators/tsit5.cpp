@@ -50,7 +50,7 @@ protected:
     dynamics.rates(t0_ + h_, y1_.data(), k(6));
     std::copy(y1_.begin(), y1_.begin() + n_, raw_.begin());
     weighted_sum<e, 7>(k_.data(), stride_, n_, scratch_.data());
-    return h_ * error_norm(scratch_.data());
+    return h_ * projected_error_norm(dynamics, scratch_.data());
   }
 
 private:

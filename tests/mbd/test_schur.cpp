@@ -60,7 +60,7 @@ void copy_row(Problem& p, int from, int to, double factor) {
 
 VecX solve(SchurSolver& solver, const Problem& p, VecX right) {
   solver.factor(p.rows);
-  solver.solve(right.data());
+  solver.solve(p.rows, right.data());
   return right;
 }
 
