@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -129,4 +131,50 @@ TEST_CASE("bouncing mass: contacts and the state at 5 s") {
   const Run half = run_file("bouncing_mass", 1e-13, 5.0);
   check_digits(half.last("mass.y"), 0.173031311957123);
   check_digits(half.last("mass.vy"), 0.803729314210234);
+}
+
+TEST_CASE("double pendulum against Lagrange's equations in two angles") {
+  // From the vertical, d = θ₁ − θ₂: 4/3 θ₁'' + ½ cos d θ₂'' = −½ sin d θ₂'² − 3/2 g sin θ₁,
+  //                                 ½ cos d θ₁'' + 1/3 θ₂'' = ½ sin d θ₁'² − ½ g sin θ₂.
+  using Four = std::array<double, 4>;
+  const auto rates = [](const Four& y) {
+    const double c = 0.5 * std::cos(y[0] - y[1]), s = 0.5 * std::sin(y[0] - y[1]);
+    const double p = -s * y[3] * y[3] - 1.5 * 9.81 * std::sin(y[0]);
+    const double q = s * y[2] * y[2] - 0.5 * 9.81 * std::sin(y[1]);
+    const double determinant = 4.0 / 9.0 - c * c;
+    return Four{y[2], y[3], (p / 3.0 - c * q) / determinant, (4.0 / 3.0 * q - c * p) / determinant};
+  };
+  const auto along = [](const Four& y, double h, const Four& k) {
+    Four z;
+    for (int i = 0; i < 4; ++i) z[i] = y[i] + h * k[i];
+    return z;
+  };
+  constexpr int k_steps = 10000;
+  constexpr double h = 1.0 / k_steps;
+  Four y = {0.5 * std::numbers::pi, 0.5 * std::numbers::pi, 0.0, 0.0};
+  for (int n = 0; n < k_steps; ++n) {
+    const Four k1 = rates(y), k2 = rates(along(y, 0.5 * h, k1)), k3 = rates(along(y, 0.5 * h, k2)),
+               k4 = rates(along(y, h, k3));
+    for (int i = 0; i < 4; ++i) y[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+  }
+  const Run r = run_file("double_pendulum", 1e-12, 1.0);
+  // Fourth order at 1e-4 s, rates up to 20 rad/s: (ωh)⁴/120 a radian, 1e-13, over 20 rad.
+  CHECK(std::abs(r.last("upper.theta") + 0.5 * std::numbers::pi - y[0]) < 1e-10);
+  CHECK(std::abs(r.last("lower.theta") + 0.5 * std::numbers::pi - y[1]) < 1e-10);
+}
+
+TEST_CASE("slider-crank: the slider is where the crank and the rod put it, and friction takes its work") {
+  const double t = 0.3, angle = 2.0 * std::numbers::pi * t;
+  const Run r = run_file("slider_crank", 1e-10, t);
+  const double s = 0.1 * std::sin(angle);
+  CHECK(std::abs(r.last("slider.x") - (0.1 * std::cos(angle) + std::sqrt(0.09 - s * s))) < 1e-11);
+  CHECK(r.result.statistics.dissipated > 0.0);
+  CHECK(r.result.statistics.energy_residual < 1e-8); // of 1 J exchanged, local errors of 1e-10
+}
+
+TEST_CASE("a chain of ten rods and a rocking block keep their balance of energy") {
+  CHECK(run_file("chain_10", 1e-11, 1.0).result.statistics.energy_residual < 1e-7); // of 490 J
+  const Run block = run_file("rocking_block", 1e-9, 4.0);
+  CHECK(block.event_times("left corner", "closes").size() > 3);
+  CHECK(block.result.statistics.energy_residual < 1e-4); // of 100 J, over 70 events
 }
