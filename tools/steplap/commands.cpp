@@ -5,6 +5,7 @@
 #include "tools/steplap/elements.h"
 #include "tools/steplap/equilibrium.h"
 #include "tools/steplap/joint.h"
+#include "tools/steplap/modes.h"
 #include "tools/steplap/schema.h"
 #include "tools/steplap/simulate.h"
 
@@ -15,6 +16,7 @@ std::vector<Command> all_commands() {
   commands.push_back(simulate_command());
   commands.push_back(check_command());
   commands.push_back(equilibrium_command());
+  commands.push_back(modes_command());
   commands.push_back(joint_command());
   commands.push_back(accuracy_command());
   commands.push_back(elements_command());

@@ -1,0 +1,137 @@
+#include "tools/steplap/modes.h"
+
+#include "mbd/io/atomic_file.h"
+#include "mbd/io/csv.h"
+#include "mbd/modes.h"
+#include "tools/steplap/log.h"
+#include "tools/steplap/run.h"
+#include "tools/steplap/text_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <ostream>
+
+namespace steplap {
+
+namespace {
+
+using Align = TextTable::Align;
+
+struct ModesOptions {
+  std::string model;
+  std::vector<std::string> overrides;
+  std::optional<std::string> output;
+  bool is_overwriting = false;
+};
+
+std::string fixed_text(double value, const char* format) {
+  char text[40];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+// What moves most: "active part.theta 1.00, upper tank.x 0.42".
+std::string shape_text(const System& system, const VibrationMode& mode) {
+  struct Part {
+    std::string name;
+    double size, value;
+  };
+  std::vector<Part> parts;
+  for (int i = 1; i < system.body_count(); ++i) {
+    const BodyData& body = system.bodies[i];
+    const double gyration = std::sqrt(body.inertia / body.mass);
+    static constexpr const char* names[] = {".x", ".y", ".theta"};
+    for (int c = 0; c < 3; ++c) {
+      const std::complex<double> part = (c < 2 ? 1.0 : gyration) * mode.shape[3 * i + c];
+      parts.push_back({body.name + names[c], std::abs(part), std::copysign(std::abs(part), part.real())});
+    }
+  }
+  constexpr std::size_t k_shown = 3;
+  const std::size_t shown = std::min(k_shown, parts.size());
+  std::partial_sort(parts.begin(), parts.begin() + shown, parts.end(),
+                    [](const Part& a, const Part& b) { return a.size > b.size; });
+  std::string text;
+  for (std::size_t i = 0; i < shown && parts[i].size >= 0.05; ++i)
+    text += (i ? ", " : "") + parts[i].name + " " + fixed_text(parts[i].value, "%.2f");
+  return text;
+}
+
+void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationModes& found) {
+  out << loaded.name << ": small vibrations about equilibrium, closed contacts and sticking joints held\n\n";
+  TextTable table({Align::right, Align::right, Align::right, Align::right, Align::left});
+  table.add_row({"mode", "frequency", "damped", "damping", "what moves most (turning as at the radius of gyration)"});
+  for (std::size_t i = 0; i < found.modes.size(); ++i) {
+    const VibrationMode& mode = found.modes[i];
+    table.add_row({std::to_string(i + 1), fixed_text(mode.natural_frequency(), "%.4f Hz"),
+                   mode.oscillates() ? fixed_text(mode.frequency(), "%.4f Hz") : "-",
+                   mode.oscillates() ? fixed_text(100.0 * mode.damping_ratio(), "%.3f %%")
+                                     : fixed_text(mode.eigenvalue.real(), "%.4g /s"),
+                   shape_text(*loaded.system, mode)});
+  }
+  out << table;
+  if (found.rigid_motions > 0)
+    out << "\n" << found.rigid_motions << " coordinates move freely: nothing holds the scene along them\n";
+}
+
+std::string modes_csv(const System& system, const VibrationModes& found) {
+  std::vector<std::string> names{"natural frequency [Hz]", "frequency [Hz]", "damping ratio", "real part [1/s]",
+                                 "imaginary part [1/s]"};
+  for (int i = 1; i < system.body_count(); ++i)
+    for (const char* coordinate : {"x", "y", "theta"})
+      for (const char* part : {"real", "imaginary"})
+        names.push_back(system.bodies[i].name + "." + coordinate + " " + part);
+  CsvText csv(names);
+  for (const VibrationMode& mode : found.modes) {
+    std::vector<double> row{mode.natural_frequency(), mode.frequency(), mode.damping_ratio(), mode.eigenvalue.real(),
+                            mode.eigenvalue.imag()};
+    for (std::size_t k = 3; k < mode.shape.size(); ++k) {
+      row.push_back(mode.shape[k].real());
+      row.push_back(mode.shape[k].imag());
+    }
+    csv.add_row(row);
+  }
+  return csv.text();
+}
+
+ExitCode modes(const ModesOptions& options, Console& console) {
+  const auto loaded = load_model(options.model, options.overrides);
+  try {
+    const Equilibrium rest = equilibrium_of(*loaded);
+    State state = rest.state;
+    std::fill(state.v.begin(), state.v.end(), 0.0);
+    const VibrationModes found = vibration_modes(*loaded->system, state);
+    if (options.output)
+      write_file(*options.output, modes_csv(*loaded->system, found),
+                 options.is_overwriting ? IfExists::replace : IfExists::refuse);
+    if (console.verbosity != Verbosity::quiet) print_modes(console.out, *loaded, found);
+    for (const std::string& name : rest.slipping)
+      log_warning("'" + loaded->path + "': '" + name + "' cannot hold what it would have to: its modes do not exist");
+  } catch (const NumericalFailure& failure) {
+    log_error("'" + loaded->path + "': " + failure.what());
+    return ExitCode::numerical_failure;
+  }
+  return ExitCode::done;
+}
+
+} // namespace
+
+Command modes_command() {
+  const auto o = std::make_shared<ModesOptions>();
+  Command command;
+  command.name = "modes";
+  command.summary = "natural frequencies, damping and shapes of small vibrations about equilibrium";
+  command.examples = R"(  steplap modes models/paper/no_interference.toml
+  steplap modes my.toml -o modes.csv
+A mode that does not oscillate shows its rate of decay instead of a damping ratio.
+)";
+  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML)", true},
+                     {"-o,--output", &o->output, "FILE", "also write frequencies and shapes as CSV"},
+                     {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
+                     {"-f,--force", &o->is_overwriting, "", "overwrite the file"}};
+  command.run = [o](Console& console) { return modes(*o, console); };
+  return command;
+}
+
+} // namespace steplap
