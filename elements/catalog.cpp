@@ -10,6 +10,7 @@
 #include "elements/step_lap_joint.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/io/record_signal.h"
+#include "mbd/presentation.h"
 
 namespace steplap {
 
@@ -26,6 +27,7 @@ const Catalogue& element_catalog() {
                   &load_kind()};
     c.signals = signal_kinds();
     c.signals.push_back(&record_signal_kind());
+    c.tables = {&plot_kind(), &acceptance_kind()};
     return c;
   }();
   return catalogue;

@@ -66,6 +66,19 @@ const FieldTable& OutputSettings::fields() {
     f.add("step", &OutputSettings::step).in("s").positive().doc("time between two rows of the trajectory");
     f.add("channels", &OutputSettings::channels).doc(
         "channels to write, patterns with * and ?; all if not given");
+    f.add("seen_from", &OutputSettings::seen_from).as(FieldType::body).doc(
+        "body that drawings stand still with, or 'ground'; chosen by the drawing if not given");
+    return f;
+  }();
+  return table;
+}
+
+const FieldTable& Element::common_fields() {
+  static const FieldTable table = [] {
+    FieldTable f;
+    f.add("draw", &Element::draw)
+        .one_of({"auto", "hidden", "spring", "contact", "pin", "rail", "rod", "weld", "arrow", "friction"})
+        .doc("how drawings show it; auto: as its kind is usually drawn");
     return f;
   }();
   return table;

@@ -56,7 +56,11 @@ struct Marker {
 struct Element {
   virtual ~Element() = default;
   std::string name;
+  std::string draw = "auto"; ///< how drawings show it; "auto": as its kind is usually drawn
   Location where;
+
+  /// Fields that elements of every kind have, besides name and kind.
+  [[nodiscard]] static const FieldTable& common_fields();
 };
 
 /// One kind of element: its fields and how it becomes part of a compiled system.
@@ -98,9 +102,27 @@ struct SimulationSettings {
 struct OutputSettings {
   double step = 1e-3;                ///< s
   std::vector<std::string> channels; ///< patterns with * and ?; empty = all
+  std::string seen_from;             ///< body that drawings stand still with; "" = chosen by the drawing
   Location where;
 
   [[nodiscard]] static const FieldTable& fields();
+};
+
+/// [[plot]]: time histories that belong in one figure, all of one unit.
+struct Plot : Element {
+  std::string title;
+  std::vector<std::string> channels; ///< patterns with * and ?
+  std::vector<std::string> bounds;   ///< channels drawn dashed at plus and minus their value
+};
+
+/// [[acceptance]]: what the receiver of a machine may ask of a run. Either of channels (over the samples
+/// of the trajectory) or of events that must not happen.
+struct Criterion : Element {
+  std::string channel;                   ///< pattern with * and ?
+  std::optional<double> at_least, at_most, within; ///< SI; `within` bounds the absolute value
+  std::string element, event;            ///< patterns: no such event of such an element
+  std::string consequence = "inspect";   ///< if it is not met: "inspect" or "reject"
+  std::string reason;                    ///< why, or by which document
 };
 
 /// Top-level scalars of a model file.
@@ -121,6 +143,8 @@ struct Model {
   std::vector<Marker> markers;
   std::vector<SignalEntry> signals;
   std::vector<ElementEntry> elements;
+  std::vector<Plot> plots;
+  std::vector<Criterion> criteria;
 
   [[nodiscard]] const Body* find_body(const std::string& name) const;
 };

@@ -365,8 +365,9 @@ void Validation::check_elements() {
     const ElementEntry& entry = model_.elements[i];
     const Element& element = *entry.element;
     check_name(Section::element, i, "element", element.name, element.where, seen);
-    check_table(Section::element, i, entry.kind->fields, &element,
-                subject_text(entry.kind->name, element.name), element.where);
+    for (const FieldTable* table : {&entry.kind->fields, &Element::common_fields()})
+      check_table(Section::element, i, *table, &element,
+                  subject_text(entry.kind->name, element.name), element.where);
   }
 }
 

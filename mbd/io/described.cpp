@@ -50,6 +50,11 @@ std::string Described::default_text(const Field& field) const {
   return std::visit(ValueText{}, field.get(defaults.get()));
 }
 
+Described describe_common_fields() {
+  return {"common", "element", "Fields that elements of every kind have, besides 'name' and 'kind'.",
+          &Element::common_fields(), made<Element>()};
+}
+
 std::vector<Described> describe(const Catalogue& catalogue) {
   std::vector<Described> all;
   all.push_back({"model", "model", "Top-level keys of a model file.", &ModelHeader::fields(),
@@ -67,6 +72,7 @@ std::vector<Described> describe(const Catalogue& catalogue) {
        &Marker::fields(), made<Marker>()});
   for (const SignalKind* kind : catalogue.signals)
     all.push_back({"signal", kind->name, kind->doc, &kind->fields, kind->create()});
+  all.push_back(describe_common_fields());
   for (const ElementKind* kind : catalogue.elements)
     all.push_back({"element", kind->name, kind->doc, &kind->fields, kind->create()});
   for (const TableKind* kind : catalogue.tables)

@@ -8,7 +8,8 @@ namespace steplap {
 
 struct Described {
   std::string
-      role; ///< "element", "signal", "table" ([[name]]), "settings" ([name]) or "model" (top level)
+      role; ///< "element", "signal", "table" ([[name]]), "settings" ([name]), "model" (top level) or
+            ///< "common" (what every element has)
   std::string name;
   std::string doc;
   const FieldTable* fields = nullptr;
@@ -18,6 +19,7 @@ struct Described {
   [[nodiscard]] std::string default_text(const Field& field) const;
 };
 
+[[nodiscard]] Described describe_common_fields();
 [[nodiscard]] std::vector<Described> describe(const Catalogue& catalogue);
 /// "number", "[x, y]", "marker", ...
 [[nodiscard]] std::string type_text(const Field& field);

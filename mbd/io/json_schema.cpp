@@ -88,12 +88,20 @@ Json object_schema(const Described& kind) {
           {"additionalProperties", false}};
 }
 
+const Described& common_fields() {
+  static const Described common = describe_common_fields();
+  return common;
+}
+
 // An entry of an array of tables: what it says, its name and what merging understands.
 Json entry_schema(const Described& kind, bool has_kind) {
   Json schema = object_schema(kind);
   Json& properties = schema["properties"];
   if (!properties.contains("name")) properties["name"] = text();
   if (has_kind) properties["kind"] = {{"const", kind.name}};
+  if (kind.role == "element")
+    for (const Field& field : common_fields().fields->fields())
+      properties[field.name] = field_schema(common_fields(), field);
   properties["remove"] = {{"type", "boolean"}, {"description", "takes the inherited entry out"}};
   properties["unset"] = list_of(text());
   schema["required"] = Json::array({"name"});
@@ -125,7 +133,7 @@ std::string json_schema(const Catalogue& catalogue) {
     } else if (kind.role == "table") {
       properties[kind.name] = list_of(entry_schema(kind, false));
       if (kind.name == "marker") definitions["inline_marker"] = inline_marker_schema(kind);
-    } else {
+    } else if (kind.role != "common") {
       definitions[kind.role + "_" + kind.name] = entry_schema(kind, true);
       kinds[kind.role].push_back({{"$ref", "#/$defs/" + kind.role + "_" + kind.name}});
     }

@@ -288,9 +288,14 @@ void Reader::read_elements() {
     element->name = name;
     element->where = entry.where();
     TableReading r = reading(subject_text(kind->name, name), name);
-    r.known_keys = {"name", "kind"};
-    const auto read = read_fields(entry, kind->fields, element.get(), r, problems_);
-    fields.insert(fields.end(), read.begin(), read.end());
+    r.known_keys = Element::common_fields().names();
+    r.known_keys.insert(r.known_keys.begin(), {"name", "kind"});
+    const auto own = read_fields(entry, kind->fields, element.get(), r, problems_);
+    for (const Node& child : entry.children) // strangers are reported already
+      r.known_keys.push_back(child.key);
+    const auto common = read_fields(entry, Element::common_fields(), element.get(), r, problems_);
+    fields.insert(fields.end(), own.begin(), own.end());
+    fields.insert(fields.end(), common.begin(), common.end());
     given(Section::element).push_back(std::move(fields));
     model_.elements.push_back({kind, element});
   }

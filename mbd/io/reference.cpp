@@ -32,6 +32,7 @@ std::string default_text(const Described& kind, const Field& field) {
 std::string heading(const Described& kind) {
   if (kind.role == "signal") return "[[signal]] of kind \"" + kind.name + "\"";
   if (kind.role == "element") return "[[element]] of kind \"" + kind.name + "\"";
+  if (kind.role == "common") return "every [[element]]";
   if (kind.role == "settings") return "[" + kind.name + "]";
   return kind.role == "table" ? "[[" + kind.name + "]]" : "top level of a model file";
 }

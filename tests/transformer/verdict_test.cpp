@@ -1,0 +1,161 @@
+// The verdict on a run: criteria of the model, and the step-lap joints' own.
+#include "mbd/io/reader.h"
+#include "mbd/presentation.h"
+#include "mbd/simulation.h"
+#include "transformer/catalog.h"
+#include "transformer/verdict.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace steplap;
+
+namespace {
+
+// A mass thrown upwards from a floor that it leaves at once: y = v t − g t²/2 exactly, v = g/2, so that it
+// is highest, 1.22625 m above the floor's contact, at t = 0.5 s.
+const std::string k_throw = R"(
+title = "a throw"
+[simulation]
+end = 0.9
+step = 1e-3
+[output]
+step = 0.1
+[[body]]
+name = "ball"
+mass = 1
+inertia = 1
+position = [0, 1]
+velocity = [0, 4.905]
+)";
+
+struct Judged {
+  Model model;
+  std::unique_ptr<System> system;
+  RunResult result;
+  Judgement judgement;
+
+  explicit Judged(const std::string& criteria, const std::string& failure = "")
+      : model(parse_model(k_throw + criteria, "a.toml", transformer_catalog())), system(compile(model)) {
+    check_presentation(model, *system);
+    result = simulate(*system, system->initial_state(), options_of(model));
+    judgement = judge(model, result, failure);
+  }
+  [[nodiscard]] const CriterionResult& only() const {
+    REQUIRE(judgement.criteria.size() == 1);
+    return judgement.criteria.front();
+  }
+};
+
+std::string acceptance(const std::string& fields) { return "[[acceptance]]\nname = \"c\"\n" + fields; }
+
+} // namespace
+
+TEST_CASE("limits on either side and on the absolute value") {
+  // Samples every 0.1 s hold the highest point; parabola and rk4 agree to rounding.
+  const double top = 1.0 + 0.5 * 4.905 * 0.5;
+  SUBCASE("met") {
+    const Judged run(acceptance("channel = \"ball.y\"\nat_most = \"2.3 m\"\n"));
+    CHECK(run.judgement.verdict == Verdict::hold);
+    CHECK(*run.only().value == doctest::Approx(top).epsilon(1e-12));
+    CHECK(*run.only().t == doctest::Approx(0.5));
+    CHECK(*run.only().limit == 2.3);
+    CHECK(run.only().text == "ball.y <= 2.3 m");
+  }
+  SUBCASE("too high") {
+    const Judged run(acceptance("channel = \"ball.y\"\nat_most = 2.2\nconsequence = \"reject\"\n"));
+    CHECK(run.judgement.verdict == Verdict::reject);
+    CHECK(run.only().outcome == Verdict::reject);
+  }
+  SUBCASE("too low: the limit that is broken is the one that is told") {
+    const Judged run(acceptance("channel = \"ball.y\"\nat_least = 1.3\nat_most = 9\n"));
+    CHECK(run.judgement.verdict == Verdict::inspect);
+    CHECK(*run.only().limit == 1.3);
+    CHECK(*run.only().value == doctest::Approx(1.0));
+    CHECK(*run.only().t == 0.0);
+  }
+  SUBCASE("absolute value: the fall is as fast as the throw, samples end before it is") {
+    CHECK(Judged(acceptance("channel = \"ball.vy\"\nwithin = 4.91\n")).judgement.verdict == Verdict::hold);
+    CHECK(Judged(acceptance("channel = \"ball.vy\"\nwithin = 4.90\n")).judgement.verdict == Verdict::inspect);
+  }
+  SUBCASE("patterns: the worst of all channels") {
+    const Judged run(acceptance("channel = \"ball.*y\"\nat_most = 100\n"));
+    CHECK(run.only().where == "ball.vy");
+  }
+}
+
+TEST_CASE("a run that stopped is not held good, nor one without criteria") {
+  CHECK(Judged(acceptance("channel = \"ball.y\"\nat_most = 3\n"), "step size").judgement.verdict == Verdict::open);
+  CHECK(Judged(acceptance("channel = \"ball.y\"\nat_most = 1\n"), "step size").judgement.verdict == Verdict::inspect);
+  const Judged without("");
+  CHECK_FALSE(without.judgement.has_criteria);
+  CHECK(without.judgement.verdict == Verdict::open);
+}
+
+TEST_CASE("events that must not happen") {
+  const std::string floor = R"(
+[[element]]
+kind = "unilateral_contact"
+name = "floor"
+a = { body = "ball", at = [0, 0.9] }
+normal = [0, 1]
+stiffness = 1e4
+gap = 0.1
+)";
+  const Judged landed(floor + acceptance("event = \"closes\"\nelement = \"fl*\"\n"));
+  CHECK(landed.judgement.verdict == Verdict::hold); // it is still in the air at 0.9 s
+  Model longer = parse_model(k_throw + floor + acceptance("event = \"closes\"\n"), "a.toml", transformer_catalog(), {"simulation.end=1.2"});
+  const auto system = compile(longer);
+  const RunResult result = simulate(*system, system->initial_state(), options_of(longer));
+  const Judgement judgement = judge(longer, result, "");
+  CHECK(judgement.verdict == Verdict::inspect);
+  CHECK(judgement.criteria.front().where == "floor");
+  // Back at the gap of 0.1 m below the start: v t − g t²/2 = −0.1.
+  CHECK(*judgement.criteria.front().t == doctest::Approx((4.905 + std::sqrt(4.905 * 4.905 + 2.0 * 9.81 * 0.1)) / 9.81).epsilon(1e-10));
+}
+
+TEST_CASE("step-lap joints are held to their own criterion") {
+  const auto judge_paper = [](const char* file) {
+    const Model model = read_model(std::string(STEPLAP_MODELS) + file, transformer_catalog(),
+                                   {"simulation.integrator=dop853", "simulation.tolerance=1e-8"});
+    const auto system = compile(model);
+    const RunResult result = simulate(*system, system->initial_state(), options_of(model));
+    return judge(model, result, "");
+  };
+  CHECK(judge_paper("/paper/no_interference.toml").verdict == Verdict::hold);
+  const Judgement weak = judge_paper("/paper/weak_clamping.toml");
+  CHECK(weak.verdict == Verdict::inspect);
+  CHECK(std::count_if(weak.criteria.begin(), weak.criteria.end(), [](const CriterionResult& c) {
+          return c.text == "the step-lap joint holds" && c.outcome == Verdict::inspect && c.t;
+        }) == 2);
+}
+
+TEST_CASE("criteria and plots that make no sense are errors of the model") {
+  const auto message = [](const std::string& tables) -> std::string {
+    try {
+      const Judged run(tables);
+    } catch (const ModelError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto says = [&](const std::string& tables, const std::string& part) {
+    const std::string text = message(tables);
+    CAPTURE(text);
+    CHECK(text.find(part) != std::string::npos);
+  };
+  says(acceptance("channel = \"ball.y\"\n"), "needs a limit");
+  says(acceptance("at_most = 1\n"), "needs either 'channel' or 'event'");
+  says(acceptance("channel = \"ball.y\"\nat_most = 1\nat_least = 2\n"), "nothing could meet it");
+  says(acceptance("channel = \"ball.y\"\nat_most = 1\nwithin = 2\n"), "'within' bounds both sides");
+  says(acceptance("event = \"opens\"\nat_most = 1\n"), "are for channels");
+  says(acceptance("channel = \"bell.y\"\nat_most = 1\n"), "did you mean 'ball.y'?");
+  says(acceptance("channel = \"ball.y\"\nat_most = 1\nconsequence = \"burn\"\n"), "burn");
+  says(acceptance("channel = \"ball.y\"\nat_most = 1\n") + acceptance("channel = \"ball.y\"\nat_most = 1\n"), "exists already");
+  says(acceptance("event = \"opens\"\nelement = \"feet\"\n"), "no element matches 'feet'");
+  says("[[plot]]\nname = \"p\"\nchannels = [\"ball.y\", \"ball.vy\"]\n", "plot them apart");
+  says("[[plot]]\nname = \"p\"\nchannels = [\"ball.z\"]\n", "no channel of the trajectory matches 'ball.z'");
+  says("[[plot]]\nname = \"p\"\n", "channels");
+}

@@ -1,0 +1,39 @@
+// Hold, inspect or reject: a run judged by the criteria of its model ([[acceptance]]) and by the criteria
+// that every step-lap joint is held to.
+//
+// A joint that slipped, or would have where it is only monitored, means inspect: the core's magnetic
+// circuit is not as it was built. One that came apart means reject. A criterion that could not be
+// evaluated, and a run that did not reach its end, leave the verdict open.
+#pragma once
+
+#include "transformer/joint_assessment.h"
+
+namespace steplap {
+
+/// In the order of how much they weigh: the verdict is the largest over all criteria.
+enum class Verdict { hold, open, inspect, reject };
+
+[[nodiscard]] const char* name_of(Verdict verdict);
+
+struct CriterionResult {
+  std::string name;        ///< of the acceptance entry, or of the joint
+  std::string text;        ///< what is asked: "|bottom arresting.force| <= 250000 N"
+  std::string reason;
+  Verdict consequence = Verdict::inspect; ///< if it is not met
+  Verdict outcome = Verdict::hold;
+  std::string where;       ///< channel or element of the value
+  std::optional<double> value, limit; ///< the value nearest to or furthest beyond its limit, SI
+  std::optional<double> t;            ///< s, of that value or event
+  std::string unit;
+};
+
+struct Judgement {
+  Verdict verdict = Verdict::hold;
+  bool has_criteria = false;
+  std::vector<CriterionResult> criteria;
+};
+
+/// `failure`: what stopped the run, empty if it reached its end.
+[[nodiscard]] Judgement judge(const Model& model, const RunResult& result, const std::string& failure);
+
+} // namespace steplap
