@@ -11,7 +11,7 @@ using namespace steplap::testing;
 
 namespace {
 
-const std::set<std::string> k_files{"events.csv", "model.toml", "summary.json", "trajectory.csv"};
+const std::set<std::string> k_files{"drawing.json", "events.csv", "model.toml", "summary.json", "trajectory.csv"};
 
 // The built program in a process of its own, both streams into files.
 Outcome program_does(const Workbench& bench, const std::string& arguments,
@@ -29,7 +29,7 @@ long count_lines(const std::string& text) {
 
 } // namespace
 
-TEST_CASE("a run leaves its four files and one screen") {
+TEST_CASE("a run leaves its five files and one screen") {
   const Workbench bench;
   const Outcome outcome =
       steplap_does({"simulate", bench.write("a.toml", k_bouncer), "-o", bench.at("out")});

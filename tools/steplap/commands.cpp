@@ -6,6 +6,8 @@
 #include "tools/steplap/equilibrium.h"
 #include "tools/steplap/joint.h"
 #include "tools/steplap/modes.h"
+#include "tools/steplap/plot.h"
+#include "tools/steplap/report.h"
 #include "tools/steplap/schema.h"
 #include "tools/steplap/simulate.h"
 
@@ -14,6 +16,8 @@ namespace steplap {
 std::vector<Command> all_commands() {
   std::vector<Command> commands;
   commands.push_back(simulate_command());
+  commands.push_back(report_command());
+  commands.push_back(plot_command());
   commands.push_back(check_command());
   commands.push_back(equilibrium_command());
   commands.push_back(modes_command());

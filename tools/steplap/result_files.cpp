@@ -4,6 +4,7 @@
 #include "mbd/io/csv.h"
 #include "mbd/number_text.h"
 #include "tools/steplap/command.h"
+#include "tools/steplap/drawing.h"
 #include "tools/steplap/version.h"
 
 #include <unistd.h>
@@ -18,7 +19,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* k_names[] = {"trajectory.csv", "events.csv", "model.toml", "summary.json"};
+constexpr const char* k_names[] = {"trajectory.csv", "events.csv", "model.toml", "drawing.json", "summary.json"};
+// Made from the others later: goes with them when they are replaced.
+constexpr const char* k_report = "report.html";
 constexpr const char* k_partial = "partial_";
 
 std::vector<std::string> all_names() {
@@ -92,7 +95,9 @@ void write_all(const fs::path& staging, const fs::path& folder,
 void move_into(const fs::path& staging, const fs::path& folder,
                const std::vector<ResultFile>& files) {
   std::error_code error;
-  for (const std::string& name : all_names())
+  std::vector<std::string> outdated = all_names();
+  outdated.emplace_back(k_report);
+  for (const std::string& name : outdated)
     if (fs::remove(folder / name, error); error) fail(folder.string(), error.message());
   for (const ResultFile& file : files)
     if (fs::rename(staging / file.name, folder / file.name, error); error)
@@ -131,6 +136,7 @@ std::vector<ResultFile> result_files(const Run& run, const RunSummary& summary) 
   return {{prefix + "trajectory.csv", trajectory_csv(*run.result.trajectory)},
           {prefix + "events.csv", events_csv(run.result.events)},
           {prefix + "model.toml", head + run.loaded->text},
+          {prefix + "drawing.json", drawing_json(run.loaded->model)},
           {prefix + "summary.json", summary_json(run, summary)}};
 }
 

@@ -4,6 +4,7 @@
 //   events.csv      what happened when: "t [s],element,event"
 //   summary.json    settings, statistics, extremes of every channel, final state
 //   model.toml      the effective model, extended files and overrides merged
+//   drawing.json    what the machine looks like (drawing.h)
 // Nothing in them depends on the clock or the machine: two runs of a model give the same bytes. A run
 // that did not reach its end is saved as partial_trajectory.csv and so on.
 #pragma once

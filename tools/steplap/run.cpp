@@ -2,6 +2,7 @@
 
 #include "mbd/assembly.h"
 #include "mbd/io/reader.h"
+#include "mbd/presentation.h"
 #include "tools/steplap/catalogue.h"
 
 #include <algorithm>
@@ -18,6 +19,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path,
   loaded->model = read_model(path, program_catalogue(), overrides);
   loaded->text = effective_model_text(path, program_catalogue(), overrides);
   loaded->system = compile(loaded->model);
+  check_presentation(loaded->model, *loaded->system);
   (void)assemble(loaded->model, *loaded->system); // joints that cannot be met are the model's error
   return loaded;
 }

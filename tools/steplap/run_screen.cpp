@@ -106,6 +106,22 @@ void print_joints(std::ostream& out, const FinishedRun& finished) {
   if (!joints.empty()) out << "\nStep-lap joints\n" << table;
 }
 
+std::string value_beside_limit(const CriterionResult& c) {
+  if (!c.value || !c.limit) return "";
+  return quantity_text(*c.value, c.unit) + " (limit " + quantity_text(*c.limit, c.unit) + ")";
+}
+
+void print_judgement(std::ostream& out, const FinishedRun& finished) {
+  const Judgement& judgement = finished.summary.judgement;
+  if (!judgement.has_criteria) return;
+  out << "\nVerdict by the criteria of the model: " << name_of(judgement.verdict) << "\n";
+  TextTable table({Align::left, Align::left, Align::left, Align::right, Align::right});
+  for (const CriterionResult& c : judgement.criteria)
+    table.add_row({c.name, c.text, c.outcome == Verdict::hold ? "met" : name_of(c.outcome), value_beside_limit(c),
+                   c.t ? "at " + sample_time_text(*c.t) : ""});
+  out << table;
+}
+
 std::string finer_text(const SimulationOptions& finer, const SimulationSettings& run) {
   const bool is_step = run.step && finer.settings.step != *run.step;
   return finer.integrator + (is_step ? ", step " + number_text(finer.settings.step) + " s"
@@ -168,7 +184,7 @@ void print_place(std::ostream& out, const FinishedRun& finished) {
   if (finished.folder.empty()) return;
   out << "Written to " << finished.folder << ": "
       << (finished.run.failure.empty() ? "" : "partial_") << "trajectory.csv (" << trajectory.size()
-      << " rows, " << trajectory.channels().size() << " channels), events.csv, summary.json, model.toml\n";
+      << " rows, " << trajectory.channels().size() << " channels), events.csv, summary.json, model.toml, drawing.json\n";
 }
 
 std::vector<std::string> cells(std::string name, const std::vector<FinishedRun>& runs,
@@ -228,6 +244,7 @@ void print_run(std::ostream& out, const FinishedRun& finished) {
   print_reactions(out, finished.summary);
   print_slides(out, finished.summary);
   print_joints(out, finished);
+  print_judgement(out, finished);
   print_global_error(out, finished);
   TextTable table({Align::left, Align::right});
   for (const Figure& figure : accuracy_and_cost())
@@ -241,6 +258,7 @@ void print_comparison(std::ostream& out, const std::vector<FinishedRun>& runs) {
     print_heading(out, run);
     print_events(out, run);
     print_joints(out, run);
+    print_judgement(out, run);
     print_global_error(out, run);
     out << "\n";
   }

@@ -2,11 +2,13 @@
 
 #include "tools/steplap/log.h"
 #include "tools/steplap/progress.h"
+#include "tools/steplap/report.h"
 #include "tools/steplap/result_files.h"
 #include "tools/steplap/run_screen.h"
 
 #include <filesystem>
 #include <memory>
+#include <ostream>
 #include <set>
 
 namespace steplap {
@@ -18,7 +20,7 @@ struct SimulateOptions {
   std::vector<std::string> overrides;
   std::string output = "out";
   std::optional<std::string> end, step, integrator, tolerance;
-  bool is_overwriting = false, is_error_estimated = false;
+  bool is_overwriting = false, is_error_estimated = false, is_reported = false;
 
   /// --set and its short forms.
   [[nodiscard]] std::vector<std::string> all_overrides() const {
@@ -37,6 +39,12 @@ struct SimulateOptions {
 
 using Models = std::vector<std::shared_ptr<const LoadedModel>>;
 
+// One page of all runs: in the folder of a single one, or beside their folders.
+std::string page_of(const SimulateOptions& options, const Models& models) {
+  const std::filesystem::path place = models.size() == 1 ? options.folder_of(*models.front()) : options.output;
+  return (place / "report.html").string();
+}
+
 void check_folders(const SimulateOptions& options, const Models& models) {
   std::set<std::string> folders;
   for (const auto& loaded : models) {
@@ -47,6 +55,9 @@ void check_folders(const SimulateOptions& options, const Models& models) {
                        "': run them one after the other with different -o");
     check_result_folder(folder, options.is_overwriting);
   }
+  if (options.is_reported && !options.is_overwriting && std::filesystem::exists(page_of(options, models)))
+    throw UsageError("'" + page_of(options, models) + "' is there already: choose another folder with -o, or " +
+                     "overwrite it with --force");
 }
 
 // A second, finer run; where it fails the first stands, without an estimate.
@@ -100,11 +111,19 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
       code = ExitCode::numerical_failure;
     }
   }
-  if (console.verbosity == Verbosity::quiet || runs.empty()) return code;
+  if (runs.empty()) return code;
+  if (options.is_reported) {
+    std::vector<std::string> folders;
+    for (const FinishedRun& run : runs)
+      folders.push_back(run.folder);
+    write_report(folders, page_of(options, models), options.is_overwriting);
+  }
+  if (console.verbosity == Verbosity::quiet) return code;
   if (models.size() == 1)
     print_run(console.out, runs.front());
   else
     print_comparison(console.out, runs);
+  if (options.is_reported) console.out << "Report: " << page_of(options, models) << "\n";
   return code;
 }
 
@@ -136,6 +155,7 @@ exit code is 4.
        "it comes to"},
       {"--estimate-error", &o->is_error_estimated, "",
        "tell the global error, from a second run at a finer tolerance or step"},
+      {"--report", &o->is_reported, "", "write a page of the runs, too; see steplap report"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
   command.run = [o](Console& console) { return simulate(*o, console); };
   return command;

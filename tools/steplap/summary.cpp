@@ -18,6 +18,7 @@ ChannelRange range_of(const Trajectory& trajectory, std::size_t column) {
     const Extreme here{trajectory.value(row, column), trajectory.times()[row]};
     if (row == 0 || here.value < range.low.value) range.low = here;
     if (row == 0 || here.value > range.high.value) range.high = here;
+    range.final = here.value;
   }
   return range;
 }
@@ -44,6 +45,7 @@ RunSummary summarise(const Run& run) {
   const RunStatistics& s = run.result.statistics;
   if (s.energy_exchanged > 0.0)
     summary.relative_energy_residual = s.energy_residual / s.energy_exchanged;
+  summary.judgement = judge(run.loaded->model, run.result, run.failure);
   return summary;
 }
 

@@ -4,6 +4,7 @@
 
 #include "mbd/global_error.h"
 #include "tools/steplap/run.h"
+#include "transformer/verdict.h"
 
 #include <map>
 #include <optional>
@@ -21,6 +22,7 @@ struct Extreme {
 struct ChannelRange {
   const Channel* channel = nullptr;
   Extreme low, high;
+  double final = 0.0; ///< at the end of the trajectory
 
   /// Whichever is further from zero.
   [[nodiscard]] const Extreme& largest() const;
@@ -32,6 +34,7 @@ struct RunSummary {
   std::map<std::string, long> event_counts;  ///< by what happened
   double relative_energy_residual = 0.0;     ///< of the energy exchanged
   std::optional<GlobalErrorEstimate> global_error; ///< if it was asked for
+  Judgement judgement;
 
   /// nullptr if there is no such channel.
   [[nodiscard]] const ChannelRange* find(const std::string& channel) const;

@@ -61,7 +61,8 @@ Json extremes_json(const RunSummary& summary) {
                                  {"min", range.low.value},
                                  {"t_min", range.low.t},
                                  {"max", range.high.value},
-                                 {"t_max", range.high.t}};
+                                 {"t_max", range.high.t},
+                                 {"final", range.final}};
   return json;
 }
 
@@ -83,6 +84,23 @@ Json joints_json(const Run& run) {
                      {"slid_angle", number_json(a.slid_angle)},
                      {"area_lost", number_json(a.area_lost)}};
   return json;
+}
+
+Json judgement_json(const Judgement& judgement) {
+  const auto optional = [](const std::optional<double>& value) { return value ? number_json(*value) : Json(); };
+  Json criteria = Json::array();
+  for (const CriterionResult& c : judgement.criteria)
+    criteria.push_back({{"name", c.name},
+                        {"criterion", c.text},
+                        {"reason", c.reason},
+                        {"is_met", c.outcome == Verdict::open ? Json() : Json(c.outcome == Verdict::hold)},
+                        {"consequence", name_of(c.consequence)},
+                        {"where", c.where},
+                        {"value", optional(c.value)},
+                        {"limit", optional(c.limit)},
+                        {"unit", c.unit},
+                        {"t", optional(c.t)}});
+  return {{"verdict", name_of(judgement.verdict)}, {"criteria", std::move(criteria)}};
 }
 
 Json state_json(const System& system, const State& state) {
@@ -115,6 +133,7 @@ std::string summary_json(const Run& run, const RunSummary& summary) {
   if (summary.global_error) json["global_error"] = global_error_json(*summary.global_error);
   json["events"] = {{"count", run.result.events.size()}, {"by_kind", summary.event_counts}};
   if (Json joints = joints_json(run); !joints.empty()) json["joints"] = std::move(joints);
+  if (summary.judgement.has_criteria) json["judgement"] = judgement_json(summary.judgement);
   json["extremes"] = extremes_json(summary);
   json["final_state"] = state_json(*loaded.system, run.result.final_state);
   // Names may hold bytes that are no UTF-8: replaced, not an exception at the end of a long run.

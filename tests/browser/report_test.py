@@ -1,0 +1,295 @@
+#!/usr/bin/python3
+"""The page of a report in a real browser: chromium, driven through its WebDriver.
+
+    report_test.py STEPLAP MODELS [--keep FOLDER]
+
+Simulates the paper's transformer, writes reports and uses them as a reader would. With --keep the
+screenshots are left in FOLDER.
+"""
+import base64
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+STEPLAP, MODELS = sys.argv[1:3]
+KEPT = sys.argv[4] if len(sys.argv) > 4 and sys.argv[3] == "--keep" else None
+WORK = tempfile.TemporaryDirectory(prefix="steplap-browser-")
+SIZES = [(1280, 800), (1920, 1080)]
+
+HOSTILE = """title = "<img src=x onerror='document.title=1'></script><b>bold</b>"
+[simulation]
+end = 0.1
+step = 1e-3
+[[body]]
+name = "<i>ball</i>"
+mass = 1
+inertia = 1
+velocity = [1, 0]
+[[plot]]
+name = "<script>alert(1)</script>"
+title = "<u>title</u>"
+channels = ["<i>ball</i>.x"]
+"""
+
+
+def steplap(*arguments):
+    subprocess.run([STEPLAP, *arguments], check=True, cwd=WORK.name)
+
+
+def start_browser():
+    options = Options()
+    for argument in ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--force-color-profile=srgb",
+                     "--window-size=1280,800"]:
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    return webdriver.Chrome(options=options, service=Service("/usr/bin/chromedriver"))
+
+
+class ReportTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        models = [os.path.join(MODELS, "paper", name + ".toml")
+                  for name in ("no_interference", "interference", "weak_clamping")]
+        steplap("simulate", *models, "-q", "-o", "out")
+        steplap("report", "out/no_interference", "out/interference", "-o", "paper.html", "-q")
+        steplap("report", "out/weak_clamping", "-q")
+        with open(os.path.join(WORK.name, "hostile.toml"), "w", encoding="utf-8") as file:
+            file.write(HOSTILE)
+        steplap("simulate", "hostile.toml", "-q", "-o", "out", "--report")
+        cls.browser = start_browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.quit()
+        WORK.cleanup()
+
+    def open(self, page, size=(1280, 800)):
+        self.browser.set_window_size(*size)
+        self.browser.get("file://" + os.path.join(WORK.name, page))
+        self.browser.get_log("browser")
+        self.browser.get_log("performance")
+        self.browser.refresh()
+        self.until(lambda: self.find("body").get_attribute("data-ready") == "true")
+
+    def until(self, condition, seconds=15):
+        end = time.monotonic() + seconds
+        while not condition():
+            self.assertLess(time.monotonic(), end, "did not come about")
+            time.sleep(0.05)
+
+    def find(self, selector):
+        return self.browser.find_element(By.CSS_SELECTOR, selector)
+
+    def all(self, selector):
+        return self.browser.find_elements(By.CSS_SELECTOR, selector)
+
+    def run_js(self, script, *arguments):
+        return self.browser.execute_script(script, *arguments)
+
+    def summary(self, run):
+        with open(os.path.join(WORK.name, "out", run, "summary.json"), encoding="utf-8") as file:
+            return json.load(file)
+
+    # --- opening ---------------------------------------------------------------------------------
+
+    def test_opens_without_console_messages_or_network(self):
+        for page in ("paper.html", "out/weak_clamping/report.html", "out/hostile/report.html"):
+            self.open(page)
+            self.assertEqual([m["message"] for m in self.browser.get_log("browser")], [])
+            requests = [json.loads(m["message"])["message"] for m in self.browser.get_log("performance")]
+            urls = [r["params"]["request"]["url"] for r in requests if r["method"] == "Network.requestWillBeSent"]
+            self.assertEqual([u for u in urls if not u.startswith(("file://", "data:"))], [])
+            self.assertEqual(len([u for u in urls if u.startswith("file://")]), 1, urls)
+            self.assertLess(os.path.getsize(os.path.join(WORK.name, page)), 5_000_000)
+
+    def test_markup_in_names_stays_text(self):
+        self.open("out/hostile/report.html")
+        self.assertIn("<b>bold</b>", self.find("#title").text)
+        self.assertEqual(self.all("#title b, main i, main u, main img, h3 script"), [])
+        self.assertEqual(self.browser.title, "steplap: hostile")
+        self.assertIn("<u>title</u>", self.find(".plot h3").text)
+
+    # --- time ------------------------------------------------------------------------------------
+
+    def transforms(self):
+        return {e.get_attribute("data-body"): e.get_attribute("transform") for e in self.all("[data-run=no_interference] .body")}
+
+    def test_play_moves_the_bodies_and_stops_at_the_end(self):
+        self.open("paper.html")
+        before = self.transforms()
+        self.find("#play").click()
+        self.until(lambda: self.run_js("return steplap.page.time()") > 0.11)
+        after = self.transforms()
+        self.assertEqual([name for name in before if before[name] == after[name]], ["lower tank"])  # seen from it
+        self.run_js("document.getElementById('speed').value = '10'")
+        self.until(lambda: self.find("#play").get_attribute("aria-pressed") == "false")
+        self.assertEqual(self.run_js("return steplap.page.time()"), 0.8)
+
+    def test_slider_sets_drawing_plots_and_readings(self):
+        self.open("paper.html")
+        slider = self.find("#time")
+        self.run_js("arguments[0].value = 0.2; arguments[0].dispatchEvent(new Event('input'))", slider)
+        self.assertEqual(self.find("#now").text, "t = 0.2000 s")
+        for cursor, wanted in self.run_js(
+                "return steplap.page.plots.plots.map(p => [parseFloat(p.cursor.style.left), p.graph.toDomXCoord(0.2)])"):
+            self.assertAlmostEqual(cursor, wanted, delta=0.5)  # half a pixel
+        # Sample at 0.2 s of the trajectory, single precision of the range.
+        extremes = self.summary("no_interference")["extremes"]["active part.theta"]
+        shown = self.run_js("return steplap.data.runs[0].channel('active part.theta').at(0.2)")
+        with open(os.path.join(WORK.name, "out/no_interference/trajectory.csv"), encoding="utf-8") as file:
+            heads = file.readline().rstrip("\n").split(",")
+            row = next(r for r in (line.split(",") for line in file) if abs(float(r[0]) - 0.2) < 1e-9)
+        wanted = float(row[heads.index("active part.theta [rad]")])
+        self.assertAlmostEqual(shown, wanted, delta=1e-6 * (extremes["max"] - extremes["min"]))
+        slider.send_keys(Keys.HOME)
+        self.assertEqual(self.run_js("return steplap.page.time()"), 0)
+
+    def test_keyboard(self):
+        self.open("paper.html")
+        body = self.find("body")
+        body.send_keys(Keys.ARROW_RIGHT)
+        self.assertGreater(self.run_js("return steplap.page.time()"), 0)
+        body.send_keys(Keys.END)
+        self.assertEqual(self.run_js("return steplap.page.time()"), 0.8)
+        body.send_keys(Keys.SPACE)
+        self.assertEqual(self.find("#play").get_attribute("aria-pressed"), "true")
+        body.send_keys(Keys.SPACE)
+        self.assertEqual(self.find("#play").get_attribute("aria-pressed"), "false")
+        # Everything that can be worked is reached by tabulator, in the order of the page.
+        self.find("#play").send_keys(Keys.TAB)
+        self.assertEqual(self.browser.switch_to.active_element.get_attribute("id"), "time")
+
+    def test_an_event_sets_the_time(self):
+        self.open("paper.html")
+        button = next(b for b in self.all("#events .event-time") if b.text.startswith("0.085143"))
+        button.click()
+        self.assertAlmostEqual(self.run_js("return steplap.page.time()"), 0.085142652, delta=1e-9)
+        self.assertIn("slips", " ".join(e.get_attribute("textContent") for e in self.all("[data-run=no_interference] .state-text")))
+
+    # --- plots -----------------------------------------------------------------------------------
+
+    def windows(self):
+        return self.run_js("return steplap.page.plots.plots.map(p => p.graph.xAxisRange())")
+
+    def test_zoom_in_one_plot_zooms_all(self):
+        self.open("paper.html")
+        area = self.find(".plot[data-plot='Fig. 6'] .graph canvas:last-of-type")
+        self.run_js("arguments[0].scrollIntoView({block: 'center'})", area)
+        ActionChains(self.browser).move_to_element_with_offset(area, -60, 0).click_and_hold() \
+            .move_by_offset(80, 0).release().perform()
+        self.until(lambda: self.windows()[0][1] - self.windows()[0][0] < 0.5)
+        for window in self.windows():
+            self.assertEqual(window, self.windows()[0])
+        self.find("#zoom-out").click()
+        self.until(lambda: all(w == [0, 0.8] for w in self.windows()))
+
+    def test_figures_of_the_paper_in_order_and_pairs(self):
+        self.open("paper.html")
+        titles = [h.text for h in self.all(".plot h3")]
+        for i, number in enumerate(range(4, 10)):
+            for j, run in enumerate(("no_interference", "interference")):
+                self.assertTrue(titles[2 * i + j].startswith(f"Fig. {number}"), titles)
+                self.assertTrue(titles[2 * i + j].endswith(f"({run})"), titles)
+        pairs = [e.rect for e in self.all(".plot")]
+        self.assertEqual(pairs[0]["y"], pairs[1]["y"])
+        self.run_js("const s = document.getElementById('layout'); s.value = 'overlaid'; s.dispatchEvent(new Event('change'))")
+        self.assertEqual(len(self.all(".plot")), len(titles) // 2)
+        self.assertEqual([m["message"] for m in self.browser.get_log("browser")], [])
+
+    def test_every_axis_has_a_unit(self):
+        self.open("paper.html")
+        for plot in self.all(".plot"):
+            self.assertRegex(plot.find_element(By.CSS_SELECTOR, ".dygraph-ylabel").get_attribute("textContent"), r"^\[.+\]$")
+            self.assertEqual(plot.find_element(By.CSS_SELECTOR, ".dygraph-xlabel").get_attribute("textContent"), "t [s]")
+
+    # --- verdict ---------------------------------------------------------------------------------
+
+    def test_a_slipped_joint_shows_as_slipped(self):
+        self.open("out/weak_clamping/report.html")
+        self.assertEqual(self.find(".badge").text, "INSPECT")
+        rows = [r.text for r in self.all("#verdict tr")]
+        for joint in ("front joint", "back joint"):
+            self.assertTrue(any(r.startswith(joint + " slipped") for r in rows), rows)
+        self.assertEqual(len(self.all(".body.slipped")), 0)  # not yet, at t = 0
+        self.find("body").send_keys(Keys.END)
+        self.assertEqual(len(self.all(".body.slipped")), 2)
+        first = self.summary("weak_clamping")["joints"]["front joint"]["first_slip"]
+        self.run_js("steplap.page.show(arguments[0] + 2e-3)", first)
+        states = [e.text for e in self.all("[data-joint='front joint'] .joint-state")]
+        self.assertEqual(set(states), {"slips"})
+
+    def test_the_verdicts_numbers_are_those_of_the_summary(self):
+        self.open("paper.html")
+        for run in ("no_interference", "interference"):
+            summary = self.summary(run)
+            card = self.find(f".card[data-run={run}]")
+            self.assertEqual(card.find_element(By.CSS_SELECTOR, ".badge").text, summary["judgement"]["verdict"].upper())
+            shown = [r.find_elements(By.CSS_SELECTOR, "[data-value]") for r in card.find_elements(By.CSS_SELECTOR, "table")[0]
+                     .find_elements(By.CSS_SELECTOR, "tbody tr")]
+            criteria = summary["judgement"]["criteria"]
+            self.assertEqual(len(shown), len(criteria))
+            for cells, criterion in zip(shown, criteria):
+                self.assertEqual([float(c.get_attribute("data-value")) for c in cells], [criterion["value"], criterion["limit"]])
+            joints = card.find_elements(By.CSS_SELECTOR, "table")[1].find_elements(By.CSS_SELECTOR, "tbody tr")
+            for row, joint in zip(joints, summary["joints"].values()):
+                values = [float(c.get_attribute("data-value")) for c in row.find_elements(By.CSS_SELECTOR, "[data-value]")]
+                names = ("smallest_margin", "largest_required_pressure", "slid_x", "slid_y", "slid_angle", "area_lost")
+                self.assertEqual(values, [joint[n] for n in names])
+
+    # --- looks -----------------------------------------------------------------------------------
+
+    def test_nothing_overlaps_or_runs_out_of_the_page(self):
+        for size in SIZES:
+            for page in ("paper.html", "out/weak_clamping/report.html"):
+                self.open(page, size)
+                self.assertLessEqual(self.run_js("return document.documentElement.scrollWidth - innerWidth"), 0)
+                boxes = self.run_js("""return [...document.querySelectorAll('.scene')].map(s =>
+                    [...s.querySelectorAll('.number-mark, .state-text')].map(e => { const r = e.getBoundingClientRect();
+                      return [r.left, r.top, r.right, r.bottom]; }))""")
+                for scene in boxes:
+                    for i, a in enumerate(scene):
+                        for b in scene[:i]:
+                            apart = a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3]
+                            self.assertTrue(apart, (page, size, a, b))
+                if KEPT:
+                    self.keep(f"{os.path.dirname(page).replace('/', '_') or 'paper'}_{size[0]}")
+
+    def keep(self, name):
+        self.run_js("steplap.page.show(0.1218)")
+        height = self.run_js("return document.documentElement.scrollHeight")
+        self.browser.set_window_size(self.run_js("return innerWidth"), height)
+        time.sleep(0.5)
+        self.browser.save_screenshot(os.path.join(KEPT, name + ".png"))
+        for section in ("verdict", "machine", "plots"):
+            self.find("#" + section).screenshot(os.path.join(KEPT, f"{name}_{section}.png"))
+
+    def test_prints_with_the_verdict_on_the_first_page(self):
+        for page, verdict in (("paper.html", "HOLD"), ("out/weak_clamping/report.html", "INSPECT")):
+            self.open(page)
+            pdf = base64.b64decode(self.browser.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True})["data"])
+            path = os.path.join(KEPT or WORK.name, os.path.basename(page) + ".pdf")
+            with open(path, "wb") as file:
+                file.write(pdf)
+            first = subprocess.run(["pdftotext", "-l", "1", "-layout", path, "-"], check=True, capture_output=True, text=True).stdout
+            self.assertIn(verdict, first)
+            whole = subprocess.run(["pdftotext", "-layout", path, "-"], check=True, capture_output=True, text=True).stdout
+            self.assertIn("[kN]", whole)  # the curves are there, as drawings
+            for part in ("Step-lap joints", "Friction", "bottom arresting"):
+                self.assertIn(part, first)
+            size = subprocess.run(["pdfinfo", path], check=True, capture_output=True, text=True).stdout
+            self.assertIn("A4", size)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

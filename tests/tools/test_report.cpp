@@ -1,0 +1,273 @@
+// Results read back, thinned, made into a page and into images.
+#include "mbd/io/reader.h"
+#include "tests/tools/workbench.h"
+#include "tools/steplap/catalogue.h"
+#include "tools/steplap/command.h"
+#include "tools/steplap/drawing.h"
+#include "tools/steplap/figure.h"
+#include "tools/steplap/report_data.h"
+#include "tools/steplap/report_page.h"
+#include "tools/steplap/results.h"
+#include "tools/steplap/result_files.h"
+#include "tools/steplap/thinning.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+// A run of `rows` samples of two channels, as if read from a folder.
+Results made_results(std::size_t rows) {
+  Results results;
+  results.folder = "out/made";
+  results.name = "made";
+  results.channels = {{"mass.x", "m", {}}, {"spring.force", "N", {}}};
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double t = 1e-4 * static_cast<double>(i);
+    results.times.push_back(t);
+    results.channels[0].values.push_back(0.1 * t);
+    results.channels[1].values.push_back(std::sin(40.0 * t));
+  }
+  results.model = "title = \"made\"\n";
+  results.drawing = R"({"bodies":[],"elements":[],"sheets":[],"plots":[],"seen_from":""})";
+  results.summary = R"({"extremes":{"mass.x":{"max":1},"spring.force":{"max":1}},"final_state":{}})";
+  return results;
+}
+
+std::string usage_error(const std::string& folder) {
+  try {
+    static_cast<void>(read_results(folder));
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool is_gnuplot_there() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; } // NOLINT: constant
+
+} // namespace
+
+TEST_CASE("thinning keeps first, last, every peak and the gaps") {
+  std::vector<double> values(10000, 0.0);
+  values[4321] = 7.0;
+  values[4322] = -3.0;
+  values[9000] = std::numeric_limits<double>::quiet_NaN();
+  const auto kept = thinned(values, 100);
+  CHECK(kept.size() <= 302);
+  CHECK(std::is_sorted(kept.begin(), kept.end()));
+  for (const std::size_t i : {0U, 4321U, 4322U, 9000U, 9999U})
+    CHECK(std::count(kept.begin(), kept.end(), i) == 1);
+  CHECK(thinned(values, 4999).size() == values.size());
+  CHECK(thinned({}, 10).empty());
+}
+
+TEST_CASE("results are read back to the last bit, names with quotes and commas too") {
+  const Workbench bench;
+  std::string text = k_bouncer;
+  text.replace(text.find("\"floor\""), 7, "'floor, \"hard\"'");
+  REQUIRE(steplap_does({"simulate", bench.write("a.toml", text), "-q", "-o", bench.at("out")}).code == 0);
+  const Results results = read_results(bench.at("out/a"));
+  const Run run = run_model(load_model(bench.at("a.toml")));
+  const Trajectory& trajectory = *run.result.trajectory;
+  CHECK(results.name == "a");
+  CHECK(results.times == trajectory.times());
+  REQUIRE(results.channels.size() == trajectory.channels().size());
+  for (std::size_t i = 0; i < results.channels.size(); ++i) {
+    CHECK(results.channels[i].name == trajectory.channels()[i]->name);
+    CHECK(results.channels[i].unit == trajectory.channels()[i]->unit);
+    CHECK(results.channels[i].values == trajectory.series(results.channels[i].name));
+  }
+  REQUIRE(results.events.size() == run.result.events.size());
+  CHECK(results.events.front().t == run.result.events.front().t);
+  CHECK(results.events.front().element == "floor, \"hard\"");
+}
+
+TEST_CASE("folders without results and damaged files are told apart") {
+  const Workbench bench;
+  CHECK(has(usage_error(bench.at("nothing")), "is not a folder"));
+  bench.write("empty/notes.txt", "mine");
+  CHECK(has(usage_error(bench.at("empty")), "holds no results"));
+  REQUIRE(steplap_does({"simulate", bench.write("a.toml", k_bouncer), "-q", "-o", bench.at("out")}).code == 0);
+  const std::string csv = text_of(bench.at("out/a/trajectory.csv"));
+  const auto damaged = [&](const std::string& trajectory) {
+    bench.write("out/a/trajectory.csv", trajectory);
+    return usage_error(bench.at("out/a"));
+  };
+  CHECK(has(damaged(csv.substr(0, csv.size() / 2)), "trajectory.csv', line "));
+  CHECK(has(damaged(""), "line 1: empty"));
+  CHECK(has(damaged("a,b\n1,2\n"), "the first column is not 't [s]'"));
+  CHECK(has(damaged("t [s],x [m]\n0,one\n"), "line 2: not a number"));
+  CHECK(has(damaged("t [s],x [m]\n0,1,2\n"), "line 2: more numbers than columns"));
+  CHECK(has(damaged("t [s],x [m]\n"), "no rows"));
+  bench.write("out/a/trajectory.csv", csv);
+  bench.write("out/a/summary.json", "{");
+  const Outcome outcome = steplap_does({"report", bench.at("out/a")});
+  CHECK(outcome.code == 2);
+  CHECK(has(outcome.err, "summary.json' is not as steplap wrote it"));
+  CHECK(bench.content("out/a").count("report.html") == 0);
+  fs::remove(bench.at("out/a/drawing.json"));
+  CHECK(has(usage_error(bench.at("out/a")), "drawing.json' is missing"));
+}
+
+TEST_CASE("names and titles stay text: no markup of a model reaches the page") {
+  const Workbench bench;
+  std::string text = k_bouncer;
+  text.replace(text.find("a bouncing mass"), 15, "</script><script>alert(1)</script>");
+  text.replace(text.find("\"floor\""), 7, "\"<img src=x onerror=alert(2)>\"");
+  REQUIRE(steplap_does({"simulate", bench.write("<b>a.toml", text), "-q", "-o", bench.at("out"), "--report"}).code == 0);
+  const std::string page = text_of(bench.at("out/<b>a/report.html"));
+  CHECK_FALSE(has(page, "alert(1)</script>"));
+  CHECK_FALSE(has(page, "<img"));
+  CHECK_FALSE(has(page, "<b>a"));
+  CHECK(has(page, "\\u003cimg src=x onerror=alert(2)>"));
+  CHECK(has(page, "<title>steplap: &lt;b&gt;a</title>"));
+}
+
+TEST_CASE("a page needs no other file and no network") {
+  const std::string page = report_page({made_results(10)});
+  for (const char* reference : {" src=\"", "<link rel=\"stylesheet", "@import", "url(http", "sourceMappingURL"})
+    CHECK_MESSAGE(!has(page, reference), reference);
+  CHECK(has(page, "default-src 'none'")); // and a browser is told to make no request
+}
+
+TEST_CASE("large results make a page below 5 MB, with the peaks of every curve") {
+  Results results = made_results(240000);
+  results.channels[1].values[123456] = 17.0;
+  for (int i = 0; i < 60; ++i)
+    results.channels.push_back({"more" + std::to_string(i) + ".force", "N", results.channels[1].values});
+  const std::string page = report_page({results});
+  CHECK(page.size() < 5000000);
+  const auto json = nlohmann::json::parse(report_data({results}));
+  CHECK(json["runs"][0]["is_thinned"] == true);
+  CHECK(json["runs"][0]["channels_left_out"] == 0);
+  CHECK(json["runs"][0]["channels"].size() == 62);
+}
+
+TEST_CASE("with more channels than a page can hold, those of plots stay") {
+  Results results = made_results(300);
+  results.drawing = R"({"bodies":[],"elements":[],"sheets":[],"plots":[{"name":"p","title":"","channels":["spring.f*"],"bounds":[]}],"seen_from":""})";
+  for (int i = 0; i < 9000; ++i)
+    results.channels.insert(results.channels.begin(), {"body" + std::to_string(i) + ".vx", "m/s", results.channels[0].values});
+  const std::string data = report_data({results});
+  CHECK(data.size() < 4800000);
+  const auto json = nlohmann::json::parse(data);
+  CHECK(json["runs"][0]["channels_left_out"] > 0);
+  bool is_kept = false;
+  for (const auto& channel : json["runs"][0]["channels"])
+    is_kept = is_kept || channel["name"] == "spring.force";
+  CHECK(is_kept);
+}
+
+TEST_CASE("short runs keep all samples, as single precision differences from the first") {
+  const auto json = nlohmann::json::parse(report_data({made_results(100)}));
+  const auto& channel = json["runs"][0]["channels"][0];
+  CHECK(channel["zero"] == 0.0);
+  CHECK_FALSE(channel.contains("times"));
+  CHECK(channel["values"].get<std::string>().size() == 4 * ((100 * sizeof(float) + 2) / 3));
+  // SHA-256 of the bytes `title = "made"\n`, as sha256sum tells it.
+  CHECK(json["runs"][0]["model_sha256"] == "5d99dbae019bc0b8ec2fcdf902c8ceb419ff0f476f8ca724e4ca4c278f9ac6e1");
+}
+
+TEST_CASE("bodies without an outline get one from where elements act, or from their inertia") {
+  const auto drawing = [](const std::string& text) {
+    return nlohmann::json::parse(drawing_json(parse_model(text, "a.toml", program_catalogue())));
+  };
+  const auto pendulum = drawing(R"(
+simulation = { step = 1e-3 }
+[[body]]
+name = "rod"
+mass = 1
+inertia = 0.5
+position = [2, 0]
+[[element]]
+kind = "revolute"
+name = "pivot"
+a = { body = "rod", at = [0, 0] }
+b = "ground"
+)");
+  CHECK(pendulum["bodies"][0]["outline"] == nlohmann::json({{-2.0, 0.0}, {0.0, 0.0}}));
+  CHECK(pendulum["bodies"][0]["is_outline_given"] == false);
+  CHECK(pendulum["elements"][0]["symbol"] == "pin");
+  // J/m = s²/6: the square of side sqrt(6·0.5).
+  const auto free = drawing("simulation = { step = 1e-3 }\n[[body]]\nname = \"stone\"\nmass = 1\ninertia = 0.5\n");
+  CHECK(free["bodies"][0]["outline"][2][0].get<double>() == doctest::Approx(0.5 * std::sqrt(3.0)));
+}
+
+TEST_CASE("an element's drawing hint is read, checked and kept") {
+  const Workbench bench;
+  std::string text = k_oscillator;
+  text += "draw = \"hidden\"\n";
+  CHECK(has(drawing_json(read_model(bench.write("a.toml", text), program_catalogue())), "\"symbol\":\"hidden\""));
+  const Outcome outcome = steplap_does({"check", bench.write("b.toml", std::string(k_oscillator) + "draw = \"sprung\"\n")});
+  CHECK(outcome.code == 3);
+  CHECK(has(outcome.err, "draw"));
+  CHECK(has(outcome.err, "did you mean 'spring'?"));
+  const Outcome unknown = steplap_does({"check", bench.write("c.toml", std::string(k_oscillator) + "drew = \"spring\"\n")});
+  CHECK(unknown.code == 3);
+  CHECK(unknown.err.find("'drew'") == unknown.err.rfind("'drew'")); // once, though two tables are read
+}
+
+TEST_CASE("report: places, refusals and the page of simulate") {
+  const Workbench bench;
+  const std::string a = bench.write("a.toml", k_bouncer), b = bench.write("b.toml", k_oscillator);
+  REQUIRE(steplap_does({"simulate", a, b, "-q", "-o", bench.at("out"), "--report"}).code == 0);
+  CHECK(bench.content("out").count("report.html") == 1);
+  const Outcome again = steplap_does({"report", bench.at("out/a"), bench.at("out/b")});
+  CHECK(again.code == 2);
+  CHECK(has(again.err, "exists already"));
+  CHECK(steplap_does({"report", bench.at("out/a"), bench.at("out/b"), "--force"}).code == 0);
+  CHECK(steplap_does({"report", bench.at("out/a") + "/"}).code == 0);
+  CHECK(bench.content("out/a").count("report.html") == 1);
+  // A report of results that are gone goes with them.
+  CHECK(steplap_does({"simulate", a, "-q", "-o", bench.at("out"), "--force"}).code == 0);
+  CHECK(bench.content("out/a").count("report.html") == 0);
+  // Told before the run, not after it: there are no results then.
+  bench.write("new/a/report.html", "mine");
+  const Outcome refused = steplap_does({"simulate", a, "-o", bench.at("new"), "--report"});
+  CHECK(refused.code == 2);
+  CHECK(has(refused.err, "is there already"));
+  CHECK(bench.content("new/a") == std::set<std::string>{"report.html"});
+}
+
+TEST_CASE("gnuplot scripts: names are text, units have prefixes, panels of one unit") {
+  const std::vector<double> t{0, 1, 2}, v{0, -2500, std::numeric_limits<double>::infinity()};
+  Figure figure;
+  figure.panels = {{"it's `rm -rf /`", "N", {{"a'b\n", &t, &v, 0, 0, 1.0}}}};
+  const std::string script = gnuplot_script(figure, "svg", "/x/it's.svg");
+  CHECK(has(script, "set title 'it''s `rm -rf /`'"));
+  CHECK(has(script, "set output '/x/it''s.svg'"));
+  CHECK(has(script, "title 'a''b '"));
+  CHECK(has(script, "'[kN]'"));
+  CHECK(has(script, "\n1 -2.5\n2 NaN\n"));
+}
+
+TEST_CASE("plot: images of channels, and what cannot be plotted") {
+  const Workbench bench;
+  const std::string a = bench.write("a.toml", k_bouncer), out = bench.at("out/a");
+  REQUIRE(steplap_does({"simulate", a, "-q", "-o", bench.at("out")}).code == 0);
+  const auto error = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "plot");
+    const Outcome outcome = steplap_does(arguments);
+    CHECK(outcome.code == 2);
+    return outcome.err;
+  };
+  CHECK(has(error({out, "--channels", "ball.y", "-o", bench.at("x.gif")}), ".svg, .png or .pdf"));
+  CHECK(has(error({out, "--channels", "bell.y", "-o", bench.at("x.svg")}), "did you mean 'ball.y'?"));
+  CHECK(has(error({out, "--channels", "ball.y", "--channels", "ball.vy", "-o", bench.at("x.svg")}), "plot them apart"));
+  CHECK(has(error({out, "-o", bench.at("x.svg")}), "either --channels or --plot"));
+  CHECK(has(error({out, "--plot", "Fig. 1", "-o", bench.at("x.svg")}), "has no plot 'Fig. 1'"));
+  CHECK(bench.content("").count("x.svg") == 0);
+  if (!is_gnuplot_there()) return;
+  CHECK(steplap_does({"plot", out, "--channels", "ball.y", "-o", bench.at("y.svg")}).code == 0);
+  CHECK(has(text_of(bench.at("y.svg")), "</svg>"));
+  CHECK(has(text_of(bench.at("y.svg")), "ball.y"));
+  CHECK(has(error({out, "--channels", "ball.y", "-o", bench.at("y.svg")}), "exists already"));
+}

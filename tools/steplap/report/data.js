@@ -1,0 +1,118 @@
+// The runs of the page, read from its JSON; numbers and units as text.
+steplap.data = (() => {
+  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const floats = (text) => new Float32Array(bytesOf(text).buffer);
+  const doubles = (text) => new Float64Array(bytesOf(text).buffer);
+
+  // A time history; values are kept as differences from `zero`, so that single precision is enough for a
+  // millimetre in metres of travel.
+  class Channel {
+    constructor(raw, times) {
+      this.name = raw.name;
+      this.unit = raw.unit;
+      this.zero = raw.zero;
+      this.rest = floats(raw.values);
+      this.times = raw.times ? floats(raw.times) : times;
+    }
+    get length() { return this.rest.length; }
+    value(i) { return this.zero + this.rest[i]; }
+    // Linear between samples; held before the first and after the last.
+    at(t) { return this.zero + this.restAt(t); }
+    restAt(t) {
+      const n = this.rest.length;
+      const i = steplap.data.indexBefore(this.times, t);
+      if (i < 0) return this.rest[0];
+      if (i >= n - 1) return this.rest[n - 1];
+      const t0 = this.times[i], t1 = this.times[i + 1];
+      const w = t1 > t0 ? (t - t0) / (t1 - t0) : 0;
+      return w === 0 ? this.rest[i] : (1 - w) * this.rest[i] + w * this.rest[i + 1];
+    }
+  }
+
+  // Last i with times[i] <= t, or -1.
+  function indexBefore(times, t) {
+    let low = 0, high = times.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (times[middle] <= t) low = middle + 1; else high = middle;
+    }
+    return low - 1;
+  }
+
+  class Run {
+    constructor(raw) {
+      Object.assign(this, raw);
+      this.times = doubles(raw.times);
+      this.channels = new Map(raw.channels.map((c) => [c.name, new Channel(c, this.times)]));
+    }
+    // Mode of an element with friction: of the sample before t, changed by what happened since.
+    modeAt(element, t) {
+      const mode = this.channel(`${element}.mode`);
+      if (!mode) return NaN;
+      const i = Math.max(0, indexBefore(mode.times, t));
+      let value = mode.value(i);
+      for (const [when, who, what] of this.events) {
+        if (who !== element || when <= mode.times[i] || when > t) continue;
+        if (what.startsWith('sticks')) value = 1;
+        if (what.startsWith('slips')) value = 2;
+        if (what.startsWith('comes apart')) value = 3;
+      }
+      return value;
+    }
+    channel(name) { return this.channels.get(name); }
+    get end() { return this.times[this.times.length - 1]; }
+    // Names that match patterns with * and ?.
+    matching(patterns) {
+      const found = [];
+      for (const pattern of patterns) {
+        const text = pattern.replace(/[.+^${}()|[\]\\]/g, '\\$&').replace(/\*/g, '.*').replace(/\?/g, '.');
+        const expression = new RegExp('^' + text + '$', 's');
+        for (const name of this.channels.keys()) if (expression.test(name)) found.push(name);
+      }
+      return found;
+    }
+  }
+
+  const prefixes = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ'], [1e-9, 'n']];
+  const prefixable = new Set(['m', 'N', 'N m', 'Pa', 'rad', 'J', 's', 'm/s', 'rad/s', 'W', 'Hz', 'N/m']);
+  const pretty = (unit) => unit.replace(/\^2/g, '²').replace(/\^3/g, '³').replace(/ /g, '\u202f');
+
+  // { factor, unit }: what a quantity of this size is best written in. Millimetres and milliradians go
+  // further down than other prefixes: that is what drawings are dimensioned in.
+  function scaleFor(unit, size) {
+    if (unit === 'm^2' && size < 0.01 && size > 0) return { factor: 1e6, unit: 'mm²' };
+    if ((unit === 'm' || unit === 'rad') && size < 1 && size >= 2e-6) return { factor: 1e3, unit: 'm' + unit };
+    if (!prefixable.has(unit) || !(size > 0) || !isFinite(size)) return { factor: 1, unit: pretty(unit) };
+    const [value, prefix] = prefixes.find(([v]) => size >= 0.9995 * v) || prefixes[prefixes.length - 1];
+    return { factor: 1 / value, unit: prefix + pretty(unit) };
+  }
+  function quantity(value, unit, digits = 5) {
+    if (value === null || value === undefined || Number.isNaN(value)) return '–';
+    if (!isFinite(value)) return value > 0 ? '∞' : '−∞';
+    const scale = scaleFor(unit || '', Math.abs(value));
+    const number = plain(value * scale.factor, digits);
+    return scale.unit ? number + '\u202f' + scale.unit : number;
+  }
+  // Without trailing zeros; a real minus sign.
+  function plain(value, digits = 5) {
+    if (value === 0) return '0';
+    const size = Math.abs(value);
+    let text = size >= 1e6 || size < 1e-4 ? value.toExponential(Math.max(1, digits - 2)) : value.toPrecision(digits);
+    if (text.includes('.') && !text.includes('e')) text = text.replace(/\.?0+$/, '');
+    if (/^-?\d+e/.test(text) === false && text.includes('e+') && size < 1e6) text = String(Number(text));
+    return text.replace('-', '−');
+  }
+
+  const raw = JSON.parse(document.getElementById('data').textContent);
+  return { program: raw.program, runs: raw.runs.map((r) => new Run(r)), indexBefore, scaleFor, quantity, plain };
+})();
+
+// Elements of the page; texts only ever as text.
+steplap.make = (name, attributes = {}, ...children) => {
+  const isSvg = steplap.make.svg.has(name);
+  const element = isSvg ? document.createElementNS('http://www.w3.org/2000/svg', name) : document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  element.append(...children.map((c) => (c instanceof Node ? c : String(c))));
+  return element;
+};
+steplap.make.svg = new Set(['svg', 'g', 'path', 'polygon', 'line', 'circle', 'rect', 'text', 'title', 'tspan']);

@@ -1,0 +1,84 @@
+// The sheets of a step-lap joint where they overlap, far magnified across the joint line.
+steplap.Inset = (() => {
+  const make = steplap.make, { minus, scaled, length, unit, apply, relative } = steplap.Scene.geometry;
+  const width = 246, height = 112;
+
+  const area = (ring) => ring.reduce((sum, p, i) => { const q = ring[(i + 1) % ring.length]; return sum + 0.5 * (p[0] * q[1] - q[0] * p[1]); }, 0);
+  const counterClockwise = (ring) => (area(ring) < 0 ? [...ring].reverse() : ring);
+  const isConvex = (ring) => ring.every((p, i) => {
+    const q = ring[(i + 1) % ring.length], r = ring[(i + 2) % ring.length];
+    return (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]) >= -1e-12;
+  });
+  // I. E. Sutherland, G. W. Hodgman, Commun. ACM 17 (1974) 32; `knife` convex, counter-clockwise.
+  function clipped(ring, knife) {
+    let rest = ring;
+    for (let i = 0; i < knife.length && rest.length; ++i) {
+      const a = knife[i], b = knife[(i + 1) % knife.length];
+      const side = (p) => (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+      const next = [];
+      rest.forEach((p, j) => {
+        const q = rest[(j + 1) % rest.length], sp = side(p), sq = side(q);
+        if (sp >= 0) next.push(p);
+        if (sp >= 0 !== sq >= 0) next.push([p[0] + (q[0] - p[0]) * sp / (sp - sq), p[1] + (q[1] - p[1]) * sp / (sp - sq)]);
+      });
+      rest = next;
+    }
+    return rest;
+  }
+
+  return class Inset {
+    constructor(run, scene, sheet) {
+      Object.assign(this, { run, scene, sheet });
+      this.yoke = counterClockwise(sheet.yoke);
+      this.limb = counterClockwise(sheet.limb_sheet);
+      this.isClipped = isConvex(this.yoke);
+      const relativeReference = relative(scene.reference(sheet.active_part), scene.reference(sheet.limb));
+      this.frame(relativeReference);
+      this.svg = make('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': `Sheets of ${sheet.name}` });
+      this.parts = {};
+      for (const name of ['yoke', 'limb', 'overlap']) this.svg.append((this.parts[name] = make('path', { class: name })));
+      this.state = make('strong', { class: 'joint-state' });
+      this.figures = make('div', { class: 'joint-figures' });
+      this.box = make('div', { class: 'inset', 'data-joint': sheet.joint }, make('div', {}, `${sheet.name}: `, this.state), this.svg, this.figures);
+      this.margin = run.channel(`${sheet.joint}.margin`);
+      this.pressure = run.channel(`${sheet.joint}.p_req`);
+    }
+    overlap(pose) { return this.isClipped ? clipped(this.limb.map((p) => apply(pose, p)), this.yoke) : []; }
+    // Axes along and across the overlap of the reference pose.
+    frame(pose) {
+      const lap = this.overlap(pose), ring = lap.length > 2 ? lap : this.yoke;
+      let longest = [1, 0];
+      ring.forEach((p, i) => { const d = minus(ring[(i + 1) % ring.length], p); if (length(d) > length(longest) || i === 0) longest = d; });
+      this.along = unit(longest);
+      this.across = [-this.along[1], this.along[0]];
+      const u = ring.map((p) => p[0] * this.along[0] + p[1] * this.along[1]), w = ring.map((p) => p[0] * this.across[0] + p[1] * this.across[1]);
+      this.middle = [0.5 * (Math.min(...u) + Math.max(...u)), 0.5 * (Math.min(...w) + Math.max(...w))];
+      this.scales = [(0.9 * width) / (Math.max(...u) - Math.min(...u)), (0.3 * height) / Math.max(Math.max(...w) - Math.min(...w), 1e-9)];
+    }
+    path(ring) {
+      if (ring.length < 3) return 'M0 0';
+      return 'M' + ring.map((p) => {
+        const u = p[0] * this.along[0] + p[1] * this.along[1] - this.middle[0], w = p[0] * this.across[0] + p[1] * this.across[1] - this.middle[1];
+        return `${(width / 2 + u * this.scales[0]).toFixed(2)} ${(height / 2 - w * this.scales[1]).toFixed(2)}`;
+      }).join('L') + 'Z';
+    }
+    show(t) {
+      const { scene, sheet } = this;
+      const pose = relative(scene.poseAt(sheet.active_part, t), scene.poseAt(sheet.limb, t));
+      this.parts.yoke.setAttribute('d', this.path(this.yoke));
+      this.parts.limb.setAttribute('d', this.path(this.limb.map((p) => apply(pose, p))));
+      this.parts.overlap.setAttribute('d', this.path(this.overlap(pose)));
+      const m = this.run.modeAt(sheet.joint, t);
+      const states = { 1: ['sticks', 'sticks'], 2: ['slips', 'slips'], 3: ['has come apart', 'slips'] };
+      const [text, kind] = states[m] || ['state not recorded', 'free'];
+      this.state.textContent = text;
+      this.state.className = `joint-state ${kind}`;
+      const q = steplap.data.quantity;
+      const figures = [];
+      if (this.pressure) figures.push(`needs ${q(this.pressure.at(t), 'Pa', 4)}`);
+      if (this.margin) figures.push(`margin ${q(this.margin.at(t), '', 4)}`);
+      this.figures.textContent = figures.join(', ');
+    }
+    get caption() { return `across ${steplap.data.plain(this.scales[1] / this.scales[0], 2)} × wider than along`; }
+  };
+})();

@@ -1,0 +1,110 @@
+// One clock for drawing and plots.
+(() => {
+  const make = steplap.make, runs = steplap.data.runs, at = (id) => document.getElementById(id);
+  const end = Math.max(...runs.map((r) => r.end));
+  const titles = [...new Set(runs.map((r) => r.summary.model.title || r.name))];
+  at('title').textContent = titles.length === 1 ? titles[0] : `${titles.length} runs compared`;
+  at('subtitle').textContent = titles.length === 1 ? runs.map((r) => r.name).join(', ') : titles.join(' · ');
+  at('footer').textContent = `Written by ${steplap.data.program}. Plots by dygraphs, © Dan Vanderkam and contributors, MIT licence (text at the end of this file's source).`;
+
+  steplap.tables.trust(runs);
+  steplap.tables.verdict(runs);
+  steplap.tables.events(runs, (t) => show(t));
+  steplap.tables.extremes(runs);
+  steplap.tables.models(runs);
+
+  // --- drawing -------------------------------------------------------------------------------------
+  const scenes = runs.map((run) => new steplap.Scene(run, runs.length > 1 ? 620 : 900));
+  const insets = [];
+  at('scenes').classList.toggle('few', runs.length > 1);
+  scenes.forEach((scene, i) => {
+    const box = make('div', { class: 'scene', 'data-run': runs[i].name });
+    if (runs.length > 1) box.append(make('h3', {}, runs[i].name));
+    box.append(scene.svg);
+    const names = [...scene.bodies.values()].map((b, k) => `${k + 1} ${b.label || b.name}`);
+    if (names.length <= 40) box.append(make('p', { class: 'names' }, names.join(' · ')));
+    at('scenes').append(box);
+    const sheets = runs[i].drawing.sheets;
+    for (const sheet of sheets.slice(0, 8)) insets.push(new steplap.Inset(runs[i], scene, sheet));
+  });
+  if (insets.length) {
+    const box = at('insets');
+    runs.forEach((run) => {
+      const own = insets.filter((inset) => inset.run === run);
+      if (!own.length) return;
+      const more = run.drawing.sheets.length - own.length;
+      box.append(make('div', { style: 'flex-basis:100%' }, make('h3', {}, `Sheets at the joints${runs.length > 1 ? `, ${run.name}` : ''}`),
+        make('p', { class: 'note' }, `Yoke sheet orange, limb sheet blue, the overlap that carries dark; true displacements, drawn ${own[0].caption}.${more > 0 ? ` ${more} more kinds of interface are not drawn.` : ''}`)), ...own.map((inset) => inset.box));
+    });
+  }
+  at('legend').textContent = 'Wedges are contacts: filled while they press, the bar beside them grows with the force. Limbs turn orange once their joint has slipped. Displacements are drawn magnified, against the reference pose, as seen from the body chosen.';
+
+  const speeds = [100, 10, 1, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100, 1 / 1000];
+  const wanted = end / 10;
+  const usualSpeed = speeds.reduce((best, s) => (Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best));
+  for (const s of speeds) at('speed').append(make('option', { value: s }, s >= 1 ? `${s} ×` : `1/${Math.round(1 / s)}`));
+  at('speed').value = String(usualSpeed);
+
+  const standpoint = scenes[0].usualStandpoint();
+  for (const name of ['ground', ...[...scenes[0].bodies.keys()].slice(0, 40)]) at('seen-from').append(make('option', { value: name }, name));
+  at('seen-from').value = standpoint;
+  const usual = Math.min(...scenes.map((s) => s.usualMagnification(standpoint)));
+  const factors = [...new Set([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, usual])].sort((a, b) => a - b);
+  for (const f of factors) at('magnification').append(make('option', { value: f }, `${f} ×`));
+  at('magnification').value = String(usual);
+
+  // --- time ----------------------------------------------------------------------------------------
+  let t = 0, last = null;
+  const plots = new steplap.Plots(at('plot-grid'), (time) => show(time));
+  const fit = () => { for (const s of scenes) s.fit(at('seen-from').value, Number(at('magnification').value)); };
+  function show(time) {
+    t = Math.min(Math.max(time, 0), end);
+    at('time').value = String(t);
+    at('now').textContent = `t = ${t.toFixed(4)} s`;
+    for (const scene of scenes) scene.show(t, at('seen-from').value, Number(at('magnification').value));
+    for (const inset of insets) inset.show(t);
+    plots.show(t);
+  }
+  function setPlaying(isPlaying) {
+    at('play').textContent = isPlaying ? '⏸ Pause' : '▶ Play';
+    at('play').setAttribute('aria-pressed', String(isPlaying));
+    last = null;
+    if (isPlaying && t >= end) show(0);
+    if (isPlaying) requestAnimationFrame(frame);
+  }
+  const isPlaying = () => at('play').getAttribute('aria-pressed') === 'true';
+  function frame(now) {
+    if (!isPlaying()) return;
+    if (last !== null) show(t + ((now - last) / 1000) * Number(at('speed').value));
+    last = now;
+    if (t >= end) setPlaying(false); else requestAnimationFrame(frame);
+  }
+  at('time').max = String(end);
+  at('time').addEventListener('input', (event) => { setPlaying(false); show(Number(event.target.value)); });
+  at('play').addEventListener('click', () => setPlaying(!isPlaying()));
+  for (const id of ['magnification', 'seen-from']) at(id).addEventListener('change', () => { fit(); show(t); });
+  document.addEventListener('keydown', (event) => {
+    if (/^(INPUT|SELECT|BUTTON|SUMMARY|TEXTAREA)$/.test(event.target.tagName) || event.ctrlKey || event.altKey || event.metaKey) return;
+    const step = (event.shiftKey ? 0.05 : 0.005) * end;
+    const moves = { ArrowRight: t + step, ArrowLeft: t - step, Home: 0, End: end };
+    if (event.key === ' ') setPlaying(!isPlaying());
+    else if (event.key in moves) { setPlaying(false); show(moves[event.key]); }
+    else return;
+    event.preventDefault();
+  });
+
+  // --- plots ---------------------------------------------------------------------------------------
+  at('layout-control').hidden = runs.length < 2;
+  at('layout').addEventListener('change', (event) => { plots.layout = event.target.value; plots.build(); show(t); });
+  at('zoom-out').addEventListener('click', () => plots.zoomOut());
+  at('add-channel').append(make('option', { value: '' }, 'choose a channel'), ...[...new Set(runs.flatMap((r) => [...r.channels.keys()]))].map((n) => make('option', { value: n }, n)));
+  at('add-channel').addEventListener('change', (event) => { if (event.target.value) plots.add(event.target.value); event.target.value = ''; });
+  const left = runs.reduce((sum, r) => sum + r.channels_left_out, 0), isThinned = runs.some((r) => r.is_thinned);
+  if (left || isThinned) at('event-key').append(` ${isThinned ? 'Curves are thinned for this page, their peaks are kept.' : ''} ${left ? `${left} channels are left out.` : ''} All samples: trajectory.csv.`);
+  window.addEventListener('beforeprint', () => plots.preparePrint());
+  fit();
+  plots.build();
+  show(0);
+  steplap.page = { scenes, plots, show, time: () => t };
+  document.body.setAttribute('data-ready', 'true');
+})();

@@ -1,0 +1,157 @@
+// Everything that is read: trust, verdict, events, extremes, the model's text.
+steplap.tables = (() => {
+  const make = steplap.make, { quantity, plain } = steplap.data;
+  const few = (value) => (value === null || value === undefined ? '–' : Number(value).toExponential(1).replace('-', '−'));
+  const seconds = (t) => (t === null || t === undefined ? '–' : `${Number(t).toFixed(4)} s`);
+
+  // Cells: a text, a node, or { text, value } for a number, whose full value is kept as data-value.
+  function table(heads, rows, numeric = []) {
+    const cell = (name, content, i) => {
+      const isNumber = numeric.includes(i);
+      const td = make(name, isNumber ? { class: 'number' } : {});
+      if (content && content.text !== undefined && !(content instanceof Node)) {
+        td.append(content.text);
+        if (content.value !== undefined) td.setAttribute('data-value', String(content.value));
+        if (content.class) td.classList.add(content.class);
+      } else td.append(content === undefined ? '' : content);
+      return td;
+    };
+    const element = make('table');
+    if (heads) element.append(make('thead', {}, make('tr', {}, ...heads.map((h, i) => { const th = cell('th', h, i); th.scope = 'col'; return th; }))));
+    element.append(make('tbody', {}, ...rows.map((row) => make('tr', {}, ...row.map((c, i) => cell(i === 0 ? 'th' : 'td', c, i))))));
+    for (const th of element.querySelectorAll('tbody th')) th.scope = 'row';
+    return element;
+  }
+  const number = (value, unit, digits) => ({ text: quantity(value, unit, digits), value });
+
+  // --- trust ---------------------------------------------------------------------------------------
+  function settingText(run) {
+    const s = run.summary, fixed = s.integrator === 'rk4' || s.integrator === 'moreau';
+    return `${s.integrator}, ` + (fixed ? `step ${quantity(s.settings.step, 's')}` : `tolerance ${few(s.settings.tolerance)} for each step`);
+  }
+  function errorText(run) {
+    const e = run.summary.global_error;
+    if (!e) return 'not estimated (simulate --estimate-error)';
+    const worst = Object.entries(e).filter(([, v]) => v && typeof v === 'object').sort((a, b) => b[1].error - a[1].error)[0];
+    return worst ? `${few(worst[1].error)} of range (${worst[0]}: ${worst[1].where})` : '–';
+  }
+  function trust(runs) {
+    const rows = [
+      ['title', (r) => r.summary.model.title || '–'],
+      ['run', (r) => (r.summary.completed ? `complete, 0 to ${seconds(r.end)}` : `stopped at ${seconds(r.end)}: ${r.summary.failure || ''}`)],
+      ['integrator', settingText],
+      ['estimated error', errorText],
+      ['energy residual', (r) => `${few(r.summary.accuracy.energy_residual)} J, ${few(r.summary.accuracy.relative_energy_residual)} of what was exchanged`],
+      ['constraint residual', (r) => `${few(r.summary.accuracy.max_position_residual)} m or rad`],
+      ['steps, evaluations', (r) => `${r.summary.statistics.steps}, ${r.summary.statistics.evaluations}`],
+      ['events', (r) => String(r.summary.statistics.events)],
+      ['model file', (r) => r.summary.model.file + (r.summary.model.overrides.length ? ` with ${r.summary.model.overrides.join('; ')}` : '')],
+      ['model.toml written', (r) => r.model_date],
+      ['its SHA-256', (r) => ({ text: r.model_sha256, class: 'hash' })],
+      ['program', (r) => `${r.summary.program.name} ${r.summary.program.version}`]];
+    document.getElementById('trust-table').append(table(['', ...runs.map((r) => r.name)], rows.map(([name, text]) => [name, ...runs.map(text)])));
+  }
+
+  // --- verdict -------------------------------------------------------------------------------------
+  const sentences = {
+    hold: 'All criteria of the model are met.',
+    inspect: 'At least one criterion asks for an inspection.',
+    reject: 'At least one criterion rejects the machine.',
+    open: 'Not every criterion could be judged.' };
+  const outcome = (c) => (c.is_met === null ? 'open' : c.is_met ? 'met' : c.consequence);
+
+  function criteria(run) {
+    const list = run.summary.judgement.criteria;
+    const heads = ['criterion', 'asked', '', 'value', 'limit', 'at'];
+    return table(heads, list.map((c) => [
+      c.reason ? make('span', { title: c.reason }, c.name) : c.name, c.criterion.replace(/<=/g, '≤').replace(/\^2/g, '²'), { text: outcome(c), class: outcome(c) },
+      number(c.value, c.unit), number(c.limit, c.unit), c.t === null ? '' : seconds(c.t)]), [3, 4, 5]);
+  }
+  function joints(run) {
+    const list = Object.entries(run.summary.joints || {});
+    if (!list.length) return [];
+    const rows = list.map(([name, j]) => [name, { text: j.verdict, class: j.verdict === 'holds' ? 'met' : 'inspect' }, j.first_slip === null ? '–' : seconds(j.first_slip),
+      number(j.smallest_margin, ''), number(j.largest_required_pressure, 'Pa'), number(j.slid_x, 'm'), number(j.slid_y, 'm'), number(j.slid_angle, 'rad'), number(j.area_lost, 'm^2', 4)]);
+    return [make('h3', {}, 'Step-lap joints: least margin, largest pressure needed, slid distances at the end'), scroll(table(['', '', 'first slip', 'margin', 'needs', 'dx', 'dy', 'turn', 'area lost'], tidy(rows), [2, 3, 4, 5, 6, 7, 8]))];
+  }
+  // What is rounding beside a micrometre or a microradian is shown as zero; data-value keeps the digits.
+  function tidy(rows) {
+    for (const row of rows) for (const c of row.slice(5)) if (c.value !== null && Math.abs(c.value) < 1e-12) c.text = '0';
+    return rows;
+  }
+  const scroll = (content) => make('div', { class: 'scroll' }, content);
+  const extremesOf = (run, name) => run.summary.extremes[name];
+  const larger = (e) => (Math.abs(e.min) > Math.abs(e.max) ? [e.min, e.t_min] : [e.max, e.t_max]);
+
+  function friction(run) {
+    const list = run.drawing.elements.filter((e) => e.kind === 'coulomb_stick' && extremesOf(run, `${e.name}.slide`));
+    if (!list.length) return [];
+    const rows = list.map((e) => {
+      const slide = extremesOf(run, `${e.name}.slide`), [value, t] = larger(slide);
+      const slips = run.events.filter((v) => v[1] === e.name && v[2].startsWith('slips')).length;
+      return [e.name, slips ? `slipped ${slips} time${slips > 1 ? 's' : ''}` : 'held', number(value, 'm'), seconds(t), number(slide.final, 'm')];
+    });
+    return [make('h3', {}, 'Friction'), scroll(table(['', '', 'largest slide', 'at', 'left at the end'], rows, [2, 3, 4]))];
+  }
+  // Springs and contacts between bodies: the arresting devices, blocks and feet of a transformer.
+  function devices(run) {
+    const list = run.drawing.elements.filter((e) => ['spring_damper', 'unilateral_contact', 'bushing'].includes(e.kind) && extremesOf(run, `${e.name}.force`));
+    if (!list.length || list.length > 40) return [];
+    const judged = (run.summary.judgement || { criteria: [] }).criteria;
+    const rows = list.map((e) => {
+      const [value, t] = larger(extremesOf(run, `${e.name}.force`));
+      const limit = judged.find((c) => c.where === `${e.name}.force`);
+      const lifts = run.events.filter((v) => v[1] === e.name && v[2] === 'opens');
+      return [e.name, number(value, 'N'), seconds(t), limit ? number(limit.limit, 'N') : '–', lifts.length ? `${lifts.length} ×, first at ${seconds(lifts[0][0])}` : e.kind === 'unilateral_contact' ? 'never' : ''];
+    });
+    return [make('h3', {}, 'Springs, arresting devices, contacts'), scroll(table(['', 'largest force', 'at', 'allowed', 'lifts off'], rows, [1, 2, 3]))];
+  }
+  function verdict(runs) {
+    const cards = document.getElementById('verdict-cards');
+    for (const run of runs) {
+      const card = make('div', { class: 'card', 'data-run': run.name });
+      const judgement = run.summary.judgement;
+      if (runs.length > 1) card.append(make('h3', {}, run.summary.model.title || run.name));
+      if (judgement) {
+        card.append(make('span', { class: `badge ${judgement.verdict}` }, judgement.verdict.toUpperCase()), make('p', {}, sentences[judgement.verdict] + (run.summary.completed ? '' : ' The run did not reach its end.')), scroll(criteria(run)));
+      } else card.append(make('p', {}, 'The model states no criteria: what happened is below.'));
+      card.append(...joints(run));
+      const parts = [friction(run), devices(run)].filter((part) => part.length).map((part) => make('div', {}, ...part));
+      card.append(make('div', { class: 'columns few' }, ...parts));
+      cards.append(card);
+    }
+  }
+
+  // --- events, extremes, model ---------------------------------------------------------------------
+  function events(runs, onTime) {
+    const box = document.getElementById('events-tables');
+    for (const run of runs) {
+      const rows = run.events.map(([t, element, what]) => {
+        const button = make('button', { type: 'button', class: 'event-time' }, `${t.toFixed(6)} s`);
+        button.addEventListener('click', () => onTime(t));
+        return [button, element, what];
+      });
+      const note = run.events_left_out ? [make('p', { class: 'note' }, `and ${run.events_left_out} more: see events.csv`)] : [];
+      box.append(make('div', {}, make('h3', {}, run.name), make('div', { class: 'tall' }, rows.length ? table(['t', 'element', 'event'], rows) : 'none'), ...note));
+    }
+  }
+  function extremes(runs) {
+    const names = [...new Set(runs.flatMap((r) => Object.keys(r.summary.extremes)))];
+    const heads = ['channel', ...runs.flatMap((r) => { const of = runs.length > 1 ? ` ${r.name}` : ''; return [`least${of}`, 'at', `largest${of}`, 'at']; })];
+    const rows = names.map((name) => [name, ...runs.flatMap((r) => {
+      const e = extremesOf(r, name);
+      return e ? [number(e.min, e.unit), seconds(e.t_min), number(e.max, e.unit), seconds(e.t_max)] : ['–', '', '–', ''];
+    })]);
+    const element = table(heads, rows, heads.map((_, i) => i).slice(1));
+    document.getElementById('extremes-table').append(make('div', { class: 'tall' }, element));
+    document.getElementById('extremes-filter').addEventListener('input', (event) => {
+      const wanted = event.target.value.toLowerCase();
+      for (const row of element.tBodies[0].rows) row.hidden = !row.cells[0].textContent.toLowerCase().includes(wanted);
+    });
+  }
+  function models(runs) {
+    const box = document.getElementById('model-texts');
+    for (const run of runs) box.append(make('details', {}, make('summary', {}, `${run.name}: the model as it was run`), make('pre', {}, run.model_text)));
+  }
+  return { trust, verdict, events, extremes, models };
+})();

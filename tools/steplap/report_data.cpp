@@ -1,0 +1,192 @@
+#include "tools/steplap/report_data.h"
+
+#include "mbd/trajectory.h"
+#include "tools/steplap/command.h"
+#include "tools/steplap/thinning.h"
+#include "tools/steplap/version.h"
+
+#include <nlohmann/json.hpp>
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+namespace steplap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t k_most_events = 2000;      ///< listed on the page
+constexpr std::size_t k_most_model_text = 400000; ///< bytes
+constexpr std::size_t k_most_bodies = 2000;      ///< drawn
+constexpr std::size_t k_least_stretches = 60;    ///< a curve thinned more says little
+constexpr double k_base64 = 4.0 / 3.0;
+
+template <class T> std::string base64(const std::vector<T>& values) {
+  const auto bytes = std::as_bytes(std::span(values));
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
+  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), // NOLINT: bytes
+                                     reinterpret_cast<const unsigned char*>(bytes.data()), // NOLINT
+                                     static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(length));
+  return text;
+}
+
+std::string sha256(const std::string& text) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int length = 0;
+  if (EVP_Digest(text.data(), text.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1) return "";
+  std::string hex;
+  for (unsigned int i = 0; i < length; ++i)
+    for (const int nibble : {digest[i] >> 4, digest[i] & 15})
+      hex += "0123456789abcdef"[nibble];
+  return hex;
+}
+
+Json parsed(const Results& run, const std::string& text, const char* file) {
+  Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded())
+    throw UsageError("'" + run.folder + "/" + file + "' is not as steplap wrote it: run the model again");
+  return json;
+}
+
+// How much of the budget each channel gets, over all runs.
+struct Plan {
+  std::vector<std::vector<std::size_t>> kept; ///< per run: channels, in the order of the file
+  std::size_t stretches = 0;                  ///< 0: all samples
+};
+
+// 0 for what the page cannot do without, then reactions and the like, then the rest.
+int rank_of(const ResultChannel& channel, const Json& drawing) {
+  for (const Json& plot : drawing["plots"])
+    for (const char* list : {"channels", "bounds"})
+      for (const Json& pattern : plot[list])
+        if (matches_pattern(channel.name, pattern.get<std::string>())) return 0;
+  const std::string part = channel.name.substr(channel.name.rfind('.') + 1);
+  if (part == "mode" || part == "slip_rate" || part == "p_req" || part == "margin") return 1;
+  if (part == "x" || part == "y" || part == "theta") return 2;
+  return part == "force" || part == "friction" || part == "slide" ? 3 : 4;
+}
+
+Plan plan_for(const std::vector<Results>& runs, const std::vector<Json>& drawings, std::size_t budget) {
+  Plan plan;
+  std::size_t rows = 0, channels = 0;
+  for (const Results& run : runs) {
+    rows = std::max(rows, run.times.size());
+    channels += run.channels.size();
+    plan.kept.emplace_back(run.channels.size());
+    std::iota(plan.kept.back().begin(), plan.kept.back().end(), std::size_t{0});
+  }
+  const double bytes = static_cast<double>(budget) / k_base64;
+  if (static_cast<double>(channels * rows) * sizeof(float) <= bytes) return plan;
+  // A thinned channel has its own times: two floats a point, two points a stretch.
+  constexpr double k_stretch = 4.0 * sizeof(float);
+  const auto most = static_cast<std::size_t>(bytes / (k_stretch * k_least_stretches));
+  if (channels > most)
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      auto& kept = plan.kept[r];
+      std::vector<int> rank;
+      for (const ResultChannel& channel : runs[r].channels)
+        rank.push_back(rank_of(channel, drawings[r]));
+      std::stable_sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
+      kept.resize(std::min(kept.size(), std::max<std::size_t>(1, most / runs.size())));
+      std::sort(kept.begin(), kept.end());
+    }
+  channels = 0;
+  for (const auto& kept : plan.kept)
+    channels += kept.size();
+  plan.stretches = std::max(k_least_stretches, static_cast<std::size_t>(bytes / (k_stretch * static_cast<double>(channels))));
+  return plan;
+}
+
+Json channel_json(const ResultChannel& channel, const std::vector<double>& times, std::size_t stretches) {
+  const auto first = std::find_if(channel.values.begin(), channel.values.end(), [](double v) { return std::isfinite(v); });
+  const double zero = first == channel.values.end() ? 0.0 : *first;
+  std::vector<float> values, own_times;
+  const bool is_thinned = stretches > 0 && times.size() > 2 * stretches + 2;
+  if (is_thinned) {
+    for (const std::size_t i : thinned(channel.values, stretches)) {
+      values.push_back(static_cast<float>(channel.values[i] - zero));
+      own_times.push_back(static_cast<float>(times[i]));
+    }
+  } else {
+    for (const double value : channel.values)
+      values.push_back(static_cast<float>(value - zero));
+  }
+  Json json{{"name", channel.name}, {"unit", channel.unit}, {"zero", zero}, {"values", base64(values)}};
+  if (is_thinned) json["times"] = base64(own_times);
+  return json;
+}
+
+Json events_json(const Results& run) {
+  Json json = Json::array();
+  for (std::size_t i = 0; i < std::min(run.events.size(), k_most_events); ++i)
+    json.push_back({run.events[i].t, run.events[i].element, run.events[i].what});
+  return json;
+}
+
+// Extremes of channels that the page does not hold would outweigh everything else in large models.
+void keep_extremes(Json& summary, const Results& run, const std::vector<std::size_t>& kept) {
+  Json extremes = Json::object();
+  for (const std::size_t i : kept)
+    if (const auto found = summary["extremes"].find(run.channels[i].name); found != summary["extremes"].end())
+      extremes[run.channels[i].name] = *found;
+  summary["extremes"] = std::move(extremes);
+  summary.erase("final_state");
+}
+
+std::string shortened(const std::string& model) {
+  if (model.size() <= k_most_model_text) return model;
+  return model.substr(0, k_most_model_text) + "\n# … the rest is in model.toml\n";
+}
+
+Json run_json(const Results& run, Json drawing, const std::vector<std::size_t>& kept, std::size_t stretches) {
+  Json summary = parsed(run, run.summary, "summary.json");
+  keep_extremes(summary, run, kept);
+  if (drawing["bodies"].size() > k_most_bodies) {
+    drawing["bodies"].erase(drawing["bodies"].begin() + k_most_bodies, drawing["bodies"].end());
+    drawing["elements"] = Json::array();
+  }
+  Json channels = Json::array();
+  for (const std::size_t i : kept)
+    channels.push_back(channel_json(run.channels[i], run.times, stretches));
+  const bool is_thinned = stretches > 0 && run.times.size() > 2 * stretches + 2;
+  // Thinned channels have their own times; of the common ones the page then needs the ends only.
+  const std::vector<double> ends{run.times.front(), run.times.back()};
+  return {{"name", run.name},
+          {"model_text", shortened(run.model)},
+          {"model_sha256", sha256(run.model)},
+          {"model_date", run.model_date},
+          {"summary", std::move(summary)},
+          {"events", events_json(run)},
+          {"events_left_out", run.events.size() - std::min(run.events.size(), k_most_events)},
+          {"drawing", std::move(drawing)},
+          {"is_thinned", is_thinned},
+          {"channels_left_out", run.channels.size() - kept.size()},
+          {"times", base64(is_thinned ? ends : run.times)},
+          {"channels", std::move(channels)}};
+}
+
+} // namespace
+
+std::string report_data(const std::vector<Results>& runs, std::size_t budget) {
+  std::vector<Json> drawings;
+  for (const Results& run : runs)
+    drawings.push_back(parsed(run, run.drawing, "drawing.json"));
+  const Plan plan = plan_for(runs, drawings, budget);
+  Json json{{"program", std::string("steplap ") + k_version}, {"runs", Json::array()}};
+  for (std::size_t r = 0; r < runs.size(); ++r)
+    json["runs"].push_back(run_json(runs[r], std::move(drawings[r]), plan.kept[r], plan.stretches));
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe; // '<' stands in strings only, where JSON has another way to write it
+  for (const char c : text)
+    if (c == '<') safe += "\\u003c";
+    else safe += c;
+  return safe;
+}
+
+} // namespace steplap

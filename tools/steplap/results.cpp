@@ -1,0 +1,163 @@
+#include "tools/steplap/results.h"
+
+#include "mbd/trajectory.h"
+#include "tools/steplap/command.h"
+
+#include <sys/stat.h>
+
+#include <charconv>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace steplap {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void damaged(const fs::path& file, std::size_t line, const std::string& what) {
+  throw UsageError("'" + file.string() + "', line " + std::to_string(line) + ": " + what +
+                   "; it is not as steplap wrote it: run the model again");
+}
+
+// Cells of a row of CSV, quotes undone.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && is_quoted && i + 1 < line.size() && line[i + 1] == '"') {
+      cells.back() += line[++i];
+    } else if (c == '"') {
+      is_quoted = !is_quoted;
+    } else if (c == ',' && !is_quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+// "front foot.force [N]"
+ResultChannel channel_of(const std::string& head) {
+  ResultChannel channel;
+  const std::size_t bracket = head.rfind(" [");
+  const bool has_unit = bracket != std::string::npos && head.back() == ']';
+  channel.name = has_unit ? head.substr(0, bracket) : head;
+  if (has_unit) channel.unit = head.substr(bracket + 2, head.size() - bracket - 3);
+  return channel;
+}
+
+double number_of(const char*& begin, const char* end, const fs::path& file, std::size_t line) {
+  double value = 0.0;
+  const auto [next, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || (next != end && *next != ',')) damaged(file, line, "not a number");
+  begin = next;
+  return value;
+}
+
+void read_trajectory(const fs::path& file, Results& results) {
+  const std::string text = read_text(file.string());
+  std::istringstream lines(text);
+  std::string line;
+  if (!std::getline(lines, line)) damaged(file, 1, "empty");
+  const std::vector<std::string> heads = cells_of(line);
+  if (heads.front() != "t [s]") damaged(file, 1, "the first column is not 't [s]'");
+  for (std::size_t i = 1; i < heads.size(); ++i)
+    results.channels.push_back(channel_of(heads[i]));
+  for (std::size_t number = 2; std::getline(lines, line); ++number) {
+    const char *at = line.data(), *end = at + line.size();
+    results.times.push_back(number_of(at, end, file, number));
+    for (ResultChannel& channel : results.channels) {
+      if (at == end) damaged(file, number, "fewer numbers than columns");
+      channel.values.push_back(number_of(++at, end, file, number));
+    }
+    if (at != end) damaged(file, number, "more numbers than columns");
+  }
+  if (results.times.empty()) damaged(file, 2, "no rows");
+}
+
+void read_events(const fs::path& file, Results& results) {
+  std::istringstream lines(read_text(file.string()));
+  std::string line;
+  std::getline(lines, line);
+  for (std::size_t number = 2; std::getline(lines, line); ++number) {
+    const std::vector<std::string> cells = cells_of(line);
+    if (cells.size() != 3) damaged(file, number, "an event has a time, an element and what happened");
+    const char* at = cells[0].data();
+    results.events.push_back({number_of(at, at + cells[0].size(), file, number), cells[1], cells[2]});
+  }
+}
+
+std::string date_of(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return "";
+  std::tm utc{};
+  gmtime_r(&status.st_mtime, &utc);
+  char text[32];
+  return std::string(text, std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc));
+}
+
+// "" or "partial_": what the names of the files begin with.
+std::string prefix_in(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored))
+    throw UsageError("'" + folder.string() + "' is not a folder: name the folder of a run, as in out/<model>");
+  for (const std::string prefix : {"", "partial_"})
+    if (fs::exists(folder / (prefix + "summary.json"), ignored)) return prefix;
+  throw UsageError("'" + folder.string() + "' holds no results (no summary.json): run steplap simulate first");
+}
+
+} // namespace
+
+std::string read_text(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw UsageError("cannot read '" + file + "'");
+  return std::move(text).str();
+}
+
+Results read_results(const std::string& folder) {
+  const fs::path path = folder;
+  const std::string prefix = prefix_in(path);
+  const auto file = [&](const char* name) {
+    fs::path found = path / (prefix + name);
+    std::error_code ignored;
+    if (!fs::exists(found, ignored))
+      throw UsageError("'" + found.string() + "' is missing: the results are not whole, run the model again");
+    return found;
+  };
+  Results results;
+  results.folder = folder;
+  results.name = fs::absolute(path / "").lexically_normal().parent_path().filename().string();
+  results.is_partial = !prefix.empty();
+  read_trajectory(file("trajectory.csv"), results);
+  read_events(file("events.csv"), results);
+  results.model = read_text(file("model.toml").string());
+  results.drawing = read_text(file("drawing.json").string());
+  results.summary = read_text(file("summary.json").string());
+  results.model_date = date_of(file("model.toml"));
+  return results;
+}
+
+std::vector<const ResultChannel*> find_channels(const Results& results,
+                                                const std::vector<std::string>& patterns) {
+  std::vector<const ResultChannel*> found;
+  for (const std::string& pattern : patterns) {
+    const std::size_t before = found.size();
+    for (const ResultChannel& channel : results.channels)
+      if (matches_pattern(channel.name, pattern)) found.push_back(&channel);
+    if (found.size() > before) continue;
+    std::vector<std::string> known;
+    for (const ResultChannel& channel : results.channels)
+      known.push_back(channel.name);
+    throw UsageError("'" + results.folder + "': no channel matches '" + pattern + "'" + did_you_mean(pattern, known));
+  }
+  return found;
+}
+
+} // namespace steplap
