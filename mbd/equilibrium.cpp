@@ -1,5 +1,6 @@
 #include "mbd/equilibrium.h"
 
+#include "mbd/friction_modes.h"
 #include "mbd/simulation.h"
 
 #include <Eigen/Eigenvalues>
@@ -16,17 +17,18 @@ constexpr double k_acceleration_tolerance = 1e-9; // m/s²: 1e-10 of gravity
 constexpr int k_max_newton = 60;
 constexpr int k_max_damped_swings = 400;
 constexpr double k_swing_time = 20.0; // s of motion before giving up on a swing
+constexpr double k_least_used = 1e-9; // share of a friction element's capacity that is rounding
 
 // Accelerations at rest as a function of the clusters' coordinates.
 class RestProblem {
 public:
   RestProblem(const System& system, State state)
-      : system_(system), state_(std::move(state)), dynamics_(system),
-        y_(6 * system.bodies.size() + 2), dy_(y_.size()) {
+      : system_(system), state_(std::move(state)), dynamics_(system), modes_(system, dynamics_),
+        is_anchored_(system.frictions.size(), 0), y_(6 * system.bodies.size() + 2), dy_(y_.size()) {
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
   }
 
-  // Modes from the gaps as they are now; friction sticks where it is loaded.
+  // Modes from the gaps as they are now; friction sticks where it is loaded, as long as it is.
   void update_modes() {
     evaluate_state();
     for (std::size_t u = 0; u < system_.units.size(); ++u)
@@ -36,6 +38,8 @@ public:
       if (friction.phase == FrictionPhase::apart) continue;
       const bool is_loaded = system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction);
       friction.phase = is_loaded ? FrictionPhase::stick : FrictionPhase::free;
+      if (is_loaded && !is_anchored_[f]) modes_.set_anchor(state_, static_cast<int>(f));
+      is_anchored_[f] = is_loaded;
     }
     evaluate_state();
   }
@@ -141,7 +145,36 @@ public:
     return names;
   }
 
+  /// How far those that stick are from slipping.
+  [[nodiscard]] std::vector<FrictionMargin> margins() {
+    evaluate_state();
+    const Snapshot snapshot = dynamics_.snapshot(dy_.data());
+    std::vector<FrictionMargin> found;
+    for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
+      const FrictionUnit& unit = system_.frictions[f];
+      if (state_.friction[f].phase != FrictionPhase::stick || unit.friction->never_slips()) continue;
+      found.push_back({static_cast<int>(f), share_used(*unit.friction, state_.friction[f], snapshot.friction_force + unit.row)});
+    }
+    return found;
+  }
+
 private:
+  // 1/s for the largest s with s·wrench admissible; the set is convex and holds zero.
+  double share_used(const FrictionElement& element, const FrictionState& state, const double* wrench) {
+    const auto holds = [&](double factor) {
+      double scaled[3] = {0, 0, 0}, watch[2];
+      for (int r = 0; r < element.dimension(); ++r) scaled[r] = factor * wrench[r];
+      element.watch_stick(dynamics_.evaluation(), state, scaled, watch);
+      return watch[0] >= 0.0 && watch[1] >= 0.0;
+    };
+    double low = -std::log10(k_least_used), high = low; // of the decimal logarithm of s
+    if (holds(std::pow(10.0, high))) return 0.0;
+    for (low = -high; high - low > 1e-12;) {
+      const double middle = 0.5 * (low + high);
+      (holds(std::pow(10.0, middle)) ? low : high) = middle;
+    }
+    return std::pow(10.0, -low);
+  }
   void evaluate_state() {
     dynamics_.set_state(state_);
     dynamics_.pack(state_, y_.data());
@@ -167,6 +200,8 @@ private:
   const System& system_;
   State state_;
   Dynamics dynamics_;
+  FrictionModes modes_;
+  std::vector<char> is_anchored_; ///< friction elements that hold where they got their load
   std::vector<double> y_, dy_;
 };
 
@@ -225,6 +260,7 @@ Equilibrium find_equilibrium(const System& system, const State& start) {
         continue;
       }
       result.slipping = problem.slipping();
+      result.margins = problem.margins();
       result.state = problem.state();
       result.state.v = start.v;
       for (std::size_t i = 3; i < start.q.size(); ++i)

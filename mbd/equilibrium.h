@@ -14,11 +14,18 @@
 
 namespace steplap {
 
+/// How far a friction element that holds is from slipping.
+struct FrictionMargin {
+  int friction = 0;   ///< index in System::frictions
+  double used = 0.0;  ///< share of what it could bear: the wrench over the largest one of its direction
+};
+
 struct Equilibrium {
   State state;                  ///< at rest; modes and friction phases belong to it
   double residual = 0.0;        ///< largest acceleration left, m/s² or rad/s² · 1 m
   double moved = 0.0;           ///< largest displacement from the start, m
   int iterations = 0;
+  std::vector<FrictionMargin> margins; ///< of those that hold; where several share a load, its least-norm share
   std::vector<std::string> slipping; ///< friction elements that cannot hold what they would have to
 };
 

@@ -16,13 +16,16 @@ namespace {
 // A mitre flatter or steeper against the yoke is none: limb and yoke would meet edge to edge.
 constexpr double k_least_angle = 10.0 * std::numbers::pi / 180.0;
 constexpr double k_largest_angle = 80.0 * std::numbers::pi / 180.0;
+constexpr double k_usual_notch = 45.0 * std::numbers::pi / 180.0;
 
 std::string metres(double value) { return number_text(value) + " m"; }
 
 // One [[core]] on its way into a model; says all that is wrong with it at once.
 class CoreBuilder {
 public:
-  CoreBuilder(const Core& core, Model& model) : core_(core), model_(model) {}
+  CoreBuilder(const Core& core, Model& model) : core_(core), model_(model), limbs_(core.limbs) {
+    limbs_.insert(limbs_.end(), core.middle_limbs.begin(), core.middle_limbs.end());
+  }
 
   void build() {
     check_names();
@@ -31,7 +34,7 @@ public:
     const std::vector<LapBand> bands = is_counted() ? counted_bands() : built_bands();
     if (problems_.empty()) check_reach(bands);
     if (!problems_.empty()) throw ModelError(std::move(problems_));
-    for (std::size_t i = 0; i < core_.limbs.size(); ++i) add_joint(i, bands);
+    for (std::size_t i = 0; i < limbs_.size(); ++i) add_joint(i, bands);
   }
 
 private:
@@ -40,24 +43,32 @@ private:
   }
   [[nodiscard]] bool is_counted() const { return core_.overlap || core_.interfaces; }
   [[nodiscard]] std::string joint_name(std::size_t i) const {
-    return core_.joints.empty() ? core_.limbs[i] + " joint" : core_.joints[i];
+    return core_.joints.empty() ? limbs_[i] + " joint" : core_.joints[i];
   }
+  [[nodiscard]] bool is_middle(std::size_t i) const { return i >= core_.limbs.size(); }
+  [[nodiscard]] double notch_angle() const { return core_.notch_angle.value_or(k_usual_notch); }
   [[nodiscard]] Book book() const;
   [[nodiscard]] const Element* find_element(const std::string& name) const;
 
   void check_names();
-  void check_limb(const std::string& name, const Body& active_part);
+  void check_limb(std::size_t i, const Body& active_part);
   void check_joint(const std::string& name, const std::string& limb);
   void check_dimensions();
+  void check_angle(double angle, const std::string& what, const std::string& hint);
+  void check_notch();
   void check_friction();
   std::vector<LapBand> counted_bands();
   std::vector<LapBand> built_bands();
   void check_reach(const std::vector<LapBand>& bands);
   void add_joint(std::size_t i, const std::vector<LapBand>& bands);
-  void add_interface(std::size_t i, bool is_top, std::size_t number, const std::vector<LapBand>& bands);
+  void add_corner(std::size_t i, bool is_top, const CornerFrame& corner, const std::string& place,
+                  const std::vector<LapBand>& bands);
+  void add_interface(std::size_t i, bool is_top, const CornerFrame& corner, const std::string& name,
+                     const LapBand& lap);
 
   const Core& core_;
   Model& model_;
+  std::vector<std::string> limbs_; ///< outer ones, then middle ones
   std::vector<Diagnostic> problems_;
 };
 
@@ -77,19 +88,20 @@ Vec2 reach(const Body& limb, const Body& active_part) {
 void CoreBuilder::check_names() {
   const Body* active_part = model_.find_body(core_.active_part);
   if (!active_part) return error("'active_part' must be a body that moves, not 'ground'");
-  if (core_.limbs.empty()) error("'limbs' must name at least one body");
-  for (std::size_t i = 0; i < core_.limbs.size(); ++i) {
-    check_limb(core_.limbs[i], *active_part);
+  if (limbs_.empty()) error("'limbs' or 'middle_limbs' must name at least one body");
+  for (std::size_t i = 0; i < limbs_.size(); ++i) {
+    check_limb(i, *active_part);
     for (std::size_t j = 0; j < i; ++j)
-      if (core_.limbs[j] == core_.limbs[i]) error("'limbs' names '" + core_.limbs[i] + "' twice");
+      if (limbs_[j] == limbs_[i]) error("names limb '" + limbs_[i] + "' twice");
   }
-  if (!core_.joints.empty() && core_.joints.size() != core_.limbs.size())
-    return error("'joints' must name one joint for each of the " + std::to_string(core_.limbs.size()) +
+  if (!core_.joints.empty() && core_.joints.size() != limbs_.size())
+    return error("'joints' must name one joint for each of the " + std::to_string(limbs_.size()) +
                  " limbs, got " + std::to_string(core_.joints.size()));
-  for (std::size_t i = 0; i < core_.limbs.size(); ++i) check_joint(joint_name(i), core_.limbs[i]);
+  for (std::size_t i = 0; i < limbs_.size(); ++i) check_joint(joint_name(i), limbs_[i]);
 }
 
-void CoreBuilder::check_limb(const std::string& name, const Body& active_part) {
+void CoreBuilder::check_limb(std::size_t i, const Body& active_part) {
+  const std::string& name = limbs_[i];
   const Body* limb = model_.find_body(name);
   if (!limb) {
     std::vector<std::string> known;
@@ -97,9 +109,10 @@ void CoreBuilder::check_limb(const std::string& name, const Body& active_part) {
     return error("limb '" + name + "' is no body" + did_you_mean(name, known));
   }
   if (limb == &active_part) return error("limb '" + name + "' is the active part itself");
-  if (std::abs(reach(*limb, active_part).x()) < 0.5 * core_.limb_width)
+  if (!is_middle(i) && std::abs(reach(*limb, active_part).x()) < 0.5 * core_.limb_width)
     error("limb '" + name + "' stands in the middle of the active part: only outer limbs, at least half a "
-          "limb's width ahead of its centre of gravity or behind it, have mitred corners");
+          "limb's width ahead of its centre of gravity or behind it, have mitred corners; name it in "
+          "'middle_limbs'");
 }
 
 void CoreBuilder::check_joint(const std::string& name, const std::string& limb) {
@@ -120,11 +133,24 @@ void CoreBuilder::check_dimensions() {
     error("two yokes of " + metres(core_.yoke_height) + " leave no window in a core of " +
           metres(core_.core_height) + ": 'core_height' is from the bottom of the lower yoke to the top of "
           "the upper");
-  const double angle = core_.mitre_angle.value_or(std::atan2(core_.yoke_height, core_.limb_width));
+  if (!core_.limbs.empty())
+    check_angle(core_.mitre_angle.value_or(std::atan2(core_.yoke_height, core_.limb_width)), "mitre",
+                core_.mitre_angle ? "" : "; it follows from 'yoke_height' and 'limb_width' unless 'mitre_angle' is given");
+  if (!core_.middle_limbs.empty()) check_notch();
+}
+
+void CoreBuilder::check_angle(double angle, const std::string& what, const std::string& hint) {
   if (angle < k_least_angle || angle > k_largest_angle)
-    error("a mitre at " + number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) +
-          "° to the yoke: must be 10° to 80°" +
-          (core_.mitre_angle ? "" : "; it follows from 'yoke_height' and 'limb_width' unless 'mitre_angle' is given"));
+    error("a " + what + " at " + number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) +
+          "° to the yoke: must be 10° to 80°" + hint);
+}
+
+void CoreBuilder::check_notch() {
+  check_angle(notch_angle(), "notch", "");
+  const double depth = 0.5 * core_.limb_width * std::tan(notch_angle());
+  if (depth > core_.yoke_height)
+    error("the point of a middle limb, " + metres(depth) + " high, is higher than the yoke of " +
+          metres(core_.yoke_height) + ": take a smaller 'notch_angle'");
 }
 
 void CoreBuilder::check_friction() {
@@ -193,26 +219,41 @@ void CoreBuilder::add_joint(std::size_t i, const std::vector<LapBand>& bands) {
     const auto joint = std::make_shared<StepLapJoint>();
     joint->name = joint_name(i);
     joint->where = core_.where;
-    joint->limb = core_.limbs[i];
+    joint->limb = limbs_[i];
     joint->active_part = core_.active_part;
     joint->mode = core_.mode;
     joint->on_apart = core_.on_apart;
     model_.elements.push_back({&step_lap_joint_kind(), joint});
   }
-  for (const bool is_top : {true, false})
-    for (std::size_t k = 0; k < bands.size(); ++k) add_interface(i, is_top, k, bands);
+  const Mitre outer{core_.limb_width, core_.core_height, core_.yoke_height, core_.mitre_angle};
+  const Mitre notch{core_.limb_width, core_.core_height, core_.yoke_height, notch_angle()};
+  const Body &limb = *model_.find_body(limbs_[i]), &part = *model_.find_body(core_.active_part);
+  const double side = reach(limb, part).x() > 0.0 ? 1.0 : -1.0;
+  for (const bool is_top : {true, false}) {
+    const double level = is_top ? 1.0 : -1.0;
+    const std::string place = is_top ? ", top" : ", bottom";
+    if (!is_middle(i)) {
+      add_corner(i, is_top, corner_frame(outer, side, level), place, bands);
+      continue;
+    }
+    add_corner(i, is_top, notch_frame(notch, -1.0, level), place + " front", bands);
+    add_corner(i, is_top, notch_frame(notch, 1.0, level), place + " rear", bands);
+  }
 }
 
-void CoreBuilder::add_interface(std::size_t i, bool is_top, std::size_t number,
-                                const std::vector<LapBand>& bands) {
-  const Body &limb = *model_.find_body(core_.limbs[i]), &part = *model_.find_body(core_.active_part);
-  const LapBand& lap = bands[number];
-  const CornerFrame corner =
-      corner_frame({core_.limb_width, core_.core_height, core_.yoke_height, core_.mitre_angle},
-                   reach(limb, part).x() > 0.0 ? 1.0 : -1.0, is_top ? 1.0 : -1.0);
+void CoreBuilder::add_corner(std::size_t i, bool is_top, const CornerFrame& corner, const std::string& place,
+                             const std::vector<LapBand>& bands) {
+  for (std::size_t k = 0; k < bands.size(); ++k)
+    add_interface(i, is_top, corner,
+                  core_.name + ": " + joint_name(i) + place + (bands.size() > 1 ? " " + std::to_string(k + 1) : ""),
+                  bands[k]);
+}
+
+void CoreBuilder::add_interface(std::size_t i, bool is_top, const CornerFrame& corner, const std::string& name,
+                                const LapBand& lap) {
+  const Body &limb = *model_.find_body(limbs_[i]), &part = *model_.find_body(core_.active_part);
   const auto e = std::make_shared<StepLapInterface>();
-  e->name = core_.name + ": " + joint_name(i) + (is_top ? ", top" : ", bottom") +
-            (bands.size() > 1 ? " " + std::to_string(number + 1) : "");
+  e->name = name;
   e->where = core_.where;
   e->joint = joint_name(i);
   e->limb = band(corner, 0.0, corner.length, lap.inner, core_.tongue);
@@ -231,15 +272,17 @@ void CoreBuilder::add_interface(std::size_t i, bool is_top, std::size_t number,
 void add_dimensions(FieldTable& f) {
   using T = Core;
   f.add("active_part", &T::active_part).as(FieldType::body).required().doc("the body with the yokes");
-  f.add("limbs", &T::limbs).required().doc("bodies of the outer limbs");
+  f.add("limbs", &T::limbs).doc("bodies of the outer limbs, mitred to the yokes");
+  f.add("middle_limbs", &T::middle_limbs).doc("bodies of the limbs between, which end in a point (T-joint)");
   f.add("joints", &T::joints)
-      .doc("names of the joints, one for each limb; default '<limb> joint'. A step_lap_joint of that name "
+      .doc("names of the joints, one for each limb, middle ones last; default '<limb> joint'. A step_lap_joint of that name "
            "is used as it stands, else one is added");
   f.add("limb_width", &T::limb_width).in("m").positive().required().doc("width of a limb's sheets");
   f.add("core_height", &T::core_height).in("m").positive().required().doc("over both yokes; its middle is "
                                                                           "at the limb's centre of gravity");
   f.add("yoke_height", &T::yoke_height).in("m").positive().required().doc("of one yoke");
   f.add("mitre_angle", &T::mitre_angle).in("rad").doc("against the yoke; default: from corner to corner");
+  f.add("notch_angle", &T::notch_angle).in("rad").doc("of a middle limb's point against the yoke; default: 45°");
   f.add("tongue", &T::tongue).in("m").positive().doc("length of sheet on either side of the middle of the mitre");
   f.add("margin", &T::margin).in("m").not_negative().doc("of the yoke's sheet beyond the limb's at either end "
                                                          "of the mitre");
@@ -282,8 +325,8 @@ const TableKind& core_kind() {
   static const TableKind kind = [] {
     TableKind k;
     k.name = "core";
-    k.doc = "A core's outer limbs, mitred to the yokes: adds a step_lap_joint for each limb, with the sheets of "
-            "its top and bottom corner. The overlaps are given by 'overlap' and 'interfaces', or by how the "
+    k.doc = "A core's limbs, mitred to the yokes: adds a step_lap_joint for each limb, with the sheets of its top "
+            "and bottom corner (outer limbs) or of both sides of its points (middle limbs). The overlaps are given by 'overlap' and 'interfaces', or by how the "
             "stack is built.";
     add_dimensions(k.fields);
     add_stack(k.fields);

@@ -1,5 +1,4 @@
-// [[core]]: the step-lap joints between the outer limbs of a core and its yokes, from the core's
-// dimensions.
+// [[core]]: the step-lap joints between the limbs of a core and its yokes, from the core's dimensions.
 //
 // For each limb named there is one step_lap_joint, and at its top and bottom corner one
 // step_lap_interface for each band of overlap (book.h), its sheets in ground coordinates of the reference
@@ -7,9 +6,9 @@
 //   limb sheet 0 ≤ s ≤ l, inner ≤ q ≤ tongue, fixed in the limb;
 //   yoke sheet −margin ≤ s ≤ l + margin, −tongue ≤ q ≤ outer, fixed in the active part
 // (s, q along and across the mitre, l its length: corner.h). The limb's centre is its centre of gravity.
+// An outer limb has one mitre at either end, a middle limb ends in a point between two (T-joint).
 // Assumes rectangular yokes and limbs of one sheet width (a core of several packets is several [[core]]
-// tables that name the same joints), limbs ahead of and behind the active part's centre (no T-joints),
-// pressure uniform over a corner. Source and assumptions: docs/core.md.
+// tables that name the same joints), pressure uniform over a corner. Source and assumptions: docs/core.md.
 #pragma once
 
 #include "mbd/model.h"
@@ -18,11 +17,13 @@ namespace steplap {
 
 struct Core : Element {
   std::string active_part;         ///< body with the yokes
-  std::vector<std::string> limbs;  ///< bodies
-  std::vector<std::string> joints; ///< one for each limb; default "<limb> joint"
+  std::vector<std::string> limbs;  ///< bodies of the outer limbs
+  std::vector<std::string> middle_limbs; ///< bodies of the limbs between
+  std::vector<std::string> joints; ///< one for each limb, outer ones first; default "<limb> joint"
 
   double limb_width = 0.0, core_height = 0.0, yoke_height = 0.0; ///< m
   std::optional<double> mitre_angle; ///< rad against the yoke; default: from corner to corner
+  std::optional<double> notch_angle; ///< rad, of either side of a T-joint's point against the yoke; default 45°
   double tongue = 0.05;              ///< m, sheet on either side of the middle of the mitre
   double margin = 0.02;              ///< m, of the yoke sheet beyond the limb's at both ends of the mitre
 

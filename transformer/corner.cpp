@@ -20,6 +20,12 @@ CornerFrame corner_frame(const Mitre& mitre, double side, double level) {
   return frame;
 }
 
+CornerFrame notch_frame(const Mitre& mitre, double side, double level) {
+  CornerFrame frame = corner_frame(mitre, side, level);
+  frame.length = 0.5 * mitre.limb_width / std::cos(*mitre.angle);
+  return frame;
+}
+
 std::vector<Vec2> band(const CornerFrame& frame, double s0, double s1, double q0, double q1) {
   const auto at = [&](double s, double q) { return Vec2(frame.origin + s * frame.along + q * frame.across); };
   return {at(s0, q0), at(s1, q0), at(s1, q1), at(s0, q1)};

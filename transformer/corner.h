@@ -6,6 +6,9 @@
 // −level cos α) points away from the yoke. W limb width, H height of the core, Y height of a yoke, α
 // angle of the mitre against the yoke. From corner to corner of the rectangle where limb and yoke cross
 // (tan α = Y/W), or else as far as limb and yoke both reach.
+//
+// A middle limb ends in a point that enters a notch of the yoke (T-joint): two such mitres, `side` +1 and −1,
+// each from a corner of the window to the limb's centre line.
 #pragma once
 
 #include "mbd/types.h"
@@ -28,6 +31,9 @@ struct CornerFrame {
 };
 
 [[nodiscard]] CornerFrame corner_frame(const Mitre& mitre, double side, double level);
+
+/// One side of a middle limb's point: the mitre that rises towards `side`. Needs mitre.angle.
+[[nodiscard]] CornerFrame notch_frame(const Mitre& mitre, double side, double level);
 
 /// The points s₀…s₁ along × q₀…q₁ across: four corners.
 [[nodiscard]] std::vector<Vec2> band(const CornerFrame& frame, double s0, double s1, double q0, double q1);

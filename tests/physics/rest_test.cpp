@@ -122,3 +122,48 @@ length = 1.0
     CHECK(std::string(error.what()).find("rod' cannot be assembled") != std::string::npos);
   }
 }
+
+// On a slope of angle a friction takes tan a of the normal force: the share used is tan a / mu.
+TEST_CASE("a block at rest on a slope uses tan a / mu of its friction") {
+  for (const double slope : {0.05, 0.2, 0.35}) {
+    CAPTURE(slope);
+    const double mu = 0.4;
+    const Model model = scene(k_head + R"(
+[[body]]
+name = "block"
+mass = 100
+inertia = 10
+position = [0.0, 0.2]
+[[marker]]
+name = "slope"
+body = "ground"
+at = [0.0, 0.0]
+[[element]]
+kind = "unilateral_contact"
+name = "upper"
+a = { body = "block", point = [-0.5, -0.2] }
+b = "slope"
+stiffness = 1e6
+damping = 1e3
+preload = 490
+[[element]]
+kind = "unilateral_contact"
+name = "lower"
+a = { body = "block", point = [0.5, -0.2] }
+b = "slope"
+stiffness = 1e6
+damping = 1e3
+preload = 490
+[[element]]
+kind = "coulomb_stick"
+name = "friction"
+contacts = ["upper", "lower"]
+static_friction = 0.4
+)" + ("[[element]]\nkind = \"load\"\nname = \"tilt\"\nat = \"block\"\nforce = [" + std::to_string(981.0 * std::tan(slope)) + ", 0.0]\n"));
+    const Equilibrium rest = settle(model); // a force of m g tan a is gravity on the slope, divided by cos a
+    REQUIRE(rest.margins.size() == 1);
+    // Six decimals in the load of the model's text.
+    CHECK(rest.margins[0].used == doctest::Approx(std::tan(slope) / mu).epsilon(1e-6));
+    CHECK(rest.slipping.empty());
+  }
+}

@@ -132,7 +132,7 @@ axis = [1, 0]
 )";
   const Outcome outcome = steplap_does({"equilibrium", bench.write("a.toml", text)});
   CHECK(outcome.code == 0);
-  CHECK(has(outcome.out, "a: in equilibrium"));
+  CHECK(has(outcome.out, "a: in stable equilibrium"));
   CHECK(has(outcome.out, "20 mm")); // 2 kg · 8 m/s² / 800 N/m
   CHECK(has(outcome.out, "-16 N"));
   const Outcome none = steplap_does({"equilibrium", bench.write("b.toml", k_falling)});

@@ -298,6 +298,31 @@ TEST_CASE("a mitre that does not run from corner to corner ends where limb or yo
         doctest::Approx(0.4 * std::sqrt(2.0)).epsilon(1e-12));
 }
 
+// A limb of 0.5 m ends in a point of 45°: two mitres of 0.25 m/cos 45° at either end.
+TEST_CASE("a middle limb has two mitres at either end, together as long as one from corner to corner") {
+  const std::vector<std::string> middle = {"core.core.limbs=[\"front limb\"]",
+                                           "core.core.middle_limbs=[\"back limb\"]",
+                                           "body.back limb.position=[0.0,1.95]"};
+  const Model model = model_of(k_shape + k_counted, middle);
+  CHECK(interfaces_of(model).size() == 2 + 4);
+  const Patch outer = patch_of(model, 0), inner = patch_of(model, 1);
+  CHECK(inner.force() == doctest::Approx(outer.force()).epsilon(1e-12));
+  CHECK((inner.centroid() - inner.reference()).norm() < 1e-13); // fore and aft, top and bottom alike
+  // Each mitre begins at a corner of the window and ends on the limb's centre line.
+  for (const StepLapInterface* e : interfaces_of(model)) {
+    if (e->joint != "back limb joint") continue;
+    CAPTURE(e->name);
+    const double front = has(e->name, "front") ? 1.0 : -1.0, level = has(e->name, "top") ? 1.0 : -1.0;
+    const Vec2 inner_edge(-front, -level); // across the mitre, towards the limb
+    const Vec2 start = e->limb[0] + 0.005 * inner_edge.normalized(), end = e->limb[1] + 0.005 * inner_edge.normalized();
+    CHECK((start - Vec2(0.25 * front, 1.95 + 1.15 * level)).norm() < 1e-14);
+    CHECK((end - Vec2(0.0, 1.95 + 1.40 * level)).norm() < 1e-14);
+  }
+  CHECK(has(refusal(k_shape + k_counted, {middle[0], middle[1], "core.core.notch_angle=70 degree"}),
+            "is higher than the yoke of 0.5 m"));
+  CHECK(has(refusal(k_shape + k_counted, {"core.core.middle_limbs=[\"back limb\"]"}), "names limb 'back limb' twice"));
+}
+
 // --- what is refused ---------------------------------------------------------------------------------------------
 
 TEST_CASE("impossible cores are refused, with what would be right") {

@@ -60,11 +60,23 @@ void print_reactions(std::ostream& out, const System& system, State found) {
   if (!table.is_empty()) out << "\nReactions\n" << table;
 }
 
+// How much more of the present load each friction element could bear before it slips.
+void print_margins(std::ostream& out, const System& system, const std::vector<FrictionMargin>& margins) {
+  TextTable table({Align::left, Align::right, Align::right});
+  table.add_row({"friction", "used", "slips at"});
+  for (const FrictionMargin& margin : margins)
+    table.add_row({system.element_names[system.frictions[margin.friction].element],
+                   quantity_text(100.0 * margin.used, "%", 1.0),
+                   margin.used > 0.0 ? quantity_text(1.0 / margin.used, "times its load", 1.0) : "holds nothing now"});
+  if (!margins.empty()) out << "\nDistance from slipping\n" << table;
+}
+
 void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equilibrium& found) {
-  out << loaded.name << ": in equilibrium after " << found.iterations << " iterations; acceleration left "
+  out << loaded.name << ": in stable equilibrium after " << found.iterations << " iterations; acceleration left "
       << small_text(found.residual) << " m/s²; moved at most " << quantity_text(found.moved, "m", k_unit) << "\n\n";
   print_poses(out, *loaded.system, loaded.system->initial_state(), found.state);
   print_reactions(out, *loaded.system, found.state);
+  print_margins(out, *loaded.system, found.margins);
 }
 
 ExitCode equilibrium(const EquilibriumOptions& options, Console& console) {
