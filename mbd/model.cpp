@@ -46,9 +46,9 @@ const FieldTable& SimulationSettings::fields() {
     FieldTable f;
     f.add("end", &T::end).in("s").positive().doc("end of the run; it starts at t = 0");
     f.add("integrator", &T::integrator).one_of({"rk4", "tsit5", "dop853", "rodas5p", "moreau", "auto"}).doc("integration method");
-    f.add("step", &T::step).in("s").positive().doc("step size of the fixed-step method");
+    f.add("step", &T::step).in("s").positive().doc("step size of the fixed-step methods, rk4 and moreau");
     f.add("tolerance", &T::tolerance).at_least(1e-14).at_most(0.1).doc(
-        "relative tolerance of the adaptive methods");
+        "relative tolerance of the adaptive methods, for each step; 1e-8 if not given");
     f.add("initial", &T::initial).one_of({"as_given", "equilibrium"}).doc(
         "start from the poses in the file or from static equilibrium");
     f.add("velocity", &T::velocity).in("m/s").doc("added to the initial velocity of every body");

@@ -87,7 +87,7 @@ struct SignalEntry {
 
 struct SimulationSettings {
   double end = 1.0;                     ///< s
-  std::string integrator = "rk4";
+  std::string integrator = "auto";
   std::optional<double> step;           ///< s, fixed step methods
   std::optional<double> tolerance;      ///< relative, adaptive methods
   std::string initial = "as_given";     ///< "as_given" or "equilibrium"

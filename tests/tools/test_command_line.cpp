@@ -12,7 +12,7 @@ TEST_CASE("help names every command, the exit codes and examples") {
   for (const char* part : {"Exit codes:", "Examples:"})
     CHECK(has(help.out, part));
   for (const char* command :
-       {"simulate", "check", "equilibrium", "modes", "joint", "accuracy", "elements", "schema"}) {
+       {"simulate", "report", "plot", "check", "equilibrium", "modes", "joint", "accuracy", "elements", "schema"}) {
     CHECK(has(help.out, command));
     CHECK(has(text_of(STEPLAP_SOURCE "/README.md"), std::string("`steplap ") + command));
     const Outcome own = steplap_does({command, "--help"});

@@ -237,6 +237,18 @@ TEST_CASE("report: places, refusals and the page of simulate") {
   CHECK(bench.content("new/a") == std::set<std::string>{"report.html"});
 }
 
+TEST_CASE("a hold that is required and not given is exit code 5; the results are there") {
+  const Workbench bench;
+  const auto code = [&](const std::string& limit) {
+    const std::string model = bench.write("a.toml", std::string(k_bouncer) + "[[acceptance]]\nname = \"height\"\nchannel = \"ball.y\"\n" + limit);
+    return steplap_does({"simulate", model, "-q", "-f", "-o", bench.at("out"), "--require-hold"}).code;
+  };
+  CHECK(code("at_most = 0.11\n") == 0); // it falls from 0.1 m
+  CHECK(code("at_most = 0.09\n") == 5);
+  CHECK(has(text_of(bench.at("out/a/summary.json")), "\"verdict\": \"inspect\""));
+  CHECK(steplap_does({"simulate", bench.write("b.toml", k_bouncer), "-q", "-o", bench.at("out"), "--require-hold"}).code == 5);
+}
+
 TEST_CASE("gnuplot scripts: names are text, units have prefixes, panels of one unit") {
   const std::vector<double> t{0, 1, 2}, v{0, -2500, std::numeric_limits<double>::infinity()};
   Figure figure;

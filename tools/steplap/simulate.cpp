@@ -1,11 +1,13 @@
 #include "tools/steplap/simulate.h"
 
+#include "mbd/validate.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/progress.h"
 #include "tools/steplap/report.h"
 #include "tools/steplap/result_files.h"
 #include "tools/steplap/run_screen.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <ostream>
@@ -20,7 +22,8 @@ struct SimulateOptions {
   std::vector<std::string> overrides;
   std::string output = "out";
   std::optional<std::string> end, step, integrator, tolerance;
-  bool is_overwriting = false, is_error_estimated = false, is_reported = false;
+  bool is_overwriting = false, is_error_estimated = false, is_reported = false,
+       is_hold_required = false;
 
   /// --set and its short forms.
   [[nodiscard]] std::vector<std::string> all_overrides() const {
@@ -97,8 +100,18 @@ FinishedRun run_one(const SimulateOptions& options,
   return finished;
 }
 
+void check_step(const SimulateOptions& options, const Models& models) {
+  for (const auto& loaded : models) {
+    const std::string& integrator = loaded->model.simulation.integrator;
+    if (options.step && !has_fixed_step(integrator))
+      throw UsageError("--step is for integrators of a fixed step; '" + integrator + "' of '" + loaded->path +
+                       "' chooses its steps by --tolerance: add --integrator rk4");
+  }
+}
+
 ExitCode simulate(const SimulateOptions& options, Console& console) {
   const Models models = load_models(options.models, options.all_overrides());
+  check_step(options, models);
   check_folders(options, models);
   std::vector<FinishedRun> runs;
   ExitCode code = ExitCode::done;
@@ -112,6 +125,10 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
     }
   }
   if (runs.empty()) return code;
+  const bool is_held = std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) {
+    return run.summary.judgement.verdict == Verdict::hold;
+  });
+  if (options.is_hold_required && !is_held && code == ExitCode::done) code = ExitCode::criterion_failed;
   if (options.is_reported) {
     std::vector<std::string> folders;
     for (const FinishedRun& run : runs)
@@ -156,6 +173,8 @@ exit code is 4.
       {"--estimate-error", &o->is_error_estimated, "",
        "tell the global error, from a second run at a finer tolerance or step"},
       {"--report", &o->is_reported, "", "write a page of the runs, too; see steplap report"},
+      {"--require-hold", &o->is_hold_required, "",
+       "exit code 5 unless the verdict on every run is hold; see steplap elements acceptance"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
   command.run = [o](Console& console) { return simulate(*o, console); };
   return command;

@@ -1,5 +1,7 @@
 #include "tools/steplap/warnings.h"
 
+#include "mbd/validate.h"
+
 #include <unordered_map>
 #include <unordered_set>
 
@@ -53,6 +55,10 @@ std::vector<std::string> warnings_about(const LoadedModel& loaded) {
   for (const Body& body : model.bodies)
     if (used.bodies.count(body.name) == 0)
       warnings.push_back("no element is attached to body '" + body.name + "'" + place(body.where));
+  const SimulationSettings& s = model.simulation;
+  if (s.step && !s.tolerance && !has_fixed_step(s.integrator))
+    warnings.push_back("'step' of [simulation] is not used: '" + s.integrator +
+                       "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"");
   const Trajectory written(*loaded.system, model.output.channels);
   if (written.channels().empty())
     warnings.push_back("no channel matches 'channels' of [output]: the trajectory will hold the time only");

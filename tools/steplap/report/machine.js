@@ -66,12 +66,15 @@ steplap.Scene = (() => {
       }
       return largest;
     }
-    // The body from which least is seen to move, where that is much less than from the ground.
+    // The vehicle that a drive moves, or the body from which least is seen to move, where that is much less
+    // than from the ground.
     usualStandpoint() {
       const wanted = this.run.drawing.seen_from;
       if (wanted) return wanted;
       let best = 'ground', least = 0.3 * this.largestDisplacement('ground');
       if (this.bodies.size > 12) return best;
+      const drive = this.elements.find((e) => e.kind === 'prescribed_motion' && e.at.length > 1 && e.at[1].body === 'ground');
+      if (drive && this.largestDisplacement(drive.at[0].body) < least) return drive.at[0].body;
       for (const name of this.bodies.keys()) {
         const d = this.largestDisplacement(name);
         if (d < least) { best = name; least = d; }
