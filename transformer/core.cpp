@@ -6,6 +6,7 @@
 #include "transformer/book.h"
 #include "transformer/corner.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -35,6 +36,8 @@ public:
     if (problems_.empty()) check_reach(bands);
     if (!problems_.empty()) throw ModelError(std::move(problems_));
     for (std::size_t i = 0; i < limbs_.size(); ++i) add_joint(i, bands);
+    draw_limbs();
+    draw_active_part();
   }
 
 private:
@@ -65,6 +68,10 @@ private:
                   const std::vector<LapBand>& bands);
   void add_interface(std::size_t i, bool is_top, const CornerFrame& corner, const std::string& name,
                      const LapBand& lap);
+
+  [[nodiscard]] std::vector<Vec2> limb_corners(std::size_t i) const;
+  void draw_limbs();
+  void draw_active_part();
 
   const Core& core_;
   Model& model_;
@@ -267,6 +274,62 @@ void CoreBuilder::add_interface(std::size_t i, bool is_top, const CornerFrame& c
   e->kinetic_friction = !is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction
                                                                  : core_.kinetic_friction;
   model_.elements.push_back({&step_lap_interface_kind(), e});
+}
+
+// --- outlines, for bodies whose model gives none ---------------------------------------------------------
+
+// Counter-clockwise from the bottom, in the active part's axes about the limb's centre.
+std::vector<Vec2> CoreBuilder::limb_corners(std::size_t i) const {
+  const Mitre outer{core_.limb_width, core_.core_height, core_.yoke_height, core_.mitre_angle};
+  const Mitre notch{core_.limb_width, core_.core_height, core_.yoke_height, notch_angle()};
+  const double side = reach(*model_.find_body(limbs_[i]), *model_.find_body(core_.active_part)).x() > 0.0 ? 1.0 : -1.0;
+  std::vector<Vec2> corners;
+  for (const double level : {-1.0, 1.0}) {
+    std::vector<Vec2> end;
+    if (is_middle(i)) {
+      const CornerFrame left = notch_frame(notch, 1.0, level), right = notch_frame(notch, -1.0, level);
+      end = {left.origin, left.origin + left.length * left.along, right.origin};
+    } else {
+      const CornerFrame corner = corner_frame(outer, side, level);
+      end = {corner.origin, corner.origin + corner.length * corner.along};
+    }
+    // From left to right at the bottom, back again at the top.
+    std::sort(end.begin(), end.end(), [level](const Vec2& a, const Vec2& b) { return level * a.x() > level * b.x(); });
+    corners.insert(corners.end(), end.begin(), end.end());
+  }
+  return corners;
+}
+
+void CoreBuilder::draw_limbs() {
+  const Body& part = *model_.find_body(core_.active_part);
+  for (std::size_t i = 0; i < limbs_.size(); ++i)
+    for (Body& body : model_.bodies) {
+      if (body.name != limbs_[i] || !body.outline.empty()) continue;
+      for (const Vec2& p : limb_corners(i))
+        body.outline.push_back(body.cg + rotated(p, part.angle - body.angle));
+    }
+}
+
+// What lies between the outer limbs: yokes, windings and all.
+void CoreBuilder::draw_active_part() {
+  const Body* rear = nullptr;
+  const Body* front = nullptr;
+  std::vector<Vec2> at_rear, at_front;
+  for (Body& part : model_.bodies) {
+    if (part.name != core_.active_part || !part.outline.empty()) continue;
+    for (std::size_t i = 0; i < core_.limbs.size(); ++i) {
+      const Body* limb = model_.find_body(limbs_[i]);
+      const Vec2 place = reach(*limb, part);
+      const bool is_front = place.x() > 0.0;
+      (is_front ? front : rear) = limb;
+      std::vector<Vec2>& corners = is_front ? at_front : at_rear;
+      corners = limb_corners(i);
+      for (Vec2& p : corners) p += part.cg + place;
+    }
+    if (!rear || !front) return;
+    // Corners of an outer limb: bottom left, bottom right, top right, top left.
+    part.outline = {at_rear[0], at_front[1], at_front[0], at_front[3], at_front[2], at_rear[3], at_rear[2], at_rear[1]};
+  }
 }
 
 void add_dimensions(FieldTable& f) {

@@ -64,6 +64,10 @@ class ReportTest(unittest.TestCase):
         steplap("simulate", *models, "-q", "-o", "out")
         steplap("report", "out/no_interference", "out/interference", "-o", "paper.html", "-q")
         steplap("report", "out/weak_clamping", "-q")
+        layouts = [os.path.join(MODELS, "layouts", name + ".toml") for name in ("three_limb", "rail_wagon_humping")]
+        steplap("simulate", *layouts, "-q", "-o", "out")
+        for name in ("three_limb", "rail_wagon_humping"):
+            steplap("report", "out/" + name, "-q")
         with open(os.path.join(WORK.name, "hostile.toml"), "w", encoding="utf-8") as file:
             file.write(HOSTILE)
         steplap("simulate", "hostile.toml", "-q", "-o", "out", "--report")
@@ -251,7 +255,8 @@ class ReportTest(unittest.TestCase):
 
     def test_nothing_overlaps_or_runs_out_of_the_page(self):
         for size in SIZES:
-            for page in ("paper.html", "out/weak_clamping/report.html"):
+            for page in ("paper.html", "out/weak_clamping/report.html", "out/three_limb/report.html",
+                         "out/rail_wagon_humping/report.html"):
                 self.open(page, size)
                 self.assertLessEqual(self.run_js("return document.documentElement.scrollWidth - innerWidth"), 0)
                 boxes = self.run_js("""return [...document.querySelectorAll('.scene')].map(s =>

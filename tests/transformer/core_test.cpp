@@ -359,3 +359,24 @@ TEST_CASE("all that is wrong with a core is said at once") {
   CHECK(has(all, "leave no window"));
   CHECK(has(all, "needs either"));
 }
+
+TEST_CASE("limbs and active part without an outline are drawn by the core's dimensions") {
+  Model model = read_model(std::string(STEPLAP_MODELS) + "/layouts/three_limb.toml", transformer_catalog());
+  const auto area = [&](const char* name) {
+    const std::vector<Vec2>& p = model.find_body(name)->outline;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const Vec2 &a = p[i], &b = p[(i + 1) % p.size()];
+      sum += 0.5 * (a.x() * b.y() - b.x() * a.y());
+    }
+    return sum;
+  };
+  const auto core = std::find_if(model.elements.begin(), model.elements.end(), [](const ElementEntry& e) {
+    return e.element->name == "core: front joint, top";
+  });
+  REQUIRE(core != model.elements.end());
+  // Counter-clockwise, and the two outer limbs are mirror images: equal areas, to rounding.
+  CHECK(area("front limb") > 0.0);
+  CHECK(area("front limb") == doctest::Approx(area("rear limb")).epsilon(1e-12));
+  CHECK(model.find_body("middle limb")->outline.size() == 6);
+}

@@ -46,7 +46,9 @@ steplap.Scene = (() => {
       for (const e of this.elements) for (const a of e.at) take(this.placed(a, (n) => this.reference(n)));
       if (!isFinite(low[0])) { take([-1, -1]); take([1, 1]); }
       this.stillLow = low; this.stillHigh = high;
-      this.size = Math.max(high[0] - low[0], high[1] - low[1], 1e-6);
+      const spans = [high[0] - low[0], high[1] - low[1]];
+      this.size = Math.max(...spans, 1e-6);
+      this.symbolSize = Math.min(this.size, Math.max(1.6 * Math.min(...spans), 0.25 * this.size));
     }
     reference(name) { const body = this.bodies.get(name); return body ? body.pose : [0, 0, 0]; }
     poseAt(name, t) { const body = this.bodies.get(name); return body ? body.poseAt(t) : [0, 0, 0]; }
@@ -121,10 +123,12 @@ steplap.Scene = (() => {
       const middle = 0.5 * (low[0] + high[0]);
       this.toScreen = (p) => [this.width / 2 + (p[0] - middle) * this.scale, height - margin - (p[1] - low[1]) * this.scale];
       this.svg.setAttribute('viewBox', `0 0 ${this.width} ${height}`);
+      this.spreadMarks();
     }
     build() {
       this.svg = make('svg', { role: 'img', 'aria-label': `Drawing of ${this.run.name}` });
       this.updaters = [];
+      this.marks = new Map();
       const layers = ['bodies', 'elements', 'texts'].map((name) => make('g', { class: name }));
       [this.bodyLayer, this.elementLayer, this.textLayer] = layers;
       this.svg.append(...layers);
@@ -132,20 +136,38 @@ steplap.Scene = (() => {
       for (const body of this.bodies.values()) this.buildBody(body, ++number);
       for (const element of this.elements) this.buildElement(element);
     }
+    // Marks of bodies whose centres lie together are set apart, as far as need be; small bodies keep theirs.
+    spreadMarks() {
+      const extent = (name) => { const points = this.bodies.get(name).outline; return Math.max(...points.map(length)); };
+      const taken = [];
+      for (const [name, mark] of [...this.marks].sort((a, b) => extent(a[0]) - extent(b[0]))) {
+        const [x, y] = this.toScreen(this.reference(name));
+        const isFree = ([dx, dy]) => taken.every((p) => Math.hypot(p[0] - x - dx, p[1] - y - dy) > 24);
+        const ring = (r) => [...Array(8).keys()].map((k) => [r * Math.cos((k * Math.PI) / 4), r * Math.sin((k * Math.PI) / 4)]);
+        mark.shift = [[0, 0], ...ring(26), ...ring(50), ...ring(76)].find(isFree) || [0, 0];
+        taken.push([x + mark.shift[0], y + mark.shift[1]]);
+      }
+    }
     buildBody(body, number) {
       const isLine = body.outline.length < 3;
       const shape = make('path', { class: `body${isLine ? ' line' : ''}${this.limbs.has(body.name) ? ' limb' : ''}`, 'data-body': body.name,
         d: 'M' + body.outline.map((p) => p.join(' ')).join('L') + (isLine ? '' : 'Z') }, make('title', {}, body.label || body.name));
       this.bodyLayer.append(shape);
       const mark = this.bodies.size <= 40 ? make('g', {}, make('circle', { r: 10, class: 'number-mark' }), make('text', { class: 'number-text' }, number)) : null;
-      if (mark) this.textLayer.append(mark);
+      if (mark) {
+        this.textLayer.append(mark);
+        this.marks.set(body.name, { shift: [0, 0], element: mark });
+      }
       const joint = this.run.drawing.elements.find((e) => e.kind === 'step_lap_joint' && e.limb === body.name);
       const since = joint && this.run.events.find((e) => e[1] === joint.name && /^(slips|comes apart)/.test(e[2]));
       this.updaters.push((t, pose) => {
         const [x, y, angle] = pose(body.name), c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle);
         const [sx, sy] = this.toScreen([x, y]);
         shape.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${sx} ${sy})`);
-        if (mark) mark.setAttribute('transform', `translate(${sx} ${sy})`);
+        if (mark) {
+          const [dx, dy] = this.marks.get(body.name).shift;
+          mark.setAttribute('transform', `translate(${sx + dx} ${sy + dy})`);
+        }
         if (joint) shape.classList.toggle('slipped', Boolean((since && t >= since[0]) || this.run.modeAt(joint.name, t) >= 2));
       });
     }
@@ -180,12 +202,12 @@ steplap.Scene = (() => {
         return axis[0] * (a[0] - b[0]) + axis[1] * (a[1] - b[1]);
       };
       const still = element.direction ? along(reference) : 0;
-      const least = Math.max(0, 0.05 * this.size - Math.abs(still)) * (still < 0 ? -1 : 1);
+      const least = Math.max(0, 0.05 * this.symbolSize - Math.abs(still)) * (still < 0 ? -1 : 1);
       this.updaters.push((t, pose) => {
         let [a, b] = this.ends(element, pose);
         const axis = this.direction(element, pose);
         if (axis) b = minus(a, scaled(axis, along(pose) + least));
-        const d = minus(a, b), n = scaled(unit([-d[1], d[0]]), 0.012 * this.size);
+        const d = minus(a, b), n = scaled(unit([-d[1], d[0]]), 0.012 * this.symbolSize);
         const points = [b, add(b, scaled(d, 0.15))];
         for (let k = 0; k < 8; ++k) points.push(add(add(b, scaled(d, 0.2 + 0.08 * k)), scaled(n, k % 2 ? -1 : 1)));
         points.push(add(b, scaled(d, 0.85)), a);
@@ -201,12 +223,12 @@ steplap.Scene = (() => {
       const largest = extreme ? Math.max(Math.abs(extreme.min), Math.abs(extreme.max), 1e-30) : 1;
       this.updaters.push((t, pose) => {
         const [a, b] = this.ends(element, pose), n = this.direction(element, pose) || unit(minus(a, b));
-        const along = [-n[1], n[0]], w = 0.022 * this.size, foot = minus(a, scaled(n, n[0] * (a[0] - b[0]) + n[1] * (a[1] - b[1])));
+        const along = [-n[1], n[0]], w = 0.022 * this.symbolSize, foot = minus(a, scaled(n, n[0] * (a[0] - b[0]) + n[1] * (a[1] - b[1])));
         const f = force ? force.at(t) : 0;
         wedge.setAttribute('d', this.poly([a, add(add(a, scaled(n, 1.3 * w)), scaled(along, 0.7 * w)), add(add(a, scaled(n, 1.3 * w)), scaled(along, -0.7 * w))]) + 'Z');
         wedge.classList.toggle('closed', f > 0);
         surface.setAttribute('d', this.poly([add(foot, scaled(along, 1.6 * w)), add(foot, scaled(along, -1.6 * w))]));
-        bar.setAttribute('d', f > 0 ? this.poly([add(a, scaled(n, 1.3 * w)), add(a, scaled(n, 1.3 * w + 0.1 * this.size * (f / largest)))]) : 'M0 0');
+        bar.setAttribute('d', f > 0 ? this.poly([add(a, scaled(n, 1.3 * w)), add(a, scaled(n, 1.3 * w + 0.1 * this.symbolSize * (f / largest)))]) : 'M0 0');
       });
     }
     // What friction does, in words, between the contacts it sits on.
@@ -223,7 +245,9 @@ steplap.Scene = (() => {
         const arrow = m === 2 && rate ? (rate.at(t) >= 0 ? ' →' : ' ←') : '';
         text.textContent = `${element.name}: ${state}${arrow}`;
         text.setAttribute('class', `state-text ${state}`);
-        text.setAttribute('x', x); text.setAttribute('y', y + 18);
+        const marks = [...this.marks.keys()].map((name) => { const q = this.toScreen(pose(name)), d = this.marks.get(name).shift; return [q[0] + d[0], q[1] + d[1]]; });
+        const isFree = (dy) => marks.every((q) => Math.abs(q[1] - y - dy) > 18 || Math.abs(q[0] - x) > 16 + 4 * text.textContent.length);
+        text.setAttribute('x', x); text.setAttribute('y', y + ([18, 40, -14, 62, 84].find(isFree) || 18));
       });
     }
     pin(element) {
@@ -239,7 +263,7 @@ steplap.Scene = (() => {
       if (!element.at.length) return;
       const path = this.path(element, { class: 'symbol', 'stroke-dasharray': '6 4' });
       this.updaters.push((t, pose) => {
-        const [a, b] = this.ends(element, pose), d = scaled(this.direction(element, pose) || [1, 0], 0.07 * this.size);
+        const [a, b] = this.ends(element, pose), d = scaled(this.direction(element, pose) || [1, 0], 0.07 * this.symbolSize);
         path.setAttribute('d', this.poly([minus(b, d), add(b, d)]) + this.poly([a, add(a, scaled(d, 1e-3))]));
       });
     }
@@ -260,7 +284,7 @@ steplap.Scene = (() => {
       if (!element.at.length) return;
       const path = this.path(element);
       this.updaters.push((t, pose) => {
-        const a = this.ends(element, pose)[0], d = scaled(this.direction(element, pose) || [1, 0], 0.06 * this.size);
+        const a = this.ends(element, pose)[0], d = scaled(this.direction(element, pose) || [1, 0], 0.06 * this.symbolSize);
         const tip = add(a, d), back = scaled(d, -0.3), side = [-back[1] * 0.6, back[0] * 0.6];
         path.setAttribute('d', this.poly([a, tip]) + this.poly([add(add(tip, back), side), tip, minus(add(tip, back), side)]));
       });
