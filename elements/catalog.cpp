@@ -2,9 +2,14 @@
 
 #include "elements/bushing.h"
 #include "elements/coulomb_stick.h"
+#include "elements/gears.h"
+#include "elements/joint_friction.h"
 #include "elements/joints.h"
+#include "elements/limit.h"
 #include "elements/load.h"
+#include "elements/motor.h"
 #include "elements/prescribed_motion.h"
+#include "elements/round_contacts.h"
 #include "elements/spring_damper.h"
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
@@ -19,12 +24,15 @@ const Catalogue& element_catalog() {
     Catalogue c;
     c.elements = {&spring_damper_kind(),     &rotational_spring_damper_kind(),
                   &bushing_kind(),           &unilateral_contact_kind(),
+                  &circle_contact_kind(),    &segment_contact_kind(),
                   &coulomb_stick_kind(),     &step_lap_joint_kind(),
                   &step_lap_interface_kind(),
                   &revolute_kind(),          &prismatic_kind(),
                   &weld_kind(),              &distance_kind(),
                   &point_on_line_kind(),     &prescribed_motion_kind(),
-                  &load_kind()};
+                  &gear_kind(),              &rack_kind(),
+                  &motor_kind(),             &limit_kind(),
+                  &joint_friction_kind(),    &load_kind()};
     c.signals = signal_kinds();
     c.signals.push_back(&record_signal_kind());
     c.tables = {&plot_kind(), &acceptance_kind()};

@@ -1,5 +1,7 @@
 #include "elements/coulomb_stick.h"
 
+#include "elements/round_contacts.h"
+#include "elements/round_measures.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/system.h"
 
@@ -12,13 +14,15 @@ namespace {
 
 // θ_A = θ_B exactly is the normal state at rest: the foot is kept within this dead band, rad.
 constexpr double k_foot_dead_band = 1e-13;
+// The same where a circle leaves a segment's side for its end, m.
+constexpr double k_end_dead_band = 1e-13;
 // |λ| may pass the bound by rounding, relative: ten times below the 1e-12 that a load can resolve.
 constexpr double k_bound_slack = 1e-13;
 
-class CoulombFriction final : public FrictionElement {
+class CoulombFriction : public FrictionElement {
 public:
   std::vector<ContactIndex> contacts;
-  RowSpec feet[2]; ///< rear-most, front-most; the same twice for one contact
+  std::vector<RowSpec> feet; ///< rear-most, front-most; the same twice for one contact
   bool has_two_feet = false;
   double mu_static = 0.0, mu_kinetic = 0.0;
 
@@ -72,6 +76,24 @@ public:
   }
 };
 
+// Under a segment's contact: one place for each side and each end (SegmentPart).
+class SegmentFriction final : public CoulombFriction {
+public:
+  SegmentMeasure segment;
+
+  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
+    const Pair<double> p = segment.place(e.motion[feet[0].a], e.motion[feet[0].b]);
+    const auto part = static_cast<SegmentPart>(state.foot);
+    if (part == SegmentPart::from) return k_end_dead_band - p.x;
+    if (part == SegmentPart::to) return k_end_dead_band + p.x - segment.length;
+    if ((part == SegmentPart::right) != (p.y < 0.0)) return -1.0; // only after it has been open
+    return k_end_dead_band + std::min(p.x, segment.length - p.x);
+  }
+  void change_place(const Evaluation& e, FrictionState& state) const override {
+    state.foot = static_cast<std::uint32_t>(segment.part(e.motion[feet[0].a], e.motion[feet[0].b]));
+  }
+};
+
 RowSpec slide_row(const ContactGeometry& g, int memory) {
   RowSpec row;
   row.kind = MeasureKind::slide;
@@ -94,7 +116,7 @@ bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactG
     const ContactIndex* index = builder.contact(name);
     const ElementEntry* entry = builder.element(name);
     if (!index || !entry) {
-      builder.error("'" + name + "' is no contact: name unilateral_contact elements in 'contacts'");
+      builder.error("'" + name + "' is no contact: name contact elements in 'contacts'");
       return false;
     }
     const auto* contact = dynamic_cast<const UnilateralContact*>(entry->element.get());
@@ -118,10 +140,6 @@ bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactG
 
 void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
   const int f = builder.next_friction(), row = builder.next_friction_row();
-  const auto reference = [&](int foot) {
-    return evaluate_row<false>(friction.feet[foot], &builder.reference(0)).value;
-  };
-  const double start_front = reference(1), start_rear = reference(0);
   const auto* self = &friction;
   builder.add_channel("friction", "N", "friction force on a along b's tangent",
                       [row](const Snapshot& s) { return s.friction_force[row]; });
@@ -129,14 +147,6 @@ void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
                       [self](const Snapshot& s) { return self->normal_force(*s.evaluation); });
   builder.add_channel("capacity", "N", "largest friction force that holds",
                       [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
-  builder.add_channel("slide", "m", "tangential coordinate of the front-most contact since the reference pose",
-                      [self, start_front](const Snapshot& s) {
-                        return evaluate_row<false>(self->feet[1], s.motion).value - start_front;
-                      });
-  builder.add_channel("slide_rear", "m", "the same of the rear-most contact",
-                      [self, start_rear](const Snapshot& s) {
-                        return evaluate_row<false>(self->feet[0], s.motion).value - start_rear;
-                      });
   builder.add_channel("slip_rate", "m/s", "velocity of the last contact point along b's tangent",
                       [self, f](const Snapshot& s) {
                         return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate;
@@ -146,12 +156,68 @@ void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
   });
 }
 
+// The row's value since the reference pose.
+void add_slide_channel(SystemBuilder& builder, const char* name, const char* doc, const CoulombFriction& friction,
+                       std::size_t place) {
+  const double start = evaluate_row<false>(friction.feet[place], &builder.reference(0)).value;
+  builder.add_channel(name, "m", doc, [&friction, place, start](const Snapshot& s) {
+    return evaluate_row<false>(friction.feet[place], s.motion).value - start;
+  });
+}
+
+void finish(const CoulombStick& e, std::unique_ptr<CoulombFriction> friction, bool is_rolling,
+            SystemBuilder& builder) {
+  for (RowSpec& row : friction->feet) row.element = builder.element_index();
+  friction->mu_static = e.static_friction;
+  friction->mu_kinetic = e.kinetic_friction.value_or(e.static_friction);
+  add_channels(builder, *friction);
+  if (!is_rolling) {
+    add_slide_channel(builder, "slide", "tangential coordinate of the front-most contact since the reference pose",
+                      *friction, 1);
+    add_slide_channel(builder, "slide_rear", "the same of the rear-most contact", *friction, 0);
+  }
+  builder.add_friction(std::move(friction));
+}
+
+bool is_round(const ElementEntry* entry) {
+  return entry && dynamic_cast<const RoundContact*>(entry->element.get());
+}
+
+bool is_any_round(const CoulombStick& e, const SystemBuilder& builder) {
+  return std::any_of(e.contacts.begin(), e.contacts.end(),
+                     [&](const std::string& name) { return is_round(builder.element(name)); });
+}
+
+// Under one contact of a circle: sticking, it rolls.
+void compile_rolling(const CoulombStick& e, SystemBuilder& builder) {
+  if (e.contacts.size() > 1)
+    return builder.error("a circle's contact cannot share its friction with others: give each its own coulomb_stick");
+  const ContactIndex* index = builder.contact(e.contacts.front());
+  if (!index) return; // the contact's own error is reported
+  const Element& contact = *builder.element(e.contacts.front())->element;
+  std::vector<RowSpec> rows = rolling_rows(contact, builder);
+  const int memory = builder.add_memory();
+  for (RowSpec& row : rows) row.memory = memory;
+  std::unique_ptr<CoulombFriction> friction;
+  if (const auto* segment = dynamic_cast<const SegmentContact*>(&contact)) {
+    auto own = std::make_unique<SegmentFriction>();
+    own->segment = segment_measure(*segment, builder);
+    friction = std::move(own);
+  } else {
+    friction = std::make_unique<CoulombFriction>();
+    rows.push_back(rows.front());
+  }
+  friction->contacts.push_back(*index);
+  friction->feet = std::move(rows);
+  finish(e, std::move(friction), true, builder);
+}
+
 void compile_coulomb(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const CoulombStick&>(element);
   if (e.contacts.empty()) return builder.error("'contacts' is empty: name the contacts that carry the friction");
-  const double mu_kinetic = e.kinetic_friction.value_or(e.static_friction);
-  if (mu_kinetic > e.static_friction)
+  if (e.kinetic_friction.value_or(e.static_friction) > e.static_friction)
     return builder.error("'kinetic_friction' must not exceed 'static_friction'");
+  if (is_any_round(e, builder)) return compile_rolling(e, builder);
   std::vector<ContactGeometry> geometry;
   auto friction = std::make_unique<CoulombFriction>();
   if (!collect(e, builder, geometry, friction->contacts)) return;
@@ -164,14 +230,9 @@ void compile_coulomb(const Element& element, SystemBuilder& builder) {
       geometry.begin(), geometry.end(), [&](const ContactGeometry& x, const ContactGeometry& y) {
         return slide_of(x) < slide_of(y);
       });
-  friction->feet[0] = slide_row(*rear, memory);
-  friction->feet[1] = slide_row(*front, memory);
-  friction->feet[0].element = friction->feet[1].element = builder.element_index();
+  friction->feet = {slide_row(*rear, memory), slide_row(*front, memory)};
   friction->has_two_feet = rear != front;
-  friction->mu_static = e.static_friction;
-  friction->mu_kinetic = mu_kinetic;
-  add_channels(builder, *friction);
-  builder.add_friction(std::move(friction));
+  finish(e, std::move(friction), false, builder);
 }
 
 } // namespace
@@ -185,7 +246,7 @@ const ElementKind& coulomb_stick_kind() {
     k.doc = "Coulomb friction under a group of contacts of one pair of bodies: sticks exactly while the "
             "force it takes is within static_friction times the sum of their normal forces.";
     FieldTable& f = k.fields;
-    f.add("contacts", &T::contacts).as(FieldType::elements).required().doc("the contacts that press");
+    f.add("contacts", &T::contacts).as(FieldType::elements).required().doc("the contacts that press: unilateral_contact elements, or one of a circle");
     f.add("static_friction", &T::static_friction).not_negative().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
     k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };

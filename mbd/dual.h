@@ -45,6 +45,9 @@ template <int N> struct Dual {
   }
   friend Dual sin(const Dual& a) { return {std::sin(a.v), std::cos(a.v) * a.d}; }
   friend Dual cos(const Dual& a) { return {std::cos(a.v), -std::sin(a.v) * a.d}; }
+  friend Dual atan2(const Dual& y, const Dual& x) {
+    return {std::atan2(y.v, x.v), (x.v * y.d - y.v * x.d) / (x.v * x.v + y.v * y.v)};
+  }
   friend Dual pow(const Dual& a, double n) {
     return {std::pow(a.v, n), n * std::pow(a.v, n - 1.0) * a.d};
   }

@@ -340,7 +340,7 @@ void Dynamics::evaluate_rows() {
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
     const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), evaluation_.t);
     const MeasureValue<double> m = load_row<false>(r);
-    row_value_[r] = m.value - target.value;
+    row_value_[r] = off_target(*layout_->active[r].spec, m.value, target.value);
     row_rate_[r] = m.rate - target.rate;
   }
 }

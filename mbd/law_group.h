@@ -15,6 +15,43 @@
 
 namespace steplap {
 
+/// Pose at derivative indices first…first+2, velocity at 6+first….
+inline Motion<Dual<12>> seeded(const Motion<double>& m, int first) {
+  using D = Dual<12>;
+  Motion<D> s;
+  s.x = D::variable(m.x, first);
+  s.y = D::variable(m.y, first + 1);
+  s.theta = D::variable(m.theta, first + 2);
+  s.c = D(m.c);
+  s.c.d[first + 2] = -m.s;
+  s.s = D(m.s);
+  s.s.d[first + 2] = m.c;
+  s.vx = D::variable(m.vx, 6 + first);
+  s.vy = D::variable(m.vy, 6 + first + 1);
+  s.omega = D::variable(m.omega, 6 + first + 2);
+  return s;
+}
+
+/// Appends the derivatives of force(value, rate), which acts along the measure; returns the force.
+template <class Measure, class Force>
+Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluation& e, const Force& force,
+                           std::vector<PairJacobian>& out) {
+  const auto m = measure.template at<false, Dual<12>>(seeded(e.motion[a], 0), seeded(e.motion[b], 3));
+  const Dual<12> f = force(m.value, m.rate);
+  const Pair<Dual<12>> d = f * m.direction;
+  const Dual<12> couple_a = cross(m.lever_a, d) + f * m.couple;
+  const Dual<12> couple_b = cross(m.lever_b, d) + f * m.couple;
+  const Dual<12> rows[6] = {d.x, d.y, couple_a, -d.x, -d.y, -couple_b};
+  PairJacobian& j = out.emplace_back();
+  j.a = a;
+  j.b = b;
+  for (int i = 0; i < 6; ++i) {
+    j.stiffness.row(i) = rows[i].d.template head<6>().matrix().transpose();
+    j.damping.row(i) = rows[i].d.template tail<6>().matrix().transpose();
+  }
+  return f;
+}
+
 template <class Measure, class Law> class LawGroup final : public ForceGroup {
 public:
   struct Entry {
@@ -54,23 +91,13 @@ public:
 
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries) {
-      const auto a = seeded(e.motion[entry.a], 0), b = seeded(e.motion[entry.b], 3);
-      const auto m = entry.measure.template at<false, Dual<12>>(a, b);
-      const Dual<12> f = entry.law.force(m.value, m.rate, mode_of(entry, e));
-      const Pair<Dual<12>> d = f * m.direction;
-      const Dual<12> couple_a = cross(m.lever_a, d) + f * m.couple;
-      const Dual<12> couple_b = cross(m.lever_b, d) + f * m.couple;
-      const Dual<12> rows[6] = {d.x, d.y, couple_a, -d.x, -d.y, -couple_b};
-      PairJacobian& j = out.emplace_back();
-      j.a = entry.a;
-      j.b = entry.b;
+      const auto law = [&](const Dual<12>& value, const Dual<12>& rate) {
+        return entry.law.force(value, rate, mode_of(entry, e));
+      };
+      const Dual<12> f = add_pair_jacobian(entry.a, entry.b, entry.measure, e, law, out);
       if constexpr (Law::k_is_contact) {
-        j.contact = entry.contact;
-        j.normal = f.d.matrix();
-      }
-      for (int i = 0; i < 6; ++i) {
-        j.stiffness.row(i) = rows[i].d.template head<6>().matrix().transpose();
-        j.damping.row(i) = rows[i].d.template tail<6>().matrix().transpose();
+        out.back().contact = entry.contact;
+        out.back().normal = f.d.matrix();
       }
     }
   }
@@ -117,22 +144,6 @@ private:
   static std::uint8_t mode_of(const Entry& entry, const Evaluation& e) {
     if constexpr (Law::k_watches > 0) return e.mode[entry.unit];
     return 0;
-  }
-  // Pose at derivative indices first…first+2, velocity at 6+first….
-  static Motion<Dual<12>> seeded(const Motion<double>& m, int first) {
-    using D = Dual<12>;
-    Motion<D> s;
-    s.x = D::variable(m.x, first);
-    s.y = D::variable(m.y, first + 1);
-    s.theta = D::variable(m.theta, first + 2);
-    s.c = D(m.c);
-    s.c.d[first + 2] = -m.s;
-    s.s = D(m.s);
-    s.s.d[first + 2] = m.c;
-    s.vx = D::variable(m.vx, 6 + first);
-    s.vy = D::variable(m.vy, 6 + first + 1);
-    s.omega = D::variable(m.omega, 6 + first + 2);
-    return s;
   }
 };
 

@@ -59,6 +59,10 @@ MeasureValue<D12> measured(const RowSpec& row, const Motion<D12>& a, const Motio
     return DistanceMeasure{row.point_a, row.point_b}.at<WithBias>(a, b);
   case MeasureKind::angle:
     return AngleMeasure{}.at<WithBias>(a, b);
+  case MeasureKind::roll_line:
+    return RollLineMeasure{row.point_a, row.point_b, row.direction, row.radius_a}.at<WithBias>(a, b);
+  case MeasureKind::roll_round:
+    return RollRoundMeasure{row.point_a, row.point_b, row.direction, row.radius_a, row.radius_b}.at<WithBias>(a, b);
   case MeasureKind::slide:
     break;
   }

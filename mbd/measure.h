@@ -188,4 +188,56 @@ struct SlideMeasure {
   }
 };
 
+/// Rolling of a circle of a on a line of b: t·(p_A − p_B) + r (θ_A − θ_B), p_A the circle's centre, n the
+/// line's normal towards it, t = (n_y, −n_x). Its rate is the velocity of a's material point at p_A − r n
+/// along t; so it is a rack's constraint too. A negative r is a circle on the line's other side.
+struct RollLineMeasure {
+  Vec2 point_a, point_b, normal; ///< in the frames of a, b, b
+  double radius = 0.0;
+  template <bool WithBias, class S, class B>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+    MeasureValue<S> m =
+        AxisMeasure{point_a, point_b, Vec2(normal.y(), -normal.x())}.at<WithBias, S>(a, b);
+    m.value += S(radius) * relative_angle(a, b);
+    m.rate += S(radius) * relative_spin(a, b);
+    m.couple = S(radius);
+    return m;
+  }
+};
+
+/// Rolling of a circle of a on a circle of b: r_A (θ_A − θ_B) − (r_A + r_B) φ, φ the angle of p_A − p_B
+/// (their centres) in b's frame, counted from `start`. Holonomic, and exact for two gears; for circles that
+/// are pressed together by δ both radii count as reduced by the factor 1 − δ/(r_A + r_B), so that the force,
+/// which is across the line of centres, acts at one point of both. r_A negative: a rolls inside b's ring.
+/// φ jumps by 2π opposite to `start`: compare values with off_target (row.h).
+struct RollRoundMeasure {
+  Vec2 point_a, point_b, start; ///< in the frames of a, b, b
+  double radius_a = 0.0, radius_b = 0.0;
+  template <bool WithBias, class S, class B>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+    using std::atan2;
+    using std::sqrt;
+    MeasureValue<S> m;
+    const S reach(radius_a + radius_b);
+    const Pair<S> ra = to_ground(a, point_a), rb = to_ground(b, point_b), zero = to_ground(b, start);
+    const Pair<S> d = offset(a, b) + ra - rb;
+    const S length = sqrt(dot(d, d)), inverse = S(1) / length;
+    const Pair<S> n = inverse * d;
+    m.value = S(radius_a) * relative_angle(a, b) - reach * atan2(cross(zero, d), dot(zero, d));
+    m.direction = (-(reach * inverse)) * perp(n);
+    const Pair<S> arm = (S(radius_a / (radius_a + radius_b)) * length) * n; // from the contact to p_A
+    m.lever_a = ra - arm;
+    m.lever_b = rb + d - arm;
+    m.rate = dot(m.direction, point_velocity(a, m.lever_a) - point_velocity(b, m.lever_b));
+    if constexpr (WithBias) {
+      // φ'' = (e·d'' − 2 d' φ')/d with e across d and d'' at zero accelerations
+      const Pair<S> across = perp(n), ddot = point_velocity(a, ra) - point_velocity(b, rb);
+      S second = -(a.omega * a.omega * dot(across, ra));
+      if constexpr (!k_is_origin<B>) second += b.omega * b.omega * dot(across, rb);
+      m.bias = -(reach * inverse) * (second - S(2) * inverse * dot(n, ddot) * dot(across, ddot));
+    }
+    return m;
+  }
+};
+
 } // namespace steplap

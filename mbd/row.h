@@ -8,17 +8,20 @@
 #include "mbd/measure.h"
 #include "mbd/signal.h"
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 namespace steplap {
 
-enum class MeasureKind : unsigned char { axis, distance, angle, slide };
+enum class MeasureKind : unsigned char { axis, distance, angle, slide, roll_line, roll_round };
 
 struct RowSpec {
   MeasureKind kind = MeasureKind::axis;
   int a = k_ground, b = k_ground; ///< bodies of the compiled system
   Vec2 point_a = Vec2::Zero(), point_b = Vec2::Zero();
-  Vec2 direction = Vec2::Zero(); ///< axis, or the normal of a slide row, in the frame of b
+  Vec2 direction = Vec2::Zero(); ///< axis, or a slide's or roll's normal, or its start, in the frame of b
+  double radius_a = 0.0, radius_b = 0.0; ///< of a roll row
   Vec2 contact_axis = Vec2::Zero();
   bool is_axis_in_a = false;
   int memory = -1;               ///< slot of base in the state's memory; base_rate is the next one
@@ -27,6 +30,14 @@ struct RowSpec {
   const char* quantity = "";     ///< what the row holds, for messages and channels: "x", "angle"
   int element = -1;              ///< index of the element it belongs to
 };
+
+/// Rolls are rare: out of line, so that the loops over the other rows stay short.
+template <bool WithBias, class B>
+[[gnu::noinline]] MeasureValue<double> evaluate_roll(const RowSpec& row, const Motion<double>& a, const B& b) {
+  if (row.kind == MeasureKind::roll_line)
+    return RollLineMeasure{row.point_a, row.point_b, row.direction, row.radius_a}.at<WithBias>(a, b);
+  return RollRoundMeasure{row.point_a, row.point_b, row.direction, row.radius_a, row.radius_b}.at<WithBias>(a, b);
+}
 
 /// The row's measure of a against b: another body's motion, or Origin where a is seen from b.
 template <bool WithBias, class B>
@@ -38,6 +49,9 @@ STEPLAP_INLINE MeasureValue<double> evaluate_row(const RowSpec& row, const Motio
     return DistanceMeasure{row.point_a, row.point_b}.at<WithBias>(a, b);
   case MeasureKind::angle:
     return AngleMeasure{}.at<WithBias>(a, b);
+  case MeasureKind::roll_line:
+  case MeasureKind::roll_round:
+    return evaluate_roll<WithBias>(row, a, b);
   case MeasureKind::slide:
     break;
   }
@@ -62,6 +76,13 @@ inline SignalJet row_target(const RowSpec& row, const double* memory, double t) 
     target.acceleration = jet.acceleration;
   }
   return target;
+}
+
+/// value − target. The roll of two circles is known up to whole turns of one round the other only (gears turn in
+/// place, but seen from b a goes round): a sticking or bilateral row is never half a turn off.
+inline double off_target(const RowSpec& row, double value, double target) {
+  if (row.kind != MeasureKind::roll_round) return value - target;
+  return std::remainder(value - target, 2.0 * std::numbers::pi * (row.radius_a + row.radius_b));
 }
 
 } // namespace steplap

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numeric>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -86,8 +87,9 @@ TEST_CASE("conformance: rows do not care where the scene is, and mirror with it"
       const std::vector<RowSpec> rows = probe.rows(), images = mirror.rows();
       REQUIRE(rows.size() == images.size());
       for (std::size_t r = 0; r < rows.size(); ++r) {
-        // Rear and front foot change places; the row along x or t changes its sign, the one along y does not.
-        const bool is_slide = rows[r].kind == MeasureKind::slide;
+        // Rear and front foot, a line's left and right side change places; the row along x or t changes its
+        // sign, the one along y does not.
+        const bool is_slide = rows[r].kind == MeasureKind::slide || rows[r].kind == MeasureKind::roll_line;
         const RowSpec& twin = images[is_slide ? rows.size() - 1 - r : r];
         const auto m = probe.row(rows[r], pose);
         const auto n = mirror.row(twin, image);
@@ -114,7 +116,7 @@ TEST_CASE("conformance: one-dimensional friction opposes slip, and its sets and 
       probe.choose_modes(pose);
       probe.forces(pose);
       const Evaluation& e = probe.evaluation();
-      const double normal = std::max(0.0, e.contact_force[0] + e.contact_force[1]);
+      const double normal = std::max(0.0, std::accumulate(e.contact_force, e.contact_force + probe.system().contact_count, 0.0));
       FrictionState state;
       double rate = unit(generator), wrench = 0.0, watch[2];
       friction.aim(state, &rate);

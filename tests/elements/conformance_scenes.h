@@ -72,6 +72,24 @@ inline const std::vector<ConformanceScene>& conformance_scenes() {
        "a = \"A\"\nb = \"B\"\naxis = [@+0.1, 1.0]\nlaw = \"literal\"\nstiffness = 900.0\ndamping = 25.0\npreload = 10.0\n"},
       {"unilateral_contact",
        "a = \"A\"\nb = \"B\"\nlaw = \"hunt_crossley\"\nexponent = 1.5\ndissipation = 0.6\nstiffness = 9000.0\npreload = 15.0\n"},
+      {"circle_contact", "a = \"A\"\nb = \"B\"\nradius_a = 0.3\nradius_b = 0.58\nstiffness = 900.0\ndamping = 25.0\n"},
+      {"circle_contact",
+       "a = \"A\"\nb = \"B\"\nradius_a = 0.05\nradius_b = 0.9\ninside = true\nlaw = \"hunt_crossley\"\nexponent = 1.5\n"
+       "dissipation = 0.6\nstiffness = 9000.0\n"},
+      {"segment_contact",
+       "a = \"A\"\nb = \"B\"\nradius = 0.37\nfrom = [@+0.2, 0.25]\nto = [@+1.1, 0.3]\nthickness = 0.02\nstiffness = 900.0\n"
+       "damping = 25.0\n"},
+      {"segment_contact", // on the end
+       "a = \"A\"\nb = \"B\"\nradius = 0.38\nfrom = [@-0.6, 0.2]\nto = [@+0.45, 0.3]\nthickness = 0.02\nstiffness = 900.0\n"
+       "damping = 25.0\n"},
+      {"coulomb_stick",
+       "contacts = [\"roller\"]\nstatic_friction = 0.4\nkinetic_friction = 0.3\n"
+       "[[element]]\nkind = \"circle_contact\"\nname = \"roller\"\na = \"A\"\nb = \"B\"\nradius_a = 0.3\nradius_b = 0.58\n"
+       "stiffness = 900.0\ndamping = 25.0\n"},
+      {"coulomb_stick",
+       "contacts = [\"roller\"]\nstatic_friction = 0.4\nkinetic_friction = 0.3\n"
+       "[[element]]\nkind = \"segment_contact\"\nname = \"roller\"\na = \"A\"\nb = \"B\"\nradius = 0.37\nfrom = [@+0.2, 0.25]\n"
+       "to = [@+1.1, 0.3]\nthickness = 0.02\nstiffness = 900.0\ndamping = 25.0\n"},
       {"coulomb_stick",
        "contacts = [\"rear\", \"front\"]\nstatic_friction = 0.4\nkinetic_friction = 0.3\n"
        "[[element]]\nkind = \"unilateral_contact\"\nname = \"rear\"\na = \"A\"\nb = \"B\"\naxis = [@+0.1, 1.0]\n"
@@ -91,6 +109,15 @@ inline const std::vector<ConformanceScene>& conformance_scenes() {
       {"point_on_line", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
       {"prescribed_motion", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\nsignal = \"wave\"\nas = \"velocity\"\n"},
       {"prescribed_motion", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nsignal = \"wave\"\n", false, true},
+      {"gear", "a = \"A\"\nb = \"B\"\nradius_a = 0.3\nradius_b = 0.5973468189472534\n"},
+      {"rack", "a = \"A\"\nb = \"B\"\nradius = 0.3\naxis = [0.8, @+0.6]\n"}, // the pinion stays on the left
+      {"motor", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\neffort = \"wave\"\nno_load_speed = 3.0\ntarget = \"wave\"\nproportional = 50.0\n"
+       "derivative = 4.0\n"},
+      {"motor", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nconstant_effort = 7.0\nno_load_speed = 3.0\n", false, true},
+      {"limit", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\nlower = -0.03\nupper = 0.02\nstiffness = 900.0\ndamping = 25.0\n"},
+      {"limit", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nlower = 0.8\nupper = 0.87\nstiffness = 900.0\ndamping = 25.0\n", false, true},
+      {"joint_friction", "a = \"A\"\nb = \"B\"\ncoordinate = \"angle\"\nholds = 3.0\ndrags = 2.0\n"},
+      {"joint_friction", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nholds = 30.0\n", false, true},
       {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @+0.7\nforce_y = \"wave\"\n", true},
       {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @-0.7\nforce_y = \"wave\"\nframe = \"body\"\n", true}};
   return list;

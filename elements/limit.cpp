@@ -1,0 +1,131 @@
+#include "elements/limit.h"
+
+#include "elements/contact_laws.h"
+#include "mbd/system.h"
+
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+// Modes: 0 between the stops; 1, 2 lower stop pressed, released; 3, 4 the upper one.
+constexpr std::uint8_t k_between = 0, k_lower = 1, k_upper = 3;
+
+struct StopsLaw {
+  static constexpr int k_watches = 2;
+  static constexpr bool k_is_contact = false;
+  KelvinVoigtContact lower, upper; ///< the upper one of the coordinate with its sign changed
+
+  static bool is_upper(std::uint8_t mode) { return mode >= k_upper; }
+  static std::uint8_t contact_mode(std::uint8_t mode) {
+    if (mode == k_between) return k_contact_open;
+    return mode == k_lower || mode == k_upper ? k_contact_pressed : k_contact_released;
+  }
+  static std::uint8_t stop_mode(std::uint8_t contact, bool is_up) {
+    if (contact == k_contact_open) return k_between;
+    const int pressed = is_up ? k_upper : k_lower;
+    return static_cast<std::uint8_t>(contact == k_contact_pressed ? pressed : pressed + 1);
+  }
+
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
+    return is_upper(mode) ? -upper.force(-value, -rate, contact_mode(mode)) : lower.force(value, rate, contact_mode(mode));
+  }
+  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+    return is_upper(mode) ? -upper.elastic_force(-value, contact_mode(mode)) : lower.elastic_force(value, contact_mode(mode));
+  }
+  [[nodiscard]] double energy(double value) const { return lower.energy(value) + upper.energy(-value); }
+  [[nodiscard]] std::uint8_t mode_at(double value, double rate) const {
+    if (const std::uint8_t mode = lower.mode_at(value, rate); mode != k_contact_open) return stop_mode(mode, false);
+    return stop_mode(upper.mode_at(-value, -rate), true);
+  }
+  void watch(double value, double rate, std::uint8_t mode, double* watch, double* watch_rate) const {
+    if (mode != k_between) {
+      watch_rate[1] = std::numeric_limits<double>::quiet_NaN(); // of a force, or of nothing
+      if (is_upper(mode)) upper.watch(-value, -rate, contact_mode(mode), watch, watch_rate);
+      else lower.watch(value, rate, contact_mode(mode), watch, watch_rate);
+      return;
+    }
+    watch[0] = value - lower.offset;
+    watch_rate[0] = rate;
+    watch[1] = -value - upper.offset;
+    watch_rate[1] = -rate;
+  }
+  [[nodiscard]] std::uint8_t next_mode(std::uint8_t mode, int slot, double value, double rate) const {
+    const bool is_up = mode == k_between ? slot == 1 : is_upper(mode);
+    const KelvinVoigtContact& stop = is_up ? upper : lower;
+    const double v = is_up ? -value : value, r = is_up ? -rate : rate;
+    return stop_mode(stop.next_mode(contact_mode(mode), mode == k_between ? 0 : slot, v, r), is_up);
+  }
+  static const char* transition_name(std::uint8_t from, std::uint8_t to) {
+    if (to == k_between) return "leaves its stop";
+    if (from == k_between) return is_upper(to) ? "reaches its upper stop" : "reaches its lower stop";
+    return KelvinVoigtContact::transition_name(contact_mode(from), contact_mode(to));
+  }
+};
+
+template <class Measure>
+void add(SystemBuilder& builder, int a, int b, const Measure& measure, const StopsLaw& law, bool is_angle) {
+  using Group = LawGroup<Measure, StopsLaw>;
+  Group& group = builder.group<Group>();
+  group.entries.push_back({a, b, measure, law});
+  builder.add_unit(group, StopsLaw::k_watches);
+  const int i = static_cast<int>(group.entries.size()) - 1;
+  builder.add_channel("value", is_angle ? "rad" : "m", "of the coordinate",
+                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value; });
+  builder.add_channel("force", is_angle ? "N m" : "N", "on a along the coordinate",
+                      [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
+}
+
+template <class Measure>
+void add_stops(const Limit& e, SystemBuilder& builder, int a, int b, const Measure& measure, bool is_absolute, bool is_angle) {
+  const double now = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
+  const double zero = is_absolute ? 0.0 : now;
+  const double never = std::numeric_limits<double>::max(); // a stop that is not there
+  StopsLaw law;
+  law.lower = {e.stiffness, e.damping, e.lower ? zero + *e.lower : -never};
+  law.upper = {e.stiffness, e.damping, e.upper ? -(zero + *e.upper) : -never};
+  add(builder, a, b, measure, law, is_angle);
+}
+
+void compile_limit(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const Limit&>(element);
+  if (!e.lower && !e.upper) return builder.error("stops nothing: give 'lower', 'upper' or both");
+  if (e.lower && e.upper && !(*e.lower < *e.upper)) return builder.error("'lower' must be less than 'upper'");
+  const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
+  if (a.body == b.body) return builder.error("stops a body against itself: name markers on two different bodies");
+  if (e.coordinate == "angle") return add_stops(e, builder, a.body, b.body, AngleMeasure{}, false, true);
+  if (e.coordinate == "distance") {
+    if ((builder.marker_position(a) - builder.marker_position(b)).norm() < 1e-12)
+      return builder.error("its ends coincide, so its direction is undefined: move a marker");
+    return add_stops(e, builder, a.body, b.body, DistanceMeasure{a.point, b.point}, true, false);
+  }
+  const Vec2 axis = builder.direction(b, e.coordinate == "x" ? Vec2(1.0, 0.0) : Vec2(0.0, 1.0));
+  add_stops(e, builder, a.body, b.body, AxisMeasure{a.point, b.point, axis}, false, false);
+}
+
+} // namespace
+
+const ElementKind& limit_kind() {
+  static const ElementKind kind = [] {
+    using T = Limit;
+    ElementKind k;
+    k.name = "limit";
+    k.doc = "Stops at one or both ends of a coordinate of a against b, as spring and damper that press and never hold.";
+    FieldTable& f = k.fields;
+    f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is stopped");
+    f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
+    f.add("coordinate", &T::coordinate).one_of({"angle", "x", "y", "distance"}).doc(
+        "angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
+    f.add("lower", &T::lower).doc("lower stop, rad or m from the reference pose (distance: the distance itself)");
+    f.add("upper", &T::upper).doc("upper stop");
+    f.add("stiffness", &T::stiffness).positive().required().doc("of a stop, N m/rad or N/m");
+    f.add("damping", &T::damping).not_negative().doc("of a stop, N m s/rad or N s/m");
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.compile = compile_limit;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

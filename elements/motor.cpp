@@ -1,0 +1,151 @@
+#include "elements/motor.h"
+
+#include "mbd/law_group.h"
+#include "mbd/system.h"
+
+namespace steplap {
+
+namespace {
+
+struct MotorLaw {
+  const Signal *effort = nullptr, *target = nullptr;
+  double constant_effort = 0.0, droop = 0.0; ///< 1/no-load speed
+  double proportional = 0.0, derivative = 0.0, start = 0.0;
+
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, double t) const {
+    const double stall = constant_effort + (effort ? effort->value(t) : 0.0);
+    S f = S(stall) * (S(1) - S(droop) * rate);
+    if (proportional == 0.0 && derivative == 0.0) return f;
+    SignalJet wanted;
+    if (target) {
+      wanted = target->drive(t, DriveLevel::position);
+      wanted.value = target->value(t);
+    }
+    f += S(proportional) * (S(wanted.value + start) - value) + S(derivative) * (S(wanted.rate) - rate);
+    return f;
+  }
+};
+
+template <class Measure> class MotorGroup final : public ForceGroup {
+public:
+  struct Entry {
+    int a, b;
+    Measure measure;
+    MotorLaw law;
+    int link = 0;
+  };
+  std::vector<Entry> entries;
+
+  void add_forces(Evaluation& e) const override {
+    for (const Entry& entry : entries) {
+      const auto m = entry.measure.template at<false, double>(e.link_motion[entry.link], Origin{});
+      const double f = entry.law.force(m.value, m.rate, e.t);
+      apply_force(e.link_force[entry.link], m, f);
+      e.work += f * m.rate;
+    }
+  }
+  [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
+  void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
+    for (const Entry& entry : entries)
+      add_pair_jacobian(entry.a, entry.b, entry.measure, e,
+                        [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, e.t); }, out);
+  }
+  void mark_bodies(std::vector<char>& is_used) const override {
+    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  }
+  void enter_links(LinkTable& links) override {
+    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+  }
+  [[nodiscard]] MeasureValue<double> measured(int i, const Evaluation& e) const {
+    const Entry& entry = entries[i];
+    return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
+  }
+};
+
+template <class Measure>
+void add(SystemBuilder& builder, int a, int b, const Measure& measure, MotorLaw law, bool is_angle) {
+  MotorGroup<Measure>& group = builder.group<MotorGroup<Measure>>();
+  law.start = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
+  group.entries.push_back({a, b, measure, law});
+  const int i = static_cast<int>(group.entries.size()) - 1;
+  builder.add_channel("force", is_angle ? "N m" : "N", "couple or force on a along the coordinate",
+                      [&group, i](const Snapshot& s) {
+                        const auto m = group.measured(i, *s.evaluation);
+                        return group.entries[i].law.force(m.value, m.rate, s.t);
+                      });
+  builder.add_channel("power", "W", "that it gives", [&group, i](const Snapshot& s) {
+    const auto m = group.measured(i, *s.evaluation);
+    return m.rate * group.entries[i].law.force(m.value, m.rate, s.t);
+  });
+}
+
+bool check(const Motor& e, const Signal* target, SystemBuilder& builder) {
+  bool is_bad = false;
+  const auto fail = [&](const std::string& message) {
+    builder.error(message);
+    is_bad = true;
+  };
+  if (e.effort.empty() && e.constant_effort == 0.0 && e.proportional == 0.0 && e.derivative == 0.0)
+    fail("gives no force: set 'effort', 'constant_effort', 'proportional' or 'derivative'");
+  if (!e.target.empty() && e.proportional == 0.0 && e.derivative == 0.0)
+    fail("'target' needs 'proportional' or 'derivative'");
+  if (target && e.derivative != 0.0)
+    for (std::size_t k = 0; k < target->breakpoints().size(); ++k)
+      if (target->breakpoints()[k] > 0.0 && target->jumps_at(k)) {
+        fail("signal '" + e.target + "' jumps, so 'derivative' has no rate to follow");
+        break;
+      }
+  return !is_bad;
+}
+
+void compile_motor(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const Motor&>(element);
+  MotorLaw law;
+  law.effort = builder.signal(e.effort);
+  law.target = builder.signal(e.target);
+  if (!check(e, law.target, builder)) return;
+  law.constant_effort = e.constant_effort;
+  law.droop = e.no_load_speed ? 1.0 / *e.no_load_speed : 0.0;
+  law.proportional = e.proportional;
+  law.derivative = e.derivative;
+  const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
+  if (a.body == b.body) return builder.error("drives a body against itself: name markers on two different bodies");
+  if (e.coordinate == "angle") return add(builder, a.body, b.body, AngleMeasure{}, law, true);
+  if (e.coordinate == "distance") {
+    if ((builder.marker_position(a) - builder.marker_position(b)).norm() < 1e-12)
+      return builder.error("its ends coincide, so its direction is undefined: move a marker");
+    return add(builder, a.body, b.body, DistanceMeasure{a.point, b.point}, law, false);
+  }
+  const Vec2 axis = builder.direction(b, e.coordinate == "x" ? Vec2(1.0, 0.0) : Vec2(0.0, 1.0));
+  add(builder, a.body, b.body, AxisMeasure{a.point, b.point, axis}, law, false);
+}
+
+} // namespace
+
+const ElementKind& motor_kind() {
+  static const ElementKind kind = [] {
+    using T = Motor;
+    ElementKind k;
+    k.name = "motor";
+    k.doc = "A couple or force between a and b along a coordinate: effort (1 - rate/no_load_speed) + proportional "
+            "(target - value) + derivative (target' - rate), value counted from the reference pose.";
+    FieldTable& f = k.fields;
+    f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is driven");
+    f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
+    f.add("coordinate", &T::coordinate).one_of({"angle", "x", "y", "distance"}).doc(
+        "angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
+    f.add("effort", &T::effort).as(FieldType::signal).doc("couple or force at standstill");
+    f.add("constant_effort", &T::constant_effort).doc("the same, constant: N m or N, added to the signal");
+    f.add("no_load_speed", &T::no_load_speed).doc("rate at which the effort has fallen to zero, rad/s or m/s, in the "
+                                                  "direction of a positive effort; not given: it never falls");
+    f.add("target", &T::target).as(FieldType::signal).doc("wanted value; not given: the reference pose");
+    f.add("proportional", &T::proportional).not_negative().doc("servo: N m/rad or N/m");
+    f.add("derivative", &T::derivative).not_negative().doc("servo: N m s/rad or N s/m");
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.compile = compile_motor;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

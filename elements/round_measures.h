@@ -1,0 +1,64 @@
+// Distances of round things, for LawGroup: between two circles, and of a circle from a line segment.
+//
+// Gap = value − offset with the radii in the law's offset. Both are distances of a's point p (the circle's
+// centre), so that the force passes through it; undefined where that distance is zero, which is a penetration
+// by the whole radius.
+#pragma once
+
+#include "mbd/measure.h"
+
+namespace steplap {
+
+/// −|p_A − p_B|: a circle of a inside a ring of b.
+struct InsideMeasure {
+  Vec2 point_a, point_b;
+  template <bool WithBias, class S, class B>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+    static_assert(!WithBias, "no row takes it");
+    MeasureValue<S> m = DistanceMeasure{point_a, point_b}.at<false, S>(a, b);
+    m.value = -m.value;
+    m.rate = -m.rate;
+    m.direction = S(-1) * m.direction;
+    return m;
+  }
+};
+
+/// Which part of a segment is nearest to p: one of its sides, or an end.
+enum class SegmentPart : unsigned char { left, right, from, to };
+
+/// Distance of p from the segment of b that runs along `tangent` from `from`: across it between its ends, from
+/// the nearer end beyond them. Its gradient is continuous.
+struct SegmentMeasure {
+  Vec2 point_a, from, tangent; ///< in the frames of a, b, b
+  double length = 0.0;
+
+  [[nodiscard]] Vec2 to() const { return from + length * tangent; }
+  /// p's coordinate along the segment; and across, positive on the left.
+  template <class S, class B> STEPLAP_INLINE Pair<S> place(const Motion<S>& a, const B& b) const {
+    const Pair<S> d = offset(a, b) + to_ground(a, point_a) - to_ground(b, from), t = to_ground(b, tangent);
+    return {dot(t, d), cross(t, d)};
+  }
+  template <class S, class B> STEPLAP_INLINE SegmentPart part(const Motion<S>& a, const B& b) const {
+    const Pair<S> p = place(a, b);
+    if (p.x < S(0)) return SegmentPart::from;
+    if (p.x > S(length)) return SegmentPart::to;
+    return p.y < S(0) ? SegmentPart::right : SegmentPart::left;
+  }
+  template <bool WithBias, class S, class B>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+    static_assert(!WithBias, "no row takes it");
+    switch (part(a, b)) {
+    case SegmentPart::left:
+      return AxisMeasure{point_a, from, perp(tangent)}.at<false, S>(a, b);
+    case SegmentPart::right:
+      return AxisMeasure{point_a, from, -perp(tangent)}.at<false, S>(a, b);
+    case SegmentPart::from:
+      return DistanceMeasure{point_a, from}.at<false, S>(a, b);
+    case SegmentPart::to:
+      break;
+    }
+    return DistanceMeasure{point_a, to()}.at<false, S>(a, b);
+  }
+};
+
+} // namespace steplap
