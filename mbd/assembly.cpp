@@ -3,6 +3,7 @@
 #include "mbd/dynamics.h"
 #include "mbd/number_text.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace steplap {
@@ -28,6 +29,26 @@ State assemble(const Model& model, const System& system) {
   }
   dynamics.unpack(state.t, y.data(), state);
   return state;
+}
+
+std::vector<AssemblyMove> assembly_moves(const State& given, const State& assembled, double threshold) {
+  std::vector<AssemblyMove> moves;
+  for (std::size_t i = 3; i < given.q.size(); i += 3) {
+    const auto change = [i](const std::vector<double>& from, const std::vector<double>& to, std::size_t k) {
+      return to[i + k] - from[i + k];
+    };
+    AssemblyMove move;
+    move.body = static_cast<int>(i / 3);
+    move.shift = std::hypot(change(given.q, assembled.q, 0), change(given.q, assembled.q, 1));
+    move.turn = change(given.q, assembled.q, 2);
+    move.velocity = std::hypot(change(given.v, assembled.v, 0), change(given.v, assembled.v, 1));
+    move.angular_velocity = change(given.v, assembled.v, 2);
+    if (std::max({move.shift, std::abs(move.turn), move.velocity, std::abs(move.angular_velocity)}) > threshold)
+      moves.push_back(move);
+  }
+  std::stable_sort(moves.begin(), moves.end(),
+                   [](const AssemblyMove& x, const AssemblyMove& y) { return x.shift > y.shift; });
+  return moves;
 }
 
 } // namespace steplap

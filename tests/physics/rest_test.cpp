@@ -93,6 +93,78 @@ length = 1.0
   CHECK(state.q[5] == 0.0);
 }
 
+// Two rods of 1 m with their pins off by centimetres and their speeds wrong: the joints are met, the motion is
+// mass-weighted (the heavy rod hardly moves), and what was met already is not touched.
+TEST_CASE("rough poses and velocities are assembled, and each body's move is told") {
+  const Model model = scene(k_head + R"(
+[[body]]
+name = "heavy"
+mass = 1000
+inertia = 80
+position = [0.53, 0.02]
+angle = 0.05
+velocity = [0.0, 0.3]
+[[body]]
+name = "light"
+mass = 1
+inertia = 0.08
+position = [1.46, -0.03]
+angle = -0.04
+velocity = [0.2, 0.5]
+[[body]]
+name = "apart"
+mass = 1
+inertia = 0.1
+position = [5.0, 0.0]
+[[element]]
+kind = "revolute"
+name = "wall"
+a = { body = "heavy", point = [-0.5, 0.0] }
+[[element]]
+kind = "revolute"
+name = "elbow"
+a = { body = "light", point = [-0.5, 0.0] }
+b = { body = "heavy", point = [0.5, 0.0] }
+)");
+  const auto system = compile(model);
+  const State given = system->initial_state(), state = assemble(model, *system);
+  const auto pin = [&](const State& s, int body, double side) {
+    const double* q = &s.q[3 * body];
+    return Vec2(Vec2(q[0], q[1]) + 0.5 * side * Vec2(std::cos(q[2]), std::sin(q[2])));
+  };
+  CHECK(pin(state, 1, -1.0).norm() < 1e-12);
+  CHECK((pin(state, 2, -1.0) - pin(state, 1, 1.0)).norm() < 1e-12);
+  // Speeds: both rods turn about their pins, q̇ = ω ẑ×r, J q̇ = 0 to rounding.
+  CHECK(std::abs(state.v[3] + state.v[5] * state.q[4]) < 1e-12);
+  CHECK(std::abs(state.v[4] - state.v[5] * state.q[3]) < 1e-12);
+  const auto moves = assembly_moves(given, state);
+  REQUIRE(moves.size() == 2);
+  for (const AssemblyMove& move : moves) {
+    const double* from = &given.q[3 * move.body];
+    const double* to = &state.q[3 * move.body];
+    CHECK(move.shift == doctest::Approx(std::hypot(to[0] - from[0], to[1] - from[1])));
+    CHECK(move.shift < 0.1);
+    CHECK(move.velocity > 0.0);
+  }
+  // Mass-weighted: the heavy rod meets its own pin as if the light one were not there, but for the ratio of
+  // their masses, 1e-3, times the distances moved, 0.1 m.
+  const Model alone_model = scene(k_head + R"(
+[[body]]
+name = "heavy"
+mass = 1000
+inertia = 80
+position = [0.53, 0.02]
+angle = 0.05
+[[element]]
+kind = "revolute"
+name = "wall"
+a = { body = "heavy", point = [-0.5, 0.0] }
+)");
+  const auto alone_system = compile(alone_model);
+  const State alone = assemble(alone_model, *alone_system);
+  for (int k = 3; k < 6; ++k) CHECK(std::abs(state.q[k] - alone.q[k]) < 1e-3);
+}
+
 TEST_CASE("joints that no motion meets are an error at the joint") {
   const Model model = scene(k_head + R"(
 [[body]]

@@ -1,5 +1,6 @@
 #include "tools/steplap/check.h"
 
+#include "mbd/assembly.h"
 #include "mbd/freedom.h"
 #include "mbd/number_text.h"
 #include "mbd/validate.h"
@@ -7,6 +8,7 @@
 #include "tools/steplap/text_table.h"
 #include "tools/steplap/warnings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -18,6 +20,8 @@ namespace steplap {
 namespace {
 
 using Align = TextTable::Align;
+
+constexpr std::size_t k_shown_moves = 20;
 
 struct CheckOptions {
   std::vector<std::string> models;
@@ -79,6 +83,22 @@ void print_freedom(TextTable& table, const System& system) {
   table.add_row({"degrees of freedom", degrees});
 }
 
+// What the file gives roughly, and what the run begins with.
+void print_assembly(std::ostream& out, const LoadedModel& loaded) {
+  const System& system = *loaded.system;
+  const auto moves = assembly_moves(system.initial_state(), assemble(loaded.model, system));
+  if (moves.empty()) return;
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
+  table.add_row({"assembled", "moved", "turned", "velocity changed", "angular velocity"});
+  for (std::size_t i = 0; i < std::min(moves.size(), k_shown_moves); ++i) {
+    const AssemblyMove& m = moves[i];
+    table.add_row({system.bodies[m.body].name, quantity_text(m.shift, "m", 1e-3), quantity_text(m.turn, "rad", 1e-3),
+                   quantity_text(m.velocity, "m/s", 1e-3), quantity_text(m.angular_velocity, "rad/s", 1e-3)});
+  }
+  out << table;
+  if (moves.size() > k_shown_moves) out << "  and " << moves.size() - k_shown_moves << " bodies that moved less\n";
+}
+
 void print_model(std::ostream& out, const LoadedModel& loaded) {
   const Model& model = loaded.model;
   out << loaded.path << ": fine\n";
@@ -93,6 +113,7 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
   table.add_row({"output", std::to_string(channels.channels().size()) + " channels every " +
                                number_text(model.output.step) + " s"});
   out << table;
+  print_assembly(out, loaded);
   for (const std::string& warning : warnings_about(loaded))
     out << "  warning: " << warning << "\n";
 }

@@ -1,13 +1,16 @@
 #include "tools/steplap/simulate.h"
 
+#include "mbd/assembly.h"
 #include "mbd/validate.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/progress.h"
 #include "tools/steplap/report.h"
 #include "tools/steplap/result_files.h"
 #include "tools/steplap/run_screen.h"
+#include "tools/steplap/text_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <ostream>
@@ -77,11 +80,25 @@ void estimate_error(FinishedRun& finished) {
   }
 }
 
+// Poses given to the digits of a file need no mention, nor do velocities that a drive or a joint sets.
+void note_assembly(const LoadedModel& loaded) {
+  constexpr double k_noticeable = 1e-5; // m, rad
+  const System& system = *loaded.system;
+  auto moves = assembly_moves(system.initial_state(), assemble(loaded.model, system), k_noticeable);
+  std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });
+  if (moves.empty()) return;
+  log_info("'" + loaded.path + "': assembling the joints moved " + std::to_string(moves.size()) +
+           " bodies, most of all '" + system.bodies[moves.front().body].name + "' by " +
+           quantity_text(moves.front().shift, "m", 1e-3) + " and " + quantity_text(moves.front().turn, "rad", 1e-3) +
+           "; steplap check lists them");
+}
+
 FinishedRun run_one(const SimulateOptions& options,
                     const std::shared_ptr<const LoadedModel>& loaded, Console& console) {
   log_detail("'" + loaded->name + "': " + std::to_string(loaded->system->body_count() - 1) +
              " bodies, " + std::to_string(loaded->system->rows.size()) + " constraint rows, " +
              std::to_string(loaded->system->frictions.size()) + " joints with friction");
+  note_assembly(*loaded);
   FinishedRun finished;
   {
     Progress progress(console, loaded->name, loaded->model.simulation.end);
