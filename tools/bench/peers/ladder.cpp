@@ -15,7 +15,7 @@ double cpu_seconds() {
 void write_csv(std::FILE* file, const std::vector<Rung>& rungs) {
   std::fprintf(file, "problem,program,setting,error,cpu_ms,steps,evaluations,events\n");
   for (const Rung& r : rungs)
-    std::fprintf(file, "%s,%s,%s,%.6e,%.6f,%ld,%ld,%ld\n", r.problem.c_str(), r.program.c_str(),
+    std::fprintf(file, "%s,\"%s\",%s,%.6e,%.6f,%ld,%ld,%ld\n", r.problem.c_str(), r.program.c_str(),
                  r.setting.c_str(), r.error, r.cpu_ms, r.steps, r.evaluations, r.events);
 }
 

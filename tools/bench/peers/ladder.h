@@ -36,7 +36,7 @@ template <class F> [[nodiscard]] double least_ms(F run, double budget_seconds = 
   return 1e3 * least;
 }
 
-// problem,program,setting,error,cpu_ms,steps,evaluations,events
+// problem,"program",setting,error,cpu_ms,steps,evaluations,events; a program's name may hold commas.
 void write_csv(std::FILE* file, const std::vector<Rung>& rungs);
 
 void print_table(const std::vector<Rung>& rungs);
