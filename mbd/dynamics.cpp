@@ -20,6 +20,8 @@ constexpr double k_near_limit = 0.5;
 constexpr double k_largest_damping = 1e-3;
 // Below this smallest pivot an error estimate is freed from what projection will take away.
 constexpr double k_removal_pivot = 1e-2;
+// Below this one the rates of a stage are those of the nearest state on the constraints.
+constexpr double k_placed_pivot = 1e-4;
 // What rounding leaves of a residual: a position is a sum of a few terms as large as the scene.
 constexpr double k_rounded_terms = 32.0;
 double position_rounding(const double* q, int n) {
@@ -84,6 +86,7 @@ void Dynamics::set_state(const State& state) {
   std::vector<double> packed(dimension());
   pack(system_.initial_state(), packed.data());
   layout_->reference.assign(packed.begin(), packed.begin() + coordinate_count());
+  if (placed_.size() < packed.size()) placed_.resize(packed.size());
   const std::size_t rows = layout_->active.size();
   if (right_side_.size() < rows) {
     right_side_.resize(rows);
@@ -426,6 +429,30 @@ void Dynamics::finish_watches() {
 }
 
 void Dynamics::rates(double t, const double* y, double* dy) {
+  rates_at(t, y, dy);
+  if (layout_->active.empty()) return;
+  lowest_pivot_ = std::min(lowest_pivot_, layout_->schur.smallest_pivot());
+  if (layout_->schur.smallest_pivot() < k_placed_pivot) [[unlikely]]
+    rates_nearby(t, y, dy);
+}
+
+// Near a singular position what a stage is off the constraints by, a power of the step size, is divided by the
+// distance from there: accelerations grow beyond all bounds unless it lies on the constraints. The rates of
+// the nearest state that does are as smooth, and the same where a step begins and ends.
+void Dynamics::rates_nearby(double t, const double* y, double* dy) {
+  const int n = coordinate_count();
+  std::copy(y, y + dimension(), placed_.begin());
+  const Residual off = constraint_values(t, y);
+  if (off.position <= position_rounding(y, n) && off.velocity <= position_rounding(y + n, n)) {
+    rates_at(t, y, dy);
+    return;
+  }
+  const bool is_placed = reach_positions(t, placed_.data(), position_rounding(y, n), off);
+  if (is_placed) reach_velocities(t, placed_.data(), position_rounding(y + n, n));
+  rates_at(t, is_placed ? placed_.data() : y, dy);
+}
+
+void Dynamics::rates_at(double t, const double* y, double* dy) {
   const Layout& layout = *layout_;
   const int n = coordinate_count();
   ++evaluations_;
@@ -526,7 +553,7 @@ void Dynamics::remove_held(double* change) {
 }
 
 Residual Dynamics::project(double t, double* y, double tolerance) {
-  Layout& layout = *layout_;
+  const Layout& layout = *layout_;
   const int n = coordinate_count();
   for (const Lock& lock : layout.locks) {
     const SignalJet target =
@@ -540,36 +567,47 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
   for (int i = 0; i < n; ++i)
     if (i % 3 != 2) farthest = std::max(farthest, std::abs(y[i]));
   tolerance = std::max(tolerance, 8.0 * std::numeric_limits<double>::epsilon() * farthest);
-  Residual first = constraint_values(t, y);
-  Residual now = first;
-  const auto move = [&](const std::vector<double>& residual, double* target) {
-    for (std::size_t r = 0; r < layout.active.size(); ++r) right_side_[r] = -residual[r];
-    add_response(target);
-  };
-  // The factorisation of the step's last evaluation serves while it converges fast. Near a singular position
-  // it does not serve, and Newton's steps would be as long as the residual is to the distance from there:
-  // damped by the residual itself they stay short, and still converge quadratically (J. Fan, Y. Yuan,
-  // Computing 74 (2005) 23, for Levenberg–Marquardt with this choice).
+  const Residual first = constraint_values(t, y);
+  if (!reach_positions(t, y, tolerance, first)) fail_projection(t);
+  reach_velocities(t, y, tolerance);
+  return first;
+}
+
+// The factorisation of the step's last evaluation serves while it converges fast. Near a singular position it
+// does not serve, and Newton's steps would be as long as the residual is to the distance from there: damped
+// by the residual itself they stay short, and still converge quadratically (J. Fan, Y. Yuan, Computing 74
+// (2005) 23, for Levenberg–Marquardt with this choice).
+bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual now) {
+  Layout& layout = *layout_;
   for (int iteration = 0; now.position > tolerance; ++iteration) {
-    if (iteration == k_max_projection_iterations || !std::isfinite(now.position)) fail_projection(t);
+    if (iteration == k_max_projection_iterations || !std::isfinite(now.position)) return false;
     if (is_factored_ && layout.schur.is_near_singular()) is_factored_ = false;
     if (!is_factored_ || iteration % k_iterations_per_factorization == k_iterations_per_factorization - 1) {
       factor_rows();
       if (layout.schur.is_near_singular()) factor_rows(std::min(now.position, k_largest_damping));
     }
     const double before = now.position;
-    move(row_value_, y);
+    move_by(row_value_, y);
     now = constraint_values(t, y);
-    if (now.position >= 0.5 * before && now.position <= position_rounding(y, n)) break;
+    if (now.position >= 0.5 * before && now.position <= position_rounding(y, coordinate_count())) break;
   }
+  return true;
+}
+
+void Dynamics::reach_velocities(double t, double* y, double tolerance) {
+  Residual now = constraint_values(t, y);
   for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
-    if (!is_factored_ || iteration > 0 || layout.schur.is_near_singular()) factor_rows();
+    if (!is_factored_ || iteration > 0 || layout_->schur.is_near_singular()) factor_rows();
     const double before = now.velocity;
-    move(row_rate_, y + n);
+    move_by(row_rate_, y + coordinate_count());
     now = constraint_values(t, y);
     if (now.velocity >= 0.5 * before) break; // rounding of fast motions
   }
-  return first;
+}
+
+void Dynamics::move_by(const std::vector<double>& residual, double* target) {
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) right_side_[r] = -residual[r];
+  add_response(target);
 }
 
 // --- reactions --------------------------------------------------------------------------------------

@@ -63,6 +63,10 @@ public:
   /// near a singular position; else leaves it. There accelerations across the constraints are as uncertain
   /// as rounding over the distance from the singularity, but projection takes that part away.
   void remove_held(double* change);
+  /// How near to a singular position evaluations have come since forget_pivots(): the smallest pivot of the
+  /// constraint matrix against its diagonal, about the square of the distance in radians.
+  [[nodiscard]] double lowest_pivot() const { return lowest_pivot_; }
+  void forget_pivots() { lowest_pivot_ = 1.0; }
   /// Was the last evaluation that near?
   [[nodiscard]] bool is_near_singular() const;
   /// Residuals at y without moving it.
@@ -111,6 +115,11 @@ private:
   void finish_power(const double* a);
   void finish_watches();
   Residual constraint_values(double t, const double* y);
+  void rates_at(double t, const double* y, double* dy);
+  void rates_nearby(double t, const double* y, double* dy);
+  [[nodiscard]] bool reach_positions(double t, double* y, double tolerance, Residual now);
+  void reach_velocities(double t, double* y, double tolerance);
+  void move_by(const std::vector<double>& residual, double* target);
   [[noreturn]] void fail_projection(double t) const;
   void factor_rows(double shift = 0.0);
   void add_response(double* change);
@@ -137,6 +146,8 @@ private:
   std::vector<double> contact_force_, watch_, watch_rate_;
   std::vector<double> total_;           ///< force on each cluster coordinate
   std::vector<double> lock_rate_, lock_acceleration_;
+  double lowest_pivot_ = 1.0;
+  std::vector<double> placed_;          ///< state of rates_nearby
   std::vector<double> right_side_;      ///< then multipliers of active rows
   std::vector<double> row_value_, row_rate_, target_rate_;
   std::vector<double> acceleration_;    ///< 3 per body

@@ -4,6 +4,7 @@
 #include <Eigen/SparseQR>
 
 #include <cmath>
+#include <set>
 
 namespace steplap {
 
@@ -52,6 +53,20 @@ int rank_of(const std::vector<const RowSpec*>& rows, const std::vector<Motion<do
   return rank;
 }
 
+// Elements of rows that can be left out without loss: what they carry, others could carry as well.
+std::vector<int> sharing(const std::vector<const RowSpec*>& rows, const std::vector<int>& elements,
+                         const std::vector<Motion<double>>& motion, int rank) {
+  std::set<int> found;
+  if (rank == static_cast<int>(rows.size())) return {};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (found.count(elements[i]) > 0) continue;
+    std::vector<const RowSpec*> others = rows;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    if (rank_of(others, motion, nullptr) == rank) found.insert(elements[i]);
+  }
+  return {found.begin(), found.end()};
+}
+
 } // namespace
 
 Freedom count_freedom(const System& system) {
@@ -62,15 +77,22 @@ Freedom count_freedom(const System& system) {
   freedom.coordinates = 3 * (system.body_count() - 1);
   freedom.rows = static_cast<int>(system.rows.size());
   std::vector<const RowSpec*> rows;
-  for (const RowSpec& row : system.rows)
+  std::vector<int> elements;
+  for (const RowSpec& row : system.rows) {
     rows.push_back(&row);
+    elements.push_back(row.element);
+  }
   freedom.rank = rank_of(rows, motion, &freedom.dependent_rows);
+  freedom.shared = sharing(rows, elements, motion, freedom.rank);
   for (const FrictionUnit& unit : system.frictions) {
     const RowSpec* first = unit.friction->rows(FrictionState{});
-    for (int r = 0; r < unit.friction->dimension(); ++r)
+    for (int r = 0; r < unit.friction->dimension(); ++r) {
       rows.push_back(first + r);
+      elements.push_back(unit.element);
+    }
   }
   freedom.rank_sticking = rank_of(rows, motion, nullptr);
+  freedom.shared_sticking = sharing(rows, elements, motion, freedom.rank_sticking);
   return freedom;
 }
 

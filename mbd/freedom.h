@@ -18,6 +18,9 @@ struct Freedom {
   int rank = 0;                    ///< independent ones among them
   int rank_sticking = 0;           ///< the same with every friction joint sticking
   std::vector<int> dependent_rows; ///< rows that others imply: which of a set is arbitrary
+  /// Elements some multiplier of which is not unique: joints and drives alone, and with all
+  /// friction sticking.
+  std::vector<int> shared, shared_sticking;
 
   [[nodiscard]] int degrees() const { return coordinates - rank; }
   [[nodiscard]] int degrees_sticking() const { return coordinates - rank_sticking; }

@@ -11,10 +11,13 @@ namespace {
 constexpr int k_max_sweeps = 20000;
 // Wrenches settle to rounding; what is left after that is the conditioning of A.
 constexpr double k_settled = 1e-15;
-// Three-dimensional blocks are solved to about 1e-11 and jitter at that level: no progress for this many
-// sweeps, once the change is small, is the end too.
+// Three-dimensional blocks are solved to about 1e-11 and jitter at that level: no progress for this
+// many sweeps, once the change is small, is the end too.
 constexpr int k_stalled_sweeps = 20;
 constexpr double k_small_change = 1e-9;
+// Compliance of a row that others hold, against what it is without them: rounding of the constraint
+// solver.
+constexpr double k_held = 1e-9;
 
 // Block Gauss–Seidel on the dual: each element's part is solved exactly in turn. It converges for
 // every positive semidefinite A, and the accelerations are unique even where the wrenches are not.
@@ -65,10 +68,13 @@ private:
     for (std::size_t i = 0; i < m; ++i) {
       b[i] = candidates_.acceleration[row + i];
       for (std::size_t j = 0; j < n_; ++j)
-        if (j < row || j >= row + m) b[i] += candidates_.compliance[(row + i) * n_ + j] * wrench_[j];
-      for (std::size_t j = 0; j < m; ++j) a[i * m + j] = candidates_.compliance[(row + i) * n_ + row + j];
+        if (j < row || j >= row + m)
+          b[i] += candidates_.compliance[(row + i) * n_ + j] * wrench_[j];
+      for (std::size_t j = 0; j < m; ++j)
+        a[i * m + j] = candidates_.compliance[(row + i) * n_ + row + j];
     }
-    blocks_[e] = friction.solve_block(evaluation_, state_.friction[elements_[e]], a, b, is_kinetic_[e]);
+    blocks_[e] =
+        friction.solve_block(evaluation_, state_.friction[elements_[e]], a, b, is_kinetic_[e]);
     for (std::size_t i = 0; i < m; ++i) {
       change = std::max(change, std::abs(blocks_[e].wrench[i] - wrench_[row + i]));
       size = std::max(size, std::abs(blocks_[e].wrench[i]));
@@ -98,7 +104,8 @@ void FrictionModes::set_anchor(State& state, int f) const {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   for (int r = 0; r < friction.dimension(); ++r)
-    if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion.data()).value;
+    if (rows[r].memory >= 0)
+      state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion.data()).value;
 }
 
 std::vector<int> FrictionModes::violated(const State& state) {
@@ -117,7 +124,8 @@ std::vector<int> FrictionModes::violated(const State& state) {
 
 // The candidates alone, everything else as it is: fills in their phases.
 void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
-  for (const int f : candidates) state.friction[f].phase = FrictionPhase::free;
+  for (const int f : candidates)
+    state.friction[f].phase = FrictionPhase::free;
   dynamics_.set_state(state);
   dynamics_.pack(state, y_.data());
   dynamics_.rates(state.t, y_.data(), dy_.data());
@@ -140,6 +148,56 @@ void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
   }
 }
 
+// Trace of the response along the rows of f, which is let go.
+double FrictionModes::compliance(State& state, int f) {
+  state.friction[f].phase = FrictionPhase::free;
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  const FrictionElement& friction = *system_.frictions[f].friction;
+  const std::size_t n = friction.dimension();
+  Dynamics::Candidates problem;
+  for (std::size_t r = 0; r < n; ++r)
+    problem.rows.push_back(friction.rows(state.friction[f]) + r);
+  dynamics_.respond(problem, dy_.data());
+  double trace = 0.0;
+  for (std::size_t r = 0; r < n; ++r)
+    trace += problem.compliance[r * n + r];
+  return trace;
+}
+
+// Would f stay at rest without its friction, because the others that stick hold it?
+bool FrictionModes::is_held(const State& state, int f) {
+  State trial = state;
+  const double held = compliance(trial, f);
+  for (std::size_t e = 0; e < trial.friction.size(); ++e)
+    if (trial.friction[e].phase == FrictionPhase::stick &&
+        !system_.frictions[e].friction->never_slips())
+      trial.friction[e].phase = FrictionPhase::free;
+  return held <= k_held * compliance(trial, f);
+}
+
+// Elements that stick and share a load can bear it together, yet the one share out of many that the
+// solver picks may be too much for one of them. It is left at its bound, the rest goes to the
+// others: an admissible share, whose watch values are positive until the group as a whole gives
+// way.
+void FrictionModes::share(State& state) {
+  for (std::size_t pass = 0; pass < system_.frictions.size(); ++pass) {
+    std::vector<int> over = violated(state);
+    std::erase_if(over, [&](int f) {
+      return system_.frictions[f].friction->never_slips() || !is_held(state, f);
+    });
+    (void)violated(state); // evaluates in the modes as they are
+    if (over.empty()) return;
+    const Snapshot snapshot = dynamics_.snapshot(dy_.data());
+    const FrictionUnit& unit = system_.frictions[over.front()];
+    FrictionState& friction = state.friction[over.front()];
+    friction.phase = FrictionPhase::slip;
+    friction.is_starting = true;
+    unit.friction->begin_slip(dynamics_.evaluation(), friction, snapshot.friction_force + unit.row);
+  }
+}
+
 void FrictionModes::decide(State& state) {
   std::vector<int> candidates = violated(state);
   if (candidates.empty()) return;
@@ -152,18 +210,20 @@ void FrictionModes::decide(State& state) {
       return std::find(candidates.begin(), candidates.end(), f) != candidates.end();
     };
     std::erase_if(more, is_candidate);
-    // A candidate that was found to stick and yet is violated shares its load with others that stick
-    // (their rows depend on each other): what they can bear together, only the whole problem tells.
+    // A candidate that was found to stick and yet is violated shares its load with others that
+    // stick (their rows depend on each other): what they can bear together, only the whole problem
+    // tells.
     if (more.empty() && violations > 0) {
       for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f)
-        if (state.friction[f].phase == FrictionPhase::stick && !system_.frictions[f].friction->never_slips() &&
-            !is_candidate(f))
+        if (state.friction[f].phase == FrictionPhase::stick &&
+            !system_.frictions[f].friction->never_slips() && !is_candidate(f))
           more.push_back(f);
     }
-    if (more.empty()) return;
+    if (more.empty()) return violations > 0 ? share(state) : void();
     candidates.insert(candidates.end(), more.begin(), more.end());
   }
-  throw NumericalFailure("friction modes cannot be decided at t = " + std::to_string(state.t) + " s");
+  throw NumericalFailure("friction modes cannot be decided at t = " + std::to_string(state.t) +
+                         " s");
 }
 
 } // namespace steplap

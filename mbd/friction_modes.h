@@ -1,10 +1,10 @@
 // Which frictional elements stick and which begin to slip, decided for all of them together.
 //
-// At zero relative velocity the accelerations minimise Gauss' function plus the support functions of
-// the admissible sets (physics.md §3). Its dual is solved here: wrenches w in ΠK_e that minimise
+// At zero relative velocity the accelerations minimise Gauss' function plus the support functions
+// of the admissible sets (physics.md §3). Its dual is solved here: wrenches w in ΠK_e that minimise
 // ½ wᵀA w + bᵀw, with A the constrained compliance of the candidates' rows and b their relative
-// acceleration without friction; A w + b is then the relative acceleration, zero for those that stick.
-// Elements whose sticking wrench turns out admissible never enter the problem.
+// acceleration without friction; A w + b is then the relative acceleration, zero for those that
+// stick. Elements whose sticking wrench turns out admissible never enter the problem.
 #pragma once
 
 #include "mbd/dynamics.h"
@@ -17,8 +17,8 @@ class FrictionModes {
 public:
   FrictionModes(const System& system, Dynamics& dynamics);
 
-  /// Decides the phases of all elements that stick or are at rest (phase stick) in `state`, at its pose
-  /// and velocity; those in phase slip stay so. Leaves `dynamics` on the layout of the result.
+  /// Decides the phases of all elements that stick or are at rest (phase stick) in `state`, at its
+  /// pose and velocity; those in phase slip stay so. Leaves `dynamics` on the layout of the result.
   /// Throws NumericalFailure if the problem cannot be solved.
   void decide(State& state);
 
@@ -28,6 +28,9 @@ public:
 private:
   [[nodiscard]] std::vector<int> violated(const State& state);
   void solve(State& state, const std::vector<int>& candidates);
+  void share(State& state);
+  [[nodiscard]] double compliance(State& state, int f);
+  [[nodiscard]] bool is_held(const State& state, int f);
 
   const System& system_;
   Dynamics& dynamics_;

@@ -85,6 +85,9 @@ struct SignalEntry {
   std::shared_ptr<SignalDefinition> definition;
 };
 
+/// Runs of more steps than this are not begun, or given up when they turn out to need them: days of computing.
+inline constexpr double k_most_steps = 1e10;
+
 struct SimulationSettings {
   double end = 1.0;                     ///< s
   std::string integrator = "auto";

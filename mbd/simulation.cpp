@@ -15,6 +15,7 @@ constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
 constexpr double k_storm_step = 1e-5;      // s, of time stepping through a storm
 constexpr int k_storm_steps = 200;         // of one interval
+constexpr long k_steps_between_looks = 1L << 18;
 constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
 
 } // namespace
@@ -130,6 +131,23 @@ void Simulation::guard_against_chatter(double t) {
   throw NumericalFailure(message.str());
 }
 
+// A method that chooses its steps may choose such small ones that the run would never end.
+void Simulation::guard_against_crawl() {
+  if (integrator_->steps() < next_look_) return;
+  const double t = integrator_->t1(), passed = t - last_look_;
+  const bool is_first = next_look_ == 0;
+  next_look_ = integrator_->steps() + k_steps_between_looks;
+  last_look_ = t;
+  if (is_first) return;
+  const double needed = (options_.end - t) / passed * static_cast<double>(k_steps_between_looks);
+  if (!(needed > k_most_steps)) return;
+  std::ostringstream message;
+  message << "the last " << k_steps_between_looks << " steps to t = " << t << " s passed " << passed
+          << " s; the rest would take " << needed << " steps. Something is far stiffer or faster than the run is long: '"
+          << integrator_->name() << "' is not made for it, or a stiffness, a mass or the end is mistaken.";
+  throw NumericalFailure(message.str());
+}
+
 void Simulation::pass_event(double t, const double* y, const std::vector<int>& fired) {
   std::copy(y, y + dynamics_.dimension(), y_.begin());
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
@@ -176,6 +194,7 @@ bool Simulation::advance() {
   if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
   const double limit = next_limit();
   integrator_->step(dynamics_, limit);
+  guard_against_crawl();
   if (integrator_->stepped_state()) return pass_stepped();
   if (finder_.find(*integrator_, dynamics_, handler_.fresh())) {
     const double t = integrator_->t0() + finder_.theta() * integrator_->h();

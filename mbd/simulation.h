@@ -77,6 +77,7 @@ private:
   bool pass_stepped();
   void step_through_storm(const std::string& element);
   void guard_against_chatter(double t);
+  void guard_against_crawl();
   [[nodiscard]] double next_limit() const;
 
   const System& system_;
@@ -95,6 +96,8 @@ private:
   double energy_start_ = 0.0, kinetic_start_ = 0.0;
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
+  long next_look_ = 0;       ///< steps at which the pace is looked at
+  double last_look_ = 0.0;   ///< t at the last look
   RunStatistics statistics_;
   double cpu_start_ = 0.0;
 };

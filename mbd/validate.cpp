@@ -285,6 +285,11 @@ void Validation::check_settings() {
   if (s.step && *s.step > s.end && s.end > 0.0)
     complain(Section::simulation, "step",
              "'step' of [simulation], " + number_text(*s.step) + " s, is larger than " + end);
+  if (s.step && has_fixed_step(s.integrator) && s.end / *s.step > k_most_steps)
+    complain(Section::simulation, "step",
+             "'step' of [simulation], " + number_text(*s.step) + " s, takes " + number_text(s.end / *s.step) +
+                 " steps to " + end + ": choose a larger one; more than " + number_text(k_most_steps) +
+                 " steps are not begun");
   if (model_.output.step > s.end && s.end > 0.0)
     complain(Section::output, "step",
              "'step' of [output], " + number_text(model_.output.step) + " s, is larger than " +

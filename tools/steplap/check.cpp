@@ -13,7 +13,6 @@
 #include <map>
 #include <memory>
 #include <ostream>
-#include <set>
 
 namespace steplap {
 
@@ -69,12 +68,7 @@ void print_freedom(TextTable& table, const System& system) {
   table.add_row({"coordinates", std::to_string(freedom.coordinates)});
   std::string rows = std::to_string(freedom.rows);
   if (freedom.rank < freedom.rows) {
-    std::set<std::string> names;
-    for (const int row : freedom.dependent_rows)
-      names.insert(system.element_names[system.rows[row].element]);
-    rows += ", only " + std::to_string(freedom.rank) + " of them independent; reactions are not unique, among others of";
-    for (const std::string& name : names)
-      rows += " '" + name + "'";
+    rows += ", only " + std::to_string(freedom.rank) + " of them independent";
   }
   table.add_row({"constraint rows", rows});
   std::string degrees = std::to_string(freedom.degrees());

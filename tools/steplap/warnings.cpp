@@ -1,7 +1,9 @@
 #include "tools/steplap/warnings.h"
 
+#include "mbd/freedom.h"
 #include "mbd/validate.h"
 
+#include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -35,6 +37,37 @@ std::string place(const Location& where) {
   return where.line > 0 ? " (line " + std::to_string(where.line) + ")" : "";
 }
 
+constexpr std::size_t k_most_names = 8;
+
+// "'a', 'b' and 'c'"
+std::string list_of(const System& system, const std::vector<int>& elements) {
+  std::string text;
+  const std::size_t shown = std::min(elements.size(), k_most_names);
+  for (std::size_t i = 0; i < shown; ++i)
+    text += (i == 0                     ? "'"
+             : i + 1 == elements.size() ? " and '"
+                                        : ", '") +
+            system.element_names[elements[i]] + "'";
+  return shown < elements.size()
+             ? text + " and " + std::to_string(elements.size() - shown) + " more"
+             : text;
+}
+
+// Loads that constraints can share in more than one way.
+void warn_of_shared_reactions(const System& system, std::vector<std::string>& warnings) {
+  const Freedom freedom = count_freedom(system);
+  if (!freedom.shared.empty())
+    warnings.push_back(
+        "the reactions of " + list_of(system, freedom.shared) +
+        " are not unique: their constraints depend on each other, and how they share a load is not "
+        "determined; the motion is");
+  if (freedom.shared_sticking.size() > freedom.shared.size())
+    warnings.push_back("while all friction sticks the reactions of " +
+                       list_of(system, freedom.shared_sticking) +
+                       " are not unique; one of them may be listed as slipping at its bound while "
+                       "the others still hold");
+}
+
 } // namespace
 
 std::vector<std::string> warnings_about(const LoadedModel& loaded) {
@@ -43,15 +76,16 @@ std::vector<std::string> warnings_about(const LoadedModel& loaded) {
   std::vector<std::string> warnings;
   for (const SignalEntry& entry : model.signals)
     if (used.signals.count(entry.definition->name) == 0)
-      warnings.push_back("signal '" + entry.definition->name + "'" + place(entry.definition->where) +
-                         " is used by nothing");
+      warnings.push_back("signal '" + entry.definition->name + "'" +
+                         place(entry.definition->where) + " is used by nothing");
   Names body_names;
   for (const Body& body : model.bodies)
     body_names.insert(body.name);
   for (const Marker& marker : model.markers) // a marker named as its body is the reader's own
     if (used.markers.count(marker.name) == 0 && body_names.count(marker.name) == 0 &&
         marker.name != "ground")
-      warnings.push_back("marker '" + marker.name + "'" + place(marker.where) + " is used by nothing");
+      warnings.push_back("marker '" + marker.name + "'" + place(marker.where) +
+                         " is used by nothing");
   for (const Body& body : model.bodies)
     if (used.bodies.count(body.name) == 0)
       warnings.push_back("no element is attached to body '" + body.name + "'" + place(body.where));
@@ -59,9 +93,11 @@ std::vector<std::string> warnings_about(const LoadedModel& loaded) {
   if (s.step && !s.tolerance && !has_fixed_step(s.integrator))
     warnings.push_back("'step' of [simulation] is not used: '" + s.integrator +
                        "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"");
+  warn_of_shared_reactions(*loaded.system, warnings);
   const Trajectory written(*loaded.system, model.output.channels);
   if (written.channels().empty())
-    warnings.push_back("no channel matches 'channels' of [output]: the trajectory will hold the time only");
+    warnings.push_back(
+        "no channel matches 'channels' of [output]: the trajectory will hold the time only");
   return warnings;
 }
 
