@@ -71,6 +71,7 @@ class ReportTest(unittest.TestCase):
         with open(os.path.join(WORK.name, "hostile.toml"), "w", encoding="utf-8") as file:
             file.write(HOSTILE)
         steplap("simulate", "hostile.toml", "-q", "-o", "out", "--report")
+        steplap("simulate", os.path.join(MODELS, "benchmarks", "bouncing_mass.toml"), "-q", "-o", "out", "--report")
         cls.browser = start_browser()
 
     @classmethod
@@ -139,6 +140,14 @@ class ReportTest(unittest.TestCase):
         self.run_js("document.getElementById('speed').value = '10'")
         self.until(lambda: self.find("#play").get_attribute("aria-pressed") == "false")
         self.assertEqual(self.run_js("return steplap.page.time()"), 0.8)
+
+    def test_a_single_body_moves_against_the_ground(self):
+        self.open("out/bouncing_mass/report.html")
+        self.assertEqual(self.run_js("return document.getElementById('seen-from').value"), "ground")
+        shape = self.find(".body")
+        before = shape.get_attribute("transform")
+        self.find("body").send_keys(Keys.END)
+        self.assertNotEqual(shape.get_attribute("transform"), before)
 
     def test_slider_sets_drawing_plots_and_readings(self):
         self.open("paper.html")

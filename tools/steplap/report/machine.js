@@ -74,7 +74,7 @@ steplap.Scene = (() => {
       const wanted = this.run.drawing.seen_from;
       if (wanted) return wanted;
       let best = 'ground', least = 0.3 * this.largestDisplacement('ground');
-      if (this.bodies.size > 12) return best;
+      if (this.bodies.size < 2 || this.bodies.size > 12) return best; // nothing moves against itself
       const drive = this.elements.find((e) => e.kind === 'prescribed_motion' && e.at.length > 1 && e.at[1].body === 'ground');
       if (drive && this.largestDisplacement(drive.at[0].body) < least) return drive.at[0].body;
       for (const name of this.bodies.keys()) {
