@@ -22,7 +22,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-STEPLAP, MODELS = sys.argv[1:3]
+STEPLAP, MODELS = (os.path.abspath(path) for path in sys.argv[1:3])
 KEPT = sys.argv[4] if len(sys.argv) > 4 and sys.argv[3] == "--keep" else None
 WORK = tempfile.TemporaryDirectory(prefix="steplap-browser-")
 SIZES = [(1280, 800), (1920, 1080)]
