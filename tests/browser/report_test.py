@@ -23,6 +23,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 STEPLAP, MODELS = (os.path.abspath(path) for path in sys.argv[1:3])
+os.environ["no_proxy"] = os.environ["NO_PROXY"] = "localhost,127.0.0.1"  # the driver is on this machine
 KEPT = sys.argv[4] if len(sys.argv) > 4 and sys.argv[3] == "--keep" else None
 WORK = tempfile.TemporaryDirectory(prefix="steplap-browser-")
 SIZES = [(1280, 800), (1920, 1080)]
