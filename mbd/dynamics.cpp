@@ -1,7 +1,5 @@
 #include "mbd/dynamics.h"
 
-#include "mbd/number_text.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,25 +8,11 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_max_projection_iterations = 25;
-constexpr int k_iterations_per_factorization = 3;
 // A merged joint with more of its capacity left than this at a step's ends is not looked at in between:
 // what rises and falls by so much within a step is not resolved anyway.
 constexpr double k_near_limit = 0.5;
-
-// Damping of a projection near a singular position, at most this fraction of the diagonal.
-constexpr double k_largest_damping = 1e-3;
-// Below this smallest pivot an error estimate is freed from what projection will take away.
-constexpr double k_removal_pivot = 1e-2;
-// Below this one the rates of a stage are those of the nearest state on the constraints.
+// Below this smallest pivot the rates of a stage are those of the nearest state on the constraints.
 constexpr double k_placed_pivot = 1e-4;
-// What rounding leaves of a residual: a position is a sum of a few terms as large as the scene.
-constexpr double k_rounded_terms = 32.0;
-double position_rounding(const double* q, int n) {
-  double size = 0.0;
-  for (int i = 0; i < n; ++i) size = std::max(size, std::abs(q[i]));
-  return k_rounded_terms * std::numeric_limits<double>::epsilon() * size;
-}
 
 // From b's axes into the ground's.
 MeasureValue<double> turned(MeasureValue<double> m, const Motion<double>& b) {
@@ -436,22 +420,6 @@ void Dynamics::rates(double t, const double* y, double* dy) {
     rates_nearby(t, y, dy);
 }
 
-// Near a singular position what a stage is off the constraints by, a power of the step size, is divided by the
-// distance from there: accelerations grow beyond all bounds unless it lies on the constraints. The rates of
-// the nearest state that does are as smooth, and the same where a step begins and ends.
-void Dynamics::rates_nearby(double t, const double* y, double* dy) {
-  const int n = coordinate_count();
-  std::copy(y, y + dimension(), placed_.begin());
-  const Residual off = constraint_values(t, y);
-  if (off.position <= position_rounding(y, n) && off.velocity <= position_rounding(y + n, n)) {
-    rates_at(t, y, dy);
-    return;
-  }
-  const bool is_placed = reach_positions(t, placed_.data(), position_rounding(y, n), off);
-  if (is_placed) reach_velocities(t, placed_.data(), position_rounding(y + n, n));
-  rates_at(t, is_placed ? placed_.data() : y, dy);
-}
-
 void Dynamics::rates_at(double t, const double* y, double* dy) {
   const Layout& layout = *layout_;
   const int n = coordinate_count();
@@ -479,135 +447,6 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   finish_watches();
   dy[2 * n] = evaluation_.dissipation;
   dy[2 * n + 1] = evaluation_.work;
-}
-
-// --- projection -----------------------------------------------------------------------------------
-
-Residual Dynamics::constraint_values(double t, const double* y) {
-  t = std::min(t, time_cap_);
-  evaluation_.t = t;
-  place(t, y, y + coordinate_count());
-  evaluate_rows();
-  Residual residual;
-  for (std::size_t r = 0; r < layout_->active.size(); ++r) {
-    residual.position = std::max(residual.position, std::abs(row_value_[r]));
-    residual.velocity = std::max(residual.velocity, std::abs(row_rate_[r]));
-  }
-  return residual;
-}
-
-Residual Dynamics::residual(double t, const double* y) {
-  if (layout_->active.empty()) return {};
-  is_factored_ = false;
-  return constraint_values(t, y);
-}
-
-void Dynamics::fail_projection(double t) const {
-  const Layout& layout = *layout_;
-  int worst = 0;
-  for (std::size_t r = 1; r < layout.active.size(); ++r)
-    if (!(std::abs(row_value_[r]) <= std::abs(row_value_[worst]))) worst = static_cast<int>(r);
-  const RowSpec& spec = *layout.active[worst].spec;
-  throw ConstraintFailure("constraint " + std::string(spec.quantity) + " of '" +
-                              system_.element_names[spec.element] + "' cannot be met at t = " +
-                              std::to_string(t) + " s: residual " + number_text(row_value_[worst]),
-                          spec.element, row_value_[worst], spec.kind == MeasureKind::angle);
-}
-
-void Dynamics::factor_rows(double shift) {
-  layout_->schur.factor(layout_->schur_rows, shift);
-  is_factored_ = true;
-}
-
-// change += W Jᵀ A⁻¹ right_side_.
-void Dynamics::add_response(double* change) {
-  const Layout& layout = *layout_;
-  layout.schur.solve(layout.schur_rows, right_side_.data());
-  for (std::size_t r = 0; r < layout.active.size(); ++r)
-    for (int side = 0; side < 2; ++side) {
-      const SchurRow& row = layout.schur_rows[r];
-      if (row.body[side] < 0) continue;
-      for (int c = 0; c < 3; ++c)
-        change[3 * row.body[side] + c] += row.wj[side][c] * right_side_[r];
-    }
-}
-
-bool Dynamics::is_near_singular() const {
-  return !layout_->active.empty() && is_factored_ && layout_->schur.smallest_pivot() < k_removal_pivot;
-}
-
-void Dynamics::remove_held(double* change) {
-  const Layout& layout = *layout_;
-  if (!is_near_singular()) return;
-  for (double* part : {change, change + coordinate_count()}) {
-    for (std::size_t r = 0; r < layout.active.size(); ++r) {
-      const SchurRow& row = layout.schur_rows[r];
-      double sum = 0.0;
-      for (int side = 0; side < 2; ++side)
-        if (row.body[side] >= 0)
-          for (int c = 0; c < 3; ++c) sum -= row.j[side][c] * part[3 * row.body[side] + c];
-      right_side_[r] = sum;
-    }
-    add_response(part);
-  }
-}
-
-Residual Dynamics::project(double t, double* y, double tolerance) {
-  const Layout& layout = *layout_;
-  const int n = coordinate_count();
-  for (const Lock& lock : layout.locks) {
-    const SignalJet target =
-        row_target(system_.rows[lock.row], state_->memory.data(), std::min(t, time_cap_));
-    y[3 * lock.cluster + lock.coordinate] = target.value;
-    y[n + 3 * lock.cluster + lock.coordinate] = target.rate;
-  }
-  if (layout.active.empty()) return {};
-  // Kilometres from the origin a position is not known to a picometre.
-  double farthest = 0.0;
-  for (int i = 0; i < n; ++i)
-    if (i % 3 != 2) farthest = std::max(farthest, std::abs(y[i]));
-  tolerance = std::max(tolerance, 8.0 * std::numeric_limits<double>::epsilon() * farthest);
-  const Residual first = constraint_values(t, y);
-  if (!reach_positions(t, y, tolerance, first)) fail_projection(t);
-  reach_velocities(t, y, tolerance);
-  return first;
-}
-
-// The factorisation of the step's last evaluation serves while it converges fast. Near a singular position it
-// does not serve, and Newton's steps would be as long as the residual is to the distance from there: damped
-// by the residual itself they stay short, and still converge quadratically (J. Fan, Y. Yuan, Computing 74
-// (2005) 23, for Levenberg–Marquardt with this choice).
-bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual now) {
-  Layout& layout = *layout_;
-  for (int iteration = 0; now.position > tolerance; ++iteration) {
-    if (iteration == k_max_projection_iterations || !std::isfinite(now.position)) return false;
-    if (is_factored_ && layout.schur.is_near_singular()) is_factored_ = false;
-    if (!is_factored_ || iteration % k_iterations_per_factorization == k_iterations_per_factorization - 1) {
-      factor_rows();
-      if (layout.schur.is_near_singular()) factor_rows(std::min(now.position, k_largest_damping));
-    }
-    const double before = now.position;
-    move_by(row_value_, y);
-    now = constraint_values(t, y);
-    if (now.position >= 0.5 * before && now.position <= position_rounding(y, coordinate_count())) break;
-  }
-  return true;
-}
-
-void Dynamics::reach_velocities(double t, double* y, double tolerance) {
-  Residual now = constraint_values(t, y);
-  for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
-    if (!is_factored_ || iteration > 0 || layout_->schur.is_near_singular()) factor_rows();
-    const double before = now.velocity;
-    move_by(row_rate_, y + coordinate_count());
-    now = constraint_values(t, y);
-    if (now.velocity >= 0.5 * before) break; // rounding of fast motions
-  }
-}
-
-void Dynamics::move_by(const std::vector<double>& residual, double* target) {
-  for (std::size_t r = 0; r < layout_->active.size(); ++r) right_side_[r] = -residual[r];
-  add_response(target);
 }
 
 // --- reactions --------------------------------------------------------------------------------------
@@ -750,54 +589,6 @@ double Dynamics::mechanical_energy(double t, const double* y) {
   }
   for (const auto& group : system_.groups) potential += group->potential(motion_.data());
   return kinetic + potential;
-}
-
-// --- the mode problem's matrices ---------------------------------------------------------------------
-
-void Dynamics::respond(Candidates& candidates, const double* dy) {
-  Layout& layout = *layout_;
-  const std::size_t n = candidates.rows.size();
-  const int coordinates = coordinate_count();
-  candidates.compliance.assign(n * n, 0.0);
-  candidates.acceleration.assign(n, 0.0);
-  for (int i = 1; i < system_.body_count(); ++i) place_member(i);
-  std::vector<SchurRow> rows(n);
-  std::vector<double> response(coordinates), lambda(layout.active.size());
-  for (std::size_t c = 0; c < n; ++c) {
-    const RowSpec& spec = *candidates.rows[c];
-    const auto m = evaluate_row<true>(spec, motion_.data());
-    rows[c].body[0] = layout.placements[spec.a].cluster;
-    rows[c].body[1] = layout.placements[spec.b].cluster;
-    to_clusters(spec, m, rows[c]);
-    candidates.acceleration[c] = cluster_bias(spec, m);
-    for (int side = 0; side < 2; ++side)
-      if (rows[c].body[side] >= 0)
-        for (int k = 0; k < 3; ++k)
-          candidates.acceleration[c] += rows[c].j[side][k] * dy[coordinates + 3 * rows[c].body[side] + k];
-  }
-  const auto along = [&](const SchurRow& row, const std::vector<double>& a) {
-    double sum = 0.0;
-    for (int side = 0; side < 2; ++side)
-      if (row.body[side] >= 0)
-        for (int k = 0; k < 3; ++k) sum += row.j[side][k] * a[3 * row.body[side] + k];
-    return sum;
-  };
-  const auto add_response = [&](const SchurRow& row, double f) {
-    for (int side = 0; side < 2; ++side)
-      if (row.body[side] >= 0)
-        for (int k = 0; k < 3; ++k) response[3 * row.body[side] + k] += f * row.wj[side][k];
-  };
-  for (std::size_t c = 0; c < n; ++c) {
-    std::fill(response.begin(), response.end(), 0.0);
-    add_response(rows[c], 1.0);
-    if (!layout.active.empty()) {
-      for (std::size_t r = 0; r < layout.active.size(); ++r)
-        lambda[r] = -along(layout.schur_rows[r], response);
-      layout.schur.solve(layout.schur_rows, lambda.data());
-      for (std::size_t r = 0; r < layout.active.size(); ++r) add_response(layout.schur_rows[r], lambda[r]);
-    }
-    for (std::size_t d = 0; d < n; ++d) candidates.compliance[d * n + c] = along(rows[d], response);
-  }
 }
 
 } // namespace steplap

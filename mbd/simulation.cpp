@@ -15,7 +15,7 @@ constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
 constexpr double k_storm_step = 1e-5;      // s, of time stepping through a storm
 constexpr int k_storm_steps = 200;         // of one interval
-constexpr long k_steps_between_looks = 1L << 18;
+constexpr long k_steps_between_looks = 1L << 16;
 constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
 
 } // namespace
