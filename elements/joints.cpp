@@ -98,51 +98,95 @@ void compile_distance(const Element& element, SystemBuilder& builder) {
   add(builder, {row});
 }
 
-ElementKind joint_kind(const char* name, const char* doc, bool has_axis, bool has_length,
-                       void (*compile)(const Element&, SystemBuilder&)) {
+template <class Made = Joint>
+ElementKind joint_kind(const char* name, const char* doc, void (*compile)(const Element&, SystemBuilder&)) {
   ElementKind k;
   k.name = name;
   k.doc = doc;
-  FieldTable& f = k.fields;
-  f.add("a", &Joint::a).as(FieldType::marker).required().doc("marker on the first body");
-  f.add("b", &Joint::b).as(FieldType::marker).doc("marker on the second body, whose axes count");
-  if (has_axis) f.add("axis", &Joint::axis).doc("direction left free, in marker b's axes");
-  if (has_length)
-    f.add("length", &Joint::length).in("m").positive().doc("default: the distance in the reference pose");
-  k.create = [] { return std::shared_ptr<Element>(std::make_shared<Joint>()); };
+  k.fields.add("a", &Joint::a).as(FieldType::marker).required().doc("marker on the first body");
+  k.fields.add("b", &Joint::b).as(FieldType::marker).doc("marker on the second body, whose axes count");
+  k.create = [] { return std::shared_ptr<Element>(std::make_shared<Made>()); };
   k.compile = compile;
   return k;
 }
 
+struct Slide : Joint {
+  Slide() { is_slide = true; }
+};
+
+void add_axis(FieldTable& f) {
+  f.add("axis", &Joint::axis).doc("direction left free, in marker b's axes");
+}
+
 } // namespace
 
+std::optional<RelativePose> Joint::relative_pose() const {
+  if (is_slide ? !displacement : !angle) return std::nullopt;
+  RelativePose pose;
+  pose.angle = angle.value_or(0.0);
+  pose.spin = angular_velocity.value_or(0.0);
+  if (!is_slide || axis.norm() == 0.0) return pose;
+  pose.shift = *displacement * axis.normalized();
+  pose.velocity = speed.value_or(0.0) * axis.normalized();
+  return pose;
+}
+
+const char* Joint::idle_field() const {
+  if (is_slide) return angle ? "angle" : speed ? "speed" : nullptr;
+  return angular_velocity ? "angular_velocity" : nullptr;
+}
+
 const ElementKind& revolute_kind() {
-  static const ElementKind kind =
-      joint_kind("revolute", "A pin: the two markers stay together, the bodies turn freely.", false, false,
-                 compile_revolute);
+  static const ElementKind kind = [] {
+    ElementKind k = joint_kind("revolute", "A pin: the two markers stay together, the bodies turn freely.",
+                               compile_revolute);
+    k.fields.add("angle", &Joint::angle).in("rad").doc(
+        "of marker a's axes against marker b's in the reference pose: places the body that has no pose of its own");
+    k.fields.add("angular_velocity", &Joint::angular_velocity).in("rad/s").doc(
+        "with 'angle': its rate at the start; 0 if not given");
+    return k;
+  }();
   return kind;
 }
 const ElementKind& prismatic_kind() {
-  static const ElementKind kind = joint_kind(
-      "prismatic", "A slide: a moves along an axis of b and does not turn against it.", true, false,
-      compile_prismatic);
+  static const ElementKind kind = [] {
+    ElementKind k = joint_kind<Slide>(
+        "prismatic", "A slide: a moves along an axis of b and does not turn against it.", compile_prismatic);
+    add_axis(k.fields);
+    k.fields.add("displacement", &Joint::displacement).in("m").doc(
+        "of marker a from marker b along the axis in the reference pose: places the body that has no pose of its own");
+    k.fields.add("angle", &Joint::angle).in("rad").doc(
+        "with 'displacement': of marker a's axes against marker b's; 0 if not given");
+    k.fields.add("speed", &Joint::speed).in("m/s").doc("with 'displacement': its rate at the start; 0 if not given");
+    return k;
+  }();
   return kind;
 }
 const ElementKind& weld_kind() {
-  static const ElementKind kind =
-      joint_kind("weld", "Holds a and b together as in the reference pose; the two are integrated as one body.",
-                 false, false, compile_weld);
+  static const ElementKind kind = [] {
+    ElementKind k = joint_kind(
+        "weld", "Holds a and b together as in the reference pose; the two are integrated as one body.", compile_weld);
+    k.fields.add("angle", &Joint::angle).in("rad").doc(
+        "of marker a's axes against marker b's: places the body that has no pose of its own, marker on marker");
+    return k;
+  }();
   return kind;
 }
 const ElementKind& distance_kind() {
-  static const ElementKind kind = joint_kind(
-      "distance", "A massless rod: the markers keep their distance.", false, true, compile_distance);
+  static const ElementKind kind = [] {
+    ElementKind k = joint_kind("distance", "A massless rod: the markers keep their distance.", compile_distance);
+    k.fields.add("length", &Joint::length).in("m").positive().doc("default: the distance in the reference pose");
+    return k;
+  }();
   return kind;
 }
 const ElementKind& point_on_line_kind() {
-  static const ElementKind kind =
-      joint_kind("point_on_line", "Marker a stays on a line of b and may turn and slide on it.", true, false,
-                 compile_point_on_line);
+  static const ElementKind kind = [] {
+    ElementKind k = joint_kind("point_on_line", "Marker a stays on a line of b and may turn and slide on it.",
+                               compile_point_on_line);
+    add_axis(k.fields);
+    return k;
+  }();
   return kind;
 }
 

@@ -6,16 +6,28 @@
 //   distance        change of the distance of the markers (a rod)
 //   point_on_line   displacement across b's axis
 // Each gives its multipliers as channels: the force on a along the direction held.
+//
+// A revolute, prismatic or weld joint that gives its coordinate places one body against the other in the
+// reference pose (mbd/placement.h).
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/placement.h"
 
 namespace steplap {
 
-struct Joint : Element {
-  std::string a, b = "ground";
+struct Joint : PlacingElement {
   Vec2 axis{1.0, 0.0};          ///< prismatic, point_on_line: in marker b's axes
   std::optional<double> length; ///< distance
+  // Reference pose of marker a's frame against marker b's.
+  std::optional<double> angle;            ///< revolute, prismatic, weld; rad
+  std::optional<double> angular_velocity; ///< revolute; rad/s
+  std::optional<double> displacement;     ///< prismatic: along the axis, m
+  std::optional<double> speed;            ///< prismatic: along the axis, m/s
+
+  [[nodiscard]] std::optional<RelativePose> relative_pose() const override;
+  [[nodiscard]] const char* placing_field() const override { return is_slide ? "displacement" : "angle"; }
+  [[nodiscard]] const char* idle_field() const override;
+  bool is_slide = false; ///< prismatic: the displacement decides whether it places
 };
 
 [[nodiscard]] const ElementKind& revolute_kind();

@@ -2,6 +2,7 @@
 
 #include "mbd/io/field_reader.h"
 #include "mbd/io/toml_writer.h"
+#include "mbd/placement.h"
 #include "mbd/validate.h"
 
 #include <algorithm>
@@ -65,6 +66,7 @@ public:
     read_tables();
     add_body_markers();
     place_markers();
+    place_bodies_by_joints();
     apply_tables();
     finish();
     return std::move(model_);
@@ -97,6 +99,7 @@ private:
   std::string add_inline_marker(const Node& table, const Field& field, const std::string& owner);
   void add_body_markers();
   void place_markers();
+  void place_bodies_by_joints();
   void apply_tables();
   std::optional<Location> locate(Section section, std::size_t index, const std::string& field);
   std::optional<Location> place_of(const std::vector<GivenField>& fields, const std::string& name,
@@ -355,6 +358,19 @@ void Reader::place_markers() {
     const auto body = bodies.find(marker.body);
     marker.point = body == bodies.end() ? Vec2(Vec2::Zero()) : body->second->cg;
   }
+}
+
+void Reader::place_bodies_by_joints() {
+  const auto given_field = [this](std::size_t body, const std::string& name) -> std::optional<Location> {
+    if (body >= given(Section::body).size()) return std::nullopt;
+    for (const GivenField& field : given(Section::body)[body])
+      if (field.field->name == name && field.node) return field.node->where();
+    return std::nullopt;
+  };
+  const auto locate_field = [this](Section section, std::size_t index, const std::string& field) {
+    return locate(section, index, field);
+  };
+  place_by_joints(model_, given_field, locate_field, problems_);
 }
 
 void Reader::apply_tables() {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mbd/io/record_signal.h"
-#include "mbd/model.h"
+#include "mbd/placement.h"
 
 namespace steplap::testing {
 
@@ -15,6 +15,16 @@ struct Spring : Element {
   std::vector<Vec2> table;
   long turns = 3;
   bool is_on = true;
+};
+
+struct Pin : PlacingElement {
+  std::optional<double> angle, spin;
+  std::optional<RelativePose> relative_pose() const override {
+    if (!angle) return std::nullopt;
+    return RelativePose{Vec2::Zero(), *angle, Vec2::Zero(), spin.value_or(0.0)};
+  }
+  const char* placing_field() const override { return "angle"; }
+  const char* idle_field() const override { return spin ? "spin" : nullptr; }
 };
 
 struct Pusher : Element {
@@ -46,6 +56,21 @@ inline const ElementKind& spring_kind() {
     k.fields.add("table", &Spring::table).in("m", "N").doc("stretch and force");
     k.fields.add("turns", &Spring::turns).at_least(1).at_most(20).doc("number of turns");
     k.fields.add("is_on", &Spring::is_on).doc("false: does nothing");
+    return k;
+  }();
+  return kind;
+}
+
+inline const ElementKind& pin_kind() {
+  static const ElementKind kind = [] {
+    ElementKind k;
+    k.name = "pin";
+    k.doc = "Joins two markers.";
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Pin>()); };
+    k.fields.add("a", &Pin::a).as(FieldType::marker).required().doc("first marker");
+    k.fields.add("b", &Pin::b).as(FieldType::marker).doc("second marker");
+    k.fields.add("angle", &Pin::angle).in("rad").doc("of a against b in the reference pose");
+    k.fields.add("spin", &Pin::spin).in("rad/s").doc("its rate");
     return k;
   }();
   return kind;
@@ -94,7 +119,7 @@ inline const TableKind& pair_kind() {
 
 inline const Catalogue& small_catalogue() {
   static const Catalogue catalogue = [] {
-    Catalogue c{{&spring_kind(), &pusher_kind()}, signal_kinds(), {&pair_kind()}};
+    Catalogue c{{&spring_kind(), &pin_kind(), &pusher_kind()}, signal_kinds(), {&pair_kind()}};
     c.signals.push_back(&record_signal_kind());
     return c;
   }();
