@@ -57,12 +57,16 @@ public:
   /// dy/dt. Also leaves watch values, multipliers and forces for the functions below.
   void rates(double t, const double* y, double* dy);
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
-  /// residuals found before. Stops at `tolerance`; throws ConstraintFailure if that cannot be reached.
+  /// residuals found before. Stops at `tolerance`, 0: where rounding sets an end to it; throws ConstraintFailure
+  /// if that cannot be reached.
   Residual project(double t, double* y, double tolerance);
   /// Takes from a small change of y what the constraints at the last evaluation do not allow, if that was
   /// near a singular position; else leaves it. There accelerations across the constraints are as uncertain
   /// as rounding over the distance from the singularity, but projection takes that part away.
   void remove_held(double* change);
+  /// Takes from a small change of coordinates or of velocities what the constraints at the last evaluation do
+  /// not allow: what is left is its (mass-weighted) nearest one along them.
+  void keep_allowed(double* change);
   /// How near to a singular position evaluations have come since forget_pivots(): the smallest pivot of the
   /// constraint matrix against its diagonal, about the square of the distance in radians.
   [[nodiscard]] double lowest_pivot() const { return lowest_pivot_; }

@@ -18,12 +18,20 @@ constexpr double k_largest_damping = 1e-3;
 // Below this smallest pivot an error estimate is freed from what projection will take away: without it
 // tight tolerances are not met beside a flat position, where accelerations across it are mostly rounding.
 constexpr double k_removal_pivot = 1e-2;
+// Below this one no factorisation serves twice in a projection, and steps are damped.
+constexpr double k_chord_pivot = 1e-2;
 // What rounding leaves of a residual: a position is a sum of a few terms as large as the scene.
 constexpr double k_rounded_terms = 32.0;
 double position_rounding(const double* q, int n) {
   double size = 0.0;
   for (int i = 0; i < n; ++i) size = std::max(size, std::abs(q[i]));
   return k_rounded_terms * std::numeric_limits<double>::epsilon() * size;
+}
+// A projection "as closely as rounding allows" aims at this share of that, and is not content with the first
+// iteration that no longer helps.
+constexpr double k_close = 1.0 / 16.0;
+int patience_for(double tolerance, const double* y, int n) {
+  return tolerance <= k_close * position_rounding(y, n) ? 3 : 0;
 }
 
 } // namespace
@@ -81,20 +89,25 @@ bool Dynamics::is_near_singular() const {
   return !layout_->active.empty() && is_factored_ && layout_->schur.smallest_pivot() < k_removal_pivot;
 }
 
-void Dynamics::remove_held(double* change) {
+void Dynamics::keep_allowed(double* change) {
   const Layout& layout = *layout_;
-  if (!is_near_singular()) return;
-  for (double* part : {change, change + coordinate_count()}) {
-    for (std::size_t r = 0; r < layout.active.size(); ++r) {
-      const SchurRow& row = layout.schur_rows[r];
-      double sum = 0.0;
-      for (int side = 0; side < 2; ++side)
-        if (row.body[side] >= 0)
-          for (int c = 0; c < 3; ++c) sum -= row.j[side][c] * part[3 * row.body[side] + c];
-      right_side_[r] = sum;
-    }
-    add_response(part);
+  if (layout.active.empty()) return;
+  if (!is_factored_) factor_rows();
+  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+    const SchurRow& row = layout.schur_rows[r];
+    double sum = 0.0;
+    for (int side = 0; side < 2; ++side)
+      if (row.body[side] >= 0)
+        for (int c = 0; c < 3; ++c) sum -= row.j[side][c] * change[3 * row.body[side] + c];
+    right_side_[r] = sum;
   }
+  add_response(change);
+}
+
+void Dynamics::remove_held(double* change) {
+  if (!is_near_singular()) return;
+  keep_allowed(change);
+  keep_allowed(change + coordinate_count());
 }
 
 Residual Dynamics::project(double t, double* y, double tolerance) {
@@ -111,10 +124,12 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
   double farthest = 0.0;
   for (int i = 0; i < n; ++i)
     if (i % 3 != 2) farthest = std::max(farthest, std::abs(y[i]));
-  tolerance = std::max(tolerance, 8.0 * std::numeric_limits<double>::epsilon() * farthest);
+  const double least = 8.0 * std::numeric_limits<double>::epsilon() * farthest;
+  const bool is_close = tolerance == 0.0;
   const Residual first = constraint_values(t, y);
-  if (!reach_positions(t, y, tolerance, first)) fail_projection(t);
-  reach_velocities(t, y, tolerance);
+  if (!reach_positions(t, y, is_close ? k_close * position_rounding(y, n) : std::max(tolerance, least), first))
+    fail_projection(t);
+  reach_velocities(t, y, is_close ? k_close * position_rounding(y + n, n) : std::max(tolerance, least));
   return first;
 }
 
@@ -124,29 +139,32 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
 // (2005) 23, for Levenberg–Marquardt with this choice).
 bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual now) {
   Layout& layout = *layout_;
+  int patience = patience_for(tolerance, y, coordinate_count());
   for (int iteration = 0; now.position > tolerance; ++iteration) {
     if (iteration == k_max_projection_iterations || !std::isfinite(now.position)) return false;
-    if (is_factored_ && layout.schur.is_near_singular()) is_factored_ = false;
+    if (is_factored_ && layout.schur.smallest_pivot() < k_chord_pivot) is_factored_ = false;
     if (!is_factored_ || iteration % k_iterations_per_factorization == k_iterations_per_factorization - 1) {
       factor_rows();
-      if (layout.schur.is_near_singular()) factor_rows(std::min(now.position, k_largest_damping));
+      if (layout.schur.smallest_pivot() < k_chord_pivot) factor_rows(std::min(now.position, k_largest_damping));
     }
     const double before = now.position;
     move_by(row_value_, y);
     now = constraint_values(t, y);
-    if (now.position >= 0.5 * before && now.position <= position_rounding(y, coordinate_count())) break;
+    if (now.position >= 0.5 * before && now.position <= position_rounding(y, coordinate_count()) && --patience < 0)
+      break;
   }
   return true;
 }
 
 void Dynamics::reach_velocities(double t, double* y, double tolerance) {
   Residual now = constraint_values(t, y);
+  int patience = patience_for(tolerance, y + coordinate_count(), coordinate_count());
   for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
     if (!is_factored_ || iteration > 0 || layout_->schur.is_near_singular()) factor_rows();
     const double before = now.velocity;
     move_by(row_rate_, y + coordinate_count());
     now = constraint_values(t, y);
-    if (now.velocity >= 0.5 * before) break; // rounding of fast motions
+    if (now.velocity >= 0.5 * before && --patience < 0) break; // rounding of fast motions
   }
 }
 

@@ -16,7 +16,7 @@ public:
   }
   [[nodiscard]] const char* name() const override { return "dop853"; }
 
-  void dense(Dynamics& dynamics, double theta, double* out) override {
+  void dense_of_pair(Dynamics& dynamics, double theta, double* out) override {
     if (!is_dense_ready_) prepare_dense(dynamics);
     const double s = theta, u = 1.0 - theta;
     const double* r = r_.data();
@@ -29,7 +29,7 @@ public:
                                           s * (r[4 * m + i] + u * (r[5 * m + i] + s * r[6 * m + i]))))));
   }
 
-  [[nodiscard]] double stability_share(Dynamics&) override {
+  [[nodiscard]] double share_of_stability(Dynamics&) override {
     double* const y = scratch_.data();
     combine<dop853::a, 11, 11>(y0_.data(), h_, k_.data(), stride_, n_, y);
     for (int i = 0; i < n_; ++i) y[i] = y1_[i] - y[i];

@@ -9,6 +9,12 @@ namespace steplap {
 namespace {
 
 constexpr double k_shortest_retry = 0.1;
+// A step with a stage nearer than this (a square, rad²) to a singular position is made by collocation.
+constexpr double k_crossed_pivot = 2e-2;
+// Unless it begins so near that it would have to be tiny.
+constexpr double k_closest_start = 4e-4;
+// Of the way to the position: where the next attempt begins if one fails.
+constexpr double k_closer = 0.5;
 
 } // namespace
 
@@ -21,7 +27,53 @@ ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& s
 }
 
 // The step size survives an event: what limited it was the motion, which goes on much the same.
-void ExplicitPair::on_restart(Dynamics&) { control_.previous_error = 1e-4; }
+void ExplicitPair::on_restart(Dynamics&) {
+  control_.previous_error = 1e-4;
+  start_pivot_ = 1.0;
+}
+
+void ExplicitPair::end_step(Dynamics& dynamics) {
+  finish_step(dynamics);
+  start_pivot_ = dynamics.layout().schur.smallest_pivot();
+}
+
+SingularCrossing::Step ExplicitPair::crossing_step(Dynamics& dynamics) {
+  SingularCrossing::Step step;
+  step.t0 = t0_;
+  step.h = h_;
+  step.y0 = y0_.data();
+  step.rate0 = k0_;
+  step.n = n_;
+  step.norm = [this](const double* error) { return error_norm(error); };
+  step.note_stage = [this, &dynamics](const double* rates) { note_stage_watches(dynamics, rates); };
+  return step;
+}
+
+void ExplicitPair::dense(Dynamics& dynamics, double theta, double* out) {
+  if (is_crossing_) crossing_->dense(theta, crossing_step(dynamics), out);
+  else dense_of_pair(dynamics, theta, out);
+}
+
+// Falling towards a singular position, not merely small all the time?
+bool ExplicitPair::comes_near_singularity(const Dynamics& dynamics) const {
+  return dynamics.lowest_pivot() < k_crossed_pivot && dynamics.lowest_pivot() < 0.5 * start_pivot_ &&
+         start_pivot_ > k_closest_start;
+}
+
+// After a try that came near a singular position: the same way in one step of another kind, the position in
+// its middle. 0 if that step was made, else how long the next try should be.
+double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
+  if (!crossing_) crossing_ = std::make_unique<SingularCrossing>(stride_);
+  const double h_tried = h_;
+  const double ahead = h_ * crossing_->locate(dynamics, crossing_step(dynamics));
+  const double h = ahead > 0.0 ? crossing_->length_with_gap_at(ahead, left) : 0.0;
+  if (h == 0.0) return h_tried;
+  h_ = h;
+  t1_ = t0_ + h_;
+  std::fill(watch_low_.begin(), watch_low_.end(), 1.0);
+  is_crossing_ = crossing_->cross(dynamics, crossing_step(dynamics), y1_.data()) <= 1.0;
+  return is_crossing_ ? 0.0 : std::min(h_tried, k_closer * ahead);
+}
 
 void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
   const double left = t_limit - t0_;
@@ -30,6 +82,7 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
   update_weights(dynamics);
   double h = std::min(next_h_, h_max);
   SingularPassage passage(dynamics);
+  bool has_tried_crossing = false;
   for (bool is_retry = false;; is_retry = true) {
     const bool is_last = h >= left * (1.0 - 1e-10);
     // Two even steps rather than a long one and a sliver.
@@ -37,7 +90,18 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
     t1_ = is_last ? t_limit : t0_ + h_;
     std::fill(watch_low_.begin(), watch_low_.end(), 1.0);
     passage.begin_try();
+    is_crossing_ = false;
     const double error = try_step(dynamics);
+    if (!has_tried_crossing && comes_near_singularity(dynamics)) [[unlikely]] {
+      has_tried_crossing = true;
+      const double h_next = cross_singularity(dynamics, left);
+      if (h_next == 0.0) {
+        end_step(dynamics);
+        return;
+      }
+      h = h_next;
+      continue;
+    }
     if (error <= 1.0 && !is_last && passage.wants_other_end()) {
       ++rejections_;
       h = SingularPassage::k_shorter_end * h_;
@@ -47,7 +111,7 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
       const double factor = control_.factor(error, is_retry);
       // A step cut short by the limit says nothing against the longer one that was planned.
       next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
-      finish_step(dynamics);
+      end_step(dynamics);
       return;
     }
     ++rejections_;

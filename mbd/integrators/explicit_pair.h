@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mbd/integrators/explicit_runge_kutta.h"
+#include "mbd/integrators/singular_crossing.h"
 
 namespace steplap {
 
@@ -11,8 +12,14 @@ public:
                int stages, int order);
   [[nodiscard]] bool is_adaptive() const override { return true; }
   void step(Dynamics& dynamics, double t_limit) override;
+  void dense(Dynamics& dynamics, double theta, double* out) final;
+  [[nodiscard]] double stability_share(Dynamics& dynamics) final {
+    return is_crossing_ ? 0.0 : share_of_stability(dynamics);
+  }
 
 protected:
+  virtual void dense_of_pair(Dynamics& dynamics, double theta, double* out) = 0;
+  [[nodiscard]] virtual double share_of_stability(Dynamics& dynamics) = 0;
   /// Stages, y1 and the error norm (accepted when ≤ 1) of a step of h_ from t0_.
   virtual double try_step(Dynamics& dynamics) = 0;
   void on_restart(Dynamics& dynamics) override;
@@ -41,9 +48,17 @@ protected:
   int stride_;
 
 private:
+  [[nodiscard]] bool comes_near_singularity(const Dynamics& dynamics) const;
+  double cross_singularity(Dynamics& dynamics, double left);
+  void end_step(Dynamics& dynamics);
+  [[nodiscard]] SingularCrossing::Step crossing_step(Dynamics& dynamics);
+
   StepControl control_;
   int order_;
   double next_h_ = 0.0;
+  std::unique_ptr<SingularCrossing> crossing_; ///< made where one is met
+  double start_pivot_ = 1.0;                   ///< of the constraints at t0, 1: not known
+  bool is_crossing_ = false;                   ///< the step made is one
 };
 
 } // namespace steplap

@@ -15,7 +15,7 @@ public:
   }
   [[nodiscard]] const char* name() const override { return "tsit5"; }
 
-  void dense(Dynamics&, double theta, double* out) override {
+  void dense_of_pair(Dynamics&, double theta, double* out) override {
     double weight[7];
     for (std::size_t j = 0; j < 7; ++j) {
       const auto& d = tsit5::d[j];
@@ -30,7 +30,7 @@ public:
     }
   }
 
-  [[nodiscard]] double stability_share(Dynamics&) override {
+  [[nodiscard]] double share_of_stability(Dynamics&) override {
     double* const y = scratch_.data();
     combine<tsit5::a, 5, 5>(y0_.data(), h_, k_.data(), stride_, n_, y);
     for (int i = 0; i < n_; ++i) y[i] = y1_[i] - y[i];

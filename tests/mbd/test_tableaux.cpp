@@ -1,6 +1,7 @@
 // The coefficients of the methods against their order conditions, one for each rooted tree (Hairer, Nørsett,
 // Wanner, Solving ODEs I, II.2; for Rosenbrock methods Hairer, Wanner, Solving ODEs II, IV.7): a method is of
 // order p if and only if Σ b_j Φ_j(τ) = 1/γ(τ) for all trees τ of at most p vertices.
+#include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/tableau_dop853.h"
 #include "mbd/integrators/tableau_rodas5p.h"
 #include "mbd/integrators/tableau_tsit5.h"
@@ -211,4 +212,32 @@ TEST_CASE("Rodas5P is stiffly accurate and L-stable") {
     CHECK(std::abs(stability({0.0, y})) <= 1.0 + 1e-10);
   }
   CHECK(std::abs(stability({-1e8, 0.0})) < 1e-6);
+}
+
+TEST_CASE("Gauss' method of eight stages: B(16), C(8), nodes symmetric; so of order 16 (Butcher)") {
+  const steplap::GaussTable& table = steplap::gauss_table();
+  constexpr int n = steplap::GaussTable::n;
+  constexpr double k_rounding = 1e-15; // coefficients are rounded from extended precision
+  for (int k = 1; k <= 2 * n; ++k) {
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) sum += table.b[i] * std::pow(table.c[i], k - 1);
+    CHECK(std::abs(sum - 1.0 / k) < k_rounding);
+  }
+  for (int i = 0; i < n; ++i) {
+    CHECK(std::abs(table.c[i] + table.c[n - 1 - i] - 1.0) < k_rounding);
+    for (int k = 1; k <= n; ++k) {
+      double sum = 0.0;
+      for (int j = 0; j < n; ++j) sum += table.a[i][j] * std::pow(table.c[j], k - 1);
+      CHECK(std::abs(sum - std::pow(table.c[i], k) / k) < k_rounding);
+    }
+  }
+  // Dense output: weights to the nodes are the rows of a, to the end b; at a node only that node counts. The
+  // powers of the Lagrange polynomials are up to 1e4: their sums lose as many digits.
+  for (int i = 0; i < n; ++i) {
+    const auto to = table.weights_to(table.c[i]), at = table.weights_at(table.c[i]);
+    for (int j = 0; j < n; ++j) {
+      CHECK(std::abs(to[j] - table.a[i][j]) < 1e-11);
+      CHECK(std::abs(at[j] - (i == j ? 1.0 : 0.0)) < 1e-10);
+    }
+  }
 }

@@ -73,14 +73,15 @@ TEST_CASE("Andrews' squeezer, start of IFToMM A03, after one and after many turn
 TEST_CASE("N-four-bars pass their flat positions and stay on the parallelogram branch") {
   const auto passes = [](const char* file, const Vec2& exact) {
     CAPTURE(file);
-    for (const double tolerance : {1e-10, 1e-11, 1e-12}) {
+    // Some hundred steps of a local error that is the tolerance times about a metre, carried on at 5 rad/s.
+    for (const double tolerance : {1e-9, 1e-11}) {
       CAPTURE(tolerance);
-      const Run r = run_file(file, tolerance, 10.0);
-      // Some hundred steps of a local error below 1e-10, and what rounding over the square of the distance
-      // from eleven flat positions adds: the same for all three tolerances.
-      CHECK((free_end(r) - exact).norm() < 1e-7);
-      CHECK(r.result.statistics.energy_residual < 1e-6); // J; the library allows 0.1 J
+      CHECK((free_end(run_file(file, tolerance, 10.0)) - exact).norm() < 300.0 * tolerance);
     }
+    const Run r = run_file(file, 1e-12, 10.0);
+    check_digits(free_end(r).x(), exact.x());
+    check_digits(free_end(r).y(), exact.y());
+    CHECK(r.result.statistics.energy_residual < 1e-6); // J; the library allows 0.1 J
   };
   passes("four_bar_2", {0.328458111540815, 0.944518538178601});
   passes("four_bar_40", {0.180512226686728, 0.983572740582312});
