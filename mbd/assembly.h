@@ -1,7 +1,9 @@
 // Assembly: do the poses that the file gives meet the joints, up to a least motion?
 //
-// A model may give its poses roughly: the first projection of a run moves the bodies onto their joints.
-// Joints that no motion can meet are an error of the model, found before anything runs.
+// A model may give its poses roughly: a run begins at the poses on the joints that are nearest to the given
+// ones, and at the velocities there that are nearest to the given ones, both weighted by mass and moment of
+// inertia. Nearest means stationary: that no small motion along the joints leads nearer. With poses so rough
+// that several such places exist it is the one reached from the first projection. Joints that no motion can meet are an error of the model, found before anything runs.
 #pragma once
 
 #include "mbd/model.h"
@@ -9,9 +11,12 @@
 
 namespace steplap {
 
-/// The initial state moved onto the constraints (mass-weighted least motion), drives begun there.
+/// The initial state moved onto the constraints with the least motion, drives begun there.
 /// Throws ModelError at the element that stays unmet most; `model` is what `system` was compiled from.
 [[nodiscard]] State assemble(const Model& model, const System& system);
+
+/// Where a run begins: the initial state with the poses and velocities of `assembled`.
+[[nodiscard]] State assembled_start(const System& system, const State& assembled);
 
 /// How far a body was moved to meet the joints: position, angle, velocity, angular velocity.
 struct AssemblyMove {

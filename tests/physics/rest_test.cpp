@@ -165,6 +165,64 @@ a = { body = "heavy", point = [-0.5, 0.0] }
   for (int k = 3; k < 6; ++k) CHECK(std::abs(state.q[k] - alone.q[k]) < 1e-3);
 }
 
+// Nearest to (x0, y0) on a circle round the origin is the point in that direction, however far it is off.
+TEST_CASE("a bob far off its rod is put on the circle at the nearest point") {
+  for (const Vec2& given : {Vec2(1.3, 0.9), Vec2(0.1, -0.35), Vec2(-2.5, 1.5)}) {
+    const Model model = scene(k_head + "[[body]]\nname = \"bob\"\nmass = 2\ninertia = 0.1\nposition = [" +
+                              std::to_string(given.x()) + ", " + std::to_string(given.y()) +
+                              "]\n[[element]]\nkind = \"distance\"\nname = \"rod\"\na = \"bob\"\nlength = 1.0\n");
+    const auto system = compile(model);
+    const State state = assemble(model, *system);
+    CHECK((Vec2(state.q[3], state.q[4]) - given.normalized()).norm() < 1e-11);
+    CHECK(state.q[5] == 0.0);
+  }
+}
+
+// With φ₁, φ₂ the angles of two pinned rods all poses on the joints are known; the distance to the given ones,
+// ½ Σ m |c − c₀|² + J (φ − φ₀)², is stationary where its derivatives by both angles vanish, and least where its
+// second derivatives are positive.
+TEST_CASE("two rods off by decimetres are put together where no small motion leads nearer") {
+  const double mass[2] = {3.0, 1.0}, inertia[2] = {0.25, 0.08};
+  const double rough[][6] = {{0.7, 0.3, 0.2, 1.2, -0.4, -0.5}, {0.3, -0.6, -0.4, 0.5, -1.9, -1.6}, {-0.2, 0.9, 1.2, 0.6, 1.4, 0.1}};
+  for (const auto& given : rough) {
+    std::string text = k_head;
+    for (int i : {0, 1}) {
+      const double* q = given + 3 * i;
+      text += std::string("[[body]]\nname = \"") + (i == 0 ? "first" : "second") + "\"\nmass = " + std::to_string(mass[i]) +
+              "\ninertia = " + std::to_string(inertia[i]) + "\nposition = [" + std::to_string(q[0]) + ", " +
+              std::to_string(q[1]) + "]\nangle = " + std::to_string(q[2]) + "\n";
+    }
+    const Model model = scene(text + R"(
+[[element]]
+kind = "revolute"
+name = "wall"
+a = { body = "first", point = [-0.5, 0.0] }
+[[element]]
+kind = "revolute"
+name = "elbow"
+a = { body = "second", point = [-0.5, 0.0] }
+b = { body = "first", point = [0.5, 0.0] }
+)");
+    const auto system = compile(model);
+    const State state = assemble(model, *system);
+    const double *p = &state.q[3], *q = &state.q[6];
+    const Vec2 e1(std::cos(p[2]), std::sin(p[2])), e2(std::cos(q[2]), std::sin(q[2]));
+    // Each of four rows is met to the projection's tolerance, 1e-12 m; the second pin's place adds up two joints.
+    CHECK((Vec2(p[0], p[1]) - 0.5 * e1).norm() < 2e-12);
+    CHECK((Vec2(q[0], q[1]) - e1 - 0.5 * e2).norm() < 4e-12);
+    const Vec2 off1 = Vec2(p[0] - given[0], p[1] - given[1]), off2 = Vec2(q[0] - given[3], q[1] - given[4]);
+    const Vec2 n1(-e1.y(), e1.x()), n2(-e2.y(), e2.x());
+    // 1e-12 of the way moved is left, decimetres at most; a kilogram and a metre.
+    CHECK(std::abs(mass[0] * off1.dot(0.5 * n1) + mass[1] * off2.dot(n1) + inertia[0] * (p[2] - given[2])) < 1e-11);
+    CHECK(std::abs(mass[1] * off2.dot(0.5 * n2) + inertia[1] * (q[2] - given[5])) < 1e-11);
+    const double a = 0.25 * mass[0] + mass[1] + inertia[0] - mass[0] * off1.dot(0.5 * e1) - mass[1] * off2.dot(e1);
+    const double b = 0.25 * mass[1] + inertia[1] - mass[1] * off2.dot(0.5 * e2);
+    const double c = 0.5 * mass[1] * n1.dot(n2);
+    CHECK(a > 0.0);
+    CHECK(a * b - c * c > 0.0);
+  }
+}
+
 TEST_CASE("joints that no motion meets are an error at the joint") {
   const Model model = scene(k_head + R"(
 [[body]]

@@ -80,7 +80,7 @@ void print_freedom(TextTable& table, const System& system) {
 // What the file gives roughly, and what the run begins with.
 void print_assembly(std::ostream& out, const LoadedModel& loaded) {
   const System& system = *loaded.system;
-  const auto moves = assembly_moves(system.initial_state(), assemble(loaded.model, system));
+  const auto moves = assembly_moves(system.initial_state(), loaded.assembled);
   if (moves.empty()) return;
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
   table.add_row({"assembled", "moved", "turned", "velocity changed", "angular velocity"});

@@ -20,7 +20,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path,
   loaded->text = effective_model_text(path, program_catalogue(), overrides);
   loaded->system = compile(loaded->model);
   check_presentation(loaded->model, *loaded->system);
-  (void)assemble(loaded->model, *loaded->system); // joints that cannot be met are the model's error
+  loaded->assembled = assemble(loaded->model, *loaded->system); // joints that cannot be met are the model's error
   return loaded;
 }
 
@@ -40,7 +40,7 @@ load_models(const std::vector<std::string>& paths, const std::vector<std::string
 }
 
 Equilibrium equilibrium_of(const LoadedModel& loaded) {
-  const State given = loaded.system->initial_state();
+  const State given = assembled_start(*loaded.system, loaded.assembled);
   State still = given;
   std::fill(still.v.begin(), still.v.end(), 0.0);
   Equilibrium found = find_equilibrium(*loaded.system, still);
@@ -50,7 +50,7 @@ Equilibrium equilibrium_of(const LoadedModel& loaded) {
 
 State initial_state_of(const LoadedModel& loaded) {
   if (loaded.model.simulation.initial == "equilibrium") return equilibrium_of(loaded).state;
-  return loaded.system->initial_state();
+  return assembled_start(*loaded.system, loaded.assembled);
 }
 
 Run run_model(std::shared_ptr<const LoadedModel> loaded, std::function<void(double t)> progress) {

@@ -18,6 +18,7 @@ struct LoadedModel {
   std::string text;                   ///< the effective model as TOML that stands alone
   Model model;
   std::unique_ptr<System> system;
+  State assembled; ///< given poses and velocities moved onto the joints
 };
 
 /// Throws ModelError with all that is wrong with the model.

@@ -84,7 +84,7 @@ void estimate_error(FinishedRun& finished) {
 void note_assembly(const LoadedModel& loaded) {
   constexpr double k_noticeable = 1e-5; // m, rad
   const System& system = *loaded.system;
-  auto moves = assembly_moves(system.initial_state(), assemble(loaded.model, system), k_noticeable);
+  auto moves = assembly_moves(system.initial_state(), loaded.assembled, k_noticeable);
   std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });
   if (moves.empty()) return;
   log_info("'" + loaded.path + "': assembling the joints moved " + std::to_string(moves.size()) +
