@@ -11,13 +11,15 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_max_projection_iterations = 25;
+constexpr int k_max_projection_iterations = 60;
 constexpr int k_iterations_per_factorization = 3;
 // Damping of a projection near a singular position, at most this fraction of the diagonal.
 constexpr double k_largest_damping = 1e-3;
 // Below this smallest pivot an error estimate is freed from what projection will take away: without it
 // tight tolerances are not met beside a flat position, where accelerations across it are mostly rounding.
 constexpr double k_removal_pivot = 1e-2;
+// A factorisation serves once more if the residual has fallen to this share.
+constexpr double k_chord_worth = 0.1;
 // Below this one no factorisation serves twice in a projection, and steps are damped.
 constexpr double k_chord_pivot = 1e-2;
 // What rounding leaves of a residual: a position is a sum of a few terms as large as the scene.
@@ -150,6 +152,7 @@ bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual n
     const double before = now.position;
     move_by(row_value_, y);
     now = constraint_values(t, y);
+    if (now.position > k_chord_worth * before) is_factored_ = false;
     if (now.position >= 0.5 * before && now.position <= position_rounding(y, coordinate_count()) && --patience < 0)
       break;
   }
