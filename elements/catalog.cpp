@@ -15,7 +15,7 @@
 #include "elements/step_lap_joint.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/io/record_signal.h"
-#include "mbd/presentation.h"
+#include "mbd/io/presentation.h"
 
 namespace steplap {
 

@@ -33,6 +33,7 @@ enum class FieldType {
   element,     ///< name of an element
   elements,    ///< list of names of elements
   texts,       ///< list of free texts
+  quantity,    ///< number, or text with a unit that is only known later: kept as text
   file         ///< path of a file, relative to the model file that names it; read as a usable path
 };
 

@@ -95,6 +95,11 @@ const FieldTable& ModelHeader::fields() {
   return table;
 }
 
+const Location& TableObject::place(const std::string& field) const {
+  const auto found = places.find(field);
+  return found == places.end() ? where : found->second;
+}
+
 const Body* Model::find_body(const std::string& name) const {
   for (const Body& body : bodies)
     if (body.name == name) return &body;

@@ -9,6 +9,7 @@
 #include "mbd/signal.h"
 #include "mbd/types.h"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -111,8 +112,16 @@ struct OutputSettings {
   [[nodiscard]] static const FieldTable& fields();
 };
 
+/// What an array of tables that is none of the kernel's holds: it knows where its fields stand in the file.
+struct TableObject : Element {
+  std::map<std::string, Location> places; ///< of the fields given
+
+  /// Of the field, or of the whole table if it is not given.
+  [[nodiscard]] const Location& place(const std::string& field) const;
+};
+
 /// [[plot]]: time histories that belong in one figure, all of one unit.
-struct Plot : Element {
+struct Plot : TableObject {
   std::string title;
   std::vector<std::string> channels; ///< patterns with * and ?
   std::vector<std::string> bounds;   ///< channels drawn dashed at plus and minus their value
@@ -120,9 +129,11 @@ struct Plot : Element {
 
 /// [[acceptance]]: what the receiver of a machine may ask of a run. Either of channels (over the samples
 /// of the trajectory) or of events that must not happen.
-struct Criterion : Element {
+struct Criterion : TableObject {
   std::string channel;                   ///< pattern with * and ?
-  std::optional<double> at_least, at_most, within; ///< SI; `within` bounds the absolute value
+  std::string at_least_text, at_most_text, within_text; ///< as given, "300 kN": empty if not
+  /// The same in the channels' unit, once these are known; `within` bounds the absolute value.
+  std::optional<double> at_least, at_most, within;
   std::string element, event;            ///< patterns: no such event of such an element
   std::string consequence = "inspect";   ///< if it is not met: "inspect" or "reject"
   std::string reason;                    ///< why, or by which document

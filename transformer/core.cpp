@@ -41,9 +41,11 @@ public:
   }
 
 private:
-  void error(const std::string& message) {
-    problems_.push_back({core_.where, "core '" + core_.name + "': " + message});
+  // At the field that the message is about, if the table gives it.
+  void error(const std::string& message, const std::string& field = "") {
+    problems_.push_back({core_.place(field), "core '" + core_.name + "': " + message});
   }
+  [[nodiscard]] const char* list_of(std::size_t limb) const { return is_middle(limb) ? "middle_limbs" : "limbs"; }
   [[nodiscard]] bool is_counted() const { return core_.overlap || core_.interfaces; }
   [[nodiscard]] std::string joint_name(std::size_t i) const {
     return core_.joints.empty() ? limbs_[i] + " joint" : core_.joints[i];
@@ -94,16 +96,16 @@ Vec2 reach(const Body& limb, const Body& active_part) {
 
 void CoreBuilder::check_names() {
   const Body* active_part = model_.find_body(core_.active_part);
-  if (!active_part) return error("'active_part' must be a body that moves, not 'ground'");
+  if (!active_part) return error("'active_part' must be a body that moves, not 'ground'", "active_part");
   if (limbs_.empty()) error("'limbs' or 'middle_limbs' must name at least one body");
   for (std::size_t i = 0; i < limbs_.size(); ++i) {
     check_limb(i, *active_part);
     for (std::size_t j = 0; j < i; ++j)
-      if (limbs_[j] == limbs_[i]) error("names limb '" + limbs_[i] + "' twice");
+      if (limbs_[j] == limbs_[i]) error("names limb '" + limbs_[i] + "' twice", list_of(i));
   }
   if (!core_.joints.empty() && core_.joints.size() != limbs_.size())
     return error("'joints' must name one joint for each of the " + std::to_string(limbs_.size()) +
-                 " limbs, got " + std::to_string(core_.joints.size()));
+                 " limbs, got " + std::to_string(core_.joints.size()), "joints");
   for (std::size_t i = 0; i < limbs_.size(); ++i) check_joint(joint_name(i), limbs_[i]);
 }
 
@@ -113,24 +115,24 @@ void CoreBuilder::check_limb(std::size_t i, const Body& active_part) {
   if (!limb) {
     std::vector<std::string> known;
     for (const Body& body : model_.bodies) known.push_back(body.name);
-    return error("limb '" + name + "' is no body" + did_you_mean(name, known));
+    return error("limb '" + name + "' is no body" + did_you_mean(name, known), list_of(i));
   }
-  if (limb == &active_part) return error("limb '" + name + "' is the active part itself");
+  if (limb == &active_part) return error("limb '" + name + "' is the active part itself", list_of(i));
   if (!is_middle(i) && std::abs(reach(*limb, active_part).x()) < 0.5 * core_.limb_width)
     error("limb '" + name + "' stands in the middle of the active part: only outer limbs, at least half a "
           "limb's width ahead of its centre of gravity or behind it, have mitred corners; name it in "
-          "'middle_limbs'");
+          "'middle_limbs'", "limbs");
 }
 
 void CoreBuilder::check_joint(const std::string& name, const std::string& limb) {
-  if (name.empty()) return error("'joints': a joint needs a name");
+  if (name.empty()) return error("'joints': a joint needs a name", "joints");
   const Element* element = find_element(name);
   if (!element) return;
   const auto* joint = dynamic_cast<const StepLapJoint*>(element);
-  if (!joint) return error("joint '" + name + "': the element of this name is no step_lap_joint");
+  if (!joint) return error("joint '" + name + "': the element of this name is no step_lap_joint", "joints");
   if (joint->limb != limb || joint->active_part != core_.active_part)
     error("step_lap_joint '" + name + "' holds '" + joint->limb + "' to '" + joint->active_part +
-          "', not '" + limb + "' to '" + core_.active_part + "'");
+          "', not '" + limb + "' to '" + core_.active_part + "'", "joints");
 }
 
 // --- dimensions ----------------------------------------------------------------------------------------
@@ -139,7 +141,7 @@ void CoreBuilder::check_dimensions() {
   if (2.0 * core_.yoke_height >= core_.core_height)
     error("two yokes of " + metres(core_.yoke_height) + " leave no window in a core of " +
           metres(core_.core_height) + ": 'core_height' is from the bottom of the lower yoke to the top of "
-          "the upper");
+          "the upper", "core_height");
   if (!core_.limbs.empty())
     check_angle(core_.mitre_angle.value_or(std::atan2(core_.yoke_height, core_.limb_width)), "mitre",
                 core_.mitre_angle ? "" : "; it follows from 'yoke_height' and 'limb_width' unless 'mitre_angle' is given");
@@ -157,29 +159,30 @@ void CoreBuilder::check_notch() {
   const double depth = 0.5 * core_.limb_width * std::tan(notch_angle());
   if (depth > core_.yoke_height)
     error("the point of a middle limb, " + metres(depth) + " high, is higher than the yoke of " +
-          metres(core_.yoke_height) + ": take a smaller 'notch_angle'");
+          metres(core_.yoke_height) + ": take a smaller 'notch_angle'", "notch_angle");
 }
 
 void CoreBuilder::check_friction() {
   const double bottom_static = core_.bottom_static_friction.value_or(core_.static_friction);
   if (core_.kinetic_friction.value_or(0.0) > core_.static_friction)
-    error("'kinetic_friction' must not exceed 'static_friction'");
+    error("'kinetic_friction' must not exceed 'static_friction'", "kinetic_friction");
   if (core_.bottom_kinetic_friction.value_or(0.0) > bottom_static)
-    error("'bottom_kinetic_friction' must not exceed the static friction there, " + number_text(bottom_static));
+    error("'bottom_kinetic_friction' must not exceed the static friction there, " + number_text(bottom_static),
+          "bottom_kinetic_friction");
   if (core_.kinetic_friction && core_.bottom_static_friction && !core_.bottom_kinetic_friction)
-    error("needs 'bottom_kinetic_friction' besides 'bottom_static_friction'");
+    error("needs 'bottom_kinetic_friction' besides 'bottom_static_friction'", "bottom_static_friction");
 }
 
 std::vector<LapBand> CoreBuilder::counted_bands() {
   if (!core_.overlap || !core_.interfaces) {
     error(std::string("needs '") + (core_.overlap ? "interfaces" : "overlap") + "' besides '" +
-          (core_.overlap ? "overlap" : "interfaces") + "'");
+          (core_.overlap ? "overlap" : "interfaces") + "'", core_.overlap ? "overlap" : "interfaces");
     return {};
   }
   if (core_.stack_depth || core_.sheet_thickness || core_.step_pitch || core_.steps || core_.clearance > 0.0 ||
       core_.bands != "mean")
     error("give either 'overlap' and 'interfaces', or how the stack is built ('stack_depth', "
-          "'sheet_thickness', 'steps', 'step_pitch', 'clearance', 'bands'), not both");
+          "'sheet_thickness', 'steps', 'step_pitch', 'clearance', 'bands'), not both", "overlap");
   return {{-0.5 * *core_.overlap, 0.5 * *core_.overlap, *core_.interfaces}};
 }
 
@@ -203,11 +206,11 @@ std::vector<LapBand> CoreBuilder::built_bands() {
   }
   const Book b = book();
   if (b.clearance >= b.step_pitch)
-    error("a clearance of " + metres(b.clearance) + " leaves no overlap at steps of " + metres(b.step_pitch));
+    error("a clearance of " + metres(b.clearance) + " leaves no overlap at steps of " + metres(b.step_pitch), "clearance");
   if (interfaces_in(b) < b.steps)
     error("a stack of " + std::to_string(sheets_in(b)) + " sheets (" + metres(b.stack_depth) + " · " +
           number_text(b.stacking_factor) + " / " + metres(b.sheet_thickness) + ") holds no book of " +
-          std::to_string(b.steps) + " layers of " + std::to_string(b.sheets_per_layer));
+          std::to_string(b.steps) + " layers of " + std::to_string(b.sheets_per_layer), "stack_depth");
   return core_.bands == "each" ? each_band(b) : mean_band(b);
 }
 
@@ -216,7 +219,7 @@ void CoreBuilder::check_reach(const std::vector<LapBand>& bands) {
     if (b.outer >= core_.tongue || -b.inner >= core_.tongue)
       return error("an overlap of " + metres(b.outer - b.inner) + " is wider than the sheets: 'tongue', " +
                    metres(core_.tongue) + " on either side of the middle of the mitre, must be more than " +
-                   metres(b.outer));
+                   metres(b.outer), core_.overlap ? "overlap" : "step_pitch");
 }
 
 // --- into the model -----------------------------------------------------------------------------------

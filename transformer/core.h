@@ -15,7 +15,7 @@
 
 namespace steplap {
 
-struct Core : Element {
+struct Core : TableObject {
   std::string active_part;         ///< body with the yokes
   std::vector<std::string> limbs;  ///< bodies of the outer limbs
   std::vector<std::string> middle_limbs; ///< bodies of the limbs between

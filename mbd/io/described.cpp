@@ -83,6 +83,7 @@ std::vector<Described> describe(const Catalogue& catalogue) {
 std::string type_text(const Field& field) {
   switch (field.type) {
   case FieldType::number:
+  case FieldType::quantity:
     return "number";
   case FieldType::integer:
     return "integer";

@@ -1,6 +1,7 @@
 #include "mbd/io/field_reader.h"
 
 #include "mbd/io/units.h"
+#include "mbd/number_text.h"
 #include "mbd/validate.h"
 
 #include <algorithm>
@@ -61,6 +62,8 @@ public:
       return text(node);
     case FieldType::file:
       return path(node);
+    case FieldType::quantity:
+      return quantity(node);
     default:
       return text(node);
     }
@@ -96,6 +99,11 @@ private:
   std::string text(const Node& node) const {
     if (node.type != Node::Type::text) unexpected(node);
     return node.text();
+  }
+
+  std::string quantity(const Node& node) const {
+    const double value = number(node, "*"); // what is no quantity in any unit is an error here and now
+    return node.type == Node::Type::text ? node.text() : number_text(value);
   }
 
   std::string path(const Node& node) const {
@@ -216,6 +224,8 @@ std::string expected_text(const Field& field) {
     return "a list of strings";
   case FieldType::file:
     return "the name of a file";
+  case FieldType::quantity:
+    return number_expectation("*");
   }
   return "a value";
 }

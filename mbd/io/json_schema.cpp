@@ -41,6 +41,8 @@ Json value_schema(const Field& field) {
   switch (field.type) {
   case FieldType::number:
     return quantity(field, field.unit);
+  case FieldType::quantity:
+    return quantity(field, "*");
   case FieldType::integer: {
     Json schema = quantity(field, "");
     schema["type"] = "integer";

@@ -318,6 +318,9 @@ void Reader::read_tables() {
       const auto read = read_fields(entry, kind->fields, table.object.get(), r, problems_);
       table.given.insert(table.given.end(), read.begin(), read.end());
       table.is_usable = problems_.size() == before;
+      if (auto* object = dynamic_cast<TableObject*>(table.object.get()))
+        for (const GivenField& field : table.given)
+          if (field.node) object->places[field.field->name] = field.node->where();
       tables_.push_back(std::move(table));
     }
   }

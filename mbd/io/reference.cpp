@@ -19,6 +19,7 @@ std::string range_text(const Field& field) {
 }
 
 std::string unit_text(const Field& field) {
+  if (field.type == FieldType::quantity) return "the channel's";
   if (field.unit == "*") return "any unit";
   return field.unit2.empty() ? field.unit : field.unit + ", " + field.unit2;
 }

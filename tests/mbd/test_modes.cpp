@@ -6,13 +6,35 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <cmath>
+#include <fstream>
 #include <numbers>
+#include <sstream>
 
 using namespace steplap;
 using namespace steplap::testing;
 
 namespace {
+
+// Jacobians are exact, eigenvalues good to rounding times the spread of the frequencies' squares.
+constexpr double k_digits = 1e-9;
+
+std::string exact(double x) {
+  std::ostringstream text;
+  text.precision(17);
+  text << x;
+  return text.str();
+}
+
+// The paper's file with more at its end.
+Model paper_scene_with(const std::string& more, const std::vector<std::string>& overrides) {
+  std::ifstream file(std::string(STEPLAP_MODELS) + "/paper/no_interference.toml");
+  std::ostringstream text;
+  text << file.rdbuf() << more;
+  return parse_model(text.str(), "scene.toml", transformer_catalog(), overrides);
+}
 
 VibrationModes modes_of(const std::string& text) {
   const auto system = compile(parse_model(text, "scene.toml", transformer_catalog()));
@@ -83,6 +105,89 @@ b = { body = "ground", at = [0.0, 0.0] }
   const double omega = std::sqrt(3.0 * 9.81 * 0.5 / (0.25 + 3.0 * 0.25));
   CHECK(std::abs(found.modes[0].natural_frequency() * 2.0 * std::numbers::pi / omega - 1.0) < 1e-12);
   CHECK(std::abs(found.modes[0].damping_ratio()) < 1e-12);
+}
+
+// n masses between two walls: ω_k = 2 √(k/m) sin(kπ/(2(n+1))).
+TEST_CASE("a chain of masses and springs between two walls") {
+  constexpr int n = 12;
+  std::string text = "gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n";
+  const auto link = [&text](int i, const std::string& a, const std::string& b) {
+    text += "[[element]]\nkind = \"spring_damper\"\nname = \"spring " + std::to_string(i) + "\"\na = " + a + "\nb = " + b +
+            "\naxis = [1.0, 0.0]\nstiffness = 900.0\n";
+  };
+  for (int i = 1; i <= n; ++i) {
+    const std::string name = "\"m" + std::to_string(i) + "\"";
+    text += "[[body]]\nname = " + name + "\nmass = 2.5\ninertia = 1.0\nposition = [" + std::to_string(i) + ".0, 0.0]\n";
+    text += "[[element]]\nkind = \"prismatic\"\nname = \"guide " + std::to_string(i) + "\"\na = " + name + "\n";
+    link(i, name, i == 1 ? "\"ground\"" : "\"m" + std::to_string(i - 1) + "\"");
+  }
+  link(n + 1, "\"m12\"", "{ body = \"ground\", at = [13.0, 0.0] }");
+  const VibrationModes found = modes_of(text);
+  REQUIRE(found.modes.size() == n);
+  for (int k = 1; k <= n; ++k) {
+    const double omega = 2.0 * std::sqrt(900.0 / 2.5) * std::sin(k * std::numbers::pi / (2.0 * (n + 1)));
+    CHECK(std::abs(2.0 * std::numbers::pi * found.modes[k - 1].natural_frequency() / omega - 1.0) < k_digits);
+  }
+}
+
+// Hencky's bar chain, simply supported: N rods of length a, mass m, inertia J, joints of rotational stiffness C.
+// On the sine modes of the joints, w_j = sin(kπj/N), with φ = kπ/N,
+//   stiffness 16 C/a² sin⁴(φ/2) against mass m cos²(φ/2) + 4 J/a² sin²(φ/2).
+TEST_CASE("a beam of rods with springs in their joints") {
+  constexpr int rods = 10;
+  constexpr double length = 0.2, mass = 0.7, inertia = mass * length * length / 12.0, stiffness = 1300.0;
+  std::string text = "gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n";
+  for (int i = 0; i < rods; ++i) {
+    const std::string name = "rod " + std::to_string(i), before = "rod " + std::to_string(i - 1);
+    const std::string a = "a = { body = \"" + name + "\", point = [-0.1, 0.0] }\n";
+    const std::string b = i == 0 ? "" : "b = { body = \"" + before + "\", point = [0.1, 0.0] }\n";
+    text += "[[body]]\nname = \"" + name + "\"\nmass = 0.7\ninertia = " + exact(inertia) + "\n";
+    text += "[[element]]\nkind = \"revolute\"\nname = \"pin " + std::to_string(i) + "\"\n" + a + b + "angle = 0.0\n";
+    if (i > 0)
+      text += "[[element]]\nkind = \"bushing\"\nname = \"joint " + std::to_string(i) + "\"\n" + a + b +
+              "rotational_stiffness = 1300.0\n";
+  }
+  text += "[[element]]\nkind = \"point_on_line\"\nname = \"roller\"\na = { body = \"rod 9\", point = [0.1, 0.0] }\n";
+  const VibrationModes found = modes_of(text);
+  REQUIRE(found.modes.size() == rods - 1);
+  for (int k = 1; k < rods; ++k) {
+    const double s = std::sin(0.5 * k * std::numbers::pi / rods), c = std::cos(0.5 * k * std::numbers::pi / rods);
+    const double omega = std::sqrt(16.0 * stiffness / (length * length) * s * s * s * s /
+                                   (mass * c * c + 4.0 * inertia / (length * length) * s * s));
+    CHECK(std::abs(2.0 * std::numbers::pi * found.modes[k - 1].natural_frequency() / omega - 1.0) < k_digits);
+  }
+}
+
+// All bodies of the paper's scene welded into one on its suspension, x driven by the brake: bounce and pitch.
+// In y and θ of the lower tank, with c the centre of gravity of all and (±l, h) the springs' feet seen from there,
+// F = m g/2 what each bears,
+//   M = (m, m c_x; m c_x, J + m |c|²),  K = (2 k, 0; 0, 2 k l² + 2 F h − m g c_y).
+TEST_CASE("the paper's transformer as one rigid body bounces and pitches on its suspension") {
+  std::string welds;
+  for (const char* body : {"active part", "front limb", "back limb", "upper tank"})
+    welds += "[[element]]\nkind = \"weld\"\nname = \"" + std::string(body) + " welded\"\na = \"" + body + "\"\nb = \"lower tank\"\n";
+  const Model model = paper_scene_with(welds, {"element.front suspension.damping=0", "element.rear suspension.damping=0"});
+  const auto system = compile(model);
+  const VibrationModes found = vibration_modes(*system, find_equilibrium(*system, system->initial_state()).state);
+  const Vec3 tank = model.find_body("lower tank")->reference_pose();
+  double m = 0.0, moment = 0.0;
+  Vec2 centre = Vec2::Zero();
+  for (const Body& b : model.bodies) {
+    const Vec3 pose = b.reference_pose();
+    const Vec2 from_tank(pose.x() - tank.x(), pose.y() - tank.y());
+    m += b.mass;
+    centre += b.mass * from_tank;
+    moment += b.inertia + b.mass * from_tank.squaredNorm();
+  }
+  centre /= m;
+  const double k = 200e6, l = 1.5, h = -0.5 - tank.y(), weight = m * 9.81;
+  Eigen::Matrix2d mass, stiffness;
+  mass << m, m * centre.x(), m * centre.x(), moment;
+  stiffness << 2.0 * k, 0.0, 0.0, 2.0 * k * l * l + weight * h - weight * centre.y();
+  const Eigen::Vector2d squares = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(stiffness, mass).eigenvalues();
+  REQUIRE(found.modes.size() == 2);
+  for (int i = 0; i < 2; ++i)
+    CHECK(std::abs(2.0 * std::numbers::pi * found.modes[i].natural_frequency() / std::sqrt(squares[i]) - 1.0) < k_digits);
 }
 
 TEST_CASE("the paper's transformer, nudged along a mode, follows its eigenvalue") {

@@ -2,6 +2,7 @@
 // joints that cannot be met.
 #include "mbd/assembly.h"
 #include "mbd/equilibrium.h"
+#include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 
 #include <cmath>
@@ -22,25 +23,12 @@ Equilibrium settle(const Model& model) {
 } // namespace
 
 TEST_CASE("a mass dropped on two contacts settles where they carry its weight") {
-  const Model model = scene(k_head + R"(
-[[body]]
-name = "block"
-mass = 1000
-inertia = 100
-position = [0.2, 1.3]
-[[element]]
-kind = "unilateral_contact"
-name = "left"
-a = { body = "block", point = [-0.5, -0.5] }
-stiffness = 1e6
-damping = 1e4
-[[element]]
-kind = "unilateral_contact"
-name = "right"
-a = { body = "block", point = [0.5, -0.5] }
-stiffness = 1e6
-damping = 1e4
-)");
+  const Model model = scene(k_head +
+      body("block", "mass = 1000; inertia = 100; position = [0.2, 1.3]") +
+      element("unilateral_contact", "left", "a = { body = 'block', point = [-0.5, -0.5] }; stiffness = 1e6; "
+              "damping = 1e4") +
+      element("unilateral_contact", "right", "a = { body = 'block', point = [0.5, -0.5] }; stiffness = 1e6; "
+              "damping = 1e4"));
   const Equilibrium rest = settle(model);
   // Both springs at m g / 2k = 4.905 mm; 1e-9 m/s² left over k/m = 2000 /s² is 5e-13 m.
   CHECK(std::abs(rest.state.q[4] - (0.5 - 1000 * 9.81 / 2e6)) < 1e-12);
@@ -49,16 +37,10 @@ damping = 1e4
 }
 
 TEST_CASE("a pendulum given upside down does not rest there") {
-  const std::string body = "[[body]]\nname = \"bob\"\nmass = 2\ninertia = 0.1\nposition = ";
-  const std::string rod = R"(
-[[element]]
-kind = "revolute"
-name = "pin"
-a = { body = "bob", at = [0.0, 0.0] }
-)";
+  const std::string pin = element("revolute", "pin", "a = { body = 'bob', at = [0.0, 0.0] }");
   for (const char* place : {"[0.0, 1.0]", "[0.6, 0.8]", "[1.0, 0.0]"}) {
     CAPTURE(place);
-    const Equilibrium rest = settle(scene(k_head + body + place + rod));
+    const Equilibrium rest = settle(scene(k_head + body("bob", std::string("mass = 2; inertia = 0.1; position = ") + place) + pin));
     CHECK(std::abs(rest.state.q[3]) < 1e-9); // 1e-9 m/s² over g/L
     CHECK(std::abs(rest.state.q[4] + 1.0) < 1e-12);
   }
@@ -73,18 +55,9 @@ TEST_CASE("what nothing holds has no equilibrium, and the body is named") {
 }
 
 TEST_CASE("poses given roughly are moved onto the joints, no further than needed") {
-  const Model model = scene(k_head + R"(
-[[body]]
-name = "bob"
-mass = 2
-inertia = 0.1
-position = [1.1, 0.0]
-[[element]]
-kind = "distance"
-name = "rod"
-a = "bob"
-length = 1.0
-)");
+  const Model model = scene(k_head +
+      body("bob", "mass = 2; inertia = 0.1; position = [1.1, 0.0]") +
+      element("distance", "rod", "a = 'bob'; length = 1.0"));
   const auto system = compile(model);
   const State state = assemble(model, *system);
   // The least motion is along the rod; the projection tolerance is 1e-12 m.
@@ -96,36 +69,13 @@ length = 1.0
 // Two rods of 1 m with their pins off by centimetres and their speeds wrong: the joints are met, the motion is
 // mass-weighted (the heavy rod hardly moves), and what was met already is not touched.
 TEST_CASE("rough poses and velocities are assembled, and each body's move is told") {
-  const Model model = scene(k_head + R"(
-[[body]]
-name = "heavy"
-mass = 1000
-inertia = 80
-position = [0.53, 0.02]
-angle = 0.05
-velocity = [0.0, 0.3]
-[[body]]
-name = "light"
-mass = 1
-inertia = 0.08
-position = [1.46, -0.03]
-angle = -0.04
-velocity = [0.2, 0.5]
-[[body]]
-name = "apart"
-mass = 1
-inertia = 0.1
-position = [5.0, 0.0]
-[[element]]
-kind = "revolute"
-name = "wall"
-a = { body = "heavy", point = [-0.5, 0.0] }
-[[element]]
-kind = "revolute"
-name = "elbow"
-a = { body = "light", point = [-0.5, 0.0] }
-b = { body = "heavy", point = [0.5, 0.0] }
-)");
+  const Model model = scene(k_head +
+      body("heavy", "mass = 1000; inertia = 80; position = [0.53, 0.02]; angle = 0.05; velocity = [0.0, 0.3]") +
+      body("light", "mass = 1; inertia = 0.08; position = [1.46, -0.03]; angle = -0.04; velocity = [0.2, 0.5]") +
+      body("apart", "mass = 1; inertia = 0.1; position = [5.0, 0.0]") +
+      element("revolute", "wall", "a = { body = 'heavy', point = [-0.5, 0.0] }") +
+      element("revolute", "elbow", "a = { body = 'light', point = [-0.5, 0.0] }; "
+              "b = { body = 'heavy', point = [0.5, 0.0] }"));
   const auto system = compile(model);
   const State given = system->initial_state(), state = assemble(model, *system);
   const auto pin = [&](const State& s, int body, double side) {
@@ -148,18 +98,9 @@ b = { body = "heavy", point = [0.5, 0.0] }
   }
   // Mass-weighted: the heavy rod meets its own pin as if the light one were not there, but for the ratio of
   // their masses, 1e-3, times the distances moved, 0.1 m.
-  const Model alone_model = scene(k_head + R"(
-[[body]]
-name = "heavy"
-mass = 1000
-inertia = 80
-position = [0.53, 0.02]
-angle = 0.05
-[[element]]
-kind = "revolute"
-name = "wall"
-a = { body = "heavy", point = [-0.5, 0.0] }
-)");
+  const Model alone_model = scene(k_head +
+      body("heavy", "mass = 1000; inertia = 80; position = [0.53, 0.02]; angle = 0.05") +
+      element("revolute", "wall", "a = { body = 'heavy', point = [-0.5, 0.0] }"));
   const auto alone_system = compile(alone_model);
   const State alone = assemble(alone_model, *alone_system);
   for (int k = 3; k < 6; ++k) CHECK(std::abs(state.q[k] - alone.q[k]) < 1e-3);
@@ -192,17 +133,10 @@ TEST_CASE("two rods off by decimetres are put together where no small motion lea
               "\ninertia = " + std::to_string(inertia[i]) + "\nposition = [" + std::to_string(q[0]) + ", " +
               std::to_string(q[1]) + "]\nangle = " + std::to_string(q[2]) + "\n";
     }
-    const Model model = scene(text + R"(
-[[element]]
-kind = "revolute"
-name = "wall"
-a = { body = "first", point = [-0.5, 0.0] }
-[[element]]
-kind = "revolute"
-name = "elbow"
-a = { body = "second", point = [-0.5, 0.0] }
-b = { body = "first", point = [0.5, 0.0] }
-)");
+    const Model model = scene(text +
+        element("revolute", "wall", "a = { body = 'first', point = [-0.5, 0.0] }") +
+        element("revolute", "elbow", "a = { body = 'second', point = [-0.5, 0.0] }; "
+                "b = { body = 'first', point = [0.5, 0.0] }"));
     const auto system = compile(model);
     const State state = assemble(model, *system);
     const double *p = &state.q[3], *q = &state.q[6];
@@ -224,31 +158,17 @@ b = { body = "first", point = [0.5, 0.0] }
 }
 
 TEST_CASE("joints that no motion meets are an error at the joint") {
-  const Model model = scene(k_head + R"(
-[[body]]
-name = "bob"
-mass = 2
-inertia = 0.1
-position = [1.0, 0.0]
-[[element]]
-kind = "distance"
-name = "left rod"
-a = "bob"
-length = 1.0
-[[element]]
-kind = "distance"
-name = "right rod"
-a = "bob"
-b = { body = "ground", at = [5.0, 0.0] }
-length = 1.0
-)");
+  const Model model = scene(k_head +
+      body("bob", "mass = 2; inertia = 0.1; position = [1.0, 0.0]") +
+      element("distance", "left rod", "a = 'bob'; length = 1.0") +
+      element("distance", "right rod", "a = 'bob'; b = { body = 'ground', at = [5.0, 0.0] }; length = 1.0"));
   const auto system = compile(model);
   try {
     (void)assemble(model, *system);
     FAIL("was assembled");
   } catch (const ModelError& error) {
     REQUIRE(error.diagnostics().size() == 1);
-    CHECK(error.diagnostics()[0].where.line == 14); // the second rod's [[element]]
+    CHECK(error.diagnostics()[0].where.line == 13); // the second rod's [[element]]
     CHECK(std::string(error.what()).find("rod' cannot be assembled") != std::string::npos);
   }
 }

@@ -1,6 +1,6 @@
 // The verdict on a run: criteria of the model, and the step-lap joints' own.
 #include "mbd/io/reader.h"
-#include "mbd/presentation.h"
+#include "mbd/io/presentation.h"
 #include "mbd/simulation.h"
 #include "transformer/catalog.h"
 #include "transformer/verdict.h"
@@ -81,9 +81,20 @@ TEST_CASE("limits on either side and on the absolute value") {
     CHECK(Judged(acceptance("channel = \"ball.vy\"\nwithin = 4.90\n")).judgement.verdict == Verdict::inspect);
   }
   SUBCASE("patterns: the worst of all channels") {
-    const Judged run(acceptance("channel = \"ball.*y\"\nat_most = 100\n"));
+    const Judged run(acceptance("channel = \"ball.v?\"\nat_most = 100\n"));
     CHECK(run.only().where == "ball.vy");
   }
+}
+
+TEST_CASE("a limit is what its text means in the channel's unit") {
+  const auto limit = [](const std::string& channel, const std::string& text) {
+    return *Judged(acceptance("channel = \"" + channel + "\"\nwithin = " + text + "\n")).only().limit;
+  };
+  CHECK(limit("ball.y", "\"2500 mm\"") == doctest::Approx(2.5).epsilon(1e-15));
+  CHECK(limit("ball.y", "2.5") == 2.5);
+  CHECK(limit("ball.theta", "\"180 deg\"") == doctest::Approx(M_PI).epsilon(1e-15));
+  CHECK(limit("ball.omega", "\"60 rpm\"") == doctest::Approx(2.0 * M_PI).epsilon(1e-15));
+  CHECK(limit("ball.ay", "\"2 gravity\"") == doctest::Approx(2.0 * 9.80665).epsilon(1e-15));
 }
 
 TEST_CASE("a run that stopped is not held good, nor one without criteria") {
@@ -155,6 +166,16 @@ TEST_CASE("criteria and plots that make no sense are errors of the model") {
   says(acceptance("channel = \"ball.y\"\nat_most = 1\nconsequence = \"burn\"\n"), "burn");
   says(acceptance("channel = \"ball.y\"\nat_most = 1\n") + acceptance("channel = \"ball.y\"\nat_most = 1\n"), "exists already");
   says(acceptance("event = \"opens\"\nelement = \"feet\"\n"), "no element matches 'feet'");
+  // Limits are read in the channel's unit, and messages point at the field.
+  says(acceptance("channel = \"ball.y\"\nat_most = \"3 s\"\n"),
+       "a.toml:17:11: error: acceptance 'c': 'at_most' of channel 'ball.y': '3 s' has the unit 's', but a unit like 'm' is needed");
+  says(acceptance("channel = \"ball.theta\"\nwithin = \"2 mm\"\n"), "a.toml:17:10: error: acceptance 'c': 'within' of channel 'ball.theta': '2 mm'");
+  says(acceptance("channel = \"ball.y\"\nat_most = \"much\"\n"), "a.toml:17:11: error: 'at_most' of acceptance 'c'");
+  says(acceptance("channel = \"ball.y\"\nwithin = \"-1 m\"\n"), "'within' must be at least 0, got -1");
+  says(acceptance("channel = \"ball.y\"\nwithin = nan\n"), "must be finite");
+  says(acceptance("channel = \"ball.*y\"\nat_most = 1\n"), "a.toml:16:11: error: acceptance 'c': 'ball.y' is in 'm', 'ball.vy' in 'm/s': limit them apart");
+  says(acceptance("element = \"feet\"\nevent = \"opens\"\n"), "a.toml:16:11: error: acceptance 'c': no element matches 'feet'");
+  says("[[plot]]\nname = \"p\"\nchannels = [\"ball.y\"]\nbounds = [\"ball.vy\"]\n", "a.toml:17:10: error: plot 'p'");
   says("[[plot]]\nname = \"p\"\nchannels = [\"ball.y\", \"ball.vy\"]\n", "plot them apart");
   says("[[plot]]\nname = \"p\"\nchannels = [\"ball.z\"]\n", "no channel of the trajectory matches 'ball.z'");
   says("[[plot]]\nname = \"p\"\n", "channels");

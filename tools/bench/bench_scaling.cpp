@@ -84,13 +84,16 @@ void measure(const char* scene, const std::string& text) {
   const double memory = allocated() - empty;
   const int steps = std::max(3, static_cast<int>(20000 / n));
   double best = std::numeric_limits<double>::infinity();
+  const long evaluated = simulation.statistics().evaluations;
   for (int batch = 0; batch < k_batches; ++batch) {
     const double begin = thread_cpu_seconds();
     for (int i = 0; i < steps; ++i) simulation.advance();
     best = std::min(best, (thread_cpu_seconds() - begin) / steps);
   }
-  std::printf("%-6s %7.0f %10.1f %10.2f %10.2f %10.3f %10.2f\n", scene, n, 1e6 * (read - start) / n,
-              1e6 * (compiled - read) / n, 1e6 * (started - compiled) / n, 1e6 * best / n, memory / n / 1024.0);
+  const double evaluations = static_cast<double>(simulation.statistics().evaluations - evaluated) / (k_batches * steps);
+  std::printf("%-6s %7.0f %10.1f %10.2f %10.2f %10.3f %13.4f %10.2f\n", scene, n, 1e6 * (read - start) / n,
+              1e6 * (compiled - read) / n, 1e6 * (started - compiled) / n, 1e6 * best / n, 1e6 * best / n / evaluations,
+              memory / n / 1024.0);
   std::fflush(stdout);
 }
 
@@ -98,7 +101,8 @@ void measure(const char* scene, const std::string& text) {
 
 int main(int argc, char** argv) {
   const int largest = argc > 1 ? std::atoi(argv[1]) : 100000;
-  std::printf("per body, µs: %15s %10s %10s %10s   kB\n", "read", "compile", "start", "step (rk4)");
+  std::printf("per body, µs: %15s %10s %10s %10s %13s   kB\n", "read", "compile", "start", "step (rk4)",
+              "an evaluation");
   try {
     for (int n = 10; n <= largest; n *= 10) measure("chain", chain(n));
     for (int n = 10; n <= largest; n *= 10) measure("grid", grid(n));

@@ -2,7 +2,7 @@
 
 #include "mbd/assembly.h"
 #include "mbd/io/reader.h"
-#include "mbd/presentation.h"
+#include "mbd/io/presentation.h"
 #include "tools/steplap/catalogue.h"
 
 #include <algorithm>

@@ -1,0 +1,199 @@
+#include "mbd/io/presentation.h"
+
+#include "mbd/io/units.h"
+#include "mbd/number_text.h"
+#include "mbd/trajectory.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+template <class Table>
+void add_named(const std::string& noun, const Table& table, std::vector<Table>& tables) {
+  for (const Table& other : tables)
+    if (other.name == table.name)
+      throw ModelError(table.place("name"), noun + " named '" + table.name + "' exists already: choose another name");
+  tables.push_back(table);
+}
+
+// A limit of a criterion: its field, as given, as read.
+struct Limit {
+  const char* field;
+  std::string Criterion::*text;
+  std::optional<double> Criterion::*value;
+};
+constexpr Limit k_limits[] = {{"at_least", &Criterion::at_least_text, &Criterion::at_least},
+                              {"at_most", &Criterion::at_most_text, &Criterion::at_most},
+                              {"within", &Criterion::within_text, &Criterion::within}};
+
+void check_criterion(const Criterion& c) {
+  const auto fail = [&c](const std::string& field, const std::string& message) {
+    throw ModelError(c.place(field), "acceptance '" + c.name + "': " + message);
+  };
+  if (c.channel.empty() == c.event.empty()) fail("event", "needs either 'channel' or 'event'");
+  if (!c.event.empty()) {
+    for (const Limit& limit : k_limits)
+      if (!(c.*limit.text).empty())
+        fail(limit.field, "'at_least', 'at_most' and 'within' are for channels, not for events");
+    return;
+  }
+  if (!c.element.empty()) fail("element", "'element' goes with 'event'; a channel's name holds its element");
+  const bool is_bounded = !c.at_least_text.empty() || !c.at_most_text.empty();
+  if (!is_bounded && c.within_text.empty()) fail("", "needs a limit: 'at_least', 'at_most' or 'within'");
+  if (is_bounded && !c.within_text.empty())
+    fail("within", "'within' bounds both sides: leave out 'at_least' and 'at_most'");
+}
+
+// A bare number is in the channel's unit.
+Quantity read_limit(const std::string& text, const std::string& unit) {
+  Quantity bare;
+  const auto [rest, status] = std::from_chars(text.data(), text.data() + text.size(), bare.value);
+  if (status != std::errc() || rest != text.data() + text.size()) return parse_quantity(text, unit);
+  if (!std::isfinite(bare.value)) bare.problem = "must be finite, got " + text;
+  return bare;
+}
+
+// Compares patterns with what the trajectory will hold.
+class PresentationCheck {
+public:
+  PresentationCheck(Model& model, const System& system)
+      : model_(model), written_(system, model.output.channels), system_(system) {}
+
+  void run() {
+    for (const Plot& plot : model_.plots)
+      check_plot(plot);
+    for (Criterion& criterion : model_.criteria)
+      check_criterion_on(criterion);
+    if (!problems_.empty()) throw ModelError(std::move(problems_));
+  }
+
+private:
+  std::vector<const Channel*> matches(const std::string& pattern) const {
+    std::vector<const Channel*> found;
+    for (const Channel* channel : written_.channels())
+      if (matches_pattern(channel->name, pattern)) found.push_back(channel);
+    return found;
+  }
+
+  std::vector<const Channel*> found(const Location& where, const std::string& subject, const std::string& pattern) {
+    auto channels = matches(pattern);
+    if (!channels.empty()) return channels;
+    std::vector<std::string> known;
+    for (const Channel* channel : written_.channels())
+      known.push_back(channel->name);
+    problems_.push_back({where, subject + ": no channel of the trajectory matches '" + pattern + "'" +
+                                          did_you_mean(pattern, known)});
+    return channels;
+  }
+
+  static const Location& place_of(const Plot& plot, const std::vector<std::string>* list) {
+    return plot.place(list == &plot.channels ? "channels" : "bounds");
+  }
+
+  void check_plot(const Plot& plot) {
+    const std::string subject = "plot '" + plot.name + "'";
+    const Channel* first = nullptr;
+    for (const auto* list : {&plot.channels, &plot.bounds})
+      for (const std::string& pattern : *list)
+        for (const Channel* channel : found(place_of(plot, list), subject, pattern)) {
+          if (!first) first = channel;
+          if (channel->unit == first->unit) continue;
+          problems_.push_back({place_of(plot, list), subject + ": '" + first->name + "' is in '" + first->unit + "', '" +
+                                               channel->name + "' in '" + channel->unit + "': plot them apart"});
+          return;
+        }
+  }
+
+  void complain(const Criterion& c, const std::string& field, const std::string& message) {
+    problems_.push_back({c.place(field), "acceptance '" + c.name + "': " + message});
+  }
+
+  void check_criterion_on(Criterion& c) {
+    if (!c.channel.empty()) check_limits(c);
+    if (c.element.empty()) return;
+    const auto& names = system_.element_names;
+    if (std::none_of(names.begin(), names.end(), [&](const std::string& n) { return matches_pattern(n, c.element); }))
+      complain(c, "element", "no element matches '" + c.element + "'" + did_you_mean(c.element, names));
+  }
+
+  void check_limits(Criterion& c) {
+    const auto channels = found(c.place("channel"), "acceptance '" + c.name + "'", c.channel);
+    if (channels.empty()) return;
+    const Channel& first = *channels.front();
+    for (const Channel* channel : channels)
+      if (channel->unit != first.unit)
+        return complain(c, "channel", "'" + first.name + "' is in '" + first.unit + "', '" + channel->name + "' in '" +
+                                          channel->unit + "': limit them apart");
+    for (const Limit& limit : k_limits) {
+      const std::string& text = c.*limit.text;
+      if (text.empty()) continue;
+      const Quantity quantity = read_limit(text, first.unit);
+      if (quantity.problem.empty()) c.*limit.value = quantity.value;
+      else complain(c, limit.field, "'" + std::string(limit.field) + "' of channel '" + first.name + "': " + quantity.problem);
+    }
+    if (c.within && *c.within < 0.0) complain(c, "within", "'within' must be at least 0, got " + number_text(*c.within));
+    if (c.at_least && c.at_most && *c.at_least > *c.at_most)
+      complain(c, "at_least", "'at_least' is above 'at_most': nothing could meet it");
+  }
+
+  Model& model_;
+  const Trajectory written_;
+  const System& system_;
+  std::vector<Diagnostic> problems_;
+};
+
+} // namespace
+
+const TableKind& plot_kind() {
+  static const TableKind kind = [] {
+    TableKind k;
+    k.name = "plot";
+    k.doc = "Time histories that belong in one figure of a report, all of one unit.";
+    k.fields.add("title", &Plot::title).doc("what the figure shows");
+    k.fields.add("channels", &Plot::channels).required().doc("channels drawn, patterns with * and ?");
+    k.fields.add("bounds", &Plot::bounds).doc("channels drawn dashed at plus and minus their value");
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Plot>()); };
+    k.apply = [](const Element& table, Model& model) { add_named("plot", static_cast<const Plot&>(table), model.plots); };
+    return k;
+  }();
+  return kind;
+}
+
+const TableKind& acceptance_kind() {
+  static const TableKind kind = [] {
+    using T = Criterion;
+    TableKind k;
+    k.name = "acceptance";
+    k.doc = "What a run must meet for the machine to be held good: limits on channels, over the samples of "
+            "the trajectory, or events that must not happen.";
+    FieldTable& f = k.fields;
+    f.add("channel", &T::channel).doc("channels that are limited, a pattern with * and ?");
+    f.add("at_least", &T::at_least_text).as(FieldType::quantity).doc("smallest value allowed");
+    f.add("at_most", &T::at_most_text).as(FieldType::quantity).doc("largest value allowed");
+    f.add("within", &T::within_text).as(FieldType::quantity).doc("largest absolute value allowed");
+    f.add("event", &T::event).doc("event that must not happen, as in events.csv, a pattern with * and ?");
+    f.add("element", &T::element).doc("elements whose event is meant, a pattern; all if not given");
+    f.add("consequence", &T::consequence).one_of({"inspect", "reject"}).doc("if the criterion is not met");
+    f.add("reason", &T::reason).doc("why, or by which document");
+    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.apply = [](const Element& table, Model& model) {
+      T criterion = static_cast<const T&>(table);
+      check_criterion(criterion);
+      for (const Limit& limit : k_limits) // in SI, until the channels are known
+        if (!(criterion.*limit.text).empty()) criterion.*limit.value = read_limit(criterion.*limit.text, "*").value;
+      add_named("acceptance", criterion, model.criteria);
+    };
+    return k;
+  }();
+  return kind;
+}
+
+void check_presentation(Model& model, const System& system) {
+  PresentationCheck(model, system).run();
+}
+
+} // namespace steplap

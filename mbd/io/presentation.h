@@ -1,0 +1,20 @@
+// What a model says about looking at its runs: [[plot]] and [[acceptance]].
+//
+// Neither changes the motion. Both name channels by patterns, which can only be compared with the
+// channels that a compiled system has: check_presentation() does that. Limits are read there too: what a
+// number with a unit means is decided by the channel.
+#pragma once
+
+#include "mbd/system.h"
+
+namespace steplap {
+
+[[nodiscard]] const TableKind& plot_kind();
+[[nodiscard]] const TableKind& acceptance_kind();
+
+/// Reads the limits of the model's criteria in the unit of the channels that they are for. Throws ModelError for
+/// limits of another dimension, for patterns that no written channel or no element matches, and for a plot or a
+/// criterion whose channels are of different units.
+void check_presentation(Model& model, const System& system);
+
+} // namespace steplap
