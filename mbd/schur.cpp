@@ -59,6 +59,7 @@ std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled
 
 void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
   n_ = static_cast<int>(rows.size());
+  length_ = std::max(1.0, n_ / k_usual_rows);
   body_count_ = count_bodies(rows);
   const std::vector<Coupling> coupled = couplings(rows, body_count_);
   right_.assign(n_, 0.0);
@@ -229,7 +230,7 @@ void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
 }
 
 void SchurSolver::solve(const std::vector<SchurRow>& rows, double* x) const {
-  if (smallest_pivot_ >= k_refined_pivot || shift_ > 0.0) [[likely]]
+  if (!is_near_singular() || shift_ > 0.0) [[likely]]
     return eliminate(x);
   std::copy(x, x + n_, right_.begin());
   eliminate(x);

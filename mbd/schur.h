@@ -38,13 +38,15 @@ public:
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
   [[nodiscard]] bool is_dependent(int row) const { return inverse_d_[position_[row]] == 0.0; }
   /// Smallest pivot kept, relative to its diagonal, in the last factorisation: near 0 close to a singularity.
-  [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
-  [[nodiscard]] bool is_near_singular() const { return smallest_pivot_ < k_refined_pivot; }
+  /// A chain's falls as one over its length wherever it is: beyond k_usual_rows that is allowed for.
+  [[nodiscard]] double smallest_pivot() const { return smallest_pivot_ * length_; }
+  [[nodiscard]] bool is_near_singular() const { return smallest_pivot() < k_refined_pivot; }
 
   /// A pivot below this fraction of its diagonal counts as zero.
   static constexpr double k_pivot_tolerance = 1e-13;
   /// Below this one a solution is refined: the square root of what elimination can lose.
   static constexpr double k_refined_pivot = 1e-4;
+  static constexpr double k_usual_rows = 50.0;
 
 private:
   void eliminate(double* x) const;
@@ -71,6 +73,7 @@ private:
   double shift_ = 0.0;
   int dependent_count_ = 0;
   double smallest_pivot_ = 1.0;
+  double length_ = 1.0; ///< rows over k_usual_rows, at least 1
   std::vector<int> order_;     ///< order_[k]: row eliminated as k-th
   std::vector<int> position_;  ///< inverse of order_
   std::vector<int> product_begin_;
