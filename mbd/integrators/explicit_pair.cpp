@@ -29,12 +29,15 @@ ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& s
 // The step size survives an event: what limited it was the motion, which goes on much the same.
 void ExplicitPair::on_restart(Dynamics&) {
   control_.previous_error = 1e-4;
-  start_pivot_ = 1.0;
+  start_pivot_ = highest_pivot_ = 1.0;
 }
 
 void ExplicitPair::end_step(Dynamics& dynamics) {
   finish_step(dynamics);
+  // The first step's end tells what is usual here.
+  const bool is_first = highest_pivot_ == 1.0;
   start_pivot_ = dynamics.layout().schur.smallest_pivot();
+  highest_pivot_ = is_first ? start_pivot_ : std::max(highest_pivot_, start_pivot_);
 }
 
 SingularCrossing::Step ExplicitPair::crossing_step(Dynamics& dynamics) {
@@ -56,7 +59,8 @@ void ExplicitPair::dense(Dynamics& dynamics, double theta, double* out) {
 
 // Falling towards a singular position, not merely small all the time?
 bool ExplicitPair::comes_near_singularity(const Dynamics& dynamics) const {
-  return dynamics.lowest_pivot() < k_crossed_pivot && dynamics.lowest_pivot() < 0.5 * start_pivot_ &&
+  const double lowest = dynamics.lowest_pivot();
+  return lowest < k_crossed_pivot && lowest < start_pivot_ && lowest < 0.5 * highest_pivot_ &&
          start_pivot_ > k_closest_start;
 }
 

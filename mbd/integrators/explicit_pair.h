@@ -58,6 +58,7 @@ private:
   double next_h_ = 0.0;
   std::unique_ptr<SingularCrossing> crossing_; ///< made where one is met
   double start_pivot_ = 1.0;                   ///< of the constraints at t0, 1: not known
+  double highest_pivot_ = 1.0;                 ///< since the last restart
   bool is_crossing_ = false;                   ///< the step made is one
 };
 

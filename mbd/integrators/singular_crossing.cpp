@@ -119,25 +119,29 @@ double SingularCrossing::distance(Dynamics& dynamics, const Step& step, double t
   return std::sqrt(dynamics.layout().schur.smallest_pivot());
 }
 
-// The distance falls and grows linearly on either side of the position: walks until it grows.
+// The distance falls and grows linearly on either side of the position: walks until it grows, with strides that
+// take it there in a few.
 double SingularCrossing::locate(Dynamics& dynamics, const Step& step) {
-  constexpr int k_most_samples = 16;
-  constexpr double k_stride = 0.25, k_near = 0.05;
+  constexpr int k_most_samples = 10;
+  constexpr double k_first = 0.25, k_strides = 3.0, k_near = 0.2;
   const auto between = [](double low, double d_low, double high, double d_high) {
     return (low * d_high + high * d_low) / (d_low + d_high);
   };
-  double before = k_infinite, last = distance(dynamics, step, 0.0);
+  const double start = distance(dynamics, step, 0.0), first = distance(dynamics, step, k_first);
+  if (!(first < start)) return std::numeric_limits<double>::quiet_NaN();
+  const double stride = std::max(k_first, k_first * start / (start - first) / k_strides);
+  double before = k_infinite, last = start;
   for (int i = 1; i <= k_most_samples; ++i) {
-    const double next = distance(dynamics, step, k_stride * i);
+    const double next = distance(dynamics, step, stride * i);
     if (next < last) {
       before = last;
       last = next;
       continue;
     }
     if (i == 1) break;
-    double theta = between(k_stride * (i - 2), before, k_stride * i, next);
+    double theta = between(stride * (i - 2), before, stride * i, next);
     for (int refinement = 0; refinement < 2; ++refinement) {
-      const double low = theta - k_near, high = theta + k_near;
+      const double low = theta - k_near * stride, high = theta + k_near * stride;
       theta = between(low, distance(dynamics, step, low), high, distance(dynamics, step, high));
     }
     return theta;
