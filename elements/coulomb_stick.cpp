@@ -47,6 +47,9 @@ public:
                    double* wrench) const override {
     wrench[0] = -mu_kinetic * normal_force(e) * state.sign;
   }
+  [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
+    return mu_static * normal_force(e) * std::abs(rate[0]);
+  }
   void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench,
                    double* watch) const override {
     const double bound = mu_static * normal_force(e) * (1.0 + k_bound_slack);

@@ -23,6 +23,9 @@ public:
   void slip_wrench(const Evaluation&, const FrictionState& state, const double*, double* wrench) const override {
     wrench[0] = -drags * state.sign;
   }
+  [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double* rate) const override {
+    return holds * std::abs(rate[0]);
+  }
   void watch_stick(const Evaluation&, const FrictionState&, const double* wrench, double* watch) const override {
     const double bound = holds * (1.0 + k_bound_slack);
     watch[0] = bound - wrench[0];

@@ -150,6 +150,23 @@ void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, con
   else watch[0] = 1.0 + k_bound_slack - required_pressure(f.patch, w).u;
 }
 
+double StepLapFriction::support(const Evaluation& e, const FrictionState&, const double* rate) const {
+  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
+  f.prepare();
+  return evaluate_gradient(f.patch, Vec3(rate[0], rate[1], rate[2])).h;
+}
+
+// u = W·ν/h(ν) with its maximiser ν: its gradient is ν/h.
+double StepLapFriction::gauge(const Evaluation& e, const FrictionState&, const double* wrench, double* normal) const {
+  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
+  f.prepare();
+  const RequiredPressure required = required_pressure(f.patch, Vec3(wrench[0], wrench[1], wrench[2]));
+  Vec3 n = required.direction;
+  if (required.u > 0.0) n /= evaluate_gradient(f.patch, n).h;
+  Vec3::Map(normal) = n;
+  return required.u;
+}
+
 const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   auto& own = static_cast<Scratch&>(*s.evaluation->scratch[index_]);
   const double* force = s.friction_force + row_;

@@ -62,6 +62,9 @@ public:
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
                    double* wrench) const override;
+  [[nodiscard]] double support(const Evaluation& e, const FrictionState& state, const double* rate) const override;
+  [[nodiscard]] double gauge(const Evaluation& e, const FrictionState& state, const double* wrench,
+                             double* normal) const override;
   void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench,
                    double* watch) const override;
   void begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const override;

@@ -8,9 +8,6 @@ namespace steplap {
 
 namespace {
 
-// A merged joint with more of its capacity left than this at a step's ends is not looked at in between:
-// what rises and falls by so much within a step is not resolved anyway.
-constexpr double k_near_limit = 0.5;
 // Below this smallest pivot the rates of a stage are those of the nearest state on the constraints.
 constexpr double k_placed_pivot = 1e-4;
 
@@ -57,7 +54,7 @@ void Dynamics::set_state(const State& state) {
   evaluation_.friction = state.friction.data();
   evaluation_.memory = state.memory.data();
   is_factored_ = false;
-  is_merged_near_ = false;
+  is_merged_near_ = was_merged_near_ = false;
   std::fill(watch_.begin(), watch_.end(), 1.0);
   const std::vector<char> key = layout_key(state);
   for (const auto& layout : layouts_)
@@ -269,7 +266,7 @@ void Dynamics::to_clusters(const RowSpec& spec, const MeasureValue<double>& m, S
     j[0] = sign * m.direction.x;
     j[1] = sign * m.direction.y;
     j[2] = sign * (cross(lever, m.direction) + m.couple);
-    for (int c = 0; c < 3; ++c) row.wj[side][c] = cluster.w[c] * j[c];
+    for (int c = 0; c < 3; ++c) row.wj[side][c] = row.w[side][c] * j[c];
   }
 }
 
@@ -400,10 +397,13 @@ void Dynamics::finish_watches() {
     if (row.friction < 0) continue;
     friction_force_[system_.frictions[row.friction].row + row.friction_row] = right_side_[r];
   }
+  if (layout.schur.is_singular() && !layout.sharing) [[unlikely]] find_sharing();
+  const LoadSharing* const shared = sharing(); // elements that share a load are watched at a step's ends
   for (const int f : layout.holding) {
     const FrictionUnit& unit = system_.frictions[f];
-    unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row],
-                               &watch_[unit.watch]);
+    if (!shared || shared->group_of(f) < 0) [[likely]]
+      unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row],
+                                 &watch_[unit.watch]);
     watch_[unit.watch + 2] = unit.friction->watch_place(evaluation_, state_->friction[f]);
   }
   for (const int f : layout.sliding) {
@@ -537,24 +537,35 @@ void Dynamics::merged_wrenches() {
 
 void Dynamics::watch_merged(const double* dy) {
   if (!layout_->is_merged_watched) return;
-  body_accelerations(dy);
-  merged_wrenches();
-  is_merged_near_ = false;
-  for (const int f : layout_->merged) {
-    const FrictionUnit& unit = system_.frictions[f];
-    double* watch = &watch_[unit.watch];
-    unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row], watch);
-    if (std::min(watch[0], watch[1]) < k_near_limit) is_merged_near_ = true;
-  }
+  was_merged_near_ = is_merged_near_;
+  is_merged_near_ = watch_joints(dy);
 }
 
 void Dynamics::watch_merged_if_near(const double* dy) {
-  if (is_merged_near_) watch_merged(dy);
+  const bool has_groups = sharing() && !sharing()->groups().empty();
+  if (is_merged_near_ || was_merged_near_ || has_groups) (void)watch_joints(dy);
+}
+
+// Is any near its limit?
+bool Dynamics::watch_joints(const double* dy) {
+  if (layout_->sharing) take_solved_friction();
+  body_accelerations(dy);
+  merged_wrenches();
+  bool is_near = watch_groups();
+  for (const int f : layout_->merged) {
+    if (is_shared(f)) continue;
+    const FrictionUnit& unit = system_.frictions[f];
+    double* watch = &watch_[unit.watch];
+    unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row], watch);
+    if (std::min(watch[0], watch[1]) < k_near_limit) is_near = true;
+  }
+  return is_near;
 }
 
 Snapshot Dynamics::snapshot(const double* dy) {
   const Layout& layout = *layout_;
   for (int i = 1; i < system_.body_count(); ++i) place_member(i); // also those not needed so far
+  if (layout.sharing) take_solved_friction();
   body_accelerations(dy);
   merged_wrenches();
   const int n = coordinate_count();
@@ -567,6 +578,7 @@ Snapshot Dynamics::snapshot(const double* dy) {
     const FrictionUnit& unit = system_.frictions[f];
     std::fill_n(&friction_force_[unit.row], unit.friction->dimension(), 0.0);
   }
+  settle_loads();
   Snapshot s;
   s.t = evaluation_.t;
   s.motion = motion_.data();

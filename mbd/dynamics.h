@@ -83,7 +83,11 @@ public:
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
   /// Multipliers of the layout's active rows.
   [[nodiscard]] const std::vector<double>& multipliers() const { return right_side_; }
-  /// Adds the watch values of joints that are merged: costs a pass over the merged bodies.
+  /// The loads that sticking elements share in more than one way, as last solved by watch_merged(); null where
+  /// every wrench is its element's own.
+  [[nodiscard]] const LoadSharing* sharing() const;
+  /// Adds the watch values of joints that are merged, and of groups of sticking elements that share a load: costs
+  /// a pass over the merged bodies.
   void watch_merged(const double* dy);
   /// The same at a stage inside a step, where only values near their limit are worth the pass.
   void watch_merged_if_near(const double* dy);
@@ -130,13 +134,25 @@ private:
   void body_accelerations(const double* dy);
   void merged_wrenches();
   [[nodiscard]] double* joint_multipliers(const RigidEdge& edge);
+  void find_sharing();
+  [[nodiscard]] bool is_shared(int friction) const;
+  void take_solved_friction();
+  [[nodiscard]] bool watch_groups();
+  [[nodiscard]] bool watch_joints(const double* dy);
+  void settle_loads();
+
+  /// A merged joint with more of its capacity left than this at a step's ends is not looked at in between: what
+  /// rises and falls by so much within a step is not resolved anyway.
+  static constexpr double k_near_limit = 0.5;
+  static constexpr double k_bound_slack = 1e-13; ///< as in coulomb_stick.cpp
 
   const System& system_;
   const State* state_ = nullptr;
   std::vector<std::unique_ptr<Layout>> layouts_;
   Layout* layout_ = nullptr;
   bool is_factored_ = false;
-  bool is_merged_near_ = false; ///< some merged joint was near its limit when last watched
+  bool is_merged_near_ = false; ///< some merged joint or group was near its limit when last watched
+  bool was_merged_near_ = false; ///< or the time before: the other end of a step
   double time_cap_ = std::numeric_limits<double>::infinity();
   long evaluations_ = 0;
 

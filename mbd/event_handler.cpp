@@ -223,9 +223,17 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
   evaluate(state);
   const bool is_contact_changed = switch_units(state, fired, events);
   bool is_any_at_rest = false;
+  const LoadSharing* const sharing = dynamics_.sharing();
+  std::vector<char> is_released(sharing ? sharing->groups().size() : 0, 0);
   for (const int slot : fired) {
     const int f = friction_of_slot_[slot];
     if (f < 0) continue;
+    const int group = sharing && slot != system_.frictions[f].watch + 2 ? sharing->group_of(f) : -1;
+    if (group >= 0) { // fires in the slots of all its elements
+      if (!is_released[group]) modes_.release(state, group);
+      is_released[group] = 1;
+      continue;
+    }
     fire_friction(state, f, slot);
     is_any_at_rest = is_any_at_rest || state.friction[f].phase == FrictionPhase::stick;
   }

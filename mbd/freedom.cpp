@@ -4,7 +4,7 @@
 #include <Eigen/SparseQR>
 
 #include <cmath>
-#include <set>
+#include <map>
 
 namespace steplap {
 
@@ -53,18 +53,23 @@ int rank_of(const std::vector<const RowSpec*>& rows, const std::vector<Motion<do
   return rank;
 }
 
-// Elements of rows that can be left out without loss: what they carry, others could carry as well.
-std::vector<int> sharing(const std::vector<const RowSpec*>& rows, const std::vector<int>& elements,
-                         const std::vector<Motion<double>>& motion, int rank) {
-  std::set<int> found;
+// Rows that can be left out without loss, by element: what they carry, others could carry as well.
+std::vector<SharedReaction> sharing(const std::vector<const RowSpec*>& rows, std::size_t joint_rows,
+                                    const std::vector<int>& elements, const std::vector<Motion<double>>& motion,
+                                    int rank) {
   if (rank == static_cast<int>(rows.size())) return {};
+  std::map<int, std::vector<std::string>> found;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (found.count(elements[i]) > 0) continue;
+    if (i >= joint_rows && found.count(elements[i]) > 0) continue;
     std::vector<const RowSpec*> others = rows;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    if (rank_of(others, motion, nullptr) == rank) found.insert(elements[i]);
+    if (rank_of(others, motion, nullptr) != rank) continue;
+    std::vector<std::string>& quantities = found[elements[i]];
+    if (i < joint_rows) quantities.emplace_back(rows[i]->quantity);
   }
-  return {found.begin(), found.end()};
+  std::vector<SharedReaction> result;
+  for (auto& [element, quantities] : found) result.push_back({element, std::move(quantities)});
+  return result;
 }
 
 } // namespace
@@ -83,7 +88,7 @@ Freedom count_freedom(const System& system) {
     elements.push_back(row.element);
   }
   freedom.rank = rank_of(rows, motion, &freedom.dependent_rows);
-  freedom.shared = sharing(rows, elements, motion, freedom.rank);
+  freedom.shared = sharing(rows, rows.size(), elements, motion, freedom.rank);
   for (const FrictionUnit& unit : system.frictions) {
     const RowSpec* first = unit.friction->rows(FrictionState{});
     for (int r = 0; r < unit.friction->dimension(); ++r) {
@@ -92,7 +97,7 @@ Freedom count_freedom(const System& system) {
     }
   }
   freedom.rank_sticking = rank_of(rows, motion, nullptr);
-  freedom.shared_sticking = sharing(rows, elements, motion, freedom.rank_sticking);
+  freedom.shared_sticking = sharing(rows, system.rows.size(), elements, motion, freedom.rank_sticking);
   return freedom;
 }
 

@@ -8,9 +8,16 @@
 
 #include "mbd/system.h"
 
+#include <string>
 #include <vector>
 
 namespace steplap {
+
+/// Of an element, the rows whose multipliers are not unique; what they hold, by RowSpec::quantity.
+struct SharedReaction {
+  int element = 0;
+  std::vector<std::string> quantities; ///< of joints and drives; empty for friction
+};
 
 struct Freedom {
   int coordinates = 0;             ///< three for each body that moves
@@ -18,9 +25,8 @@ struct Freedom {
   int rank = 0;                    ///< independent ones among them
   int rank_sticking = 0;           ///< the same with every friction joint sticking
   std::vector<int> dependent_rows; ///< rows that others imply: which of a set is arbitrary
-  /// Elements some multiplier of which is not unique: joints and drives alone, and with all
-  /// friction sticking.
-  std::vector<int> shared, shared_sticking;
+  /// Reactions that are not unique: of joints and drives alone, and with all friction sticking.
+  std::vector<SharedReaction> shared, shared_sticking;
 
   [[nodiscard]] int degrees() const { return coordinates - rank; }
   [[nodiscard]] int degrees_sticking() const { return coordinates - rank_sticking; }

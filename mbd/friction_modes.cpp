@@ -15,9 +15,6 @@ constexpr double k_settled = 1e-15;
 // many sweeps, once the change is small, is the end too.
 constexpr int k_stalled_sweeps = 20;
 constexpr double k_small_change = 1e-9;
-// Compliance of a row that others hold, against what it is without them: rounding of the constraint
-// solver.
-constexpr double k_held = 1e-9;
 
 // Block Gauss–Seidel on the dual: each element's part is solved exactly in turn. It converges for
 // every positive semidefinite A, and the accelerations are unique even where the wrenches are not.
@@ -148,82 +145,47 @@ void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
   }
 }
 
-// Trace of the response along the rows of f, which is let go.
-double FrictionModes::compliance(State& state, int f) {
-  state.friction[f].phase = FrictionPhase::free;
-  dynamics_.set_state(state);
-  dynamics_.pack(state, y_.data());
-  dynamics_.rates(state.t, y_.data(), dy_.data());
-  const FrictionElement& friction = *system_.frictions[f].friction;
-  const std::size_t n = friction.dimension();
-  Dynamics::Candidates problem;
-  for (std::size_t r = 0; r < n; ++r)
-    problem.rows.push_back(friction.rows(state.friction[f]) + r);
-  dynamics_.respond(problem, dy_.data());
-  double trace = 0.0;
-  for (std::size_t r = 0; r < n; ++r)
-    trace += problem.compliance[r * n + r];
-  return trace;
-}
-
-// Would f stay at rest without its friction, because the others that stick hold it?
-bool FrictionModes::is_held(const State& state, int f) {
-  State trial = state;
-  const double held = compliance(trial, f);
-  for (std::size_t e = 0; e < trial.friction.size(); ++e)
-    if (trial.friction[e].phase == FrictionPhase::stick &&
-        !system_.frictions[e].friction->never_slips())
-      trial.friction[e].phase = FrictionPhase::free;
-  return held <= k_held * compliance(trial, f);
-}
-
-// Elements that stick and share a load can bear it together, yet the one share out of many that the
-// solver picks may be too much for one of them. It is left at its bound, the rest goes to the
-// others: an admissible share, whose watch values are positive until the group as a whole gives
-// way.
-void FrictionModes::share(State& state) {
-  for (std::size_t pass = 0; pass < system_.frictions.size(); ++pass) {
-    std::vector<int> over = violated(state);
-    std::erase_if(over, [&](int f) {
-      return system_.frictions[f].friction->never_slips() || !is_held(state, f);
-    });
-    (void)violated(state); // evaluates in the modes as they are
-    if (over.empty()) return;
-    const Snapshot snapshot = dynamics_.snapshot(dy_.data());
-    const FrictionUnit& unit = system_.frictions[over.front()];
-    FrictionState& friction = state.friction[over.front()];
+void FrictionModes::release(State& state, int group) const {
+  for (const Release& r : dynamics_.sharing()->releases(group)) {
+    FrictionState& friction = state.friction[r.friction];
     friction.phase = FrictionPhase::slip;
-    friction.is_starting = true;
-    unit.friction->begin_slip(dynamics_.evaluation(), friction, snapshot.friction_force + unit.row);
+    friction.has_slipped = friction.is_starting = true;
+    system_.frictions[r.friction].friction->begin_slip(dynamics_.evaluation(), friction, r.wrench);
   }
+}
+
+bool FrictionModes::release_overloaded(State& state) const {
+  const LoadSharing* const sharing = dynamics_.sharing();
+  if (!sharing) return false;
+  bool is_any = false;
+  for (std::size_t g = 0; g < sharing->groups().size(); ++g) {
+    const int first = sharing->groups()[g].frictions.front();
+    if (dynamics_.watch()[system_.frictions[first].watch] >= 0.0) continue;
+    release(state, static_cast<int>(g));
+    is_any = true;
+  }
+  return is_any;
 }
 
 void FrictionModes::decide(State& state) {
   std::vector<int> candidates = violated(state);
-  if (candidates.empty()) return;
-  // Candidates only grow: at most every element is one.
-  for (std::size_t pass = 0; pass <= system_.frictions.size(); ++pass) {
+  // Candidates only grow, but where a group is let go, which happens to an element once.
+  const std::size_t most = (system_.frictions.size() + 1) * (system_.frictions.size() + 1);
+  for (std::size_t pass = 0; !candidates.empty(); ++pass) {
+    if (pass > most)
+      throw NumericalFailure("friction modes cannot be decided at t = " + std::to_string(state.t) + " s");
     solve(state, candidates);
     std::vector<int> more = violated(state);
-    const std::size_t violations = more.size();
-    const auto is_candidate = [&](int f) {
-      return std::find(candidates.begin(), candidates.end(), f) != candidates.end();
-    };
-    std::erase_if(more, is_candidate);
-    // A candidate that was found to stick and yet is violated shares its load with others that
-    // stick (their rows depend on each other): what they can bear together, only the whole problem
-    // tells.
-    if (more.empty() && violations > 0) {
-      for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f)
-        if (state.friction[f].phase == FrictionPhase::stick &&
-            !system_.frictions[f].friction->never_slips() && !is_candidate(f))
-          more.push_back(f);
+    const bool is_any_over = !more.empty();
+    std::erase_if(more, [&](int f) { return std::find(candidates.begin(), candidates.end(), f) != candidates.end(); });
+    // Candidates that were found to stick and yet are overloaded: rounding. Of a group limit analysis tells.
+    if (more.empty()) {
+      if (!is_any_over || !release_overloaded(state)) return;
+      candidates = violated(state);
+    } else {
+      candidates.insert(candidates.end(), more.begin(), more.end());
     }
-    if (more.empty()) return violations > 0 ? share(state) : void();
-    candidates.insert(candidates.end(), more.begin(), more.end());
   }
-  throw NumericalFailure("friction modes cannot be decided at t = " + std::to_string(state.t) +
-                         " s");
 }
 
 } // namespace steplap

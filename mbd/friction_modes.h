@@ -22,15 +22,17 @@ public:
   /// Throws NumericalFailure if the problem cannot be solved.
   void decide(State& state);
 
+  /// Lets go those of a group (LoadSharing) that slip when it gives way; `dynamics` was last asked for its watch
+  /// values at `state`.
+  void release(State& state, int group) const;
+
   /// Anchors the rows of element f at the present pose.
   void set_anchor(State& state, int f) const;
 
 private:
   [[nodiscard]] std::vector<int> violated(const State& state);
   void solve(State& state, const std::vector<int>& candidates);
-  void share(State& state);
-  [[nodiscard]] double compliance(State& state, int f);
-  [[nodiscard]] bool is_held(const State& state, int f);
+  [[nodiscard]] bool release_overloaded(State& state) const;
 
   const System& system_;
   Dynamics& dynamics_;

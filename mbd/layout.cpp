@@ -258,9 +258,10 @@ Layout make_layout(const System& system, const State& state) {
                          {cluster.mass * system.gravity.x(), cluster.mass * system.gravity.y(), 0.0});
     layout.inverse_mass.insert(layout.inverse_mass.end(), cluster.w, cluster.w + 3);
   }
+  // A row between two bodies that move as one moves nothing: without inverse masses it drops out as dependent.
   for (SchurRow& row : layout.schur_rows)
     for (int side = 0; side < 2; ++side)
-      if (row.body[side] >= 0) std::copy_n(layout.clusters[row.body[side]].w, 3, row.w[side]);
+      if (row.body[side] >= 0 && row.body[0] != row.body[1]) std::copy_n(layout.clusters[row.body[side]].w, 3, row.w[side]);
   // An angle's gradient is the same in every pose: Dynamics leaves it as it is here.
   for (std::size_t r = 0; r < layout.active.size(); ++r) {
     if (layout.active[r].spec->kind != MeasureKind::angle) continue;

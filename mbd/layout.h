@@ -5,9 +5,11 @@
 // locked (infinite mass); what remains are rows. A layout is found once for a set of modes.
 #pragma once
 
+#include "mbd/load_sharing.h"
 #include "mbd/schur.h"
 #include "mbd/system.h"
 
+#include <memory>
 #include <vector>
 
 namespace steplap {
@@ -76,7 +78,8 @@ struct Layout {
   std::vector<int> sliding_link;     ///< of each of those
   std::vector<int> holding;          ///< friction elements in phase stick that are not merged
   std::vector<int> merged;           ///< friction elements in phase stick that are merged
-  bool is_merged_watched = false;    ///< some of those can slip
+  bool is_merged_watched = false;    ///< some of those can slip, or sticking elements share a load
+  std::unique_ptr<LoadSharing> sharing; ///< null until rows have been met that depend on each other
   std::vector<double> reference;     ///< clusters' coordinates in the reference pose, for error scales
   bool has_drives = false;           ///< some active row or lock moves with time
   SchurSolver schur;

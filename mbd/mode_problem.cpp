@@ -20,6 +20,8 @@ void Dynamics::respond(Candidates& candidates, const double* dy) {
     const auto m = evaluate_row<true>(spec, motion_.data());
     rows[c].body[0] = layout.placements[spec.a].cluster;
     rows[c].body[1] = layout.placements[spec.b].cluster;
+    for (int side = 0; side < 2; ++side)
+      if (rows[c].body[side] >= 0) std::copy_n(layout.clusters[rows[c].body[side]].w, 3, rows[c].w[side]);
     to_clusters(spec, m, rows[c]);
     candidates.acceleration[c] = cluster_bias(spec, m);
     for (int side = 0; side < 2; ++side)

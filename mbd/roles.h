@@ -131,6 +131,17 @@ public:
   /// The wrench of the slip law for the relative velocity `rate` along its rows.
   virtual void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
                            double* wrench) const = 0;
+  /// Support function of the set it can bear while sticking: the largest power that an admissible wrench takes
+  /// from `rate`.
+  [[nodiscard]] virtual double support(const Evaluation& e, const FrictionState& state, const double* rate) const = 0;
+  /// Share of its capacity that `wrench` uses, 1 at the bound; `normal`: the n with n·w ≤ share of w for every w,
+  /// equal for `wrench`.
+  [[nodiscard]] virtual double gauge(const Evaluation& e, const FrictionState& state, const double* wrench,
+                                     double* normal) const {
+    const double forward = 1.0, capacity = support(e, state, &forward); // of one dimension
+    normal[0] = wrench[0] < 0.0 ? -1.0 / capacity : 1.0 / capacity;
+    return normal[0] * wrench[0];
+  }
   /// Watch values while sticking with `wrench`: admissible while both are ≥ 0.
   virtual void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench,
                            double* watch) const = 0;

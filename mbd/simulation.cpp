@@ -227,10 +227,10 @@ bool Simulation::pass_stepped() {
   state_ = *integrator_->stepped_state();
   const double t1 = integrator_->t1();
   sample_until(t1);
+  account_energy(t1, integrator_->y1()); // in the layout of the step, which the next line may do away with
   const std::size_t known = events_.size();
   handler_.note_changes(before, state_, events_);
   statistics_.events += static_cast<long>(events_.size() - known);
-  account_energy(t1, integrator_->y1());
   dynamics_.set_time_limit(next_limit());
   restart();
   return t1 < options_.end;

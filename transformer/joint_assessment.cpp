@@ -53,6 +53,17 @@ void read_events(const std::vector<Event>& events, JointAssessment& result) {
   }
 }
 
+// One that slides from the first instant has no event of beginning to.
+void read_modes(const Trajectory& trajectory, JointAssessment& result) {
+  const std::vector<double> mode = samples(trajectory, result.joint + ".mode");
+  for (std::size_t i = 0; i < mode.size(); ++i) {
+    if (mode[i] != static_cast<double>(FrictionPhase::slip)) continue;
+    result.has_slipped = true;
+    if (!result.first_slip || trajectory.times()[i] < *result.first_slip) result.first_slip = trajectory.times()[i];
+    return;
+  }
+}
+
 std::string verdict_of(const JointAssessment& a, bool has_interfaces) {
   if (!has_interfaces) return "not assessed";
   if (a.has_come_apart) return "came apart";
@@ -72,6 +83,7 @@ std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& 
     a.joint = joint->name;
     a.is_monitored = joint->mode == "monitor";
     read_events(result.events, a);
+    read_modes(*result.trajectory, a);
     find_extremes(trajectory, a);
     a.slid_x = last_of(samples(trajectory, a.joint + ".dx"));
     a.slid_y = last_of(samples(trajectory, a.joint + ".dy"));

@@ -41,8 +41,9 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
     const FrictionElement& element = *system_.frictions[f].friction;
     FrictionState& friction = state.friction[f];
     if (friction.phase == FrictionPhase::apart || element.never_slips()) continue;
-    if (element.watch_place(dynamics.evaluation(), friction) < 0.0)
-      element.change_place(dynamics.evaluation(), friction);
+    FrictionState before = friction; // a joint that sticks cannot come apart: the phase counts
+    before.phase = start_.friction[f].phase;
+    if (element.watch_place(dynamics.evaluation(), before) < 0.0) element.change_place(dynamics.evaluation(), friction);
     if (friction.phase == FrictionPhase::apart) continue;
     const RowSpec* rows = element.rows(friction);
     for (int r = 0; r < element.dimension() && !has_held(friction, f); ++r)

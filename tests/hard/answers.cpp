@@ -19,12 +19,13 @@ double time_error(const Finished& run, const std::string& element, const std::st
   return times.size() == 1 ? std::abs(times[0] - expected) : k_wrong;
 }
 
-// Of the last slip of anything: the instant from which a group of frictional elements moves.
-double last_slip_error(const Finished& run, double expected) {
-  double last = 0.0;
+// Of `count` elements that all begin to slip at one instant, and nothing else happens.
+double common_slip_error(const Finished& run, std::size_t count, double expected) {
+  if (run.result.events.size() != count) return k_wrong;
+  double worst = 0.0;
   for (const Event& event : run.result.events)
-    if (event.what == "slips forward") last = std::max(last, event.t);
-  return std::abs(last - expected);
+    worst = event.what == "slips forward" ? std::max(worst, std::abs(event.t - expected)) : k_wrong;
+  return worst;
 }
 
 } // namespace
@@ -135,11 +136,10 @@ double slow_ramp(const Finished& run) {
 }
 
 // 12 N/s against (0.3 + 0.5) 9.81 N; then x = r (t − t₁)³/(6 m). How the feet share the load before
-// is nobody's to know: the first of them may be listed as slipping, at rest, any time; the last one
-// lets go at the onset.
+// is nobody's to know; both let go at the onset.
 double two_feet(const Finished& run) {
   const double onset = 0.8 * k_g / 12.0, path = 12.0 * std::pow(1.0 - onset, 3) / 6.0 / 2.0;
-  return std::max(last_slip_error(run, onset), std::abs(run.last("box.x") - path));
+  return std::max(common_slip_error(run, 2, onset), std::abs(run.last("box.x") - path));
 }
 
 namespace {
@@ -153,17 +153,13 @@ double ten_blocks(const Finished& run) {
     worst = std::max(
         worst, std::abs(run.last("block " + n + ".x") - 2.0 * i - rate * left * left * left / 6.0));
   }
-  return std::max(worst, last_slip_error(run, onset));
+  return std::max(worst, common_slip_error(run, 10, onset));
 }
 
 } // namespace
 
+// Apart, or joined by rods, which make the rows of sticking blocks dependent on each other.
 double ten_at_once(const Finished& run) {
-  return run.result.events.size() == 10 ? ten_blocks(run) : k_wrong;
-}
-
-// The rods make the rows of sticking blocks dependent on each other, as in two_feet.
-double chain(const Finished& run) {
   return ten_blocks(run);
 }
 

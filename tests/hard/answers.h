@@ -19,7 +19,6 @@ using Answer = std::function<double(const Finished&)>;
 [[nodiscard]] double slow_ramp(const Finished& run);
 [[nodiscard]] double two_feet(const Finished& run);
 [[nodiscard]] double ten_at_once(const Finished& run);
-[[nodiscard]] double chain(const Finished& run);
 [[nodiscard]] double rocking(const Finished& run);
 [[nodiscard]] Answer dumbbell(double ratio);
 [[nodiscard]] Answer two_masses(double ratio);

@@ -27,6 +27,7 @@ std::string number(double x) {
 struct Blocks {
   std::vector<double> mass, mu, force;
   bool is_stack = false, is_chained = false;
+  double rear_share = 0.0; ///< if not zero, each block stands on two feet that stick for themselves
   [[nodiscard]] std::size_t count() const { return mass.size(); }
   [[nodiscard]] double normal(std::size_t i) const {
     double sum = 0.0;
@@ -43,10 +44,16 @@ std::string text_of(const Blocks& b) {
     text += "[[body]]\nname = " + name + "\nmass = " + number(b.mass[i]) + "\ninertia = 1.0\nposition = [" + number(x) + ", " + number(y) + "]\n";
     text += "[[element]]\nkind = \"prescribed_motion\"\nname = \"upright " + n + "\"\na = " + name + "\ncoordinate = \"angle\"\nsignal = \"still\"\n";
     const std::string on = b.is_stack && i > 0 ? "{ body = " + below + ", point = [0.0, 0.5] }" : "{ body = \"ground\", at = [0.0, -0.5] }";
-    text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"sole " + n + "\"\na = { body = " + name +
-            ", point = [0.0, -0.5] }\nb = " + on + "\nstiffness = 1e5\ndamping = 300.0\npreload = " + number(b.normal(i)) + "\n";
-    text += "[[element]]\nkind = \"coulomb_stick\"\nname = \"friction " + n + "\"\ncontacts = [\"sole " + n + "\"]\nstatic_friction = " +
-            number(b.mu[i]) + "\n";
+    const int feet = b.rear_share > 0.0 ? 2 : 1;
+    for (int foot = 0; foot < feet; ++foot) {
+      // Halves of the weight, shares of the friction.
+      const double share = feet == 1 ? 1.0 : 2.0 * (foot == 0 ? b.rear_share : 1.0 - b.rear_share);
+      const std::string of = foot == 0 ? n : n + "b", at = feet == 1 ? "0.0" : foot == 0 ? "-0.3" : "0.3";
+      text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"sole " + of + "\"\na = { body = " + name + ", point = [" + at +
+              ", -0.5] }\nb = " + on + "\nstiffness = 1e5\ndamping = 300.0\npreload = " + number(b.normal(i) / feet) + "\n";
+      text += "[[element]]\nkind = \"coulomb_stick\"\nname = \"friction " + of + "\"\ncontacts = [\"sole " + of +
+              "\"]\nstatic_friction = " + number(share * b.mu[i]) + "\n";
+    }
     text += "[[element]]\nkind = \"load\"\nname = \"pull " + n + "\"\nat = " + name + "\nforce = [" + number(b.force[i]) + ", 0.0]\n";
     if (b.is_chained && i > 0)
       text += "[[element]]\nkind = \"distance\"\nname = \"rod " + n + "\"\na = " + name + "\nb = " + below + "\n";
@@ -127,9 +134,10 @@ void check_against(const Blocks& b, const Answer& expected) {
   const auto system = compile(scene(text_of(b)));
   const Simulation simulation(*system, system->initial_state(), options({"rk4", 1e-4, 1e-3}));
   const State& state = simulation.state();
-  for (std::size_t i = 0; i < b.count(); ++i) {
+  const std::size_t feet = b.rear_share > 0.0 ? 2 : 1;
+  for (std::size_t i = 0; i < feet * b.count(); ++i) {
     const FrictionState& f = state.friction[i];
-    CHECK((f.phase == FrictionPhase::slip ? f.sign : 0) == expected.mode[i]);
+    CHECK((f.phase == FrictionPhase::slip ? f.sign : 0) == expected.mode[i / feet]);
   }
   // And it goes on so: nothing changes its mind, and the accelerations are those found.
   const Run r = run(scene(text_of(b)), {"rk4", 1e-4, 1e-3});
@@ -153,6 +161,18 @@ TEST_CASE("friction modes: stacks of two to five blocks against every combinatio
     }
   CHECK(slipping > 40);
   CHECK(sticking > 40);
+}
+
+TEST_CASE("friction modes: stacks on two feet each, which share their loads, against every combination") {
+  std::mt19937 generator(13);
+  for (const std::size_t count : {1, 2, 3, 4})
+    for (int draw = 0; draw < 12; ++draw) {
+      Blocks b = random_blocks(count, true, generator);
+      const std::vector<Answer> answers = brute_force(b);
+      REQUIRE(answers.size() == 1);
+      b.rear_share = 0.2 + 0.05 * draw;
+      check_against(b, answers[0]);
+    }
 }
 
 TEST_CASE("friction modes: ten blocks on the ground at once") {
@@ -275,6 +295,7 @@ force_x = "ramp"
     CHECK(std::abs(r.event_times("front friction", "slips forward").at(0) - onset) < 1e-9);
     CHECK(std::abs(r.event_times("front friction", "sticks").at(0) - end) < 1e-9);
     CHECK(std::abs(r.event_times("rear friction", "sticks").at(0) - end) < 1e-9);
+    CHECK(std::abs(r.event_times("rear friction", "slips forward").at(0) - onset) < 1e-9);
     CHECK(r.result.events.size() == 4);
     CHECK(r.result.statistics.energy_residual < 1e-9);
   }

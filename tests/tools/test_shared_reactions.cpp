@@ -25,7 +25,7 @@ TEST_CASE("check: reactions that are not unique are warned of by name") {
   // Of three cranks one is too many: along the coupler any of them could hold.
   const std::string loop = check("redundant_loop.toml");
   CHECK(has(loop, "warning: the reactions of"));
-  CHECK(has(loop, "'pin of second'"));
+  CHECK(has(loop, "'pin of second' (force_x, force_y)"));
   // Ten blocks apart share nothing.
   CHECK_FALSE(has(check("ten_at_once.toml"), "not unique"));
 }

@@ -39,17 +39,22 @@ std::string place(const Location& where) {
 
 constexpr std::size_t k_most_names = 8;
 
-// "'a', 'b' and 'c'"
-std::string list_of(const System& system, const std::vector<int>& elements) {
+// "'a' (force_x), 'b' and 'c'"
+std::string list_of(const System& system, const std::vector<SharedReaction>& reactions) {
   std::string text;
-  const std::size_t shown = std::min(elements.size(), k_most_names);
-  for (std::size_t i = 0; i < shown; ++i)
-    text += (i == 0                     ? "'"
-             : i + 1 == elements.size() ? " and '"
-                                        : ", '") +
-            system.element_names[elements[i]] + "'";
-  return shown < elements.size()
-             ? text + " and " + std::to_string(elements.size() - shown) + " more"
+  const std::size_t shown = std::min(reactions.size(), k_most_names);
+  for (std::size_t i = 0; i < shown; ++i) {
+    text += i == 0 ? "'" : i + 1 == reactions.size() ? " and '" : ", '";
+    text += system.element_names[reactions[i].element] + "'";
+    const char* before = " (";
+    for (const std::string& quantity : reactions[i].quantities) {
+      text += before + quantity;
+      before = ", ";
+    }
+    if (!reactions[i].quantities.empty()) text += ")";
+  }
+  return shown < reactions.size()
+             ? text + " and " + std::to_string(reactions.size() - shown) + " more"
              : text;
 }
 
@@ -60,12 +65,12 @@ void warn_of_shared_reactions(const System& system, std::vector<std::string>& wa
     warnings.push_back(
         "the reactions of " + list_of(system, freedom.shared) +
         " are not unique: their constraints depend on each other, and how they share a load is not "
-        "determined; the motion is");
+        "determined; the motion is. Reported is the sharing with the least forces");
   if (freedom.shared_sticking.size() > freedom.shared.size())
     warnings.push_back("while all friction sticks the reactions of " +
                        list_of(system, freedom.shared_sticking) +
-                       " are not unique; one of them may be listed as slipping at its bound while "
-                       "the others still hold");
+                       " are not unique: they hold together as long as any way to share the load is "
+                       "admissible. Reported is one of those ways, in proportion to the capacities where that will do");
 }
 
 } // namespace
