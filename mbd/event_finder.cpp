@@ -10,6 +10,8 @@ namespace {
 
 constexpr int k_scan_points = 8;
 constexpr int k_max_root_iterations = 100;
+constexpr int k_max_subdivisions = 12;    // of a dip
+constexpr double k_same_place = 1e-9;     // of a step: the bottom has settled
 
 // Lowest point inside (0, 1) of the cubic with values w0, w1 and slopes s0 < 0 < s1; NaN if none.
 double bottom_of_cubic(double w0, double s0, double w1, double s1) {
@@ -49,6 +51,7 @@ bool EventFinder::starts_negative(const Integrator& integrator, int slot) const 
 EventFinder::Suspicion EventFinder::suspicion(const Integrator& integrator,
                                               const std::vector<char>& fresh) {
   look_at_.clear();
+  dips_.clear();
   Suspicion worst = Suspicion::none;
   const double h = integrator.h();
   for (int i = 0; i < slots_; ++i) {
@@ -68,9 +71,36 @@ EventFinder::Suspicion EventFinder::suspicion(const Integrator& integrator,
     const double bend = std::abs(w0 + theta * (w1 - w0) - cubic(theta, w0, s0, w1, s1));
     if (cubic(theta, w0, s0, w1, s1) > 0.5 * bend) continue;
     look_at_.push_back(theta);
+    dips_.push_back(i);
     worst = Suspicion::inside;
   }
   return worst;
+}
+
+// A dip may be much shorter than the cubic of a whole step is accurate: the bottom of each cubic halves it, as
+// the rate there tells, until the value is below zero or cannot be.
+void EventFinder::follow_dip(Integrator& integrator, Dynamics& dynamics, int slot) {
+  const double h = integrator.h();
+  struct End {
+    double theta, value, slope;
+  };
+  End a{0.0, integrator.watch0()[slot], h * integrator.watch_rate0()[slot]};
+  End b{1.0, integrator.watch1()[slot], h * integrator.watch_rate1()[slot]};
+  double last = -1.0;
+  for (int i = 0; i < k_max_subdivisions; ++i) {
+    const double width = b.theta - a.theta;
+    const double place = bottom_of_cubic(a.value, width * a.slope, b.value, width * b.slope);
+    if (!(place > 0.0 && place < 1.0)) return;
+    const double lowest = cubic(place, a.value, width * a.slope, b.value, width * b.slope);
+    const double bend = std::abs(a.value + place * (b.value - a.value) - lowest);
+    const double theta = a.theta + place * width;
+    if (lowest > 0.5 * bend || std::abs(theta - last) < k_same_place) return;
+    last = theta;
+    watch_at(integrator, dynamics, theta, middle_);
+    const End now{theta, middle_[slot], h * dynamics.watch_rate()[slot]};
+    if (now.value < 0.0) return look_at_.push_back(theta);
+    (now.slope < 0.0 ? a : b) = now;
+  }
 }
 
 // Slots that were believed positive in `low` and are negative in `high` go to fired_.
@@ -93,6 +123,7 @@ EventFinder::Bracket EventFinder::bracket_whole(const Integrator& integrator) {
 EventFinder::Bracket EventFinder::scan(Integrator& integrator, Dynamics& dynamics,
                                        const std::vector<char>& fresh) {
   for (int i = 0; i < slots_; ++i) armed_[i] = !fresh[i] && !starts_negative(integrator, i);
+  for (const int slot : dips_) follow_dip(integrator, dynamics, slot);
   for (int p = 1; p < k_scan_points; ++p) look_at_.push_back(static_cast<double>(p) / k_scan_points);
   // Fresh values often turn within the first fraction of a step.
   if (std::find(armed_.begin(), armed_.end(), 0) != armed_.end())

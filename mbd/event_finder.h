@@ -1,7 +1,8 @@
 // Finds the first event inside a step: where a watch value falls below zero.
 //
 // Looked at: the step's end, the stages inside it (free of charge), and, where a value's rate is known
-// at both ends and it dips in between, the bottom of its cubic. Whatever raises suspicion is scanned on
+// at both ends and it dips in between, the bottom of its cubic; if that may be below zero, the dip is followed
+// on dense output, cubic by cubic, down to its bottom. Whatever raises suspicion is scanned on
 // dense output, then the root is closed in on to rounding; all values that are negative on the far side
 // of the bracket fire together.
 //
@@ -34,6 +35,7 @@ private:
   Bracket scan(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
   Bracket bracket_whole(const Integrator& integrator);
   void close_in(Integrator& integrator, Dynamics& dynamics);
+  void follow_dip(Integrator& integrator, Dynamics& dynamics, int slot);
   void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, std::vector<double>& watch);
   [[nodiscard]] bool crosses(const std::vector<double>& low, const std::vector<double>& high);
 
@@ -45,6 +47,7 @@ private:
   double theta_low_ = 0.0, theta_high_ = 1.0;
   std::vector<double> y_, dy_, low_, high_, middle_;
   std::vector<double> look_at_;  ///< places inside the step to scan besides the even ones
+  std::vector<int> dips_;        ///< slots whose bottom inside the step may be below zero
   std::vector<char> armed_;      ///< believed when negative
   std::vector<int> fired_;
 };

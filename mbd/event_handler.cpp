@@ -68,14 +68,6 @@ void EventHandler::forget_moved_layouts(const State& state) {
       return dynamics_.forget_layouts();
 }
 
-// The path slid since the last anchor: within one slip the direction does not change.
-void EventHandler::end_slip(State& state, int f) {
-  const RowSpec* rows = system_.frictions[f].friction->rows(state.friction[f]);
-  const double before = rows[0].memory >= 0 ? state.memory[rows[0].memory] : 0.0;
-  modes_.set_anchor(state, f);
-  if (rows[0].memory >= 0) state.friction[f].slid += std::abs(state.memory[rows[0].memory] - before);
-}
-
 // Joints and drives alone, friction let go: which friction slides depends on the velocities they leave.
 void EventHandler::meet_constraints(State& state) {
   for (FrictionState& friction : state.friction)
@@ -129,7 +121,7 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
   const FrictionUnit& unit = system_.frictions[f];
   FrictionState& friction = state.friction[f];
   if (slot == unit.watch + 2) {
-    if (friction.phase == FrictionPhase::slip) end_slip(state, f);
+    if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
     unit.friction->change_place(dynamics_.evaluation(), friction);
     modes_.set_anchor(state, f);
   } else if (friction.phase == FrictionPhase::stick) {
@@ -141,7 +133,7 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
     double rate[3];
     slip_rates(state, f, rate);
     if (unit.friction->goes_on_slipping(dynamics_.evaluation(), friction, rate, slot - unit.watch)) return;
-    end_slip(state, f);
+    modes_.end_slip(state, f);
     friction.phase = FrictionPhase::stick; // or it reverses: the mode problem tells
   }
 }
@@ -156,7 +148,7 @@ void EventHandler::update_loading(State& state) {
       load(state, f);
       if (friction.phase == FrictionPhase::slip) friction.has_slipped = true;
     } else if (!is_loaded && friction.phase != FrictionPhase::free) {
-      if (friction.phase == FrictionPhase::slip) end_slip(state, f);
+      if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
       friction.phase = FrictionPhase::free;
     }
   }
@@ -238,7 +230,10 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
     is_any_at_rest = is_any_at_rest || state.friction[f].phase == FrictionPhase::stick;
   }
   // The mode problem is one of elements at rest: what little is left of a slip that has ended goes first.
-  if (is_any_at_rest) settle(state);
+  if (is_any_at_rest) {
+    settle(state);
+    modes_.rejoin(state);
+  }
   if (is_contact_changed) {
     evaluate(state);
     update_loading(state);

@@ -48,7 +48,6 @@ private:
   void forget_moved_layouts(const State& state);
   void load(State& state, int f);
   void slip_rates(const State& state, int f, double* rate) const;
-  void end_slip(State& state, int f);
   void settle(State& state);
 
   const System& system_;

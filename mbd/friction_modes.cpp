@@ -15,6 +15,8 @@ constexpr double k_settled = 1e-15;
 // many sweeps, once the change is small, is the end too.
 constexpr int k_stalled_sweeps = 20;
 constexpr double k_small_change = 1e-9;
+// Relative velocity, m/s, that counts as rest: far above the rounding of a projected one, far below any motion.
+constexpr double k_rest_velocity = 1e-12;
 
 // Block Gauss–Seidel on the dual: each element's part is solved exactly in turn. It converges for
 // every positive semidefinite A, and the accelerations are unique even where the wrenches are not.
@@ -105,6 +107,14 @@ void FrictionModes::set_anchor(State& state, int f) const {
       state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion.data()).value;
 }
 
+// Within one slip the direction does not change.
+void FrictionModes::end_slip(State& state, int f) const {
+  const RowSpec* rows = system_.frictions[f].friction->rows(state.friction[f]);
+  const double before = rows[0].memory >= 0 ? state.memory[rows[0].memory] : 0.0;
+  set_anchor(state, f);
+  if (rows[0].memory >= 0) state.friction[f].slid += std::abs(state.memory[rows[0].memory] - before);
+}
+
 std::vector<int> FrictionModes::violated(const State& state) {
   dynamics_.set_state(state);
   dynamics_.pack(state, y_.data());
@@ -167,8 +177,38 @@ bool FrictionModes::release_overloaded(State& state) const {
   return is_any;
 }
 
+bool FrictionModes::is_at_rest(const State& state, int f) const {
+  const FrictionElement& friction = *system_.frictions[f].friction;
+  const RowSpec* rows = friction.rows(state.friction[f]);
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  for (int r = 0; r < friction.dimension(); ++r)
+    if (std::abs(evaluate_row<false>(rows[r], motion.data()).rate) > k_rest_velocity) return false;
+  return true;
+}
+
+void FrictionModes::rejoin(State& state) {
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    if (state.friction[f].phase != FrictionPhase::slip || !is_at_rest(state, f)) continue;
+    State trial = state;
+    end_slip(trial, f);
+    trial.friction[f].phase = FrictionPhase::stick;
+    (void)violated(trial);
+    const LoadSharing* const sharing = dynamics_.sharing();
+    const bool is_held = sharing && sharing->group_of(f) >= 0 && dynamics_.watch()[system_.frictions[f].watch] >= 0.0;
+    if (is_held) std::swap(state, trial);
+    dynamics_.set_state(state);
+  }
+}
+
 void FrictionModes::decide(State& state) {
   std::vector<int> candidates = violated(state);
+  if (candidates.empty()) return;
+  settle_candidates(state, std::move(candidates));
+  rejoin(state);
+}
+
+void FrictionModes::settle_candidates(State& state, std::vector<int> candidates) {
   // Candidates only grow, but where a group is let go, which happens to an element once.
   const std::size_t most = (system_.frictions.size() + 1) * (system_.frictions.size() + 1);
   for (std::size_t pass = 0; !candidates.empty(); ++pass) {

@@ -26,13 +26,21 @@ public:
   /// values at `state`.
   void release(State& state, int group) const;
 
+  /// Elements in phase slip that are at rest, since others which stick hold them, share in bearing the load: they
+  /// stick, if the group they make can bear it.
+  void rejoin(State& state);
+
   /// Anchors the rows of element f at the present pose.
   void set_anchor(State& state, int f) const;
+  /// The same where a slip has ended: the path slid since the last anchor counts.
+  void end_slip(State& state, int f) const;
 
 private:
   [[nodiscard]] std::vector<int> violated(const State& state);
   void solve(State& state, const std::vector<int>& candidates);
+  void settle_candidates(State& state, std::vector<int> candidates);
   [[nodiscard]] bool release_overloaded(State& state) const;
+  [[nodiscard]] bool is_at_rest(const State& state, int f) const;
 
   const System& system_;
   Dynamics& dynamics_;

@@ -74,20 +74,49 @@ double bounce_for_ever(const Finished& run) {
   return worst / period;
 }
 
+namespace {
+
 // y = 0.1 cos 10 t against y = −0.1 + 1e-10: below it while |10 t − π| < acos(1 − 1e-9), three
-// times in 2 s.
-double graze(const Finished& run) {
-  const double half = std::acos(1.0 - 1e-9) / 10.0;
+// times in 2 s. The dips found: middle and half of the time of contact.
+struct Dip {
+  double middle, half;
+};
+std::vector<Dip> dips(const Finished& run) {
   const std::vector<double> closes = run.event_times("ground", "closes"),
                             opens = run.event_times("ground", "opens");
-  if (closes.size() != 3 || opens.size() != 3) return k_wrong;
+  std::vector<Dip> found;
+  if (closes.size() != opens.size()) return found;
+  for (std::size_t i = 0; i < closes.size(); ++i)
+    found.push_back({0.5 * (closes[i] + opens[i]), 0.5 * (opens[i] - closes[i])});
+  return found;
+}
+
+constexpr double k_graze_rate = 10.0, k_graze_depth = 1e-9; // rad/s; of the stroke
+
+} // namespace
+
+double graze_time(const Finished& run) {
+  const std::vector<Dip> found = dips(run);
+  if (found.size() != 3) return k_wrong;
+  const double half = std::acos(1.0 - k_graze_depth) / k_graze_rate;
   double worst = 0.0;
   for (int i = 0; i < 3; ++i) {
-    const double middle = (2.0 * i + 1.0) * k_pi / 10.0;
-    worst =
-        std::max({worst, std::abs(closes[i] - middle + half), std::abs(opens[i] - middle - half)});
+    const double middle = (2.0 * i + 1.0) * k_pi / k_graze_rate;
+    worst = std::max(worst, std::abs(found[i].middle - middle) + std::abs(found[i].half - half));
   }
   return worst / half;
+}
+
+// How deep it must have dipped to touch for so long: 1 − cos(10 t), by the half angle.
+double graze_depth(const Finished& run) {
+  const std::vector<Dip> found = dips(run);
+  if (found.size() != 3) return k_wrong;
+  double worst = 0.0;
+  for (const Dip& dip : found) {
+    const double sine = std::sin(0.5 * k_graze_rate * dip.half);
+    worst = std::max(worst, std::abs(2.0 * sine * sine - k_graze_depth));
+  }
+  return worst;
 }
 
 // About x_k = μ_k N/k: slips from Δ = (μ_s − μ_k) N/k at the belt's speed v₀ until it has that

@@ -11,7 +11,8 @@ using Answer = std::function<double(const Finished&)>;
 [[nodiscard]] Answer two_springs(double ratio);
 [[nodiscard]] double bounce_to_rest(const Finished& run);
 [[nodiscard]] double bounce_for_ever(const Finished& run);
-[[nodiscard]] double graze(const Finished& run);
+[[nodiscard]] double graze_time(const Finished& run);
+[[nodiscard]] double graze_depth(const Finished& run);
 [[nodiscard]] double belt_cycles(const Finished& run);
 /// The channel keeps its first value; no event at all.
 [[nodiscard]] Answer rests(const std::string& channel);

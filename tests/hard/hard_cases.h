@@ -61,13 +61,13 @@ struct Outcome {
 /// Cases that a method is known to get wrong: docs/hard_cases.md says how.
 [[nodiscard]] bool is_known_to_fail(const HardCase& hard_case, const std::string& integrator);
 
-/// The methods that are held to the answers: those that locate events.
+/// The methods that are held to the answers.
 [[nodiscard]] std::vector<std::string> integrators();
 [[nodiscard]] bool is_first_order(const std::string& integrator);
 [[nodiscard]] double bound_for(const HardCase& hard_case, const std::string& integrator);
 
-/// Never throws NumericalFailure.
+/// Never throws NumericalFailure. `more`: overrides after those of the case.
 [[nodiscard]] Outcome run(const HardCase& hard_case, const std::string& integrator,
-                          bool is_shortened);
+                          bool is_shortened, const std::vector<std::string>& more = {});
 
 } // namespace steplap::hard

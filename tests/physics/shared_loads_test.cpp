@@ -72,7 +72,7 @@ void slip_at(const Run& r, std::size_t count, double onset) {
 TEST_CASE("shared loads: two feet of unequal capacity let go together, when the sum is passed") {
   const double onset = (0.3 + 0.5) * 9.81 / 12.0;
   for (const char* method : k_methods) {
-    CAPTURE(method);
+    CAPTURE(std::string(method));
     const Run r = run(box_on_two_feet(0.3, 0.3, 0.5, 0.5), settings(method, 1.0, 0.01));
     slip_at(r, 2, onset);
     // (F − Σ μ N)/m after it: a cubic.
@@ -89,7 +89,7 @@ TEST_CASE("shared loads: two feet of unequal capacity let go together, when the 
 TEST_CASE("shared loads: what slips has its kinetic coefficient, what holds the static one, until the sum is passed") {
   const double onset = (0.3 + 0.5) * 9.81 / 12.0, end = onset + 0.2, kinetic = (0.2 + 0.35) * 9.81;
   for (const char* method : k_methods) {
-    CAPTURE(method);
+    CAPTURE(std::string(method));
     const Run r = run(box_on_two_feet(0.3, 0.2, 0.5, 0.35), settings(method, end));
     slip_at(r, 2, onset);
     const double left = end - onset, excess = 0.8 * 9.81 - kinetic;
@@ -105,7 +105,7 @@ TEST_CASE("shared loads: the group comes to rest, holds again and lets go the ot
   text.replace(begin, stop - begin, shake);
   const double bound = 0.8 * 9.81, pi = 3.14159265358979323846, onset = std::asin(bound / 12.0) / pi;
   for (const char* method : {"rk4", "dop853"}) {
-    CAPTURE(method);
+    CAPTURE(std::string(method));
     const Run r = run(text, settings(method, 1.9));
     const std::vector<double> slips = r.event_times("front friction", "slips forward"),
                               rests = r.event_times("front friction", "sticks"),
@@ -119,6 +119,42 @@ TEST_CASE("shared loads: the group comes to rest, holds again and lets go the ot
     // Momentum: ∫ (12 sin πt − bound) dt from the onset to rest is nothing.
     const double t = rests[0], gained = 12.0 / pi * (std::cos(pi * onset) - std::cos(pi * t)) - bound * (t - onset);
     CHECK(std::abs(gained) < 1e-9);
+  }
+}
+
+TEST_CASE("shared loads: a chain of unequal blocks to and fro: all of it slips, rests and slips back at the same instants") {
+  std::string text = "[[signal]]\nname = \"still\"\nkind = \"constant\"\nvalue = 0.0\n";
+  double bound = 0.0;
+  for (int i = 1; i <= 5; ++i) {
+    const std::string n = "block " + std::to_string(i);
+    const double mass = 0.5 + 0.25 * i, mu = 0.1 + 0.07 * (i * 3 % 5);
+    bound += mu * mass * 9.81;
+    text += body(n, mass, 2.0 * i) + foot("sole " + std::to_string(i), n, 2.0 * i, mass * 9.81, mu, mu);
+    text += "[[element]]\nkind = \"prescribed_motion\"\nname = \"upright " + n + "\"\na = \"" + n +
+            "\"\ncoordinate = \"angle\"\nsignal = \"still\"\n";
+    if (i > 1)
+      text += "[[element]]\nkind = \"distance\"\nname = \"rod " + std::to_string(i) + "\"\na = \"block " + std::to_string(i - 1) +
+              "\"\nb = \"" + n + "\"\n";
+  }
+  text += "[[signal]]\nname = \"ramp\"\nkind = \"harmonics\"\namplitudes = [" + number(1.2 * bound) +
+          "]\nfrequencies = [0.5]\nphases = [\"-90 deg\"]\n" + push("block 2");
+  // Something that moves meanwhile, so that steps stay shorter than the load's period.
+  text += body("bob", 1.0, -5.0, 0.1) + "[[element]]\nkind = \"spring_damper\"\nname = \"spring\"\na = \"bob\"\naxis = [0.0, 1.0]\n"
+          "stiffness = 400.0\n";
+  const double pi = 3.14159265358979323846, onset = std::asin(1.0 / 1.2) / pi;
+  for (const char* method : k_methods) {
+    CAPTURE(std::string(method));
+    const Run r = run(text, settings(method, 1.6));
+    CHECK(r.result.events.size() == 15); // slip, rest, slip back, five times
+    const std::vector<double> first = r.event_times("sole 1 friction");
+    REQUIRE(first.size() == 3);
+    for (int i = 2; i <= 5; ++i) {
+      const std::vector<double> other = r.event_times("sole " + std::to_string(i) + " friction");
+      REQUIRE(other.size() == 3);
+      for (int e = 0; e < 3; ++e) CHECK(std::abs(other[e] - first[e]) < 1e-14); // the spacing of times
+    }
+    CHECK(std::abs(first[0] - onset) < k_onset);
+    CHECK(std::abs(first[2] - 1.0 - onset) < k_onset);
   }
 }
 
@@ -149,7 +185,7 @@ TEST_CASE("shared loads: a flat toggle is redundant only where it is flat, and h
           "preload = 9.81\n";
   const double onset = 0.8 * 9.81 / 12.0;
   for (const char* method : {"rk4", "dop853"}) {
-    CAPTURE(method);
+    CAPTURE(std::string(method));
     const Run r = run(text, settings(method, onset + 0.01, 0.05));
     REQUIRE(r.result.events.size() >= 2);
     CHECK(std::abs(r.result.events[0].t - onset) < k_onset);
