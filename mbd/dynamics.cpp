@@ -541,9 +541,9 @@ void Dynamics::watch_merged(const double* dy) {
   is_merged_near_ = watch_joints(dy);
 }
 
-void Dynamics::watch_merged_if_near(const double* dy) {
+void Dynamics::watch_merged_if_near(const double* dy, bool always) {
   const bool has_groups = sharing() && !sharing()->groups().empty();
-  if (is_merged_near_ || was_merged_near_ || has_groups) (void)watch_joints(dy);
+  if (is_merged_near_ || was_merged_near_ || has_groups || (always && layout_->is_merged_watched)) (void)watch_joints(dy);
 }
 
 // Is any near its limit?

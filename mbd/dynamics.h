@@ -89,8 +89,8 @@ public:
   /// Adds the watch values of joints that are merged, and of groups of sticking elements that share a load: costs
   /// a pass over the merged bodies.
   void watch_merged(const double* dy);
-  /// The same at a stage inside a step, where only values near their limit are worth the pass.
-  void watch_merged_if_near(const double* dy);
+  /// The same at a stage inside a step, where only values near their limit are worth the pass, unless `always`.
+  void watch_merged_if_near(const double* dy, bool always = false);
   /// Accelerations of all bodies and all reactions; fills a snapshot valid until the next rates().
   [[nodiscard]] Snapshot snapshot(const double* dy);
   /// Power residual-free pieces of the energy balance: kinetic + potential at the last rates().

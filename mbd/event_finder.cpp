@@ -12,6 +12,9 @@ constexpr int k_scan_points = 8;
 constexpr int k_max_root_iterations = 100;
 constexpr int k_max_subdivisions = 12;    // of a dip
 constexpr double k_same_place = 1e-9;     // of a step: the bottom has settled
+constexpr double k_rest = 1e-12;          // change of any coordinate or rate over a step in which nothing moves
+constexpr double k_looks_per_period = 16.0;
+constexpr double k_fewest_looks = 8.0, k_most_looks = 1e6;
 
 // Lowest point inside (0, 1) of the cubic with values w0, w1 and slopes s0 < 0 < s1; NaN if none.
 double bottom_of_cubic(double w0, double s0, double w1, double s1) {
@@ -30,7 +33,7 @@ double cubic(double theta, double w0, double s0, double w1, double s1) {
 } // namespace
 
 EventFinder::EventFinder(const System& system, int max_dimension)
-    : slots_(system.watch_count),
+    : shortest_period_(system.shortest_period), slots_(system.watch_count),
       unit_slots_(system.frictions.empty() ? slots_ : system.frictions.front().watch), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), low_(slots_, 1.0),
       high_(low_), middle_(low_), armed_(slots_, 1) {}
 
@@ -38,7 +41,7 @@ void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double th
                            std::vector<double>& watch) {
   integrator.dense(dynamics, theta, y_.data());
   dynamics.rates(integrator.t0() + theta * integrator.h(), y_.data(), dy_.data());
-  dynamics.watch_merged_if_near(dy_.data());
+  dynamics.watch_merged_if_near(dy_.data(), is_resting_);
   watch = dynamics.watch();
 }
 
@@ -100,6 +103,53 @@ void EventFinder::follow_dip(Integrator& integrator, Dynamics& dynamics, int slo
     const End now{theta, middle_[slot], h * dynamics.watch_rate()[slot]};
     if (now.value < 0.0) return look_at_.push_back(theta);
     (now.slope < 0.0 ? a : b) = now;
+  }
+}
+
+// Golden section about the lowest of three looks; true (and a place to scan) if it gets below zero.
+bool EventFinder::is_negative_near(Integrator& integrator, Dynamics& dynamics, int slot, double middle, double reach) {
+  constexpr double k_golden = 0.3819660112501051;
+  double low = middle - reach, high = middle + reach;
+  for (int i = 0; i < 40 && high - low > k_same_place; ++i) {
+    const double left = low + k_golden * (high - low), right = high - k_golden * (high - low);
+    watch_at(integrator, dynamics, left, middle_);
+    const double at_left = middle_[slot];
+    watch_at(integrator, dynamics, right, middle_);
+    const double at_right = middle_[slot];
+    if (std::min(at_left, at_right) < 0.0) {
+      look_at_.push_back(at_left < 0.0 ? left : right);
+      return true;
+    }
+    (at_left < at_right ? high : low) = at_left < at_right ? right : left;
+  }
+  return false;
+}
+
+// Nothing has moved in a step whose length no error has limited: only loads change, and with them what friction has
+// to hold.
+void EventFinder::watch_rest(Integrator& integrator, Dynamics& dynamics) {
+  const int n = 2 * dynamics.coordinate_count();
+  for (int i = 0; i < n; ++i)
+    if (std::abs(integrator.y1()[i] - integrator.y0()[i]) > k_rest) return;
+  is_resting_ = true;
+  const double looks = std::ceil(k_looks_per_period * integrator.h() / shortest_period_);
+  const int count = static_cast<int>(std::clamp(looks, k_fewest_looks, k_most_looks));
+  std::vector<double> before = integrator.watch0(), now(slots_), after(slots_);
+  watch_at(integrator, dynamics, 1.0 / count, now);
+  for (int p = 1; p < count; ++p) {
+    if (p + 1 == count) after = integrator.watch1();
+    else watch_at(integrator, dynamics, static_cast<double>(p + 1) / count, after);
+    for (int i = unit_slots_; i < slots_; ++i) {
+      if (now[i] < 0.0) return look_at_.push_back(static_cast<double>(p) / count);
+      const bool is_lowest = now[i] <= before[i] && now[i] <= after[i];
+      // A parabola through the three falls below the lowest by an eighth of this at most; smooth curves by not much more.
+      const double bend = before[i] - 2.0 * now[i] + after[i];
+      if (is_lowest && now[i] < 0.25 * bend &&
+          is_negative_near(integrator, dynamics, i, static_cast<double>(p) / count, 1.0 / count))
+        return;
+    }
+    std::swap(before, now);
+    std::swap(now, after);
   }
 }
 
@@ -190,7 +240,12 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
 
 bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh) {
   if (slots_ == 0) return false;
-  const Suspicion suspected = suspicion(integrator, fresh);
+  is_resting_ = false;
+  Suspicion suspected = suspicion(integrator, fresh);
+  if (suspected == Suspicion::none && unit_slots_ < slots_ && integrator.is_adaptive()) {
+    watch_rest(integrator, dynamics);
+    if (!look_at_.empty()) suspected = Suspicion::inside;
+  }
   if (suspected == Suspicion::none) return false;
   const Bracket bracket = suspected == Suspicion::inside ? scan(integrator, dynamics, fresh)
                                                          : bracket_whole(integrator);

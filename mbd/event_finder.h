@@ -2,7 +2,8 @@
 //
 // Looked at: the step's end, the stages inside it (free of charge), and, where a value's rate is known
 // at both ends and it dips in between, the bottom of its cubic; if that may be below zero, the dip is followed
-// on dense output, cubic by cubic, down to its bottom. Whatever raises suspicion is scanned on
+// on dense output, cubic by cubic, down to its bottom. Where nothing moves no error limits an adaptive step, and
+// loads may rise and fall within it: it is looked at many times in each of their periods. Whatever raises suspicion is scanned on
 // dense output, then the root is closed in on to rounding; all values that are negative on the far side
 // of the bracket fire together.
 //
@@ -36,13 +37,17 @@ private:
   Bracket bracket_whole(const Integrator& integrator);
   void close_in(Integrator& integrator, Dynamics& dynamics);
   void follow_dip(Integrator& integrator, Dynamics& dynamics, int slot);
+  void watch_rest(Integrator& integrator, Dynamics& dynamics);
+  [[nodiscard]] bool is_negative_near(Integrator& integrator, Dynamics& dynamics, int slot, double middle, double reach);
   void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, std::vector<double>& watch);
   [[nodiscard]] bool crosses(const std::vector<double>& low, const std::vector<double>& high);
 
   [[nodiscard]] bool starts_negative(const Integrator& integrator, int slot) const;
 
+  double shortest_period_; ///< of the loads, s
   int slots_;
   int unit_slots_; ///< those of contacts and springs come first
+  bool is_resting_ = false; ///< nothing moves in the step: joints far from their limits are looked at, too
   double theta_ = 0.0;
   double theta_low_ = 0.0, theta_high_ = 1.0;
   std::vector<double> y_, dy_, low_, high_, middle_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace steplap {
@@ -171,6 +172,13 @@ SignalJet Signal::drive(double t, DriveLevel level) const {
     break;
   }
   return {jet.double_integral, jet.integral, jet.value};
+}
+
+double Signal::shortest_period() const {
+  double fastest = 0.0;
+  for (const Piece& piece : pieces_)
+    for (const Harmonic& harmonic : piece.harmonics) fastest = std::max(fastest, std::abs(harmonic.frequency));
+  return 2.0 * std::numbers::pi / fastest;
 }
 
 bool Signal::is_constant() const {

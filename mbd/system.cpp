@@ -215,6 +215,7 @@ const Signal* SystemBuilder::signal(const std::string& name) {
     auto signal = std::make_unique<Signal>(entry.kind->build(*entry.definition));
     for (const double t : signal->breakpoints())
       if (t > 0.0) system_->breakpoints.push_back(t);
+    system_->shortest_period = std::min(system_->shortest_period, signal->shortest_period());
     signal_index_[name] = signal.get();
     system_->signals_.push_back(std::move(signal));
     return signal_index_[name];

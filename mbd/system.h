@@ -6,6 +6,7 @@
 #include "mbd/roles.h"
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <typeinfo>
 #include <memory>
@@ -94,6 +95,7 @@ public:
   std::vector<FrictionUnit> frictions;
   std::vector<Channel> channels;
   std::vector<double> breakpoints; ///< of all signals in use, ascending
+  double shortest_period = std::numeric_limits<double>::infinity(); ///< of their harmonics, s
   std::vector<double> initial_memory;
   std::vector<char> is_body_used; ///< per body: some force element or friction refers to it
   int contact_count = 0;

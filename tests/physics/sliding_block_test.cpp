@@ -279,3 +279,66 @@ force = [)" + number(share * 0.4 * 9810.0) + ", 0.0]\n";
   CHECK(moving.last("friction.mode") == 2.0);
   CHECK(moving.last("block.x") > 0.0);
 }
+
+TEST_CASE("a block at rest is seen to slip under a load that passes its bound within one long step") {
+  // Nothing moves before, so that no error limits the steps. Half a sine of 1 s, or the third crest of a sum of two
+  // harmonics: from the bound up by a thousandth.
+  const std::string block = R"(
+[simulation]
+step = 1e-3
+[[body]]
+name = "block"
+mass = 1.0
+inertia = 1.0
+[[element]]
+kind = "unilateral_contact"
+name = "sole"
+a = "block"
+stiffness = 1e5
+damping = 400.0
+preload = 9.81
+[[element]]
+kind = "coulomb_stick"
+name = "friction"
+contacts = ["sole"]
+static_friction = 0.5
+[[element]]
+kind = "load"
+name = "push"
+at = "block"
+force_x = "load"
+)";
+  const double bound = 0.5 * 9.81, pi = 3.14159265358979323846;
+  for (const double overload : {1.06, 1.001, 1.00001}) {
+    char signal[200];
+    std::snprintf(signal, sizeof signal, "[[signal]]\nname = \"load\"\nkind = \"half_sine\"\npeak = %.17g\nduration = 1.0\n",
+                  overload * bound);
+    const double onset = std::asin(1.0 / overload) / pi;
+    for (const char* method : {"tsit5", "dop853", "rodas5p", "auto"}) {
+      CAPTURE(std::string(method));
+      CAPTURE(overload);
+      const Run r = run(scene(block + signal), {method, 1e-8, 2.0});
+      const std::vector<double> slips = r.event_times("friction", "slips forward");
+      REQUIRE(slips.size() == 1);
+      // The bound may be passed by 1e-13 of itself; the load's slope there is π bound √(overload² − 1).
+      CHECK(std::abs(slips[0] - onset) < 1e-12 / std::sqrt(overload * overload - 1.0));
+      CHECK(r.event_times("friction", "sticks").size() == 1);
+    }
+  }
+  // 9 and 11 periods a second beat: 2 sin 20πt cos 2πt, highest near t = 0 and 0.5 s.
+  const std::string beat = "[[signal]]\nname = \"load\"\nkind = \"harmonics\"\namplitudes = [2.5, 2.5]\nfrequencies = [9.0, 11.0]\n"
+                           "phases = [\"-90 deg\", \"-90 deg\"]\nstart = 0.2\n";
+  for (const char* method : {"tsit5", "dop853", "rodas5p", "auto"}) {
+    CAPTURE(std::string(method));
+    const Run r = run(scene(block + beat), {method, 1e-8, 1.0});
+    const std::vector<double> slips = r.event_times("friction");
+    REQUIRE(slips.size() >= 1);
+    // 5 |sin 20πτ cos 2πτ| = bound, τ = t − 0.2 s, for the first time: by steps of 1e-6 s and the last by bisection.
+    const auto load = [&](double t) { return 5.0 * std::abs(std::sin(20.0 * pi * t) * std::cos(2.0 * pi * t)) - bound; };
+    double low = 0.0;
+    while (load(low + 1e-6) < 0.0) low += 1e-6;
+    double high = low + 1e-6;
+    for (int i = 0; i < 60; ++i) (load(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
+    CHECK(std::abs(slips[0] - 0.2 - high) < 1e-11);
+  }
+}
