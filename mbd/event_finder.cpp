@@ -14,6 +14,7 @@ constexpr int k_max_subdivisions = 12;    // of a dip
 constexpr double k_same_place = 1e-9;     // of a step: the bottom has settled
 constexpr double k_rest = 1e-12;          // change of any coordinate or rate over a step in which nothing moves
 constexpr double k_looks_per_period = 16.0;
+constexpr double k_unseen_share = 8.0;    // of the variation seen: what may be unseen
 constexpr double k_fewest_looks = 8.0, k_most_looks = 1e6;
 
 // Lowest point inside (0, 1) of the cubic with values w0, w1 and slopes s0 < 0 < s1; NaN if none.
@@ -131,6 +132,17 @@ void EventFinder::watch_rest(Integrator& integrator, Dynamics& dynamics) {
   const int n = 2 * dynamics.coordinate_count();
   for (int i = 0; i < n; ++i)
     if (std::abs(integrator.y1()[i] - integrator.y0()[i]) > k_rest) return;
+  // The last of an element's slots is its place, which does not change at rest.
+  const auto is_place = [this](int slot) { return (slot - unit_slots_) % k_friction_watches == k_friction_watches - 1; };
+  // Nor is there anything to see where what the ends and the stages have met is far from zero, or constant.
+  bool varies = dynamics.layout().is_merged_watched; // the stages have not looked at those
+  for (int i = unit_slots_; i < slots_ && !varies; ++i) {
+    if (is_place(i)) continue;
+    const double w0 = integrator.watch0()[i], w1 = integrator.watch1()[i];
+    const double low = std::min({w0, w1, integrator.watch_low()[i]});
+    varies = low < k_unseen_share * (std::max(w0, w1) - low);
+  }
+  if (!varies) return;
   is_resting_ = true;
   const double looks = std::ceil(k_looks_per_period * integrator.h() / shortest_period_);
   const int count = static_cast<int>(std::clamp(looks, k_fewest_looks, k_most_looks));
@@ -140,6 +152,7 @@ void EventFinder::watch_rest(Integrator& integrator, Dynamics& dynamics) {
     if (p + 1 == count) after = integrator.watch1();
     else watch_at(integrator, dynamics, static_cast<double>(p + 1) / count, after);
     for (int i = unit_slots_; i < slots_; ++i) {
+      if (is_place(i)) continue;
       if (now[i] < 0.0) return look_at_.push_back(static_cast<double>(p) / count);
       const bool is_lowest = now[i] <= before[i] && now[i] <= after[i];
       // A parabola through the three falls below the lowest by an eighth of this at most; smooth curves by not much more.
