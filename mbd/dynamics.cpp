@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace steplap {
@@ -18,26 +19,62 @@ MeasureValue<double> turned(MeasureValue<double> m, const Motion<double>& b) {
   return m;
 }
 
+// What a row does to accelerations: its gradient and bias, seen from b and not from the ground. The same as
+// evaluate_row gives, without the value and the rate, which no acceleration needs.
+struct RowPull {
+  Pair<double> direction;
+  double couple_a, couple_b; // of the unit force on a, about a's and b's centre of gravity
+  double bias;
+};
+
+STEPLAP_INLINE RowPull pull_along_axis(const RowSpec& row, const Motion<double>& link) {
+  RowPull p;
+  const Pair<double> lever = to_ground(link, row.point_a);
+  p.direction = {row.direction.x(), row.direction.y()};
+  p.couple_a = cross(lever, p.direction);
+  p.couple_b = p.couple_a + cross(Pair<double>{link.x, link.y}, p.direction);
+  p.bias = -(link.omega * link.omega) * dot(p.direction, lever);
+  return p;
+}
+
+STEPLAP_INLINE RowPull pull_along_slide(const RowSpec& row, const Motion<double>& link) {
+  const MeasureValue<double> m = SlideMeasure{row.point_a, row.point_b, row.direction, row.contact_axis, true}
+                                     .at<true>(link, Origin{});
+  return {m.direction, cross(m.lever_a, m.direction), cross(m.lever_b, m.direction), m.bias};
+}
+
+STEPLAP_INLINE void set_gradient(SchurRow& row, int side, double fx, double fy, double couple, const double* a,
+                                 double& right) {
+  const double* const w = row.w[side];
+  double* const j = row.j[side];
+  double* const wj = row.wj[side];
+  const double wx = w[0] * fx, wy = w[1] * fy, wm = w[2] * couple;
+  right -= fx * a[0] + fy * a[1] + couple * a[2];
+  j[0] = fx;
+  j[1] = fy;
+  j[2] = couple;
+  wj[0] = wx;
+  wj[1] = wy;
+  wj[2] = wm;
+}
+
 } // namespace
 
 Dynamics::Dynamics(const System& system) : system_(system) {
   const std::size_t n = system.bodies.size();
-  motion_.resize(2 * n);
-  force_.resize(n);
-  link_motion_.resize(system.links.size());
-  link_force_.resize(system.links.size());
+  motion_.resize(n + system.links.slot_count()); // at most every body is a cluster's with a slot of its own
+  force_.resize(motion_.size());
   contact_force_.assign(system.contact_count, 0.0);
   watch_.assign(system.watch_count, 1.0);
   watch_rate_.assign(system.watch_count, std::numeric_limits<double>::quiet_NaN());
-  total_.resize(3 * n);
   acceleration_.assign(3 * n, 0.0);
   wrench_.resize(n);
   row_force_.assign(system.rows.size(), 0.0);
   friction_force_.assign(system.friction_row_count, 0.0);
   evaluation_.motion = motion_.data();
   evaluation_.force = force_.data();
-  evaluation_.link_motion = link_motion_.data();
-  evaluation_.link_force = link_force_.data();
+  evaluation_.link_motion = motion_.data();
+  evaluation_.link_force = force_.data();
   evaluation_.contact_force = contact_force_.data();
   evaluation_.watch = watch_.data();
   evaluation_.watch_rate = watch_rate_.data();
@@ -55,10 +92,11 @@ void Dynamics::set_state(const State& state) {
   evaluation_.memory = state.memory.data();
   is_factored_ = false;
   is_merged_near_ = was_merged_near_ = false;
+  lock_time_ = std::numeric_limits<double>::quiet_NaN();
   std::fill(watch_.begin(), watch_.end(), 1.0);
-  const std::vector<char> key = layout_key(state);
+  layout_key(state, key_);
   for (const auto& layout : layouts_)
-    if (layout->key == key) {
+    if (layout->key == key_) {
       layout_ = layout.get();
       return;
     }
@@ -75,10 +113,7 @@ void Dynamics::set_state(const State& state) {
     row_rate_.resize(rows);
     target_rate_.resize(rows);
   }
-  if (lock_acceleration_.size() < layout_->locks.size()) {
-    lock_acceleration_.resize(layout_->locks.size());
-    lock_rate_.resize(layout_->locks.size());
-  }
+  if (lock_target_.size() < layout_->locks.size()) lock_target_.resize(layout_->locks.size());
 }
 
 void Dynamics::set_time_limit(double limit) {
@@ -143,32 +178,39 @@ void Dynamics::unpack(double t, const double* y, State& state) const {
 
 // --- one evaluation -----------------------------------------------------------------------------
 
+// Targets of the driven coordinates: several evaluations of a step are at the same time.
+void Dynamics::aim_locks(double t) {
+  if (t == lock_time_) return;
+  lock_time_ = t;
+  for (std::size_t i = 0; i < layout_->locks.size(); ++i)
+    lock_target_[i] = row_target(system_.rows[layout_->locks[i].row], state_->memory.data(), t);
+}
+
 void Dynamics::place(double t, const double* q, const double* v) {
   const Layout& layout = *layout_;
-  const int clusters = layout.cluster_count();
-  for (int k = 0; k < clusters; ++k) {
-    Motion<double>& m = motion_[layout.clusters[k].motion];
-    m.x = q[3 * k];
-    m.y = q[3 * k + 1];
-    m.vx = v[3 * k];
-    m.vy = v[3 * k + 1];
-    m.omega = v[3 * k + 2];
-    set_angle(m, q[3 * k + 2]);
+  Motion<double>* const motion = motion_.data();
+  for (const int slot : layout.slots) {
+    Motion<double>& m = motion[slot];
+    m.x = q[0];
+    m.y = q[1];
+    m.vx = v[0];
+    m.vy = v[1];
+    m.omega = v[2];
+    set_angle(m, q[2]);
+    q += 3;
+    v += 3;
   }
+  aim_locks(t);
   for (std::size_t i = 0; i < layout.locks.size(); ++i) {
     const Lock& lock = layout.locks[i];
-    const SignalJet target = row_target(system_.rows[lock.row], state_->memory.data(), t);
-    Motion<double>& m = motion_[layout.clusters[lock.cluster].motion];
+    const SignalJet& target = lock_target_[i];
+    Motion<double>& m = motion[layout.slots[lock.cluster]];
     if (lock.coordinate == 2) set_angle(m, target.value);
     else (lock.coordinate == 0 ? m.x : m.y) = target.value;
     (lock.coordinate == 0 ? m.vx : lock.coordinate == 1 ? m.vy : m.omega) = target.rate;
-    lock_rate_[i] = target.rate;
-    lock_acceleration_[i] = target.acceleration;
   }
-  for (const int i : layout.placed) place_member(i);
-  for (const ActiveLink& link : layout.links)
-    link_motion_[link.link] =
-        link.b == k_ground ? motion_[link.a] : seen_from(motion_[link.a], motion_[link.b]);
+  for (const int i : layout.riding) place_member(i);
+  for (const ActiveLink& link : layout.links) motion[link.slot] = seen_from(motion[link.a], motion[link.b]);
 }
 
 // A body that moves with others: from its cluster's motion.
@@ -198,12 +240,12 @@ void Dynamics::apply_sliding() {
     MeasureValue<double> m[3];
     double rate[3], wrench[3];
     for (int r = 0; r < n; ++r) {
-      m[r] = evaluate_row<false>(rows[r], link_motion_[link], Origin{});
+      m[r] = evaluate_row<false>(rows[r], motion_[link], Origin{});
       rate[r] = m[r].rate;
     }
     unit.friction->slip_wrench(evaluation_, friction, rate, wrench);
     for (int r = 0; r < n; ++r) {
-      apply_force(link_force_[link], m[r], wrench[r]);
+      apply_force(force_[link], m[r], wrench[r]);
       evaluation_.dissipation -= wrench[r] * rate[r];
       friction_force_[unit.row + r] = wrench[r];
     }
@@ -211,42 +253,23 @@ void Dynamics::apply_sliding() {
   }
 }
 
-// Forces of all elements, on bodies.
+// Forces of all elements, on clusters and on the bodies that ride on them.
 void Dynamics::apply_forces() {
   const Layout& layout = *layout_;
-  for (const int i : layout.placed) force_[i] = {};
-  for (const ActiveLink& link : layout.links) link_force_[link.link] = {};
+  BodyForce* const force = force_.data();
+  std::memset(static_cast<void*>(force), 0, static_cast<std::size_t>(layout.slot_count) * sizeof(BodyForce));
   for (const auto& group : system_.groups) group->add_forces(evaluation_);
   if (!layout.sliding.empty()) apply_sliding();
-  for (const ActiveLink& link : layout.links) {
-    const BodyForce& f = link_force_[link.link];
-    BodyForce& on_a = force_[link.a];
-    if (link.b == k_ground) {
-      on_a.fx += f.fx;
-      on_a.fy += f.fy;
-      on_a.m += f.m;
-    } else {
-      add_link_force(f, link_motion_[link.link], motion_[link.b], on_a, force_[link.b]);
-    }
-  }
-}
-
-// Their sum on each cluster, with the weight.
-void Dynamics::gather_forces() {
-  const Layout& layout = *layout_;
-  double* const total = total_.data();
-  const int n = coordinate_count();
-  for (int i = 0; i < n; ++i) total[i] = layout.weight[i];
-  for (const int i : layout.placed) {
-    const Placement& place = layout.placements[i];
-    const BodyForce& f = force_[i];
-    double* sum = total + 3 * place.cluster;
-    sum[0] += f.fx;
-    sum[1] += f.fy;
-    sum[2] += f.m;
-    if (place.is_trivial) continue;
-    const Motion<double>& k = motion_[layout.clusters[place.cluster].motion];
-    sum[2] += (motion_[i].x - k.x) * f.fy - (motion_[i].y - k.y) * f.fx;
+  const Motion<double>* const motion = motion_.data();
+  for (const ActiveLink& link : layout.links)
+    add_link_force(force[link.slot], motion[link.slot], motion[link.b], force[link.a], force[link.b]);
+  for (const int i : layout.riding) {
+    const int slot = layout.slots[layout.placements[i].cluster];
+    const BodyForce& f = force[i];
+    BodyForce& sum = force[slot];
+    sum.fx += f.fx;
+    sum.fy += f.fy;
+    sum.m += f.m + (motion[i].x - motion[slot].x) * f.fy - (motion[i].y - motion[slot].y) * f.fx;
   }
 }
 
@@ -289,12 +312,17 @@ double Dynamics::cluster_bias(const RowSpec& spec, const MeasureValue<double>& m
 // are clusters of their own: no lever to add.
 template <bool WithBias> STEPLAP_INLINE MeasureValue<double> Dynamics::load_row(std::size_t r) {
   const ActiveRow& active = layout_->active[r];
-  const Motion<double>& link = link_motion_[active.link];
+  SchurRow& row = layout_->schur_rows[r];
+  const Motion<double>& link = motion_[active.link];
+  if (row.is_constant) { // an angle: make_layout has filled in its gradient
+    MeasureValue<double> m;
+    m.value = link.theta;
+    m.rate = link.omega;
+    return m;
+  }
   const Motion<double>& b = motion_[active.spec->b];
   MeasureValue<double> m = evaluate_row<WithBias>(*active.spec, link, Origin{});
   if constexpr (WithBias) m.bias += dot(m.direction, frame_acceleration(link, b.omega));
-  SchurRow& row = layout_->schur_rows[r];
-  if (active.spec->kind == MeasureKind::angle) return m; // its gradient never changes: make_layout
   if (!active.is_simple) {
     m = turned(m, b);
     to_clusters(*active.spec, m, row);
@@ -302,17 +330,15 @@ template <bool WithBias> STEPLAP_INLINE MeasureValue<double> Dynamics::load_row(
     return m;
   }
   const double dx = b.c * m.direction.x - b.s * m.direction.y, dy = b.s * m.direction.x + b.c * m.direction.y;
-  const auto fill = [&](int side, double fx, double fy, double couple) {
+  const auto fill = [&row](int side, double fx, double fy, double couple) {
     if (row.body[side] < 0) return;
-    const double* w = row.w[side];
-    double* j = row.j[side];
-    double* wj = row.wj[side];
-    j[0] = fx;
-    j[1] = fy;
-    j[2] = couple;
-    wj[0] = w[0] * fx;
-    wj[1] = w[1] * fy;
-    wj[2] = w[2] * couple;
+    const double wx = row.w[side][0] * fx, wy = row.w[side][1] * fy, wm = row.w[side][2] * couple;
+    row.j[side][0] = fx;
+    row.j[side][1] = fy;
+    row.j[side][2] = couple;
+    row.wj[side][0] = wx;
+    row.wj[side][1] = wy;
+    row.wj[side][2] = wm;
   };
   fill(0, dx, dy, cross(m.lever_a, m.direction) + m.couple);
   fill(1, -dx, -dy, -(cross(m.lever_b, m.direction) + m.couple));
@@ -329,27 +355,45 @@ void Dynamics::evaluate_rows() {
   }
 }
 
-// J (a_f + W Jᵀλ) = γ; leaves λ in right_side_ and adds W Jᵀλ to a.
-void Dynamics::solve_constraints(double* a) {
-  Layout& layout = *layout_;
-  if (layout.active.empty()) return;
-  const std::size_t count = layout.active.size();
-  double* const right = right_side_.data();
-  for (std::size_t r = 0; r < count; ++r) {
-    double right_side = -load_row<true>(r).bias;
-    const RowSpec& spec = *layout.active[r].spec;
-    if (spec.drive) {
-      const SignalJet target = row_target(spec, state_->memory.data(), evaluation_.t);
-      right_side += target.acceleration;
-      target_rate_[r] = target.rate;
-    }
-    const SchurRow& row = layout.schur_rows[r];
+// Row r at the placed motion, as load_row does it; returns γ − J a.
+STEPLAP_INLINE double Dynamics::pull(std::size_t r, const double* a) {
+  const ActiveRow& active = layout_->active[r];
+  SchurRow& row = layout_->schur_rows[r];
+  if (active.pull == RowPullKind::other) {
+    double right = -load_row<true>(r).bias;
     for (int side = 0; side < 2; ++side) {
       if (row.body[side] < 0) continue;
       const double* ak = a + 3 * row.body[side];
-      right_side -= row.j[side][0] * ak[0] + row.j[side][1] * ak[1] + row.j[side][2] * ak[2];
+      right -= row.j[side][0] * ak[0] + row.j[side][1] * ak[1] + row.j[side][2] * ak[2];
     }
-    right[r] = right_side;
+    return right;
+  }
+  const bool is_between = row.body[1] >= 0; // two clusters, or one and the ground
+  const double* const a0 = a + 3 * row.body[0];
+  const double* const a1 = is_between ? a + 3 * row.body[1] : nullptr;
+  if (active.pull == RowPullKind::angle) return (is_between ? a1[2] : 0.0) - a0[2];
+  const Motion<double>& link = motion_[active.link];
+  const Motion<double>& b = motion_[active.spec->b];
+  const RowPull p = active.pull == RowPullKind::axis ? pull_along_axis(*active.spec, link)
+                                                     : pull_along_slide(*active.spec, link);
+  double right = -(p.bias + dot(p.direction, frame_acceleration(link, b.omega)));
+  const double x = b.c * p.direction.x - b.s * p.direction.y, y = b.s * p.direction.x + b.c * p.direction.y;
+  set_gradient(row, 0, x, y, p.couple_a, a0, right);
+  if (is_between) set_gradient(row, 1, -x, -y, -p.couple_b, a1, right);
+  return right;
+}
+
+// J (a_f + W Jᵀλ) = γ; leaves λ in right_side_ and adds W Jᵀλ to a.
+void Dynamics::solve_constraints(double* a) {
+  Layout& layout = *layout_;
+  const std::size_t count = layout.active.size();
+  if (count == 0) return;
+  double* const right = right_side_.data();
+  for (std::size_t r = 0; r < count; ++r) right[r] = pull(r, a);
+  for (const int r : layout.driven_rows) {
+    const SignalJet target = row_target(*layout.active[r].spec, state_->memory.data(), evaluation_.t);
+    right[r] += target.acceleration;
+    target_rate_[r] = target.rate;
   }
   layout.schur.factor(layout.schur_rows);
   is_factored_ = true;
@@ -360,9 +404,10 @@ void Dynamics::solve_constraints(double* a) {
     for (int side = 0; side < 2; ++side) {
       if (row.body[side] < 0) continue;
       double* ak = a + 3 * row.body[side];
-      ak[0] += row.wj[side][0] * lambda;
-      ak[1] += row.wj[side][1] * lambda;
-      ak[2] += row.wj[side][2] * lambda;
+      const double x = row.wj[side][0] * lambda, y = row.wj[side][1] * lambda, m = row.wj[side][2] * lambda;
+      ak[0] += x;
+      ak[1] += y;
+      ak[2] += m;
     }
   }
 }
@@ -372,31 +417,25 @@ double Dynamics::lock_reaction(const Lock& lock, const double* a) const {
   const Layout& layout = *layout_;
   const int k = 3 * lock.cluster + lock.coordinate;
   const Cluster& cluster = layout.clusters[lock.cluster];
-  double force = (lock.coordinate < 2 ? cluster.mass : cluster.inertia) * a[k] - total_[k];
-  for (std::size_t r = 0; r < layout.active.size(); ++r)
-    for (int side = 0; side < 2; ++side)
-      if (layout.schur_rows[r].body[side] == lock.cluster)
-        force -= layout.schur_rows[r].j[side][lock.coordinate] * right_side_[r];
+  const BodyForce& f = force_[cluster.motion];
+  double force = (lock.coordinate < 2 ? cluster.mass : cluster.inertia) * a[k] - layout.weight[k] -
+                 (lock.coordinate == 0 ? f.fx : lock.coordinate == 1 ? f.fy : f.m);
+  for (const LockedTerm& term : lock.terms)
+    force -= layout.schur_rows[term.row].j[term.side][lock.coordinate] * right_side_[term.row];
   return force;
 }
 
 // Work of drives: multiplier times the rate of the target.
 void Dynamics::finish_power(const double* a) {
   const Layout& layout = *layout_;
-  if (!layout.has_drives) return;
-  for (std::size_t r = 0; r < layout.active.size(); ++r)
-    if (layout.active[r].spec->drive) evaluation_.work += right_side_[r] * target_rate_[r];
+  for (const int r : layout.driven_rows) evaluation_.work += right_side_[r] * target_rate_[r];
   for (std::size_t i = 0; i < layout.locks.size(); ++i)
-    evaluation_.work += lock_reaction(layout.locks[i], a) * lock_rate_[i];
+    evaluation_.work += lock_reaction(layout.locks[i], a) * lock_target_[i].rate;
 }
 
 void Dynamics::finish_watches() {
   const Layout& layout = *layout_;
-  for (std::size_t r = 0; r < layout.active.size(); ++r) {
-    const ActiveRow& row = layout.active[r];
-    if (row.friction < 0) continue;
-    friction_force_[system_.frictions[row.friction].row + row.friction_row] = right_side_[r];
-  }
+  for (const HeldRow& held : layout.held_rows) friction_force_[held.friction_row] = right_side_[held.row];
   if (layout.schur.is_singular() && !layout.sharing) [[unlikely]] find_sharing();
   const LoadSharing* const shared = sharing(); // elements that share a load are watched at a step's ends
   for (const int f : layout.holding) {
@@ -430,17 +469,25 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   evaluation_.work = 0.0;
   place(t, y, y + n);
   apply_forces();
-  gather_forces();
 
-  double* a = dy + n;
-  for (int i = 0; i < n; ++i) {
-    dy[i] = y[n + i];
-    a[i] = layout.inverse_mass[i] * total_[i];
+  double* const a = dy + n;
+  std::copy(y + n, y + 2 * n, dy);
+  const double* weight = layout.weight.data();
+  const double* w = layout.inverse_mass.data();
+  double* out = a;
+  for (const int slot : layout.slots) {
+    const BodyForce& f = force_[slot];
+    out[0] = w[0] * (weight[0] + f.fx);
+    out[1] = w[1] * (weight[1] + f.fy);
+    out[2] = w[2] * (weight[2] + f.m);
+    out += 3;
+    w += 3;
+    weight += 3;
   }
   for (std::size_t i = 0; i < layout.locks.size(); ++i) {
     const int k = 3 * layout.locks[i].cluster + layout.locks[i].coordinate;
-    a[k] = lock_acceleration_[i];
-    dy[k] = lock_rate_[i];
+    a[k] = lock_target_[i].acceleration;
+    dy[k] = lock_target_[i].rate;
   }
   solve_constraints(a);
   finish_power(a);
@@ -482,7 +529,6 @@ void Dynamics::merged_wrenches() {
     const BodyData& body = system_.bodies[i];
     wrench_[i] = {body.mass * (a[0] - system_.gravity.x()), body.mass * (a[1] - system_.gravity.y()),
                   body.inertia * a[2]};
-    if (!layout.is_placed[i]) continue;
     wrench_[i].fx -= force_[i].fx;
     wrench_[i].fy -= force_[i].fy;
     wrench_[i].m -= force_[i].m;

@@ -110,11 +110,12 @@ public:
 
 private:
   void place(double t, const double* q, const double* v);
+  void aim_locks(double t);
   void place_member(int body);
   void apply_sliding();
   void apply_forces();
-  void gather_forces();
   template <bool WithBias> MeasureValue<double> load_row(std::size_t r);
+  double pull(std::size_t r, const double* a);
   void evaluate_rows();
   void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
   [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
@@ -125,8 +126,8 @@ private:
   Residual constraint_values(double t, const double* y);
   void rates_at(double t, const double* y, double* dy);
   void rates_nearby(double t, const double* y, double* dy);
-  [[nodiscard]] bool reach_positions(double t, double* y, double tolerance, Residual now);
-  void reach_velocities(double t, double* y, double tolerance);
+  [[nodiscard]] bool reach_positions(double t, double* y, double tolerance, Residual& now);
+  void reach_velocities(double t, double* y, Residual now, double tolerance);
   void move_by(const std::vector<double>& residual, double* target);
   [[noreturn]] void fail_projection(double t) const;
   void factor_rows(double shift = 0.0);
@@ -149,6 +150,7 @@ private:
   const System& system_;
   const State* state_ = nullptr;
   std::vector<std::unique_ptr<Layout>> layouts_;
+  LayoutKey key_; ///< of the present one
   Layout* layout_ = nullptr;
   bool is_factored_ = false;
   bool is_merged_near_ = false; ///< some merged joint or group was near its limit when last watched
@@ -159,13 +161,11 @@ private:
   Evaluation evaluation_;
   std::vector<std::unique_ptr<FrictionScratch>> scratch_;
   std::vector<FrictionScratch*> scratch_pointers_;
-  std::vector<Motion<double>> motion_;  ///< bodies, then clusters of several
-  std::vector<BodyForce> force_;
-  std::vector<Motion<double>> link_motion_;
-  std::vector<BodyForce> link_force_;
+  std::vector<Motion<double>> motion_;  ///< bodies, links, clusters of several bodies
+  std::vector<BodyForce> force_;        ///< the same; of a body that is its cluster's only one, the cluster's
   std::vector<double> contact_force_, watch_, watch_rate_;
-  std::vector<double> total_;           ///< force on each cluster coordinate
-  std::vector<double> lock_rate_, lock_acceleration_;
+  std::vector<SignalJet> lock_target_;  ///< per lock, at lock_time_
+  double lock_time_ = std::numeric_limits<double>::quiet_NaN();
   double lowest_pivot_ = 1.0;
   std::vector<double> placed_;          ///< state of rates_nearby
   std::vector<double> right_side_;      ///< then multipliers of active rows

@@ -219,21 +219,40 @@ bool newton(RestProblem& problem, Equilibrium& result) {
   return result.residual <= k_acceleration_tolerance;
 }
 
-// One swing: from rest to the first peak of the kinetic energy, as near as steps come to it.
-State swing(const System& system, const State& start) {
+// Where the parabola through three points, the middle one the highest, has its top.
+double top_of_parabola(const double* t, const double* e) {
+  const double before = (e[1] - e[0]) / (t[1] - t[0]), after = (e[2] - e[1]) / (t[2] - t[1]);
+  const double curvature = (after - before) / (t[2] - t[0]);
+  return curvature < 0.0 ? std::clamp(0.5 * (t[0] + t[1]) - 0.5 * before / curvature, t[0], t[2]) : t[1];
+}
+
+SimulationOptions swing_options(double end) {
   SimulationOptions options;
   options.integrator = "dop853";
   options.settings.tolerance = 1e-6;
-  options.end = start.t + k_swing_time;
-  Simulation simulation(system, start, options);
-  double peak = 0.0;
+  options.end = end;
+  return options;
+}
+
+// One swing: from rest to the first peak of the kinetic energy. Steps alone may come no nearer to it than to a
+// place as high as the start, on the other side.
+State swing(const System& system, const State& start) {
+  Simulation simulation(system, start, swing_options(start.t + k_swing_time));
+  double t[3] = {start.t, start.t, start.t}, energy[3] = {0.0, 0.0, 0.0};
   State state = start;
   while (simulation.advance()) {
     const State now = simulation.current_state();
-    const double energy = system.kinetic_energy(now);
-    if (energy < peak) break;
-    peak = energy;
+    t[2] = now.t;
+    energy[2] = system.kinetic_energy(now);
+    if (energy[2] < energy[1]) break;
+    std::copy(t + 1, t + 3, t);
+    std::copy(energy + 1, energy + 3, energy);
     state = now;
+  }
+  if (energy[2] < energy[1] && t[0] < t[1]) {
+    Simulation to_peak(system, start, swing_options(top_of_parabola(t, energy)));
+    to_peak.run();
+    state = to_peak.current_state();
   }
   state.t = start.t;
   std::fill(state.v.begin(), state.v.end(), 0.0);

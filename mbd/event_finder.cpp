@@ -3,19 +3,27 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace steplap {
 
 namespace {
 
 constexpr int k_scan_points = 8;
-constexpr int k_max_root_iterations = 100;
 constexpr int k_max_subdivisions = 12;    // of a dip
 constexpr double k_same_place = 1e-9;     // of a step: the bottom has settled
 constexpr double k_rest = 1e-12;          // change of any coordinate or rate over a step in which nothing moves
 constexpr double k_looks_per_period = 16.0;
 constexpr double k_unseen_share = 8.0;    // of the variation seen: what may be unseen
 constexpr double k_fewest_looks = 8.0, k_most_looks = 1e6;
+constexpr int k_max_looks = 100;
+constexpr int k_patience = 6;             // looks that need not halve the bracket
+constexpr double k_least_reach = 4.0;     // in spacings of t
+constexpr double k_unexpected = 16.0;     // times the error expected
+constexpr double k_most_rounding = 1e-8;  // of the step: beyond it an error is not rounding
+constexpr double k_wider = 8.0;           // a reach that did not find the other side
+constexpr int k_polish = 3;               // secants inside a bracket that was closed by a wider reach
+constexpr double k_closed = 4.0;          // a bracket of so many times its ends' uncertainty
 
 // Lowest point inside (0, 1) of the cubic with values w0, w1 and slopes s0 < 0 < s1; NaN if none.
 double bottom_of_cubic(double w0, double s0, double w1, double s1) {
@@ -35,15 +43,25 @@ double cubic(double theta, double w0, double s0, double w1, double s1) {
 
 EventFinder::EventFinder(const System& system, int max_dimension)
     : shortest_period_(system.shortest_period), slots_(system.watch_count),
-      unit_slots_(system.frictions.empty() ? slots_ : system.frictions.front().watch), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), low_(slots_, 1.0),
-      high_(low_), middle_(low_), armed_(slots_, 1) {}
+      unit_slots_(system.frictions.empty() ? slots_ : system.frictions.front().watch), y_(max_dimension, 0.0), dy_(max_dimension, 0.0),
+      armed_(slots_, 1) {}
 
-void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double theta,
-                           std::vector<double>& watch) {
+void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look) {
   integrator.dense(dynamics, theta, y_.data());
   dynamics.rates(integrator.t0() + theta * integrator.h(), y_.data(), dy_.data());
   dynamics.watch_merged_if_near(dy_.data(), is_resting_);
-  watch = dynamics.watch();
+  look.theta = theta;
+  look.watch = dynamics.watch();
+  look.rate = dynamics.watch_rate();
+  for (double& rate : look.rate) rate *= integrator.h();
+}
+
+// An end of the step.
+void EventFinder::look_at_end(const Integrator& integrator, bool is_last, Look& look) {
+  look.theta = is_last ? 1.0 : 0.0;
+  look.watch = is_last ? integrator.watch1() : integrator.watch0();
+  look.rate = is_last ? integrator.watch_rate1() : integrator.watch_rate0();
+  for (double& rate : look.rate) rate *= integrator.h();
 }
 
 // Rounding, or the projection at another event, can leave a gap negative before it was seen to cross. Not
@@ -101,7 +119,7 @@ void EventFinder::follow_dip(Integrator& integrator, Dynamics& dynamics, int slo
     if (lowest > 0.5 * bend || std::abs(theta - last) < k_same_place) return;
     last = theta;
     watch_at(integrator, dynamics, theta, middle_);
-    const End now{theta, middle_[slot], h * dynamics.watch_rate()[slot]};
+    const End now{theta, middle_.watch[slot], middle_.rate[slot]};
     if (now.value < 0.0) return look_at_.push_back(theta);
     (now.slope < 0.0 ? a : b) = now;
   }
@@ -114,9 +132,9 @@ bool EventFinder::is_negative_near(Integrator& integrator, Dynamics& dynamics, i
   for (int i = 0; i < 40 && high - low > k_same_place; ++i) {
     const double left = low + k_golden * (high - low), right = high - k_golden * (high - low);
     watch_at(integrator, dynamics, left, middle_);
-    const double at_left = middle_[slot];
+    const double at_left = middle_.watch[slot];
     watch_at(integrator, dynamics, right, middle_);
-    const double at_right = middle_[slot];
+    const double at_right = middle_.watch[slot];
     if (std::min(at_left, at_right) < 0.0) {
       look_at_.push_back(at_left < 0.0 ? left : right);
       return true;
@@ -146,18 +164,19 @@ void EventFinder::watch_rest(Integrator& integrator, Dynamics& dynamics) {
   is_resting_ = true;
   const double looks = std::ceil(k_looks_per_period * integrator.h() / shortest_period_);
   const int count = static_cast<int>(std::clamp(looks, k_fewest_looks, k_most_looks));
-  std::vector<double> before = integrator.watch0(), now(slots_), after(slots_);
+  Look before, now, after;
+  look_at_end(integrator, false, before);
   watch_at(integrator, dynamics, 1.0 / count, now);
   for (int p = 1; p < count; ++p) {
-    if (p + 1 == count) after = integrator.watch1();
+    if (p + 1 == count) look_at_end(integrator, true, after);
     else watch_at(integrator, dynamics, static_cast<double>(p + 1) / count, after);
     for (int i = unit_slots_; i < slots_; ++i) {
       if (is_place(i)) continue;
-      if (now[i] < 0.0) return look_at_.push_back(static_cast<double>(p) / count);
-      const bool is_lowest = now[i] <= before[i] && now[i] <= after[i];
+      if (now.watch[i] < 0.0) return look_at_.push_back(static_cast<double>(p) / count);
+      const bool is_lowest = now.watch[i] <= before.watch[i] && now.watch[i] <= after.watch[i];
       // A parabola through the three falls below the lowest by an eighth of this at most; smooth curves by not much more.
-      const double bend = before[i] - 2.0 * now[i] + after[i];
-      if (is_lowest && now[i] < 0.25 * bend &&
+      const double bend = before.watch[i] - 2.0 * now.watch[i] + after.watch[i];
+      if (is_lowest && now.watch[i] < 0.25 * bend &&
           is_negative_near(integrator, dynamics, i, static_cast<double>(p) / count, 1.0 / count))
         return;
     }
@@ -167,18 +186,16 @@ void EventFinder::watch_rest(Integrator& integrator, Dynamics& dynamics) {
 }
 
 // Slots that were believed positive in `low` and are negative in `high` go to fired_.
-bool EventFinder::crosses(const std::vector<double>& low, const std::vector<double>& high) {
+bool EventFinder::crosses(const Look& low, const Look& high) {
   fired_.clear();
   for (int i = 0; i < slots_; ++i)
-    if (armed_[i] && high[i] < 0.0 && low[i] >= 0.0) fired_.push_back(i);
+    if (armed_[i] && high.watch[i] < 0.0 && low.watch[i] >= 0.0) fired_.push_back(i);
   return !fired_.empty();
 }
 
 EventFinder::Bracket EventFinder::bracket_whole(const Integrator& integrator) {
-  theta_low_ = 0.0;
-  theta_high_ = 1.0;
-  low_ = integrator.watch0();
-  high_ = integrator.watch1();
+  look_at_end(integrator, false, low_);
+  look_at_end(integrator, true, high_);
   std::fill(armed_.begin(), armed_.end(), 1);
   return crosses(low_, high_) ? Bracket::found : Bracket::none;
 }
@@ -193,62 +210,104 @@ EventFinder::Bracket EventFinder::scan(Integrator& integrator, Dynamics& dynamic
     for (const double theta : {1e-4, 1e-3, 1e-2}) look_at_.push_back(theta);
   look_at_.push_back(1.0);
   std::sort(look_at_.begin(), look_at_.end());
-  theta_low_ = 0.0;
-  low_ = integrator.watch0();
+  look_at_end(integrator, false, low_);
   for (const double theta : look_at_) {
-    if (theta == 1.0) high_ = integrator.watch1();
+    if (theta == 1.0) look_at_end(integrator, true, high_);
     else watch_at(integrator, dynamics, theta, high_);
-    theta_high_ = theta;
     if (crosses(low_, high_)) return Bracket::found;
     for (int i = 0; i < slots_; ++i)
-      if (high_[i] > 0.0) armed_[i] = 1;
+      if (high_.watch[i] > 0.0) armed_[i] = 1;
     std::swap(low_, high_);
-    theta_low_ = theta;
   }
   // Fresh values that were never positive: the mode chosen is not the one the motion takes. The event
   // is at once; the handler decides anew a hair later.
   for (int i = 0; i < slots_; ++i)
-    if (!armed_[i] && low_[i] < 0.0) fired_.push_back(i);
+    if (!armed_[i] && low_.watch[i] < 0.0) fired_.push_back(i);
   if (fired_.empty()) return Bracket::none;
-  theta_high_ = look_at_.front();
+  high_.theta = look_at_.front();
   return Bracket::at_once;
 }
 
-// Illinois on the slot whose secant crosses first; the bracket shrinks to the spacing of t.
+// What is known of the fired values so far goes into polynomials; the first of their roots is looked at next.
+// Once that is known to the spacing of t, or to the rounding of the values, a look on either side of it closes
+// the bracket.
 void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
-  const double resolution = 2.0 * std::numeric_limits<double>::epsilon() *
-                            std::max(std::abs(integrator.t1()), integrator.h()) / integrator.h();
-  double scale_low = 1.0, scale_high = 1.0;
-  int last_side = 0;
-  for (int iteration = 0; theta_high_ - theta_low_ > resolution; ++iteration) {
-    if (iteration == k_max_root_iterations) break;
-    const double width = theta_high_ - theta_low_;
-    double step = 1.0;
-    for (const int i : fired_) {
-      const double a = scale_low * low_[i], b = scale_high * high_[i];
-      step = std::min(step, a / (a - b));
-    }
-    // Every fifth iteration bisects: a kink inside the bracket cannot stall the secant for long.
-    if (!(step >= 0.0 && step <= 1.0) || iteration % 5 == 4) step = 0.5;
-    const double edge = std::min(0.5, 0.5 * resolution / width);
-    const double theta = theta_low_ + width * std::clamp(step, edge, 1.0 - edge);
+  const double spacing = 2.0 * std::numeric_limits<double>::epsilon() *
+                         std::max(std::abs(integrator.t1()), integrator.h()) / integrator.h();
+  known_[0] = low_;
+  known_[1] = high_;
+  known_count_ = 2;
+  const Aim at_first{.reach = k_least_reach * spacing};
+  aim_ = at_first;
+  double halved = high_.theta - low_.theta;
+  int since_halved = 0, polished = 0;
+  for (int looks = 0; looks < k_max_looks; ++looks) {
+    const double width = high_.theta - low_.theta;
+    if (width <= std::max(spacing, k_closed * at_first.reach)) return;
+    // What reach was needed may have been too wide for what there is of rounding.
+    const bool is_closed = aim_.is_settled && width <= k_closed * aim_.reach;
+    if (is_closed && polished++ == k_polish) return;
+    double theta = 0.5 * (low_.theta + high_.theta);
+    const bool is_below = aim_.root - low_.theta > high_.theta - aim_.root;
+    // A kink or a pole inside the bracket cannot stall the search for long.
+    if (is_closed) theta = first_secant();
+    else if (aim_.is_settled) theta = is_below ? aim_.root - aim_.reach : aim_.root + aim_.reach;
+    else if (since_halved < k_patience) theta = next_look(theta);
+    else aim_ = at_first;
+    const double edge = std::min(0.5 * width, 0.5 * spacing);
+    theta = std::clamp(theta, low_.theta + edge, high_.theta - edge);
     watch_at(integrator, dynamics, theta, middle_);
-    const std::vector<int> before = fired_;
-    if (crosses(low_, middle_)) {
-      theta_high_ = theta;
-      std::swap(high_, middle_);
-      scale_low = last_side == 1 ? 0.5 * scale_low : 1.0;
-      scale_high = 1.0;
-      last_side = 1;
-    } else {
-      fired_ = before;
-      theta_low_ = theta;
-      std::swap(low_, middle_);
-      scale_high = last_side == -1 ? 0.5 * scale_high : 1.0;
-      scale_low = 1.0;
-      last_side = -1;
+    known_[static_cast<std::size_t>(looks + 2) % k_most_known] = middle_;
+    known_count_ = std::min(known_count_ + 1, k_most_known);
+    fired_before_ = fired_;
+    const bool is_beyond = crosses(low_, middle_);
+    if (!is_beyond) fired_ = fired_before_;
+    std::swap(is_beyond ? high_ : low_, middle_);
+    if (aim_.is_settled && !is_closed && is_beyond == is_below) { // not yet on the other side
+      aim_.root = theta;
+      aim_.reach *= k_wider;
+      if (aim_.reach > k_most_rounding) aim_ = at_first; // it was not settled
     }
+    since_halved = high_.theta - low_.theta < 0.5 * halved ? 0 : since_halved + 1;
+    if (since_halved == 0) halved = high_.theta - low_.theta;
   }
+}
+
+double EventFinder::first_secant() const {
+  double share = 1.0;
+  for (const int slot : fired_)
+    share = std::min(share, low_.watch[slot] / (low_.watch[slot] - high_.watch[slot]));
+  // Not too near an end, where rounding has made the value what it is.
+  return low_.theta + std::clamp(share, 0.1, 0.9) * (high_.theta - low_.theta);
+}
+
+// `middle`: where no estimate can be made.
+double EventFinder::next_look(double middle) {
+  double theta = high_.theta;
+  for (const int slot : fired_) {
+    estimate_.clear();
+    for (std::size_t i = 0; i < known_count_; ++i) {
+      const Look& look = known_[i];
+      const double w = look.watch[slot], slope = look.rate[slot];
+      if (std::isnan(slope)) estimate_.add(look.theta, w);
+      else estimate_.add(look.theta, w, slope);
+    }
+    theta = std::min(theta, estimate_.root(low_.theta, high_.theta, 0.25 * aim_.reach));
+  }
+  if (std::isnan(theta)) return middle;
+  // The last look was at such a root too, and off by the distance to this one; how much nearer that is than the
+  // last distance tells how near the next one would be. A distance larger than was to be expected is rounding.
+  const double distance = std::abs(theta - aim_.root);
+  if (aim_.looks >= 3 && distance > k_unexpected * aim_.expected && distance < k_most_rounding) {
+    aim_.reach = std::max(aim_.reach, 2.0 * distance);
+    aim_.is_settled = true;
+  }
+  aim_.expected = aim_.looks >= 2 ? 4.0 * distance * std::min(1.0, distance / aim_.distance) : 1.0;
+  if (aim_.expected <= 0.5 * aim_.reach) aim_.is_settled = true;
+  aim_.distance = distance;
+  aim_.root = theta;
+  ++aim_.looks;
+  return theta;
 }
 
 bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh) {
@@ -264,7 +323,7 @@ bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::ve
                                                          : bracket_whole(integrator);
   if (bracket == Bracket::none) return false;
   if (bracket == Bracket::found) close_in(integrator, dynamics);
-  theta_ = theta_high_;
+  theta_ = high_.theta;
   integrator.dense(dynamics, theta_, y_.data());
   return true;
 }

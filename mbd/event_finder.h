@@ -12,7 +12,10 @@
 #pragma once
 
 #include "mbd/integrators/integrator.h"
+#include "mbd/root_estimate.h"
 
+#include <array>
+#include <limits>
 #include <vector>
 
 namespace steplap {
@@ -39,9 +42,15 @@ private:
   void follow_dip(Integrator& integrator, Dynamics& dynamics, int slot);
   void watch_rest(Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] bool is_negative_near(Integrator& integrator, Dynamics& dynamics, int slot, double middle, double reach);
-  void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, std::vector<double>& watch);
-  [[nodiscard]] bool crosses(const std::vector<double>& low, const std::vector<double>& high);
-
+  [[nodiscard]] double next_look(double middle);
+  [[nodiscard]] double first_secant() const;
+  struct Look {
+    double theta = 0.0;
+    std::vector<double> watch, rate; ///< rate: per unit of theta, NaN where it is not known
+  };
+  void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look);
+  static void look_at_end(const Integrator& integrator, bool is_last, Look& look);
+  [[nodiscard]] bool crosses(const Look& low, const Look& high);
   [[nodiscard]] bool starts_negative(const Integrator& integrator, int slot) const;
 
   double shortest_period_; ///< of the loads, s
@@ -49,12 +58,26 @@ private:
   int unit_slots_; ///< those of contacts and springs come first
   bool is_resting_ = false; ///< nothing moves in the step: joints far from their limits are looked at, too
   double theta_ = 0.0;
-  double theta_low_ = 0.0, theta_high_ = 1.0;
-  std::vector<double> y_, dy_, low_, high_, middle_;
+  std::vector<double> y_, dy_;
+  Look low_, high_, middle_;     ///< the bracket's ends, and a place between them
+  static constexpr std::size_t k_most_known = 7;
+  std::array<Look, k_most_known> known_; ///< the last ones, from which the next place is estimated
+  std::size_t known_count_ = 0;
+  RootEstimate estimate_;
+  /// Of the root being closed in on, in parts of the step.
+  struct Aim {
+    double reach = 0.0;      ///< to either side of the root, where the bracket is to end
+    double root = 0.0;       ///< as last estimated
+    double distance = 1.0;   ///< of the last two estimates
+    double expected = 1.0;   ///< error of the last one
+    int looks = 0;           ///< estimates so far
+    bool is_settled = false; ///< the root is as exact as it can be
+  };
+  Aim aim_;
   std::vector<double> look_at_;  ///< places inside the step to scan besides the even ones
   std::vector<int> dips_;        ///< slots whose bottom inside the step may be below zero
   std::vector<char> armed_;      ///< believed when negative
-  std::vector<int> fired_;
+  std::vector<int> fired_, fired_before_;
 };
 
 } // namespace steplap

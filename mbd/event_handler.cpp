@@ -240,7 +240,16 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
   }
   modes_.decide(state);
   note_friction(before, state, events);
-  settle(state);
+  if (has_new_rows(before, state)) settle(state);
+}
+
+// Some friction holds that did not, or holds elsewhere: the state was not projected onto its rows yet.
+bool EventHandler::has_new_rows(const State& before, const State& state) {
+  for (std::size_t f = 0; f < state.friction.size(); ++f) {
+    const FrictionState &old = before.friction[f], &now = state.friction[f];
+    if (now.phase == FrictionPhase::stick && (old.phase != now.phase || old.foot != now.foot)) return true;
+  }
+  return false;
 }
 
 // What sticks may still have a relative velocity of the size of errors: projecting it away books what

@@ -49,6 +49,7 @@ private:
   void load(State& state, int f);
   void slip_rates(const State& state, int f, double* rate) const;
   void settle(State& state);
+  [[nodiscard]] static bool has_new_rows(const State& before, const State& state);
 
   const System& system_;
   Dynamics& dynamics_;

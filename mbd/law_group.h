@@ -58,7 +58,7 @@ public:
     int a = k_ground, b = k_ground;
     Measure measure;
     Law law;
-    int link = 0;    ///< index of (a, b)
+    int link = 0;    ///< slot of (a, b)
     int unit = 0;    ///< index of its mode
     int watch = 0;   ///< index of its first watch value
     int contact = 0; ///< index of its normal force

@@ -95,7 +95,7 @@ void make_clusters(const System& system, const State& state, std::vector<int>& p
     place.s = std::sin(place.angle);
     cluster.inertia += system.bodies[i].mass * lever.squaredNorm();
   }
-  int extra = n;
+  int extra = system.links.slot_count();
   for (int k = 0; k < layout.cluster_count(); ++k) {
     Cluster& cluster = layout.clusters[k];
     // The body that carries the angle often lies at the common centre (limbs on both sides of a core).
@@ -104,7 +104,9 @@ void make_clusters(const System& system, const State& state, std::vector<int>& p
     cluster.motion = root.is_trivial ? cluster.root : extra++;
     cluster.w[0] = cluster.w[1] = 1.0 / cluster.mass;
     cluster.w[2] = 1.0 / cluster.inertia;
+    layout.slots.push_back(cluster.motion);
   }
+  layout.slot_count = extra;
 }
 
 // Edges of each cluster's spanning tree, leaves first (reverse breadth-first from the roots).
@@ -133,6 +135,15 @@ void order_edges(const std::vector<RigidJoint>& joints, const std::vector<char>&
   std::reverse(layout.edges.begin(), layout.edges.end());
 }
 
+RowPullKind pull_kind(const ActiveRow& row, const SchurRow& schur) {
+  if (schur.body[0] < 0) return RowPullKind::other;
+  if (row.spec->kind == MeasureKind::angle) return RowPullKind::angle;
+  if (!row.is_simple) return RowPullKind::other;
+  if (row.spec->kind == MeasureKind::axis) return RowPullKind::axis;
+  if (row.spec->kind == MeasureKind::slide && row.spec->is_axis_in_a) return RowPullKind::slide;
+  return RowPullKind::other;
+}
+
 void add_active(Layout& layout, const ActiveRow& row) {
   SchurRow schur;
   schur.body[0] = layout.placements[row.spec->a].cluster;
@@ -143,7 +154,8 @@ void add_active(Layout& layout, const ActiveRow& row) {
     if (place.cluster >= 0 && !place.is_trivial) layout.active.back().is_simple = false;
   }
   layout.schur_rows.push_back(schur);
-  if (row.spec->drive) layout.has_drives = true;
+  layout.active.back().pull = pull_kind(layout.active.back(), schur);
+  if (row.spec->drive) layout.driven_rows.push_back(static_cast<int>(layout.active.size()) - 1);
 }
 
 // Bilateral rows: locks where a drive prescribes one coordinate of a body that is alone, else rows.
@@ -161,8 +173,7 @@ void add_bilateral(const System& system, const std::vector<char>& is_block_merge
                          layout.clusters[place.cluster].w[block.coordinate] > 0.0;
     if (is_free) {
       layout.clusters[place.cluster].w[block.coordinate] = 0.0;
-      layout.locks.push_back({place.cluster, block.coordinate, block.first});
-      layout.has_drives = true;
+      layout.locks.push_back({place.cluster, block.coordinate, block.first, {}});
       continue;
     }
     for (int r = block.first; r < block.first + block.count; ++r)
@@ -179,8 +190,10 @@ void add_frictions(const System& system, const State& state,
     } else if (is_stuck(state, f)) {
       layout.holding.push_back(f);
       const FrictionElement& friction = *system.frictions[f].friction;
-      for (int r = 0; r < friction.dimension(); ++r)
+      for (int r = 0; r < friction.dimension(); ++r) {
+        layout.held_rows.push_back({static_cast<int>(layout.active.size()), system.frictions[f].row + r});
         add_active(layout, {friction.rows(state.friction[f]) + r, -1, f, r});
+      }
     } else if (state.friction[f].phase == FrictionPhase::slip) {
       layout.sliding.push_back(f);
     }
@@ -189,47 +202,44 @@ void add_frictions(const System& system, const State& state,
 
 // Links of force elements are needed always, those of rows while they hold.
 void find_links(const System& system, const State& state, Layout& layout) {
-  std::vector<char> is_needed(system.links.size(), 0);
-  std::fill_n(is_needed.begin(), system.force_link_count, 1);
+  std::vector<char> is_needed(system.links.slot_count(), 0);
+  for (int i = 0; i < system.force_link_count; ++i) is_needed[system.links.slot(i)] = 1;
   for (ActiveRow& row : layout.active) {
-    row.link = system.links.index_of(row.spec->a, row.spec->b);
+    row.link = system.links.slot_of(row.spec->a, row.spec->b);
     is_needed[row.link] = 1;
   }
   for (const int f : layout.sliding) {
     const RowSpec& row = *system.frictions[f].friction->rows(state.friction[f]);
-    layout.sliding_link.push_back(system.links.index_of(row.a, row.b));
+    layout.sliding_link.push_back(system.links.slot_of(row.a, row.b));
     is_needed[layout.sliding_link.back()] = 1;
   }
   for (int i = 0; i < system.links.size(); ++i)
-    if (is_needed[i]) layout.links.push_back({i, system.links[i].a, system.links[i].b});
+    if (is_needed[system.links.slot(i)])
+      layout.links.push_back({system.links.slot(i), system.links[i].a, system.links[i].b});
 }
 
-void find_placed(const System& system, const State& state, Layout& layout) {
-  std::vector<char>& is_needed = layout.is_placed;
-  is_needed = system.is_body_used;
+void find_riding(const System& system, const State& state, Layout& layout) {
+  std::vector<char> is_needed = system.is_body_used;
   for (const ActiveRow& row : layout.active) is_needed[row.spec->a] = is_needed[row.spec->b] = 1;
   for (const int f : layout.sliding) {
     const RowSpec* rows = system.frictions[f].friction->rows(state.friction[f]);
     is_needed[rows[0].a] = is_needed[rows[0].b] = 1;
   }
   for (int i = 1; i < system.body_count(); ++i)
-    if (is_needed[i]) layout.placed.push_back(i);
+    if (is_needed[i] && !layout.placements[i].is_trivial) layout.riding.push_back(i);
 }
 
 } // namespace
 
-std::vector<char> layout_key(const State& state) {
-  std::vector<char> key;
-  for (const FrictionState& f : state.friction) {
-    key.push_back(static_cast<char>(f.phase));
-    for (int shift = 0; shift < 32; shift += 8) key.push_back(static_cast<char>(f.foot >> shift & 0xffu));
-  }
-  return key;
+void layout_key(const State& state, LayoutKey& key) {
+  key.resize(state.friction.size());
+  for (std::size_t i = 0; i < key.size(); ++i)
+    key[i] = static_cast<std::uint64_t>(state.friction[i].phase) << 32 | state.friction[i].foot;
 }
 
 Layout make_layout(const System& system, const State& state) {
   Layout layout;
-  layout.key = layout_key(state);
+  layout_key(state, layout.key);
   const std::vector<RigidJoint> joints = rigid_joints(system, state);
   std::vector<int> parent;
   const std::vector<char> is_merged = merge(system, joints, parent);
@@ -246,7 +256,7 @@ Layout make_layout(const System& system, const State& state) {
     }
   add_bilateral(system, is_block_merged, layout);
   add_frictions(system, state, is_friction_merged, layout);
-  find_placed(system, state, layout);
+  find_riding(system, state, layout);
   find_links(system, state, layout);
   for (std::size_t r = 0; r < layout.active.size(); ++r) {
     const RowSpec& spec = *layout.active[r].spec;
@@ -258,6 +268,10 @@ Layout make_layout(const System& system, const State& state) {
                          {cluster.mass * system.gravity.x(), cluster.mass * system.gravity.y(), 0.0});
     layout.inverse_mass.insert(layout.inverse_mass.end(), cluster.w, cluster.w + 3);
   }
+  for (Lock& lock : layout.locks)
+    for (int r = 0; r < static_cast<int>(layout.active.size()); ++r)
+      for (int side = 0; side < 2; ++side)
+        if (layout.schur_rows[r].body[side] == lock.cluster) lock.terms.push_back({r, side});
   // A row between two bodies that move as one moves nothing: without inverse masses it drops out as dependent.
   for (SchurRow& row : layout.schur_rows)
     for (int side = 0; side < 2; ++side)
@@ -266,6 +280,7 @@ Layout make_layout(const System& system, const State& state) {
   for (std::size_t r = 0; r < layout.active.size(); ++r) {
     if (layout.active[r].spec->kind != MeasureKind::angle) continue;
     SchurRow& row = layout.schur_rows[r];
+    row.is_constant = true;
     row.j[0][2] = 1.0;
     row.j[1][2] = -1.0;
     for (int side = 0; side < 2; ++side) row.wj[side][2] = row.w[side][2] * row.j[side][2];

@@ -31,25 +31,42 @@ struct Placement {
   double angle = 0.0, c = 1.0, s = 0.0; ///< against the cluster's
 };
 
+/// Rows of a cluster against another or the ground that have a way of their own in Dynamics: with bodies alone
+/// in their clusters, or for angles.
+enum class RowPullKind : unsigned char { other, angle, axis, slide };
+
 /// Where the row comes from.
 struct ActiveRow {
   const RowSpec* spec = nullptr;
   int row = -1;        ///< bilateral row, or −1
   int friction = -1;   ///< friction element and which of its rows, or −1
   int friction_row = 0;
-  int link = 0;          ///< of the row's bodies
+  int link = 0;          ///< slot of the row's bodies
   bool is_simple = true; ///< both bodies are clusters of their own, or the ground
+  RowPullKind pull = RowPullKind::other;
+};
+
+/// Row `row` acts with its side `side` on a locked coordinate.
+struct LockedTerm {
+  int row = 0, side = 0;
 };
 
 /// A driven coordinate of a cluster that consists of one body.
 struct Lock {
   int cluster = 0, coordinate = 0;
   int row = 0; ///< the bilateral row it stands for
+  std::vector<LockedTerm> terms; ///< active rows that act on its cluster
 };
 
-/// A link that an evaluation needs, with its bodies at hand.
+/// A link between two bodies that an evaluation needs.
 struct ActiveLink {
-  int link = 0, a = 0, b = 0;
+  int slot = 0, a = 0, b = 0;
+};
+
+/// The multiplier of an active row is the force of a friction element.
+struct HeldRow {
+  int row = 0;
+  int friction_row = 0; ///< slot in Snapshot::friction_force
 };
 
 /// A rigid joint inside a cluster: `child` hangs on `parent`; leaves first.
@@ -59,12 +76,16 @@ struct RigidEdge {
   int friction = -1; ///< friction element, or −1
 };
 
+/// Phases and places of friction, by which layouts are told apart.
+using LayoutKey = std::vector<std::uint64_t>;
+
 struct Layout {
-  std::vector<char> key;             ///< phases and places of friction it was made for
+  LayoutKey key;
   std::vector<Cluster> clusters;
   std::vector<Placement> placements; ///< per body
-  std::vector<int> placed;           ///< bodies whose motion an evaluation needs
-  std::vector<char> is_placed;       ///< the same per body
+  std::vector<int> riding;           ///< bodies that elements act on, whose motion is not their cluster's
+  std::vector<int> slots;            ///< of the clusters' motions and forces
+  int slot_count = 0;                ///< those in use: bodies, links, clusters of several bodies
 
   std::vector<ActiveRow> active;
   std::vector<Lock> locks;
@@ -75,21 +96,21 @@ struct Layout {
   std::vector<int> redundant_blocks; ///< rigid blocks inside one cluster that close a loop
   std::vector<ActiveLink> links;
   std::vector<int> sliding;          ///< friction elements in phase slip
-  std::vector<int> sliding_link;     ///< of each of those
+  std::vector<int> sliding_link;     ///< slot of each of those
   std::vector<int> holding;          ///< friction elements in phase stick that are not merged
   std::vector<int> merged;           ///< friction elements in phase stick that are merged
   bool is_merged_watched = false;    ///< some of those can slip, or sticking elements share a load
   std::unique_ptr<LoadSharing> sharing; ///< null until rows have been met that depend on each other
   std::vector<double> reference;     ///< clusters' coordinates in the reference pose, for error scales
-  bool has_drives = false;           ///< some active row or lock moves with time
+  std::vector<HeldRow> held_rows;    ///< of the elements in `holding`
+  std::vector<int> driven_rows;      ///< active rows that move with time
   SchurSolver schur;
   std::vector<SchurRow> schur_rows;  ///< bodies filled in, numbers are scratch
 
   [[nodiscard]] int cluster_count() const { return static_cast<int>(clusters.size()); }
 };
 
-/// Phases and places of friction, as a key of layouts.
-[[nodiscard]] std::vector<char> layout_key(const State& state);
+void layout_key(const State& state, LayoutKey& key);
 
 /// The layout for the friction phases and the poses in `state`.
 [[nodiscard]] Layout make_layout(const System& system, const State& state);

@@ -168,9 +168,8 @@ void Linearization::add_forces(const PairJacobian& part) {
 // The lever of a force on a body off its cluster's centre turns with the cluster: ∂(l × F)/∂θ = −l·F.
 void Linearization::add_transport() {
   const std::vector<Motion<double>>& motion = dynamics_->motion();
-  for (const int i : layout_->placed) {
+  for (const int i : layout_->riding) {
     const Placement& place = layout_->placements[i];
-    if (place.is_trivial) continue;
     const Motion<double>& centre = motion[layout_->clusters[place.cluster].motion];
     const BodyForce& f = dynamics_->evaluation().force[i];
     // Sliding wrenches are in `force` too: add_sliding takes their part out again.

@@ -3,9 +3,10 @@
 namespace steplap {
 
 int LinkTable::add(int a, int b) {
+  if (b == k_ground) return a;
   const auto [place, is_new] = index_.try_emplace(key(a, b), size());
   if (is_new) links_.push_back({a, b});
-  return place->second;
+  return slot(place->second);
 }
 
 } // namespace steplap

@@ -17,18 +17,26 @@ struct Link {
   int a = k_ground, b = k_ground;
 };
 
+/// Every link has a *slot* in the arrays of motions and forces, behind those of the bodies: what the ground
+/// sees is the body's own motion, so there the slot is the body's.
 class LinkTable {
 public:
-  /// Index of the link (a, b), which is added if it is not there.
+  /// Slots below `body_count` are bodies.
+  void start(int body_count) { body_count_ = body_count; }
+  /// Slot of the link (a, b), which is added if it is not there.
   int add(int a, int b);
-  [[nodiscard]] int index_of(int a, int b) const { return index_.at(key(a, b)); }
+  [[nodiscard]] int slot_of(int a, int b) const { return b == k_ground ? a : slot(index_.at(key(a, b))); }
+  /// Links between two bodies, in the order of their slots.
   [[nodiscard]] const Link& operator[](int i) const { return links_[i]; }
   [[nodiscard]] int size() const { return static_cast<int>(links_.size()); }
+  [[nodiscard]] int slot(int i) const { return body_count_ + i; }
+  [[nodiscard]] int slot_count() const { return body_count_ + size(); }
 
 private:
   static std::uint64_t key(int a, int b) {
     return static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
   }
+  int body_count_ = 0;
   std::vector<Link> links_;
   std::unordered_map<std::uint64_t, int> index_;
 };

@@ -23,10 +23,12 @@ STEPLAP_INLINE void set_angle(Motion<double>& m, double theta) {
   m.theta = theta;
   const double z = theta * theta;
   if (z < 0.04) [[likely]] {
-    m.c = 1.0 - z * (1.0 / 2.0 - z * (1.0 / 24.0 - z * (1.0 / 720.0 - z * (1.0 / 40320.0 -
-          z * (1.0 / 3628800.0 - z * (1.0 / 479001600.0))))));
-    m.s = theta - theta * (z * (1.0 / 6.0 - z * (1.0 / 120.0 - z * (1.0 / 5040.0 -
-          z * (1.0 / 362880.0 - z * (1.0 / 39916800.0))))));
+    // In pairs (Estrin): everything else of an evaluation waits for this, and short chains end sooner.
+    const double z2 = z * z;
+    m.c = 1.0 - z * ((1.0 / 2.0 - z * (1.0 / 24.0)) +
+                     z2 * ((1.0 / 720.0 - z * (1.0 / 40320.0)) + z2 * (1.0 / 3628800.0 - z * (1.0 / 479001600.0))));
+    m.s = theta - theta * z * ((1.0 / 6.0 - z * (1.0 / 120.0)) +
+                               z2 * ((1.0 / 5040.0 - z * (1.0 / 362880.0)) + z2 * (1.0 / 39916800.0)));
   } else {
     m.c = std::cos(theta);
     m.s = std::sin(theta);

@@ -115,11 +115,11 @@ void Dynamics::remove_held(double* change) {
 Residual Dynamics::project(double t, double* y, double tolerance) {
   const Layout& layout = *layout_;
   const int n = coordinate_count();
-  for (const Lock& lock : layout.locks) {
-    const SignalJet target =
-        row_target(system_.rows[lock.row], state_->memory.data(), std::min(t, time_cap_));
-    y[3 * lock.cluster + lock.coordinate] = target.value;
-    y[n + 3 * lock.cluster + lock.coordinate] = target.rate;
+  aim_locks(std::min(t, time_cap_));
+  for (std::size_t i = 0; i < layout.locks.size(); ++i) {
+    const int k = 3 * layout.locks[i].cluster + layout.locks[i].coordinate;
+    y[k] = lock_target_[i].value;
+    y[n + k] = lock_target_[i].rate;
   }
   if (layout.active.empty()) return {};
   // Kilometres from the origin a position is not known to a picometre.
@@ -129,9 +129,10 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
   const double least = 8.0 * std::numeric_limits<double>::epsilon() * farthest;
   const bool is_close = tolerance == 0.0;
   const Residual first = constraint_values(t, y);
-  if (!reach_positions(t, y, is_close ? k_close * position_rounding(y, n) : std::max(tolerance, least), first))
+  Residual now = first;
+  if (!reach_positions(t, y, is_close ? k_close * position_rounding(y, n) : std::max(tolerance, least), now))
     fail_projection(t);
-  reach_velocities(t, y, is_close ? k_close * position_rounding(y + n, n) : std::max(tolerance, least));
+  reach_velocities(t, y, now, is_close ? k_close * position_rounding(y + n, n) : std::max(tolerance, least));
   return first;
 }
 
@@ -139,7 +140,7 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
 // does not serve, and Newton's steps would be as long as the residual is to the distance from there: damped
 // by the residual itself they stay short, and still converge quadratically (J. Fan, Y. Yuan, Computing 74
 // (2005) 23, for Levenberg–Marquardt with this choice).
-bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual now) {
+bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& now) {
   Layout& layout = *layout_;
   int patience = patience_for(tolerance, y, coordinate_count());
   for (int iteration = 0; now.position > tolerance; ++iteration) {
@@ -159,13 +160,15 @@ bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual n
   return true;
 }
 
-void Dynamics::reach_velocities(double t, double* y, double tolerance) {
-  Residual now = constraint_values(t, y);
+// The velocities that the constraints allow differ from those at hand by the solution of a linear system: with a
+// few rows that are far from a singularity one step leaves rounding, and is not looked at again.
+void Dynamics::reach_velocities(double t, double* y, Residual now, double tolerance) {
   int patience = patience_for(tolerance, y + coordinate_count(), coordinate_count());
   for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
-    if (!is_factored_ || iteration > 0 || layout_->schur.is_near_singular()) factor_rows();
+    factor_rows();
     const double before = now.velocity;
     move_by(row_rate_, y + coordinate_count());
+    if (layout_->schur.is_small() && !layout_->schur.is_near_singular() && !layout_->schur.is_singular()) return;
     now = constraint_values(t, y);
     if (now.velocity >= 0.5 * before && --patience < 0) break; // rounding of fast motions
   }
@@ -182,13 +185,13 @@ void Dynamics::move_by(const std::vector<double>& residual, double* target) {
 void Dynamics::rates_nearby(double t, const double* y, double* dy) {
   const int n = coordinate_count();
   std::copy(y, y + dimension(), placed_.begin());
-  const Residual off = constraint_values(t, y);
+  Residual off = constraint_values(t, y);
   if (off.position <= position_rounding(y, n) && off.velocity <= position_rounding(y + n, n)) {
     rates_at(t, y, dy);
     return;
   }
   const bool is_placed = reach_positions(t, placed_.data(), position_rounding(y, n), off);
-  if (is_placed) reach_velocities(t, placed_.data(), position_rounding(y + n, n));
+  if (is_placed) reach_velocities(t, placed_.data(), off, position_rounding(y + n, n));
   rates_at(t, is_placed ? placed_.data() : y, dy);
 }
 

@@ -47,8 +47,8 @@ struct Evaluation {
   double t = 0.0;
   const Motion<double>* motion = nullptr; ///< per body
   BodyForce* force = nullptr;             ///< per body, accumulated
-  const Motion<double>* link_motion = nullptr; ///< per link (link.h): of a, seen from b
-  BodyForce* link_force = nullptr;        ///< per link: on a, about its centre, in b's axes; accumulated
+  const Motion<double>* link_motion = nullptr; ///< per slot of links (link.h): of a, seen from b
+  BodyForce* link_force = nullptr;        ///< per slot: on a, about its centre, in b's axes; accumulated
   const std::uint8_t* mode = nullptr;     ///< per unit
   const FrictionState* friction = nullptr;
   const double* memory = nullptr;         ///< of the state: anchors of rows

@@ -73,11 +73,18 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
     const auto place = [](int row, std::size_t member, int side) {
       return static_cast<std::uint16_t>((row * sizeof(SchurRow) + member) / sizeof(double) + 3 * side);
     };
-    for (const Coupling& c : coupled)
-      if (c.j <= c.i)
-        dense_products_.push_back({static_cast<std::uint16_t>(c.i * n_ + c.j),
-                                   place(c.i, offsetof(SchurRow, wj), c.side_i),
-                                   place(c.j, offsetof(SchurRow, j), c.side_j)});
+    dense_turns_.clear();
+    dense_constant_.fill(0.0);
+    for (const Coupling& c : coupled) {
+      if (c.j > c.i) continue;
+      const SchurRow &row = rows[c.i], &other = rows[c.j];
+      const auto entry = static_cast<std::uint16_t>(c.i * n_ + c.j);
+      const DenseProduct product{entry, place(c.i, offsetof(SchurRow, wj), c.side_i),
+                                 place(c.j, offsetof(SchurRow, j), c.side_j)};
+      if (row.is_constant && other.is_constant)
+        dense_constant_[entry] += row.wj[c.side_i][2] * other.j[c.side_j][2];
+      else (row.is_constant || other.is_constant ? dense_turns_ : dense_products_).push_back(product);
+    }
     return;
   }
   order_ = fill_reducing_order(n_, coupled);
@@ -149,13 +156,14 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
   smallest_pivot_ = 1.0;
   double* const m = dense_.data();
   const int n = N > 0 ? N : n_;
-  for (int i = 0; i < n * n; ++i) m[i] = 0.0;
+  for (int i = 0; i < n * n; ++i) m[i] = dense_constant_[i];
   const auto* const first = reinterpret_cast<const double*>(rows.data());
   for (const DenseProduct& p : dense_products_) {
     const double* a = first + p.wj;
     const double* b = first + p.j;
     m[p.entry] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
+  for (const DenseProduct& p : dense_turns_) m[p.entry] += first[p.wj + 2] * first[p.j + 2];
   // Row by row: below the diagonal first L D, then L.
   for (int i = 0; i < n; ++i) {
     double* const mi = m + i * n;

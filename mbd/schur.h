@@ -20,6 +20,7 @@ namespace steplap {
 /// Row in the coordinates of the moving bodies ("clusters") of one layout.
 struct SchurRow {
   int body[2] = {-1, -1};     ///< cluster on either side, −1: the ground
+  bool is_constant = false;   ///< j and wj are the same in every pose, and zero but for θ
   double w[2][3] = {};        ///< inverse masses of either side, 0 where locked
   double j[2][3] = {};        ///< ∂measure/∂(x, y, θ) of either side
   double wj[2][3] = {};       ///< W times that
@@ -35,6 +36,7 @@ public:
   void solve(const std::vector<SchurRow>& rows, double* x) const;
 
   [[nodiscard]] int size() const { return n_; }
+  [[nodiscard]] bool is_small() const { return n_ <= k_max_dense; }
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
   [[nodiscard]] bool is_dependent(int row) const { return inverse_d_[position_[row]] == 0.0; }
   /// Smallest pivot kept, relative to its diagonal, in the last factorisation: near 0 close to a singularity.
@@ -60,7 +62,8 @@ private:
   struct DenseProduct {
     std::uint16_t entry, wj, j; ///< wj, j: as doubles from the first row's start
   };
-  std::vector<DenseProduct> dense_products_;
+  std::vector<DenseProduct> dense_products_, dense_turns_; ///< three terms; that of θ alone
+  std::array<double, k_max_dense * k_max_dense> dense_constant_{}; ///< from constant rows
   std::array<double, k_max_dense * k_max_dense> dense_{};
 
   struct Product {

@@ -35,25 +35,34 @@ void add_harmonic(const Signal::Harmonic& h, double tau, PieceJet& jet) {
   const double sine = 2.0 * s * c, versine = 2.0 * s * s, cosine = 1.0 - versine;
   const double value = h.amplitude * (h.cos_phase * cosine - h.sin_phase * sine);
   const double slope = -h.amplitude * (h.sin_phase * cosine + h.cos_phase * sine);
-  const double a1 = h.amplitude / h.frequency;
   jet.value += value;
   jet.rate += h.frequency * slope;
   jet.second_rate -= h.frequency * h.frequency * value;
-  jet.integral += a1 * (h.cos_phase * sine - h.sin_phase * versine);
+  jet.integral += h.integral_scale * (h.cos_phase * sine - h.sin_phase * versine);
   double bracket = h.cos_phase * versine;
   if (h.sin_phase != 0.0) bracket += h.sin_phase * sine_minus_argument(x);
-  jet.double_integral += a1 / h.frequency * bracket;
+  jet.double_integral += h.double_integral_scale * bracket;
 }
 
-PieceJet evaluate(const Signal::Piece& piece, double tau) {
-  const double* c = piece.c;
-  PieceJet jet;
+void add_polynomial(const double* c, double tau, PieceJet& jet) {
   jet.value = c[0] + tau * (c[1] + tau * (c[2] + tau * c[3]));
   jet.rate = c[1] + tau * (2.0 * c[2] + tau * 3.0 * c[3]);
   jet.second_rate = 2.0 * c[2] + 6.0 * c[3] * tau;
   jet.integral = tau * (c[0] + tau * (c[1] / 2 + tau * (c[2] / 3 + tau * (c[3] / 4))));
   jet.double_integral =
       tau * tau * (c[0] / 2 + tau * (c[1] / 6 + tau * (c[2] / 12 + tau * (c[3] / 20))));
+}
+
+PieceJet evaluate(const Signal::Piece& piece, double tau) {
+  const double* c = piece.c;
+  PieceJet jet;
+  if (piece.is_level) {
+    jet.value = c[0];
+    jet.integral = tau * c[0];
+    jet.double_integral = tau * tau * (c[0] / 2);
+  } else {
+    add_polynomial(c, tau, jet);
+  }
   for (const Signal::Harmonic& h : piece.harmonics)
     add_harmonic(h, tau, jet);
   return jet;
@@ -93,11 +102,15 @@ void check(const std::vector<Signal::Piece>& pieces) {
 
 Signal::Signal(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
   check(pieces_);
-  for (Piece& piece : pieces_)
+  for (Piece& piece : pieces_) {
+    piece.is_level = piece.c[1] == 0.0 && piece.c[2] == 0.0 && piece.c[3] == 0.0;
     for (Harmonic& h : piece.harmonics) {
       h.cos_phase = std::cos(h.phase);
       h.sin_phase = std::sin(h.phase);
+      h.integral_scale = h.amplitude / h.frequency;
+      h.double_integral_scale = h.integral_scale / h.frequency;
     }
+  }
   accumulate_integrals();
   if (!is_constant())
     for (const Piece& piece : pieces_)

@@ -34,12 +34,15 @@ public:
     double phase = 0.0;
     double cos_phase = 1.0; ///< filled by Signal
     double sin_phase = 0.0; ///< filled by Signal
+    double integral_scale = 0.0;        ///< amplitude/frequency (filled by Signal)
+    double double_integral_scale = 0.0; ///< that over the frequency once more (filled by Signal)
   };
   /// c0 + c1 τ + c2 τ² + c3 τ³ + Σ harmonics, for start ≤ t < start of the next piece.
   struct Piece {
     double start = 0.0;
     double c[4] = {0.0, 0.0, 0.0, 0.0};
     std::vector<Harmonic> harmonics;
+    bool is_level = true;         ///< c1 = c2 = c3 = 0 (filled by Signal)
     double integral = 0.0;        ///< ∫ from 0 to start (filled by Signal)
     double double_integral = 0.0; ///< ∬ from 0 to start (filled by Signal)
   };

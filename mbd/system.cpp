@@ -159,6 +159,7 @@ void SystemBuilder::finish() {
   s.is_body_used.assign(s.bodies.size(), 0);
   for (const auto& group : s.groups) group->mark_bodies(s.is_body_used);
   for (const FrictionUnit& unit : s.frictions) unit.friction->mark_bodies(s.is_body_used);
+  s.links.start(s.body_count());
   for (const auto& group : s.groups) group->enter_links(s.links);
   s.force_link_count = s.links.size();
   for (const RowSpec& row : s.rows) s.links.add(row.a, row.b);

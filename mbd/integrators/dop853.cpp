@@ -19,10 +19,12 @@ public:
   void dense_of_pair(Dynamics& dynamics, double theta, double* out) override {
     if (!is_dense_ready_) prepare_dense(dynamics);
     const double s = theta, u = 1.0 - theta;
-    const double* r = r_.data();
+    const double* __restrict r = r_.data();
+    const double* __restrict y = y0_.data();
+    double* __restrict result = out;
     const int m = stride_;
     for (int i = 0; i < n_; ++i)
-      out[i] = y0_[i] +
+      result[i] = y[i] +
                s * (r[i] + u * (r[m + i] +
                                 s * (r[2 * m + i] +
                                      u * (r[3 * m + i] +

@@ -39,10 +39,8 @@ public:
   explicit Probe(const ConformanceScene& scene, bool is_mirrored = false, bool is_swapped = false)
       : system_(compile(parse_model(conformance_text(scene, is_mirrored, is_swapped), scene.kind, element_catalog()))),
         state_(system_->initial_state()) {
-    motion_.resize(3);
-    force_.resize(3);
-    link_motion_.resize(system_->links.size());
-    link_force_.resize(system_->links.size());
+    motion_.resize(system_->links.slot_count());
+    force_.resize(motion_.size());
     contact_force_.assign(system_->contact_count, 0.0);
     watch_.assign(system_->watch_count, 1.0);
     watch_rate_.assign(system_->watch_count, std::numeric_limits<double>::quiet_NaN());
@@ -53,8 +51,8 @@ public:
     e_.t = 0.1;
     e_.motion = motion_.data();
     e_.force = force_.data();
-    e_.link_motion = link_motion_.data();
-    e_.link_force = link_force_.data();
+    e_.link_motion = motion_.data();
+    e_.link_force = force_.data();
     e_.mode = state_.mode.data();
     e_.friction = state_.friction.data();
     e_.memory = state_.memory.data();
@@ -74,8 +72,9 @@ public:
   void place(const Pose& pose) {
     const std::vector<double> q(pose.q.data(), pose.q.data() + 9), v(pose.v.data(), pose.v.data() + 9);
     place_bodies(q, v, motion_);
+    motion_.resize(system_->links.slot_count());
     for (int i = 0; i < system_->links.size(); ++i)
-      link_motion_[i] = seen_from(motion_[system_->links[i].a], motion_[system_->links[i].b]);
+      motion_[system_->links.slot(i)] = seen_from(motion_[system_->links[i].a], motion_[system_->links[i].b]);
   }
   /// Modes as the laws choose them at this pose; they stay for later poses.
   void choose_modes(const Pose& pose) {
@@ -87,12 +86,12 @@ public:
   Vec9 forces(const Pose& pose) {
     place(pose);
     std::fill(force_.begin(), force_.end(), BodyForce{});
-    std::fill(link_force_.begin(), link_force_.end(), BodyForce{});
     e_.dissipation = e_.work = 0.0;
     for (const auto& group : system_->groups) group->add_forces(e_);
     for (int i = 0; i < system_->links.size(); ++i) {
       const Link& link = system_->links[i];
-      add_link_force(link_force_[i], link_motion_[i], motion_[link.b], force_[link.a], force_[link.b]);
+      const int slot = system_->links.slot(i);
+      add_link_force(force_[slot], motion_[slot], motion_[link.b], force_[link.a], force_[link.b]);
     }
     Vec9 f;
     for (int i = 0; i < 3; ++i) f.segment<3>(3 * i) << force_[i].fx, force_[i].fy, force_[i].m;
@@ -124,8 +123,7 @@ private:
   std::unique_ptr<System> system_;
   State state_;
   std::vector<Motion<double>> motion_;
-  std::vector<BodyForce> force_, link_force_;
-  std::vector<Motion<double>> link_motion_;
+  std::vector<BodyForce> force_;
   std::vector<double> contact_force_, watch_, watch_rate_;
   std::vector<std::unique_ptr<FrictionScratch>> scratch_;
   std::vector<FrictionScratch*> scratch_pointers_;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -201,4 +202,50 @@ stiffness = 1e4
   CHECK(finder.find(*integrator, dynamics, std::vector<char>(system->watch_count, 0)));
   CHECK(finder.theta() < 1e-3); // at once
   CHECK(finder.fired() == std::vector<int>{0});
+}
+
+TEST_CASE("a root is estimated from values and slopes, to the remainder of the polynomial through them") {
+  RootEstimate estimate;
+  estimate.add(3.0, std::sin(3.0), std::cos(3.0));
+  estimate.add(3.3, std::sin(3.3), std::cos(3.3));
+  const double first = estimate.root(3.0, 3.3, 1e-17);
+  // f/4! (x − 3)² (x − 3.3)² over the slope at the root, with |f| ≤ 0.16 and slopes beyond 0.98
+  CHECK(std::abs(first - std::numbers::pi) < 3.5e-6);
+  CHECK(std::abs(first - std::numbers::pi) > 1e-9); // the next line shows something
+  estimate.add(first, std::sin(first), std::cos(first));
+  // the next remainder has the square of the first estimate's error in it: rounding of numbers near 4
+  CHECK(std::abs(estimate.root(3.0, 3.3, 1e-17) - std::numbers::pi) < 1e-15);
+
+  estimate.clear();
+  for (const double x : {0.0, 0.2, 0.7, 1.0}) estimate.add(x, (0.4 - x) * (x * x + 1.0));
+  CHECK(std::abs(estimate.root(0.2, 0.7, 1e-17) - 0.4) < 1e-15); // a cubic through four places
+}
+
+TEST_CASE("a crossing is closed in on to rounding by a handful of looks") {
+  const auto system = compile(scene(R"(
+[[body]]
+name = "ball"
+mass = 1.0
+inertia = 1.0
+position = [0.0, 1.0]
+[[element]]
+kind = "unilateral_contact"
+name = "floor"
+a = "ball"
+stiffness = 1e4
+)"));
+  const State state = system->initial_state();
+  Dynamics dynamics(*system);
+  dynamics.set_state(state);
+  std::vector<double> y(dynamics.dimension());
+  dynamics.pack(state, y.data());
+  const auto integrator = make_integrator("rk4", dynamics, options({"rk4", 0.6, 1.0}).settings);
+  integrator->restart(dynamics, 0.0, y.data());
+  integrator->step(dynamics, 1.0);
+  const long before = dynamics.evaluations();
+  EventFinder finder(*system, dynamics.dimension());
+  REQUIRE(finder.find(*integrator, dynamics, std::vector<char>(system->watch_count, 0)));
+  const double t = integrator->t0() + finder.theta() * integrator->h();
+  CHECK(std::abs(t - std::sqrt(2.0 / 9.81)) < 1e-14); // of rounding in y over the velocity, 2e-16/4.4, and of t
+  CHECK(dynamics.evaluations() - before <= 6);
 }

@@ -70,10 +70,11 @@ TEST_CASE("a driven coordinate of a body alone is locked; of a merged body, or d
   CHECK(locked.layout.clusters[0].w[0] == 0.0);
   CHECK(locked.layout.clusters[0].w[1] > 0.0);
   CHECK(locked.layout.clusters[0].w[2] == 0.0);
-  CHECK(locked.layout.has_drives);
+  CHECK(locked.layout.driven_rows.empty());
   const Made merged = make(bodies(2) + k_still + joint("weld", "a", "b") + drive("a", "x"));
   CHECK(merged.layout.locks.empty());
   CHECK(merged.layout.active.size() == 1);
+  CHECK(merged.layout.driven_rows.size() == 1);
 }
 
 TEST_CASE("fixed bodies vanish, joints to them are joints to the ground") {

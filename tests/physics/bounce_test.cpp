@@ -61,7 +61,8 @@ TEST_CASE("a bouncing mass with the paper's literal law, whose damper may pull")
 TEST_CASE("without damping it bounces for ever to the same height") {
   for (const char* law : {"", "law = \"literal\"\n", "law = \"hunt_crossley\"\nexponent = 1.5\n"}) {
     CAPTURE(std::string(law));
-    const Run r = run(dropped(law), {"dop853", 1e-12, 20.0});
+    // With depth^1.5 the energy is off by some thousand tolerances after twenty contacts.
+    const Run r = run(dropped(law), {"dop853", 1e-13, 20.0});
     const std::vector<double> closes = r.event_times("floor", "closes"), opens = r.event_times("floor", "opens");
     REQUIRE(closes.size() == 22);
     CHECK(opens.size() == closes.size());

@@ -6,6 +6,7 @@
 #include "mbd/simulation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -28,10 +29,12 @@ void profile(const char* path, double time, long count) {
   dynamics.set_state(state);
   std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
   dynamics.pack(state, y.data());
+  const double later = std::nextafter(state.t, std::numeric_limits<double>::infinity());
   double best = std::numeric_limits<double>::infinity();
   for (int batch = 0; batch < k_batches; ++batch) {
     const double start = thread_cpu_seconds();
-    for (long i = 0; i < count / k_batches; ++i) dynamics.rates(state.t, y.data(), dy.data());
+    // At two times in turn: what is kept as long as the time is the same is not to help.
+    for (long i = 0; i < count / k_batches; ++i) dynamics.rates(i % 2 == 0 ? state.t : later, y.data(), dy.data());
     best = std::min(best, thread_cpu_seconds() - start);
   }
   std::printf("%.1f ns per evaluation\n", 1e9 * best / static_cast<double>(count / k_batches));
