@@ -60,6 +60,10 @@ struct RankFactor {
       found.vectors = vectors;
       return found;
     }
+    if (k == 0) { // nothing is left open
+      found.vectors = vectors;
+      return found;
+    }
     vectors.topRows(rank) = -qr.matrixR().topLeftCorner(rank, rank).template triangularView<Eigen::Upper>().solve(
         qr.matrixR().topRightCorner(rank, k));
     vectors = (vectors.array().abs() < k_no_part).select(0.0, vectors);
