@@ -7,41 +7,13 @@
 
 namespace steplap {
 
-namespace {
-
-constexpr int k_scan_points = 8;
-constexpr int k_max_subdivisions = 12;    // of a dip
-constexpr double k_same_place = 1e-9;     // of a step: the bottom has settled
-constexpr double k_rest = 1e-12;          // change of any coordinate or rate over a step in which nothing moves
-constexpr double k_looks_per_period = 16.0;
-constexpr double k_unseen_share = 8.0;    // of the variation seen: what may be unseen
-constexpr double k_fewest_looks = 8.0, k_most_looks = 1e6;
-
-// Lowest point inside (0, 1) of the cubic with values w0, w1 and slopes s0 < 0 < s1; NaN if none.
-double bottom_of_cubic(double w0, double s0, double w1, double s1) {
-  const double a = 2.0 * (w0 - w1) + s0 + s1, b = 3.0 * (w1 - w0) - 2.0 * s0 - s1;
-  // 3aθ² + 2bθ + s0 = 0, the root where the curve turns upward
-  const double discriminant = b * b - 3.0 * a * s0;
-  if (!(discriminant >= 0.0)) return std::numeric_limits<double>::quiet_NaN();
-  return -s0 / (b + std::sqrt(discriminant));
-}
-
-double cubic(double theta, double w0, double s0, double w1, double s1) {
-  const double t = theta, u = 1.0 - t;
-  return u * u * ((1.0 + 2.0 * t) * w0 + t * s0) + t * t * ((3.0 - 2.0 * t) * w1 - u * s1);
-}
-
-} // namespace
-
 EventFinder::EventFinder(const System& system, int max_dimension)
-    : shortest_period_(system.shortest_period), slots_(system.watch_count),
-      unit_slots_(system.frictions.empty() ? slots_ : system.frictions.front().watch), y_(max_dimension, 0.0), dy_(max_dimension, 0.0),
-      armed_(slots_, 1) {}
+    : slots_(system.watch_count), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), armed_(slots_, 1) {}
 
 void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look) {
   integrator.dense(dynamics, theta, y_.data());
   dynamics.rates(integrator.t0() + theta * integrator.h(), y_.data(), dy_.data());
-  dynamics.watch_merged_if_near(dy_.data(), is_resting_);
+  dynamics.watch_merged_if_near(dy_.data(), true);
   look.theta = theta;
   look.watch = dynamics.watch();
   look.rate = dynamics.watch_rate();
@@ -56,125 +28,30 @@ void EventFinder::look_at_end(const Integrator& integrator, bool is_last, Look& 
   for (double& rate : look.rate) rate *= integrator.h();
 }
 
-// Rounding, or the projection at another event, can leave a gap negative before it was seen to cross. Not
-// asked of friction: elements that share a load are at rest with bounds of their own already passed.
-bool EventFinder::starts_negative(const Integrator& integrator, int slot) const {
-  return slot < unit_slots_ && integrator.watch0()[slot] < 0.0;
-}
-
-EventFinder::Suspicion EventFinder::suspicion(const Integrator& integrator,
-                                              const std::vector<char>& fresh) {
-  look_at_.clear();
-  dips_.clear();
+EventFinder::Suspicion EventFinder::suspicion(Integrator& integrator, const std::vector<char>& fresh) {
+  near_.clear();
+  WatchNodes& nodes = integrator.watch_nodes();
+  nodes.close(integrator.watch0().data(), integrator.watch1().data());
   Suspicion worst = Suspicion::none;
   const double h = integrator.h();
   for (int i = 0; i < slots_; ++i) {
+    const double low = nodes.low(i);
+    if (2.0 * low > nodes.high(i)) continue; // far
     const double w0 = integrator.watch0()[i], w1 = integrator.watch1()[i];
     if (w1 < 0.0) {
-      // A plain crossing; a value that is fresh, or negative from the start, has to be followed.
-      worst = std::max(worst, fresh[i] || starts_negative(integrator, i) ? Suspicion::inside : Suspicion::at_end);
+      // A plain crossing. A value that is fresh, or negative from the start (rounding, or the projection at another
+      // event), has to be followed.
+      const bool is_plain = !fresh[i] && w0 >= 0.0 && nodes.crosses_once(i);
+      worst = std::max(worst, is_plain ? Suspicion::at_end : Suspicion::inside);
+      if (!is_plain) near_.push_back(i);
       continue;
     }
-    if (fresh[i]) continue;
-    if (integrator.watch_low()[i] < 0.0) worst = Suspicion::inside;
-    const double s0 = h * integrator.watch_rate0()[i], s1 = h * integrator.watch_rate1()[i];
-    if (!(s0 < 0.0 && s1 > 0.0)) continue; // also where the rate is not known (NaN)
-    const double theta = bottom_of_cubic(w0, s0, w1, s1);
-    if (!(theta > 0.0 && theta < 1.0)) continue;
-    // The cubic's own error is a fraction of how far it bends away from the chord.
-    const double bend = std::abs(w0 + theta * (w1 - w0) - cubic(theta, w0, s0, w1, s1));
-    if (cubic(theta, w0, s0, w1, s1) > 0.5 * bend) continue;
-    look_at_.push_back(theta);
-    dips_.push_back(i);
+    const double start = fresh[i] ? std::max(w0, 0.0) : w0;
+    if (nodes.is_surely_positive(i, {start, h * integrator.watch_rate0()[i]}, {w1, h * integrator.watch_rate1()[i]})) continue;
+    near_.push_back(i);
     worst = Suspicion::inside;
   }
   return worst;
-}
-
-// A dip may be much shorter than the cubic of a whole step is accurate: the bottom of each cubic halves it, as
-// the rate there tells, until the value is below zero or cannot be.
-void EventFinder::follow_dip(Integrator& integrator, Dynamics& dynamics, int slot) {
-  const double h = integrator.h();
-  struct End {
-    double theta, value, slope;
-  };
-  End a{0.0, integrator.watch0()[slot], h * integrator.watch_rate0()[slot]};
-  End b{1.0, integrator.watch1()[slot], h * integrator.watch_rate1()[slot]};
-  double last = -1.0;
-  for (int i = 0; i < k_max_subdivisions; ++i) {
-    const double width = b.theta - a.theta;
-    const double place = bottom_of_cubic(a.value, width * a.slope, b.value, width * b.slope);
-    if (!(place > 0.0 && place < 1.0)) return;
-    const double lowest = cubic(place, a.value, width * a.slope, b.value, width * b.slope);
-    const double bend = std::abs(a.value + place * (b.value - a.value) - lowest);
-    const double theta = a.theta + place * width;
-    if (lowest > 0.5 * bend || std::abs(theta - last) < k_same_place) return;
-    last = theta;
-    watch_at(integrator, dynamics, theta, middle_);
-    const End now{theta, middle_.watch[slot], middle_.rate[slot]};
-    if (now.value < 0.0) return look_at_.push_back(theta);
-    (now.slope < 0.0 ? a : b) = now;
-  }
-}
-
-// Golden section about the lowest of three looks; true (and a place to scan) if it gets below zero.
-bool EventFinder::is_negative_near(Integrator& integrator, Dynamics& dynamics, int slot, double middle, double reach) {
-  constexpr double k_golden = 0.3819660112501051;
-  double low = middle - reach, high = middle + reach;
-  for (int i = 0; i < 40 && high - low > k_same_place; ++i) {
-    const double left = low + k_golden * (high - low), right = high - k_golden * (high - low);
-    watch_at(integrator, dynamics, left, middle_);
-    const double at_left = middle_.watch[slot];
-    watch_at(integrator, dynamics, right, middle_);
-    const double at_right = middle_.watch[slot];
-    if (std::min(at_left, at_right) < 0.0) {
-      look_at_.push_back(at_left < 0.0 ? left : right);
-      return true;
-    }
-    (at_left < at_right ? high : low) = at_left < at_right ? right : left;
-  }
-  return false;
-}
-
-// Nothing has moved in a step whose length no error has limited: only loads change, and with them what friction has
-// to hold.
-void EventFinder::watch_rest(Integrator& integrator, Dynamics& dynamics) {
-  const int n = 2 * dynamics.coordinate_count();
-  for (int i = 0; i < n; ++i)
-    if (std::abs(integrator.y1()[i] - integrator.y0()[i]) > k_rest) return;
-  // The last of an element's slots is its place, which does not change at rest.
-  const auto is_place = [this](int slot) { return (slot - unit_slots_) % k_friction_watches == k_friction_watches - 1; };
-  // Nor is there anything to see where what the ends and the stages have met is far from zero, or constant.
-  bool varies = dynamics.layout().is_merged_watched; // the stages have not looked at those
-  for (int i = unit_slots_; i < slots_ && !varies; ++i) {
-    if (is_place(i)) continue;
-    const double w0 = integrator.watch0()[i], w1 = integrator.watch1()[i];
-    const double low = std::min({w0, w1, integrator.watch_low()[i]});
-    varies = low < k_unseen_share * (std::max(w0, w1) - low);
-  }
-  if (!varies) return;
-  is_resting_ = true;
-  const double looks = std::ceil(k_looks_per_period * integrator.h() / shortest_period_);
-  const int count = static_cast<int>(std::clamp(looks, k_fewest_looks, k_most_looks));
-  Look before, now, after;
-  look_at_end(integrator, false, before);
-  watch_at(integrator, dynamics, 1.0 / count, now);
-  for (int p = 1; p < count; ++p) {
-    if (p + 1 == count) look_at_end(integrator, true, after);
-    else watch_at(integrator, dynamics, static_cast<double>(p + 1) / count, after);
-    for (int i = unit_slots_; i < slots_; ++i) {
-      if (is_place(i)) continue;
-      if (now.watch[i] < 0.0) return look_at_.push_back(static_cast<double>(p) / count);
-      const bool is_lowest = now.watch[i] <= before.watch[i] && now.watch[i] <= after.watch[i];
-      // A parabola through the three falls below the lowest by an eighth of this at most; smooth curves by not much more.
-      const double bend = before.watch[i] - 2.0 * now.watch[i] + after.watch[i];
-      if (is_lowest && now.watch[i] < 0.25 * bend &&
-          is_negative_near(integrator, dynamics, i, static_cast<double>(p) / count, 1.0 / count))
-        return;
-    }
-    std::swap(before, now);
-    std::swap(now, after);
-  }
 }
 
 // Slots that were believed positive in `low` and are negative in `high` go to fired_.
@@ -192,44 +69,11 @@ EventFinder::Bracket EventFinder::bracket_whole(const Integrator& integrator) {
   return crosses(low_, high_) ? Bracket::found : Bracket::none;
 }
 
-EventFinder::Bracket EventFinder::scan(Integrator& integrator, Dynamics& dynamics,
-                                       const std::vector<char>& fresh) {
-  for (int i = 0; i < slots_; ++i) armed_[i] = !fresh[i] && !starts_negative(integrator, i);
-  for (const int slot : dips_) follow_dip(integrator, dynamics, slot);
-  for (int p = 1; p < k_scan_points; ++p) look_at_.push_back(static_cast<double>(p) / k_scan_points);
-  // Fresh values often turn within the first fraction of a step.
-  if (std::find(armed_.begin(), armed_.end(), 0) != armed_.end())
-    for (const double theta : {1e-4, 1e-3, 1e-2}) look_at_.push_back(theta);
-  look_at_.push_back(1.0);
-  std::sort(look_at_.begin(), look_at_.end());
-  look_at_end(integrator, false, low_);
-  for (const double theta : look_at_) {
-    if (theta == 1.0) look_at_end(integrator, true, high_);
-    else watch_at(integrator, dynamics, theta, high_);
-    if (crosses(low_, high_)) return Bracket::found;
-    for (int i = 0; i < slots_; ++i)
-      if (high_.watch[i] > 0.0) armed_[i] = 1;
-    std::swap(low_, high_);
-  }
-  // Fresh values that were never positive: the mode chosen is not the one the motion takes. The event
-  // is at once; the handler decides anew a hair later.
-  for (int i = 0; i < slots_; ++i)
-    if (!armed_[i] && low_.watch[i] < 0.0) fired_.push_back(i);
-  if (fired_.empty()) return Bracket::none;
-  high_.theta = look_at_.front();
-  return Bracket::at_once;
-}
-
 bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh) {
   if (slots_ == 0) return false;
-  is_resting_ = false;
-  Suspicion suspected = suspicion(integrator, fresh);
-  if (suspected == Suspicion::none && unit_slots_ < slots_ && integrator.is_adaptive()) {
-    watch_rest(integrator, dynamics);
-    if (!look_at_.empty()) suspected = Suspicion::inside;
-  }
+  const Suspicion suspected = suspicion(integrator, fresh);
   if (suspected == Suspicion::none) return false;
-  const Bracket bracket = suspected == Suspicion::inside ? scan(integrator, dynamics, fresh)
+  const Bracket bracket = suspected == Suspicion::inside ? survey(integrator, dynamics, fresh)
                                                          : bracket_whole(integrator);
   if (bracket == Bracket::none) return false;
   if (bracket == Bracket::found) close_in(integrator, dynamics);

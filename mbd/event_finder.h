@@ -1,11 +1,13 @@
 // Finds the first event inside a step: where a watch value falls below zero.
 //
-// Looked at: the step's end, the stages inside it (free of charge), and, where a value's rate is known
-// at both ends and it dips in between, the bottom of its cubic; if that may be below zero, the dip is followed
-// on dense output, cubic by cubic, down to its bottom. Where nothing moves no error limits an adaptive step, and
-// loads may rise and fall within it: it is looked at many times in each of their periods. Whatever raises suspicion is scanned on
-// dense output, then the root is closed in on to rounding; all values that are negative on the far side
-// of the bracket fire together.
+// A step is passed only if every watch value is known to stay positive on the whole of it (docs/theory.md, "Events"):
+//   far      its least value at the ends and stages is more than half its largest: it cannot have reached zero
+//            in between unless it varies faster than stages resolve, which no step lets it (watch_nodes.h);
+//   certain  the bound of watch_nodes.h keeps it positive between stages;
+//   looked   else it is interpolated on dense output by a polynomial, the part of the step divided until the
+//            polynomial is exact enough to tell (event_survey.cpp).
+// A plain change of sign is closed in on at once. The root is closed in on to rounding; all values that are
+// negative on the far side of the bracket fire together.
 //
 // A value that belongs to a unit or friction whose mode has just changed is *fresh*: it starts at zero
 // up to rounding and is not believed negative until it has been positive.
@@ -35,28 +37,33 @@ public:
 private:
   enum class Suspicion { none, at_end, inside };
   enum class Bracket { none, found, at_once };
-  [[nodiscard]] Suspicion suspicion(const Integrator& integrator, const std::vector<char>& fresh);
-  Bracket scan(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
-  Bracket bracket_whole(const Integrator& integrator);
-  void close_in(Integrator& integrator, Dynamics& dynamics);
-  void follow_dip(Integrator& integrator, Dynamics& dynamics, int slot);
-  void watch_rest(Integrator& integrator, Dynamics& dynamics);
-  [[nodiscard]] bool is_negative_near(Integrator& integrator, Dynamics& dynamics, int slot, double middle, double reach);
-  [[nodiscard]] double next_look(double middle);
-  [[nodiscard]] double first_secant() const;
   struct Look {
     double theta = 0.0;
     std::vector<double> watch, rate; ///< rate: per unit of theta, NaN where it is not known
   };
+  /// A part of the step, interpolated.
+  struct Part {
+    double begin = 0.0, end = 1.0;
+    int depth = 0;
+  };
+
+  [[nodiscard]] Suspicion suspicion(Integrator& integrator, const std::vector<char>& fresh);
+  Bracket bracket_whole(const Integrator& integrator);
+  // --- event_survey.cpp
+  Bracket survey(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
+  bool look_along(Integrator& integrator, Dynamics& dynamics, double theta);
+  bool look_through(Integrator& integrator, Dynamics& dynamics, const Part& part);
+  [[nodiscard]] double unclear_place(std::size_t count) const;
+  // --- event_closing.cpp
+  void close_in(Integrator& integrator, Dynamics& dynamics);
+  [[nodiscard]] double next_look(double middle);
+  [[nodiscard]] double first_secant() const;
+
   void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look);
   static void look_at_end(const Integrator& integrator, bool is_last, Look& look);
   [[nodiscard]] bool crosses(const Look& low, const Look& high);
-  [[nodiscard]] bool starts_negative(const Integrator& integrator, int slot) const;
 
-  double shortest_period_; ///< of the loads, s
   int slots_;
-  int unit_slots_; ///< those of contacts and springs come first
-  bool is_resting_ = false; ///< nothing moves in the step: joints far from their limits are looked at, too
   double theta_ = 0.0;
   std::vector<double> y_, dy_;
   Look low_, high_, middle_;     ///< the bracket's ends, and a place between them
@@ -74,8 +81,10 @@ private:
     bool is_settled = false; ///< the root is as exact as it can be
   };
   Aim aim_;
-  std::vector<double> look_at_;  ///< places inside the step to scan besides the even ones
-  std::vector<int> dips_;        ///< slots whose bottom inside the step may be below zero
+  static constexpr std::size_t k_places = 7;
+  std::array<Look, k_places> place_; ///< of the part of the step being looked through
+  std::vector<int> near_;        ///< slots that ends and stages do not make certain
+  std::vector<Part> parts_;      ///< still to be looked through, the first one last
   std::vector<char> armed_;      ///< believed when negative
   std::vector<int> fired_, fired_before_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 namespace steplap {
@@ -187,11 +186,12 @@ SignalJet Signal::drive(double t, DriveLevel level) const {
   return {jet.double_integral, jet.integral, jet.value};
 }
 
-double Signal::shortest_period() const {
+double Signal::fastest_at(double t) const {
   double fastest = 0.0;
-  for (const Piece& piece : pieces_)
-    for (const Harmonic& harmonic : piece.harmonics) fastest = std::max(fastest, std::abs(harmonic.frequency));
-  return 2.0 * std::numbers::pi / fastest;
+  if (const Piece* piece = piece_at(t))
+    for (const Harmonic& harmonic : piece->harmonics)
+      if (harmonic.amplitude != 0.0) fastest = std::max(fastest, std::abs(harmonic.frequency));
+  return fastest;
 }
 
 bool Signal::is_constant() const {

@@ -60,8 +60,8 @@ public:
   /// pieces (none for a constant).
   [[nodiscard]] const std::vector<double>& breakpoints() const { return breakpoints_; }
   [[nodiscard]] bool is_constant() const;
-  /// Of its harmonics, s; infinite if it has none.
-  [[nodiscard]] double shortest_period() const;
+  /// Angular frequency of the fastest of its harmonics in the piece that holds t, rad/s; 0 if it has none.
+  [[nodiscard]] double fastest_at(double t) const;
   /// True where the value itself jumps at breakpoint k by more than rounding.
   [[nodiscard]] bool jumps_at(std::size_t k) const;
 

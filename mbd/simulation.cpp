@@ -67,10 +67,17 @@ double Simulation::next_limit() const {
   return next == system_.breakpoints.end() ? options_.end : std::min(*next, options_.end);
 }
 
-void Simulation::restart() {
-  dynamics_.set_state(state_);
+// What signals do up to the next breakpoint.
+void Simulation::approach_limit() {
   const double limit = next_limit();
   dynamics_.set_time_limit(limit);
+  const double fastest = system_.fastest_at(0.5 * (state_.t + limit));
+  integrator_->limit_step(fastest > 0.0 ? Integrator::k_largest_turn / fastest : std::numeric_limits<double>::infinity());
+}
+
+void Simulation::restart() {
+  dynamics_.set_state(state_);
+  approach_limit();
   dynamics_.pack(state_, y_.data());
   integrator_->restart(dynamics_, state_.t, y_.data());
 }

@@ -79,6 +79,7 @@ private:
   void guard_against_chatter(double t);
   void guard_against_crawl();
   [[nodiscard]] double next_limit() const;
+  void approach_limit();
 
   const System& system_;
   SimulationOptions options_;

@@ -72,6 +72,12 @@ double System::kinetic_energy(const State& state) const {
   return sum;
 }
 
+double System::fastest_at(double t) const {
+  double fastest = 0.0;
+  for (const auto& signal : signals_) fastest = std::max(fastest, signal->fastest_at(t));
+  return fastest;
+}
+
 const Channel* System::find_channel(const std::string& name) const {
   for (const Channel& channel : channels)
     if (channel.name == name) return &channel;
@@ -216,7 +222,6 @@ const Signal* SystemBuilder::signal(const std::string& name) {
     auto signal = std::make_unique<Signal>(entry.kind->build(*entry.definition));
     for (const double t : signal->breakpoints())
       if (t > 0.0) system_->breakpoints.push_back(t);
-    system_->shortest_period = std::min(system_->shortest_period, signal->shortest_period());
     signal_index_[name] = signal.get();
     system_->signals_.push_back(std::move(signal));
     return signal_index_[name];

@@ -6,7 +6,6 @@
 #include "mbd/roles.h"
 
 #include <functional>
-#include <limits>
 #include <map>
 #include <typeinfo>
 #include <memory>
@@ -95,7 +94,6 @@ public:
   std::vector<FrictionUnit> frictions;
   std::vector<Channel> channels;
   std::vector<double> breakpoints; ///< of all signals in use, ascending
-  double shortest_period = std::numeric_limits<double>::infinity(); ///< of their harmonics, s
   std::vector<double> initial_memory;
   std::vector<char> is_body_used; ///< per body: some force element or friction refers to it
   int contact_count = 0;
@@ -108,6 +106,8 @@ public:
   /// Potential energy: gravity and all that is stored in elements.
   [[nodiscard]] double potential_energy(const Motion<double>* motion) const;
   [[nodiscard]] double kinetic_energy(const State& state) const;
+  /// Angular frequency of the fastest harmonic of all loads and drives between the breakpoints about t, rad/s; 0: none.
+  [[nodiscard]] double fastest_at(double t) const;
   [[nodiscard]] const Channel* find_channel(const std::string& name) const;
 
 private:

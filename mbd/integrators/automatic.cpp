@@ -29,6 +29,12 @@ public:
   }
   [[nodiscard]] const char* name() const override { return "auto"; }
   [[nodiscard]] bool is_adaptive() const override { return true; }
+  [[nodiscard]] WatchNodes& watch_nodes() override { return active_->watch_nodes(); }
+  void limit_step(double longest) override {
+    Integrator::limit_step(longest);
+    explicit_->limit_step(longest);
+    if (implicit_) implicit_->limit_step(longest);
+  }
 
   void step(Dynamics& dynamics, double t_limit) override {
     choose(dynamics);
@@ -41,7 +47,6 @@ public:
     std::copy(active_->rate1(), active_->rate1() + n_, k1_);
     watch1_ = active_->watch1();
     watch_rate1_ = active_->watch_rate1();
-    watch_low_ = active_->watch_low();
     steps_ = explicit_->steps() + (implicit_ ? implicit_->steps() : 0);
     rejections_ = explicit_->rejections() + (implicit_ ? implicit_->rejections() : 0);
     residual_.position = std::max(residual_.position, active_->max_position_residual());
@@ -84,6 +89,7 @@ private:
     if (!implicit_) {
       settings_of_implicit_.step = 10.0 * explicit_step_;
       implicit_ = make_rodas5p(dynamics, settings_of_implicit_, max_dimension_);
+      implicit_->limit_step(longest_step_);
     }
     active_ = implicit_.get();
   }

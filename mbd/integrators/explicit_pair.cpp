@@ -48,7 +48,7 @@ SingularCrossing::Step ExplicitPair::crossing_step(Dynamics& dynamics) {
   step.rate0 = k0_;
   step.n = n_;
   step.norm = [this](const double* error) { return error_norm(error); };
-  step.note_stage = [this, &dynamics](const double* rates) { note_stage_watches(dynamics, rates); };
+  step.note_stage = [this, &dynamics](const double* rates, double theta) { note_stage_watches(dynamics, rates, theta); };
   return step;
 }
 
@@ -74,15 +74,15 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   if (h == 0.0) return h_tried;
   h_ = h;
   t1_ = t0_ + h_;
-  std::fill(watch_low_.begin(), watch_low_.end(), 1.0);
+  begin_watch_nodes();
   is_crossing_ = crossing_->cross(dynamics, crossing_step(dynamics), y1_.data()) <= 1.0;
   return is_crossing_ ? 0.0 : std::min(h_tried, k_closer * ahead);
 }
 
 void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
   const double left = t_limit - t0_;
-  const double h_max = settings_.max_step > 0.0 ? settings_.max_step : left;
-  if (next_h_ <= 0.0) next_h_ = first_step(dynamics, order_ - 1, std::min(left, h_max));
+  const double h_max = limited(left);
+  if (next_h_ <= 0.0) next_h_ = first_step(dynamics, order_ - 1, h_max);
   update_weights(dynamics);
   double h = std::min(next_h_, h_max);
   SingularPassage passage(dynamics);
@@ -92,7 +92,7 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
     // Two even steps rather than a long one and a sliver.
     h_ = is_last ? left : (2.0 * h > left ? 0.5 * left : h);
     t1_ = is_last ? t_limit : t0_ + h_;
-    std::fill(watch_low_.begin(), watch_low_.end(), 1.0);
+    begin_watch_nodes();
     passage.begin_try();
     is_crossing_ = false;
     const double error = try_step(dynamics);

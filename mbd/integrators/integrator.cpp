@@ -13,14 +13,16 @@ constexpr double k_displacement_floor = 1e-3;
 constexpr double k_rate_floor = 60.0;
 // What projection takes away counts by this share: it leaves what directions turn by within a step, twice.
 constexpr double k_turned_share = 1e-4;
+// Merged joints far from their bounds are looked at about twice inside a step, so far apart.
+constexpr double k_merged_look = 0.25;
 
 } // namespace
 
 Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
     : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0),
       y1_(max_dimension, 0.0), weight_(max_dimension, 0.0), scratch_(3 * max_dimension, 0.0),
-      watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_low_(watch0_), watch_rate0_(watch0_),
-      watch_rate1_(watch0_) {
+      watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_rate0_(watch0_),
+      watch_rate1_(watch0_), nodes_(system_.watch_count) {
   double size = 0.0;
   for (const BodyData& body : system_.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
@@ -57,12 +59,11 @@ void Integrator::finish_step(Dynamics& dynamics) {
   ++steps_;
 }
 
-void Integrator::note_stage_watches(Dynamics& dynamics, const double* dy) {
-  dynamics.watch_merged_if_near(dy);
-  const double* const watch = dynamics.watch().data();
-  double* const low = watch_low_.data();
-  const std::size_t n = watch_low_.size();
-  for (std::size_t i = 0; i < n; ++i) low[i] = watch[i] < low[i] ? watch[i] : low[i];
+void Integrator::note_stage_watches(Dynamics& dynamics, const double* dy, double theta) {
+  const bool is_due = theta > last_merged_look_ + k_merged_look && theta < 1.0 - 0.5 * k_merged_look;
+  if (is_due) last_merged_look_ = theta;
+  dynamics.watch_merged_if_near(dy, is_due);
+  nodes_.add(theta, dynamics.watch().data());
 }
 
 void Integrator::update_weights(const Dynamics& dynamics) {

@@ -7,7 +7,10 @@
 #pragma once
 
 #include "mbd/dynamics.h"
+#include "mbd/watch_nodes.h"
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,6 +35,10 @@ public:
   [[nodiscard]] virtual bool is_adaptive() const = 0;
   /// Begins at (t, y) in the layout that `dynamics` has now; evaluates the rates there.
   void restart(Dynamics& dynamics, double t, const double* y);
+  /// No step is longer than this, s: Simulation sets it anew wherever the loads' and drives' harmonics change.
+  virtual void limit_step(double longest) { longest_step_ = longest; }
+  /// No step turns a harmonic of a load or drive further than this, rad: its places resolve a quarter of a period.
+  static constexpr double k_largest_turn = 1.6;
   /// Makes one step of at most t_limit − t. Throws NumericalFailure where no step can be made.
   virtual void step(Dynamics& dynamics, double t_limit) = 0;
   /// State at t + theta·h of the step made, 0 ≤ theta ≤ 1. May evaluate.
@@ -57,8 +64,8 @@ public:
   [[nodiscard]] const std::vector<double>& watch1() const { return watch1_; }
   [[nodiscard]] const std::vector<double>& watch_rate0() const { return watch_rate0_; }
   [[nodiscard]] const std::vector<double>& watch_rate1() const { return watch_rate1_; }
-  /// Per watch value the least one met at the stages inside the step: a hint where to look closer.
-  [[nodiscard]] const std::vector<double>& watch_low() const { return watch_low_; }
+  /// Watch values met at the stages inside the step.
+  [[nodiscard]] virtual WatchNodes& watch_nodes() { return nodes_; }
 
   [[nodiscard]] long steps() const { return steps_; }
   [[nodiscard]] long rejections() const { return rejections_; }
@@ -74,8 +81,17 @@ protected:
   }
   /// Projects y1 and evaluates there: rates into k1, watch values into watch1.
   void finish_step(Dynamics& dynamics);
-  /// After the rates dy of a stage.
-  void note_stage_watches(Dynamics& dynamics, const double* dy);
+  void begin_watch_nodes() {
+    nodes_.clear();
+    last_merged_look_ = 0.0;
+  }
+  /// After the rates dy of a stage at t0 + theta·h.
+  void note_stage_watches(Dynamics& dynamics, const double* dy, double theta);
+  /// `h` within the limits set.
+  [[nodiscard]] double limited(double h) const {
+    if (settings_.max_step > 0.0) h = std::min(h, settings_.max_step);
+    return std::min(h, longest_step_);
+  }
   /// Weights of the error norm: 1/(tolerance · scale) per coordinate, 0 where locked.
   void update_weights(const Dynamics& dynamics);
   [[nodiscard]] double error_norm(const double* error) const;
@@ -92,7 +108,10 @@ protected:
   std::vector<double> y0_, y1_, weight_, scratch_;
   double* k0_ = nullptr;
   double* k1_ = nullptr;
-  std::vector<double> watch0_, watch1_, watch_low_, watch_rate0_, watch_rate1_;
+  std::vector<double> watch0_, watch1_, watch_rate0_, watch_rate1_;
+  WatchNodes nodes_;
+  double longest_step_ = std::numeric_limits<double>::infinity();
+  double last_merged_look_ = 0.0; ///< theta at which joints that are merged were last looked at inside the step
   long steps_ = 0, rejections_ = 0;
   Residual residual_;
   double length_scale_ = 1.0;

@@ -22,10 +22,11 @@ public:
   void step(Dynamics& dynamics, double t_limit) override {
     const double left = t_limit - t0_;
     // A remainder of a step's rounding is taken along rather than left for a step of its own.
-    const bool is_last = left <= settings_.step * (1.0 + 1e-9);
-    h_ = is_last ? left : settings_.step;
+    const double step = limited(settings_.step);
+    const bool is_last = left <= step * (1.0 + 1e-9);
+    h_ = is_last ? left : step;
     t1_ = is_last ? t_limit : t0_ + h_;
-    std::fill(watch_low_.begin(), watch_low_.end(), 1.0);
+    begin_watch_nodes();
     stage(dynamics, 1, 0.5, k(0));
     stage(dynamics, 2, 0.5, k(1));
     stage(dynamics, 3, 1.0, k(2));
@@ -44,7 +45,7 @@ private:
     double* y = scratch_.data();
     for (int i = 0; i < n_; ++i) y[i] = y0_[i] + c * h_ * previous[i];
     dynamics.rates(t0_ + c * h_, y, k(index));
-    note_stage_watches(dynamics, k(index));
+    note_stage_watches(dynamics, k(index), c);
   }
   std::vector<double> k_;
   int stride_;

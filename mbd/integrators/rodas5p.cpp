@@ -150,7 +150,7 @@ void Rodas5p::finish_powers(Dynamics& dynamics) {
   for (int p = 0; p < 2; ++p) {
     interpolate(k_lobatto[p], y.data());
     dynamics.rates(t0_ + k_lobatto[p] * h_, y.data(), rate_.data());
-    note_stage_watches(dynamics, rate_.data());
+    note_stage_watches(dynamics, rate_.data(), k_lobatto[p]);
     for (int i = 0; i < 2; ++i) power_[i][p + 1] = rate_[e + i];
   }
   for (int i = 0; i < 2; ++i) {
@@ -161,8 +161,8 @@ void Rodas5p::finish_powers(Dynamics& dynamics) {
 
 void Rodas5p::step(Dynamics& dynamics, double t_limit) {
   const double left = t_limit - t0_;
-  const double h_max = settings_.max_step > 0.0 ? settings_.max_step : left;
-  if (next_h_ <= 0.0) next_h_ = first_step(dynamics, 4, std::min(left, h_max));
+  const double h_max = limited(left);
+  if (next_h_ <= 0.0) next_h_ = first_step(dynamics, 4, h_max);
   update_weights(dynamics);
   linearization_.evaluate(dynamics, t0_, y0_.data());
   system_of_stages_.set(linearization_, dynamics.layout());
@@ -175,7 +175,7 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
     if (error <= 1.0) {
       const double factor = control_.factor(error, is_retry);
       next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
-      std::fill(watch_low_.begin(), watch_low_.end(), 1.0);
+      begin_watch_nodes();
       finish_step(dynamics);
       finish_powers(dynamics);
       return;

@@ -252,7 +252,7 @@ double SingularCrossing::cross(Dynamics& dynamics, const Step& step, double* y1)
     if (!settle(dynamics, step, y1)) return k_infinite;
     for (int i = 0; i < k_stages; ++i) { // for what a step's stages tell of events
       evaluate(dynamics, step, i);
-      step.note_stage(rate(i));
+      step.note_stage(rate(i), gauss_table().c[i]);
     }
   } catch (const ConstraintFailure&) {
     return k_infinite;

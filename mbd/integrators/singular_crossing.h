@@ -29,7 +29,7 @@ public:
     const double* rate0 = nullptr;
     int n = 0;
     Norm norm;     ///< 1: as large as tolerated
-    std::function<void(const double* rates)> note_stage; ///< after each stage's last evaluation
+    std::function<void(const double* rates, double theta)> note_stage; ///< after each stage's last evaluation
   };
 
   /// Where in a step (0: its start, 1: its end, above 1: beyond it) the joints are singular; NaN if nowhere near.

@@ -1,0 +1,158 @@
+// EventFinder: what watch values do inside a step that its ends and stages do not make certain.
+//
+// Part by part from the step's start, values at seven Chebyshev–Lobatto places of dense output are interpolated. With
+// the Chebyshev coefficients a_0 … a_6 of a value, |a_5| + |a_6| stands for the error of the polynomial (it is that of
+// the one of order 4): a part is clear of a value that stays above it. Else the part is divided, where the polynomial is
+// least, so that the bottom of a dip becomes an end of both halves; a value that is negative at any place makes the
+// bracket of an event. What dips below zero for less than k_shortest of a step, and only by rounding, is no event.
+#include "mbd/event_finder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_order = 6;
+constexpr int k_samples = 32;          // of the polynomial, to find its least value
+constexpr double k_shortest = 1e-9;    // part of a step that is not divided
+constexpr double k_margin_of_cut = 0.1; // of a part: not nearer to its ends
+constexpr double k_rounding = 1e-15;   // of a value's largest: coefficients below it are rounding
+constexpr int k_most_depth = 60;
+
+struct Chebyshev {
+  double place[k_order + 1];                       // in [0, 1]
+  double transform[k_order + 1][k_order + 1];      // coefficients from values
+  double sample[k_samples + 1][k_order + 1];       // T_j at even places
+
+  Chebyshev() {
+    const double pi = std::numbers::pi;
+    for (int k = 0; k <= k_order; ++k) place[k] = 0.5 * (1.0 - std::cos(pi * k / k_order));
+    for (int j = 0; j <= k_order; ++j)
+      for (int k = 0; k <= k_order; ++k) {
+        double w = 2.0 / k_order * std::cos(pi * j * (k_order - k) / k_order);
+        if (j == 0 || j == k_order) w *= 0.5;
+        if (k == 0 || k == k_order) w *= 0.5;
+        transform[j][k] = w;
+      }
+    for (int m = 0; m <= k_samples; ++m)
+      for (int j = 0; j <= k_order; ++j) sample[m][j] = std::cos(j * std::acos(std::clamp(-1.0 + 2.0 * m / k_samples, -1.0, 1.0)));
+  }
+};
+
+const Chebyshev& chebyshev() {
+  static const Chebyshev table;
+  return table;
+}
+
+} // namespace
+
+// Where in the part between the first `count` + 1 places some near value may be below zero (0 … 1), −1 if nowhere.
+double EventFinder::unclear_place(std::size_t last) const {
+  const Chebyshev& table = chebyshev();
+  const double until = table.place[last];
+  for (const int slot : near_) {
+    if (!armed_[slot] || place_[0].watch[slot] < 0.0) continue; // not believed yet, or followed by the looks themselves
+    double a[k_order + 1] = {}, largest = 0.0;
+    for (int k = 0; k <= k_order; ++k) {
+      const double w = place_[k].watch[slot];
+      largest = std::max(largest, std::abs(w));
+      for (int j = 0; j <= k_order; ++j) a[j] += table.transform[j][k] * w;
+    }
+    double error = std::abs(a[k_order]) + std::abs(a[k_order - 1]);
+    if (error < k_rounding * largest) error = 0.0;
+    double least = error, at = -1.0;
+    // The ends are known; what leaves one upward is above the error at the first sample.
+    for (int m = 1; m < k_samples; ++m) {
+      const double x = static_cast<double>(m) / k_samples;
+      if (x > until) break;
+      double p = 0.0;
+      for (int j = 0; j <= k_order; ++j) p += a[j] * table.sample[m][j];
+      if (p > least) continue;
+      least = p;
+      at = x;
+    }
+    if (at >= 0.0) return at;
+  }
+  return -1.0;
+}
+
+// A look beyond low_: true if something falls below zero between the two.
+bool EventFinder::look_along(Integrator& integrator, Dynamics& dynamics, double theta) {
+  if (theta == 1.0) look_at_end(integrator, true, high_);
+  else watch_at(integrator, dynamics, theta, high_);
+  if (crosses(low_, high_)) return true;
+  for (int i = 0; i < slots_; ++i)
+    if (high_.watch[i] > 0.0) armed_[i] = 1;
+  std::swap(low_, high_);
+  return false;
+}
+
+// low_ is at the part's begin. True with a bracket in low_ and high_; else low_ is at its end, or the part has been divided.
+bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const Part& part) {
+  const Chebyshev& table = chebyshev();
+  const double width = part.end - part.begin;
+  place_[0] = low_;
+  const std::vector<char> armed_before = armed_;
+  std::size_t last = k_order; // place up to which nothing has been seen below zero
+  for (std::size_t k = 1; k <= k_order; ++k) {
+    const double theta = k == k_order ? part.end : part.begin + table.place[k] * width;
+    if (theta == 1.0) look_at_end(integrator, true, place_[k]);
+    else watch_at(integrator, dynamics, theta, place_[k]);
+    if (last == k_order && crosses(place_[k - 1], place_[k])) last = k - 1;
+    if (last == k_order)
+      for (int i = 0; i < slots_; ++i)
+        if (place_[k].watch[i] > 0.0) armed_[i] = 1;
+  }
+  const double unclear = width > k_shortest && part.depth < k_most_depth ? unclear_place(last) : -1.0;
+  if (unclear >= 0.0) {
+    const double cut = part.begin + std::clamp(unclear, k_margin_of_cut, 1.0 - k_margin_of_cut) * width;
+    parts_.push_back({cut, part.end, part.depth + 1});
+    parts_.push_back({part.begin, cut, part.depth + 1});
+    armed_ = armed_before;
+    return false;
+  }
+  if (last < k_order) {
+    (void)crosses(place_[last], place_[last + 1]);
+    std::swap(low_, place_[last]);
+    std::swap(high_, place_[last + 1]);
+    return true;
+  }
+  std::swap(low_, place_[k_order]);
+  return false;
+}
+
+EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh) {
+  look_at_end(integrator, false, low_);
+  bool is_any_unarmed = false;
+  for (int i = 0; i < slots_; ++i) {
+    armed_[i] = !fresh[i] && low_.watch[i] >= 0.0;
+    is_any_unarmed = is_any_unarmed || !armed_[i];
+  }
+  parts_.clear();
+  parts_.push_back({});
+  // Fresh values often turn within the first fraction of a step.
+  if (is_any_unarmed)
+    for (const double theta : {1e-4, 1e-3, 1e-2}) {
+      if (look_along(integrator, dynamics, theta)) return Bracket::found;
+      parts_.back().begin = theta;
+    }
+  while (!parts_.empty()) {
+    const Part part = parts_.back();
+    parts_.pop_back();
+    if (look_through(integrator, dynamics, part)) return Bracket::found;
+  }
+  // Values that were never positive: the mode chosen is not the one the motion takes. The event
+  // is at once; the handler decides anew a hair later.
+  fired_.clear();
+  for (int i = 0; i < slots_; ++i)
+    if (!armed_[i] && low_.watch[i] < 0.0) fired_.push_back(i);
+  if (fired_.empty()) return Bracket::none;
+  high_.theta = 1e-4;
+  return Bracket::at_once;
+}
+
+} // namespace steplap

@@ -1,0 +1,94 @@
+#include "mbd/watch_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_curvature_safety = 2.0;
+
+// Least of chord − ½ M s (g − s) over 0 < s < g for values a, b at its ends: positive?
+bool is_positive_between(double a, double b, double g, double m) {
+  const double slope = (b - a) / g;
+  const double s = 0.5 * g - slope / m; // where it is least
+  if (!(s > 0.0)) return b > 0.0;
+  if (!(s < g)) return a > 0.0;
+  return a + slope * s - 0.5 * m * s * (g - s) > 0.0;
+}
+
+} // namespace
+
+void WatchNodes::add(double theta, const double* watch) {
+  if (count_ == k_most || !(theta > 0.0 && theta < 1.0)) return;
+  for (int i = 0; i < count_; ++i)
+    if (theta_[i] == theta) { // a later stage at the same place is the better one
+      std::copy(watch, watch + slots_, values_.begin() + static_cast<std::ptrdiff_t>(i) * slots_);
+      return;
+    }
+  theta_[count_] = theta;
+  std::copy(watch, watch + slots_, values_.begin() + static_cast<std::ptrdiff_t>(count_) * slots_);
+  ++count_;
+}
+
+void WatchNodes::close(const double* watch0, const double* watch1) {
+  for (int i = 0; i < count_; ++i) order_[i] = i;
+  std::sort(order_.begin(), order_.begin() + count_, [this](int a, int b) { return theta_[a] < theta_[b]; });
+  low_.resize(slots_);
+  high_.resize(slots_);
+  double* const low = low_.data();
+  double* const high = high_.data();
+  for (int i = 0; i < slots_; ++i) {
+    low[i] = watch0[i] < watch1[i] ? watch0[i] : watch1[i];
+    high[i] = watch0[i] < watch1[i] ? watch1[i] : watch0[i];
+  }
+  for (int k = 0; k < count_; ++k) {
+    const double* const w = values_.data() + static_cast<std::ptrdiff_t>(k) * slots_;
+    for (int i = 0; i < slots_; ++i) {
+      low[i] = w[i] < low[i] ? w[i] : low[i];
+      high[i] = w[i] > high[i] ? w[i] : high[i];
+    }
+  }
+}
+
+bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const WatchEnd& end) const {
+  std::array<double, k_most + 2> x, w, bend; // bend[j]: |w″| by the difference about j
+  const int n = count_ + 1;
+  x[0] = 0.0;
+  w[0] = start.value;
+  for (int j = 1; j < n; ++j) {
+    x[j] = theta_[order_[j - 1]];
+    w[j] = values_[static_cast<std::size_t>(order_[j - 1]) * slots_ + slot];
+    if (!(w[j] > 0.0)) return false;
+  }
+  x[n] = 1.0;
+  w[n] = end.value;
+  if (!(w[0] >= 0.0 && w[n] >= 0.0) || n < 2) return false;
+  for (int j = 1; j < n; ++j)
+    bend[j] = 2.0 * std::abs(((w[j + 1] - w[j]) / (x[j + 1] - x[j]) - (w[j] - w[j - 1]) / (x[j] - x[j - 1])) /
+                             (x[j + 1] - x[j - 1]));
+  bend[0] = bend[1];
+  bend[n] = bend[n - 1];
+  for (int j = 0; j < n; ++j) {
+    const double m = k_curvature_safety * std::max(bend[j], bend[j + 1]), g = x[j + 1] - x[j];
+    if (is_positive_between(w[j], w[j + 1], g, m)) continue;
+    // Out of the start or into the end with a slope that is known (comparisons with NaN are false).
+    if (j == 0 && start.slope > 0.5 * m * g) continue;
+    if (j == n - 1 && -end.slope > 0.5 * m * g) continue;
+    return false;
+  }
+  return true;
+}
+
+bool WatchNodes::crosses_once(int slot) const {
+  bool is_negative = false;
+  for (int k = 0; k < count_; ++k) {
+    const double w = values_[static_cast<std::size_t>(order_[k]) * slots_ + slot];
+    if (is_negative && w >= 0.0) return false;
+    is_negative = is_negative || w < 0.0;
+  }
+  return true;
+}
+
+} // namespace steplap
