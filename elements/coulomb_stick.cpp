@@ -18,6 +18,7 @@ constexpr double k_foot_dead_band = 1e-13;
 constexpr double k_end_dead_band = 1e-13;
 // |λ| may pass the bound by rounding, relative: ten times below the 1e-12 that a load can resolve.
 constexpr double k_bound_slack = 1e-13;
+constexpr double k_no_motion = 1e-12; // m/s or m/s²: rounding of a coordinate that a drive keeps at rest
 
 class CoulombFriction : public FrictionElement {
 public:
@@ -72,7 +73,8 @@ public:
     FrictionBlock block;
     const double bound = (is_kinetic ? mu_kinetic : mu_static) * normal_force(e);
     const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? -bound : bound);
-    block.is_inside = std::abs(wanted) <= bound * (1.0 + k_bound_slack);
+    // Where a drive prescribes the coordinate no force changes its motion: it rests or it does not.
+    block.is_inside = a[0] > 0.0 ? std::abs(wanted) <= bound * (1.0 + k_bound_slack) : std::abs(b[0]) <= k_no_motion;
     block.wrench[0] = std::clamp(wanted, -bound, bound);
     block.direction[0] = wanted > 0.0 ? -1.0 : 1.0;
     return block;

@@ -10,6 +10,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_bound_slack = 1e-13; // as in coulomb_stick.cpp
+constexpr double k_no_motion = 1e-12; // m/s or m/s²: rounding of a coordinate that a drive keeps at rest
 
 class ConstantFriction final : public FrictionElement {
 public:
@@ -39,7 +40,8 @@ public:
     FrictionBlock block;
     const double bound = is_kinetic ? drags : holds;
     const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? -bound : bound);
-    block.is_inside = std::abs(wanted) <= bound * (1.0 + k_bound_slack);
+    // Where a drive prescribes the coordinate no force changes its motion: it rests or it does not.
+    block.is_inside = a[0] > 0.0 ? std::abs(wanted) <= bound * (1.0 + k_bound_slack) : std::abs(b[0]) <= k_no_motion;
     block.wrench[0] = std::clamp(wanted, -bound, bound);
     block.direction[0] = wanted > 0.0 ? -1.0 : 1.0;
     return block;

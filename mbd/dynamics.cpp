@@ -60,6 +60,7 @@ void Dynamics::set_state(const State& state) {
   for (const auto& layout : layouts_)
     if (layout->key == key_) {
       layout_ = layout.get();
+      if (!layout_->held_rows.empty()) layout_->schur.decide_rank(layout_->is_friction_row);
       return;
     }
   layouts_.push_back(std::make_unique<Layout>(make_layout(system_, state)));
@@ -76,6 +77,7 @@ void Dynamics::set_state(const State& state) {
     target_rate_.resize(rows);
   }
   if (lock_target_.size() < layout_->locks.size()) lock_target_.resize(layout_->locks.size());
+  if (!layout_->held_rows.empty()) layout_->schur.decide_rank(layout_->is_friction_row);
 }
 
 void Dynamics::set_time_limit(double limit) {

@@ -39,6 +39,8 @@ public:
   void set_state(const State& state);
   /// Forgets layouts whose merged bodies may have moved against each other.
   void forget_layouts() { layouts_.clear(); }
+  /// Relative rates along the rows of friction element f, and what they change by in a second, at the last rates().
+  void slip_motion(int f, const double* dy, double* rate, double* acceleration, double* rounding);
 
   /// Signals are read on the left side of `limit`, a breakpoint that no step passes: a jump there does
   /// not reach into the step that ends at it.
@@ -102,6 +104,7 @@ public:
     std::vector<const RowSpec*> rows;
     std::vector<double> compliance;   ///< n × n, row-major
     std::vector<double> acceleration; ///< n: relative acceleration without their wrenches
+    std::vector<double> rounding;     ///< n: of it
   };
   void respond(Candidates& candidates, const double* dy);
 
@@ -117,6 +120,7 @@ private:
   template <bool WithBias> MeasureValue<double> load_row(std::size_t r);
   double pull(std::size_t r, const double* a);
   void evaluate_rows();
+  MeasureValue<double> load_candidate(const RowSpec& spec, SchurRow& row) const;
   void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
   [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
   void solve_constraints(double* a);

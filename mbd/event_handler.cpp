@@ -210,6 +210,7 @@ void EventHandler::note_changes(const State& before, const State& state, std::ve
 
 void EventHandler::handle(State& state, const std::vector<int>& fired, std::vector<Event>& events) {
   clear_fresh();
+  settled_ = 0.0;
   const State before = state;
   forget_moved_layouts(state);
   evaluate(state);
@@ -221,6 +222,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
     const int f = friction_of_slot_[slot];
     if (f < 0) continue;
     const int group = sharing && slot != system_.frictions[f].watch + 2 ? sharing->group_of(f) : -1;
+    if (group >= 0 && slot == system_.frictions[f].watch + 1) continue; // its rows move apart: decide() finds out how
     if (group >= 0) { // fires in the slots of all its elements
       if (!is_released[group]) modes_.release(state, group);
       is_released[group] = 1;
@@ -238,6 +240,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
     evaluate(state);
     update_loading(state);
   }
+  if (modes_.catch_reversals(state, before.friction)) settle(state);
   modes_.decide(state);
   note_friction(before, state, events);
   if (has_new_rows(before, state)) settle(state);
@@ -260,7 +263,9 @@ void EventHandler::settle(State& state) {
   const double energy = system_.kinetic_energy(state);
   dynamics_.project(state.t, y_.data(), k_projection_tolerance);
   dynamics_.unpack(state.t, y_.data(), state);
-  state.dissipated += energy - system_.kinetic_energy(state);
+  const double lost = energy - system_.kinetic_energy(state);
+  state.dissipated += lost;
+  settled_ += lost;
 }
 
 } // namespace steplap

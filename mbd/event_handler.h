@@ -35,6 +35,8 @@ public:
   [[nodiscard]] const std::vector<char>& fresh() const { return fresh_; }
   /// Not empty once an element has ended the run: which, and why.
   [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
+  /// Kinetic energy that setting to rest took in the last handle(), J: what errors have left of it.
+  [[nodiscard]] double settled() const { return settled_; }
   void clear_fresh() { std::fill(fresh_.begin(), fresh_.end(), 0); }
 
 private:
@@ -57,6 +59,7 @@ private:
   std::vector<int> unit_of_slot_, friction_of_slot_;
   std::vector<char> fresh_;
   std::string stop_reason_;
+  double settled_ = 0.0;
   std::vector<double> y_, dy_;
 };
 

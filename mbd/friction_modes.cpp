@@ -1,4 +1,5 @@
 #include "mbd/friction_modes.h"
+#include "mbd/box_problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,20 +19,30 @@ constexpr double k_small_change = 1e-9;
 // Relative velocity, m/s, that counts as rest: far above the rounding of a projected one, far below any motion.
 constexpr double k_rest_velocity = 1e-12;
 
-// Block Gauss–Seidel on the dual: each element's part is solved exactly in turn. It converges for
-// every positive semidefinite A, and the accelerations are unique even where the wrenches are not.
+// The same for an event or drive that brings several to rest at once: what projection and the instant's own rounding
+// leave of their rates.
+constexpr double k_rest_at_event = 1e-11;
+// Accelerations that a sweep still changes by more than this share have not settled.
+constexpr double k_settled_acceleration = 1e-7;
+
+// The dual. Of elements of one dimension an active-set method makes an exact end (box_problem.h). With others among
+// them block Gauss–Seidel: each element's part is solved exactly in turn. It converges for every positive semidefinite
+// A, and the accelerations are unique even where the wrenches are not.
 class DualProblem {
 public:
   DualProblem(const System& system, const State& state, const std::vector<int>& elements,
               const Evaluation& evaluation, const Dynamics::Candidates& candidates)
       : system_(system), state_(state), elements_(elements), evaluation_(evaluation),
         candidates_(candidates), n_(candidates.rows.size()), wrench_(n_, 0.0),
-        blocks_(elements.size()), is_kinetic_(elements.size(), 0) {}
+        blocks_(elements.size()), is_kinetic_(elements.size(), 0) {
+    for (const int f : elements) is_flat_ = is_flat_ && system.frictions[f].friction->dimension() == 1;
+  }
 
   // μ_s first; those that slip get μ_k, and so on: the slipping set only grows (physics.md §3).
   const std::vector<FrictionBlock>& solve() {
     for (std::size_t pass = 0; pass <= elements_.size(); ++pass) {
-      sweep_until_settled();
+      if (is_flat_) solve_flat();
+      else sweep_until_settled();
       bool is_changed = false;
       for (std::size_t e = 0; e < elements_.size(); ++e)
         if (!blocks_[e].is_inside && !is_kinetic_[e]) is_kinetic_[e] = is_changed = true;
@@ -41,6 +52,39 @@ public:
   }
 
 private:
+  void solve_flat() {
+    const auto n = static_cast<Eigen::Index>(n_);
+    MatX a(n, n);
+    VecX b(n), bound(n), rounding(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double no_compliance = 0.0, pull = -1.0;
+      b[i] = candidates_.acceleration[i];
+      rounding[i] = candidates_.rounding[i];
+      bound[i] = block_of(i, &no_compliance, &pull).wrench[0];
+      for (Eigen::Index j = 0; j < n; ++j) a(i, j) = candidates_.compliance[i * n + j];
+    }
+    const BoxSolution solution = solve_box_problem(a, b, bound, rounding);
+    if (!solution.is_solved) fail("the search for what sticks repeats itself");
+    for (Eigen::Index i = 0; i < n; ++i) {
+      FrictionBlock& block = blocks_[i];
+      block = {};
+      block.wrench[0] = solution.w[i];
+      block.is_inside = solution.is_free[i] != 0;
+      block.direction[0] = solution.g[i] > 0.0 ? 1.0 : -1.0;
+    }
+  }
+
+  [[nodiscard]] FrictionBlock block_of(std::size_t e, const double* a, const double* b) const {
+    return system_.frictions[elements_[e]].friction->solve_block(evaluation_, state_.friction[elements_[e]], a, b,
+                                                                 is_kinetic_[e] != 0);
+  }
+
+  [[noreturn]] void fail(const std::string& why) const {
+    std::string message = "which friction sticks cannot be decided at t = " + std::to_string(state_.t) + " s (" + why + "):";
+    for (const int f : elements_) message += " '" + system_.element_names[system_.frictions[f].element] + "'";
+    throw NumericalFailure(message + ". Give feet of one pair of bodies a common coulomb_stick, or check their normal forces");
+  }
+
   void sweep_until_settled() {
     double least = std::numeric_limits<double>::infinity();
     int stalled = 0;
@@ -50,7 +94,7 @@ private:
       for (std::size_t e = 0; e < elements_.size(); ++e) {
         const FrictionElement& friction = *system_.frictions[elements_[e]].friction;
         const std::size_t m = friction.dimension();
-        solve_element(e, friction, row, m, change, size);
+        solve_element(e, row, m, change, size);
         row += m;
       }
       if (change <= k_settled * size || elements_.size() == 1) return;
@@ -58,11 +102,26 @@ private:
       least = std::min(least, change);
       if (stalled >= k_stalled_sweeps && least <= k_small_change * size) return;
     }
-    // Not settled to rounding: the partition found is still checked by whoever asked.
+    // Wrenches that depend on each other may wander where the accelerations have long settled.
+    const std::vector<double> before = wrench_;
+    double change = 0.0, size = 0.0;
+    std::size_t row = 0;
+    for (std::size_t e = 0; e < elements_.size(); ++e) {
+      const FrictionElement& friction = *system_.frictions[elements_[e]].friction;
+      solve_element(e, row, friction.dimension(), change, size);
+      row += friction.dimension();
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+      double moved = 0.0, terms = std::abs(candidates_.acceleration[i]);
+      for (std::size_t j = 0; j < n_; ++j) {
+        moved += candidates_.compliance[i * n_ + j] * (wrench_[j] - before[j]);
+        terms += std::abs(candidates_.compliance[i * n_ + j] * wrench_[j]);
+      }
+      if (std::abs(moved) > k_settled_acceleration * terms) fail("accelerations do not settle");
+    }
   }
 
-  void solve_element(std::size_t e, const FrictionElement& friction, std::size_t row, std::size_t m,
-                     double& change, double& size) {
+  void solve_element(std::size_t e, std::size_t row, std::size_t m, double& change, double& size) {
     double a[9], b[3];
     for (std::size_t i = 0; i < m; ++i) {
       b[i] = candidates_.acceleration[row + i];
@@ -72,8 +131,7 @@ private:
       for (std::size_t j = 0; j < m; ++j)
         a[i * m + j] = candidates_.compliance[(row + i) * n_ + row + j];
     }
-    blocks_[e] =
-        friction.solve_block(evaluation_, state_.friction[elements_[e]], a, b, is_kinetic_[e]);
+    blocks_[e] = block_of(e, a, b);
     for (std::size_t i = 0; i < m; ++i) {
       change = std::max(change, std::abs(blocks_[e].wrench[i] - wrench_[row + i]));
       size = std::max(size, std::abs(blocks_[e].wrench[i]));
@@ -90,6 +148,7 @@ private:
   std::vector<double> wrench_;
   std::vector<FrictionBlock> blocks_;
   std::vector<char> is_kinetic_;
+  bool is_flat_ = true; ///< all of one dimension
 };
 
 } // namespace
@@ -195,14 +254,68 @@ void FrictionModes::rejoin(State& state) {
     trial.friction[f].phase = FrictionPhase::stick;
     (void)violated(trial);
     const LoadSharing* const sharing = dynamics_.sharing();
-    const bool is_held = sharing && sharing->group_of(f) >= 0 && dynamics_.watch()[system_.frictions[f].watch] >= 0.0;
+    const double* watch = &dynamics_.watch()[system_.frictions[f].watch];
+    const bool is_held = sharing && sharing->group_of(f) >= 0 && watch[0] >= 0.0 && watch[1] >= 0.0;
     if (is_held) std::swap(state, trial);
     dynamics_.set_state(state);
   }
 }
 
+bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionState>& before) {
+  std::vector<int> slow;
+  std::vector<Motion<double>> motion;
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    const FrictionElement& friction = *system_.frictions[f].friction;
+    if (friction.dimension() != 1 || state.friction[f].phase != FrictionPhase::slip || before[f].phase != FrictionPhase::slip)
+      continue;
+    if (motion.empty()) place_bodies(state.q, state.v, motion);
+    const double rate = evaluate_row<false>(*friction.rows(state.friction[f]), motion.data()).rate;
+    if (state.friction[f].sign * rate <= k_rest_at_event) slow.push_back(f);
+  }
+  if (slow.empty()) return false;
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  bool is_any = false;
+  for (const int f : slow) {
+    double rate = 0.0, acceleration = 0.0, rounding = 0.0;
+    dynamics_.slip_motion(f, dy_.data(), &rate, &acceleration, &rounding);
+    if (state.friction[f].sign * acceleration > rounding) continue; // it has only begun
+    end_slip(state, f);
+    state.friction[f].phase = FrictionPhase::stick;
+    is_any = true;
+  }
+  return is_any;
+}
+
+// Rows that hold together only at rest, of which some move: those slide, the way they move.
+void FrictionModes::let_go_moving(State& state) {
+  bool is_any = false;
+  std::vector<Motion<double>> motion;
+  const LoadSharing* const sharing = dynamics_.sharing();
+  if (!sharing) return;
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    const bool is_discordant = state.friction[f].phase == FrictionPhase::stick && sharing->group_of(f) >= 0 &&
+                               dynamics_.watch()[system_.frictions[f].watch + 1] < 0.0;
+    const FrictionElement& friction = *system_.frictions[f].friction;
+    if (!is_discordant || friction.dimension() != 1) continue;
+    if (motion.empty()) place_bodies(state.q, state.v, motion);
+    const double rate = evaluate_row<false>(*friction.rows(state.friction[f]), motion.data()).rate;
+    if (std::abs(rate) <= k_rest_velocity) continue;
+    state.friction[f].phase = FrictionPhase::slip;
+    state.friction[f].has_slipped = true;
+    state.friction[f].is_starting = false;
+    friction.aim(state.friction[f], &rate);
+    is_any = true;
+  }
+  if (is_any) (void)violated(state);
+}
+
 void FrictionModes::decide(State& state) {
   std::vector<int> candidates = violated(state);
+  if (candidates.empty()) return;
+  let_go_moving(state);
+  candidates = violated(state);
   if (candidates.empty()) return;
   settle_candidates(state, std::move(candidates));
   rejoin(state);

@@ -30,6 +30,11 @@ public:
   /// stick, if the group they make can bear it.
   void rejoin(State& state);
 
+  /// Elements of one dimension in phase slip that have come to rest and would turn round, as they do at the very instant
+  /// at which another, geared to them, does: they become candidates (phase stick). `was_slipping`: per element, before
+  /// the event: what begins to slip now is at rest, too. True if there are any.
+  bool catch_reversals(State& state, const std::vector<FrictionState>& before);
+
   /// Anchors the rows of element f at the present pose.
   void set_anchor(State& state, int f) const;
   /// The same where a slip has ended: the path slid since the last anchor counts.
@@ -38,6 +43,7 @@ public:
 private:
   [[nodiscard]] std::vector<int> violated(const State& state);
   void solve(State& state, const std::vector<int>& candidates);
+  void let_go_moving(State& state);
   void settle_candidates(State& state, std::vector<int> candidates);
   [[nodiscard]] bool release_overloaded(State& state) const;
   [[nodiscard]] bool is_at_rest(const State& state, int f) const;

@@ -11,7 +11,12 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_dependent = 1e-9;
+// What a row is beyond the others, of its length: a box that has turned by a microradian. The pivots of the constraint
+// equations are squares of it and leave rows out below 3e-7: whatever they leave out is found here.
+constexpr double k_dependent = 1e-6;
+// Rows of a group move against each other: absolute, m/s and m/s², and of the terms that make up their motion.
+constexpr double k_least_rate = 1e-12, k_least_acceleration = 1e-10;
+constexpr double k_discord = 1e-9;
 // Parts of a null vector below this are rounding.
 constexpr double k_no_part = 1e-11;
 // Dense algebra: joints of larger parts than this without friction keep what the solver of the equations gives them.
@@ -22,10 +27,13 @@ struct RowGradient {
   double side[2][3];
 };
 
-RowGradient gradient_of(const RowSpec& row, const std::vector<Motion<double>>& motion) {
-  const MeasureValue<double> m = evaluate_row<false>(row, motion.data());
+RowGradient gradient_at(const MeasureValue<double>& m) {
   const Pair<double>& d = m.direction;
   return {{{d.x, d.y, cross(m.lever_a, d) + m.couple}, {-d.x, -d.y, -cross(m.lever_b, d) - m.couple}}};
+}
+
+RowGradient gradient_of(const RowSpec& row, const std::vector<Motion<double>>& motion) {
+  return gradient_at(evaluate_row<false>(row, motion.data()));
 }
 
 // Null vectors of a matrix, each with the only entry of one of its columns ("pivot"); entries of rounding are zero.
@@ -280,6 +288,46 @@ private:
 };
 
 } // namespace
+
+double LoadSharing::discord(int group, const Evaluation& e, const double* acceleration) const {
+  double worst = 0.0;
+  for (const Part& part : parts_)
+    for (std::size_t g = 0; g < part.groups.size(); ++g) {
+      if (part.groups[g] != group) continue;
+      for (const int column : part.columns[g]) {
+        double rate = 0.0, rate_terms = 0.0, second = 0.0, second_terms = 0.0, length = 0.0;
+        for (std::size_t r = 0; r < part.rows.size(); ++r) {
+          const double n = part.null(static_cast<Eigen::Index>(r), column);
+          if (n == 0.0) continue;
+          const RowSpec& spec = *part.rows[r].spec;
+          const auto m = evaluate_row<true>(spec, e.motion);
+          const SignalJet target = row_target(spec, e.memory, e.t);
+          double along = m.bias - target.acceleration, terms = std::abs(m.bias) + std::abs(target.acceleration);
+          double rate_sum = std::abs(m.rate) + std::abs(target.rate);
+          const RowGradient j = gradient_at(m);
+          for (const int side : {0, 1}) {
+            const int body = side == 0 ? spec.a : spec.b;
+            if (body == k_ground) continue;
+            const double v[3] = {e.motion[body].vx, e.motion[body].vy, e.motion[body].omega};
+            for (int c = 0; c < 3; ++c) {
+              const double term = j.side[side][c] * acceleration[3 * body + c];
+              along += term;
+              terms += std::abs(term);
+              rate_sum += std::abs(j.side[side][c] * v[c]);
+            }
+          }
+          rate += n * (m.rate - target.rate);
+          rate_terms += std::abs(n) * rate_sum;
+          second += n * along;
+          second_terms += std::abs(n) * terms;
+          length += std::abs(n);
+        }
+        worst = std::max({worst, std::abs(rate) / (k_discord * rate_terms + k_least_rate * length),
+                          std::abs(second) / (k_discord * second_terms + k_least_acceleration * length)});
+      }
+    }
+  return worst;
+}
 
 void LoadSharing::solve(const Evaluation& evaluation, const double* friction_force) {
   for (SharingGroup& group : groups_) {

@@ -46,6 +46,10 @@ public:
   /// Are the null vectors still null vectors?
   [[nodiscard]] bool holds_at(const std::vector<Motion<double>>& motion) const;
 
+  /// Can the elements of `group` stick together? Rows that depend on each other hold together only if what they are
+  /// held at does too, Σ n_r (J_r v − target) = 0 and the same of accelerations for every null vector n: the feet of a
+  /// rocking box, or a drive and friction on one coordinate, do not. Above 1: they do not, by more than rounding.
+  [[nodiscard]] double discord(int group, const Evaluation& evaluation, const double* acceleration) const;
   /// Solves every group for the wrenches in `friction_force`.
   void solve(const Evaluation& evaluation, const double* friction_force);
   /// Elements that slip when `group`, solved, gives way.

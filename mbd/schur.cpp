@@ -136,7 +136,25 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
   permuted_.assign(n_, 0.0);
 }
 
+void SchurSolver::decide_rank(const std::vector<char>& is_friction) {
+  can_stay_out_ = is_friction;
+  out_.clear();
+  is_rank_open_ = !is_friction.empty();
+}
+
+void SchurSolver::keep_rank() {
+  is_rank_open_ = false;
+  if (dependent_count_ == 0) return;
+  out_.assign(n_, 0);
+  for (int r = 0; r < n_; ++r) out_[r] = can_stay_out_[r] != 0 && is_dependent(r);
+}
+
 void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
+  factor_as_is(rows, shift);
+  if (is_rank_open_) [[unlikely]] keep_rank();
+}
+
+void SchurSolver::factor_as_is(const std::vector<SchurRow>& rows, double shift) {
   shift_ = shift;
   switch (n_) {
   case 0: break;
@@ -179,7 +197,7 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
       d -= l * mi[j];
       mi[j] = l;
     }
-    if (!(d > k_pivot_tolerance * diagonal)) {
+    if (leaves_out(i, d, diagonal)) [[unlikely]] {
       inverse_d_[i] = 0.0;
       ++dependent_count_;
     } else {
@@ -227,7 +245,7 @@ void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
       column_fill_[i] = end + 1;
     }
     d_[k] = d;
-    if (!(d > k_pivot_tolerance * diagonal)) {
+    if (leaves_out(order_[k], d, diagonal)) [[unlikely]] {
       inverse_d_[k] = 0.0;
       ++dependent_count_;
     } else {

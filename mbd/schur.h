@@ -32,6 +32,9 @@ public:
   void analyze(const std::vector<SchurRow>& rows);
   /// Numbers from the rows' j and wj, the diagonal raised by the fraction `shift` (damping). Allocates nothing.
   void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
+  /// Rows that hold friction: which of them depend on others is decided by the next factorisation, and those stay out
+  /// of the later ones too, until asked again. Within a step a row would else come and go by the rounding of a pivot.
+  void decide_rank(const std::vector<char>& is_friction);
   /// In place: x = A⁻¹ x. `rows`: those factored.
   void solve(const std::vector<SchurRow>& rows, double* x) const;
 
@@ -51,6 +54,7 @@ public:
   static constexpr double k_usual_rows = 50.0;
 
 private:
+  void factor_as_is(const std::vector<SchurRow>& rows, double shift);
   void eliminate(double* x) const;
   void refine(const std::vector<SchurRow>& rows, const double* right, double* x) const;
   template <int N> void factor_dense(const std::vector<SchurRow>& rows);
@@ -74,6 +78,15 @@ private:
   int n_ = 0;
   int body_count_ = 0;
   double shift_ = 0.0;
+  /// Is the row, whose pivot is `d` of `diagonal`, to be left out?
+  [[nodiscard]] bool leaves_out(int row, double d, double diagonal) {
+    if (!out_.empty() && out_[row] != 0) return true;
+    return !(d > k_pivot_tolerance * diagonal);
+  }
+  void keep_rank();
+
+  std::vector<char> can_stay_out_, out_; ///< per row; empty: none
+  bool is_rank_open_ = false;
   int dependent_count_ = 0;
   double smallest_pivot_ = 1.0;
   double length_ = 1.0; ///< rows over k_usual_rows, at least 1

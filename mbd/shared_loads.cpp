@@ -33,19 +33,23 @@ void Dynamics::take_solved_friction() {
   }
 }
 
-// A group's watch value stands in the slots of all its elements: they give way together, or rather the mode
-// problem tells which of them do. To be called with the wrenches of merged joints up to date.
+// A group's watch values stand in the slots of all its elements: the first one, they give way together, or rather the
+// mode problem tells which of them do; the second one, their rows begin to move against each other. To be called with the wrenches of merged joints up to date.
 bool Dynamics::watch_groups() {
   bool is_near = false;
   if (!sharing()) return is_near;
   find_sharing();
   layout_->sharing->solve(evaluation_, friction_force_.data());
-  for (const SharingGroup& group : layout_->sharing->groups()) {
+  const std::vector<SharingGroup>& groups = layout_->sharing->groups();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const SharingGroup& group = groups[g];
     const double margin = 1.0 + k_bound_slack - group.least.usage();
+    const double concord = 1.0 - layout_->sharing->discord(static_cast<int>(g), evaluation_, acceleration_.data());
     for (const int f : group.frictions) {
       watch_[system_.frictions[f].watch] = margin;
-      watch_[system_.frictions[f].watch + 1] = 1.0;
+      watch_[system_.frictions[f].watch + 1] = concord;
     }
+    if (concord < k_near_limit) is_near = true;
     if (margin < k_near_limit) is_near = true;
   }
   return is_near;

@@ -57,8 +57,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
   dynamics_.unpack(state_.t, y_.data(), state_);
   restart();
-  energy_start_ = dynamics_.mechanical_energy(state_.t, y_.data());
-  kinetic_start_ = system_.kinetic_energy(state_);
+  energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
   if (options_.output_step > 0.0) record_sample(state_.t);
 }
 
@@ -82,13 +81,20 @@ void Simulation::restart() {
   integrator_->restart(dynamics_, state_.t, y_.data());
 }
 
-void Simulation::account_energy(double t, const double* y) {
-  const double energy = dynamics_.mechanical_energy(t, y);
-  const double dissipated = y[dynamics_.dimension() - 2], work = y[dynamics_.dimension() - 1];
-  const double residual = std::abs(energy + dissipated - work - energy_start_);
-  statistics_.energy_residual = std::max(statistics_.energy_residual, residual);
-  statistics_.energy_exchanged =
-      std::max({statistics_.energy_exchanged, std::abs(dissipated), std::abs(work)});
+// What no method may pass on.
+void Simulation::check_finite() {
+  const double* y = integrator_->y1();
+  for (int i = 0; i < dynamics_.dimension(); ++i)
+    if (!std::isfinite(y[i])) fail_infinite(integrator_->t1());
+}
+
+void Simulation::fail_infinite(double t) const {
+  std::ostringstream message;
+  message << "the motion became infinite at t = " << t << " s: '" << integrator_->name()
+          << "' does not bear steps of " << integrator_->h() << " s here";
+  if (!integrator_->is_adaptive()) message << "; try a smaller step, or rodas5p";
+  if (!events_.empty()) message << ". The last event was of '" << events_.back().element << "'";
+  throw NumericalFailure(message.str());
 }
 
 // y_ holds the state to sample.
@@ -96,15 +102,6 @@ void Simulation::record_sample(double t) {
   dynamics_.rates(t, y_.data(), dy_.data());
   const Snapshot snapshot = dynamics_.snapshot(dy_.data());
   trajectory_->add(t, snapshot);
-  double kinetic = 0.0;
-  for (int i = 1; i < system_.body_count(); ++i) {
-    const Motion<double>& m = snapshot.motion[i];
-    const BodyData& body = system_.bodies[i];
-    kinetic += 0.5 * body.mass * (m.vx * m.vx + m.vy * m.vy) + 0.5 * body.inertia * m.omega * m.omega;
-  }
-  statistics_.energy_exchanged =
-      std::max(statistics_.energy_exchanged, std::abs(kinetic - kinetic_start_));
-  account_energy(t, y_.data());
   ++sample_;
   if (options_.progress) options_.progress(t);
 }
@@ -158,10 +155,12 @@ void Simulation::guard_against_crawl() {
 void Simulation::pass_event(double t, const double* y, const std::vector<int>& fired) {
   std::copy(y, y + dynamics_.dimension(), y_.begin());
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
+  energy_.check_step(dynamics_, t, y_.data());
   dynamics_.unpack(t, y_.data(), state_);
   if (fired.empty()) dynamics_.set_time_limit(next_limit()); // on the far side of the breakpoint
   const std::size_t known = events_.size();
   handler_.handle(state_, fired, events_);
+  energy_.check_settled(state_.t, handler_.settled());
   if (options_.integrator == "auto" && handler_.stop_reason().empty())
     for (std::size_t i = known; i < events_.size(); ++i)
       if (storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
@@ -203,6 +202,7 @@ bool Simulation::advance() {
   integrator_->step(dynamics_, limit);
   guard_against_crawl();
   if (integrator_->stepped_state()) return pass_stepped();
+  check_finite();
   if (finder_.find(*integrator_, dynamics_, handler_.fresh())) {
     const double t = integrator_->t0() + finder_.theta() * integrator_->h();
     const std::vector<double> at_event = finder_.state();
@@ -218,9 +218,9 @@ bool Simulation::advance() {
     pass_event(t1, at_limit.data(), {});
     return true;
   }
+  energy_.check_step(dynamics_, t1, integrator_->y1());
   if (t1 >= options_.end) {
     dynamics_.unpack(t1, integrator_->y1(), state_);
-    account_energy(t1, integrator_->y1());
     return false;
   }
   state_.t = t1;
@@ -234,7 +234,7 @@ bool Simulation::pass_stepped() {
   state_ = *integrator_->stepped_state();
   const double t1 = integrator_->t1();
   sample_until(t1);
-  account_energy(t1, integrator_->y1()); // in the layout of the step, which the next line may do away with
+  energy_.note(dynamics_, t1, integrator_->y1()); // in the layout of the step, which the next line may do away with
   const std::size_t known = events_.size();
   handler_.note_changes(before, state_, events_);
   statistics_.events += static_cast<long>(events_.size() - known);
@@ -261,6 +261,10 @@ RunStatistics Simulation::statistics() const {
   s.evaluations = dynamics_.evaluations();
   s.max_position_residual = integrator_->max_position_residual();
   s.max_velocity_residual = integrator_->max_velocity_residual();
+  s.energy_residual = energy_.residual();
+  s.energy_exchanged = energy_.exchanged();
+  s.energy_scale = energy_.scale();
+  s.energy_rounding = energy_.rounding();
   s.dissipated = state_.dissipated;
   s.work = state_.work;
   s.cpu_seconds = thread_cpu_seconds() - cpu_start_;

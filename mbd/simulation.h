@@ -1,6 +1,7 @@
 // A run: steps, events between them, samples, and the account of energy and accuracy.
 #pragma once
 
+#include "mbd/energy_account.h"
 #include "mbd/event_finder.h"
 #include "mbd/event_handler.h"
 #include "mbd/event_storm.h"
@@ -34,7 +35,9 @@ struct RunStatistics {
   double max_position_residual = 0.0;  ///< before projection, m or rad
   double max_velocity_residual = 0.0;
   double energy_residual = 0.0;        ///< largest |E + dissipated − work − E₀| met, J
-  double energy_exchanged = 0.0;       ///< scale for it: kinetic energy change, work, dissipation, J
+  double energy_exchanged = 0.0;       ///< largest change of kinetic energy, work, dissipation met at any step, J
+  double energy_scale = 0.0;           ///< what the residual is measured against (EnergyAccount::scale), J
+  double energy_rounding = 0.0;        ///< below this a residual is rounding of the energies, J
   double dissipated = 0.0, work = 0.0; ///< J
   double cpu_seconds = 0.0;            ///< of this thread, samples included
 };
@@ -72,12 +75,13 @@ private:
   void restart();
   void sample_until(double t);
   void record_sample(double t);
-  void account_energy(double t, const double* y);
+  void check_finite();
   void pass_event(double t, const double* y, const std::vector<int>& fired);
   bool pass_stepped();
   void step_through_storm(const std::string& element);
   void guard_against_chatter(double t);
   void guard_against_crawl();
+  [[noreturn]] void fail_infinite(double t) const;
   [[nodiscard]] double next_limit() const;
   void approach_limit();
 
@@ -94,7 +98,7 @@ private:
   std::unique_ptr<TimeStepping> stepping_; ///< made where a storm asks for it
   std::vector<double> y_, dy_;
   long sample_ = 0;
-  double energy_start_ = 0.0, kinetic_start_ = 0.0;
+  EnergyAccount energy_;
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
   long next_look_ = 0;       ///< steps at which the pace is looked at

@@ -9,6 +9,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_shortest_retry = 0.1;
+constexpr double k_shorter = 0.2; // after a step that came to nothing
 // A step with a stage nearer than this (a square, rad²) to a singular position is made by collocation.
 constexpr double k_crossed_pivot = 2e-2;
 // Unless it begins so near that it would have to be tiny.
@@ -32,12 +33,14 @@ void ExplicitPair::on_restart(Dynamics&) {
   start_pivot_ = highest_pivot_ = 1.0;
 }
 
-void ExplicitPair::end_step(Dynamics& dynamics) {
-  finish_step(dynamics);
+bool ExplicitPair::end_step(Dynamics& dynamics) {
+  if (!try_finish_step(dynamics)) return false;
+  ++steps_;
   // The first step's end tells what is usual here.
   const bool is_first = highest_pivot_ == 1.0;
   start_pivot_ = dynamics.layout().schur.smallest_pivot();
   highest_pivot_ = is_first ? start_pivot_ : std::max(highest_pivot_, start_pivot_);
+  return true;
 }
 
 SingularCrossing::Step ExplicitPair::crossing_step(Dynamics& dynamics) {
@@ -99,11 +102,8 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
     if (!has_tried_crossing && comes_near_singularity(dynamics)) [[unlikely]] {
       has_tried_crossing = true;
       const double h_next = cross_singularity(dynamics, left);
-      if (h_next == 0.0) {
-        end_step(dynamics);
-        return;
-      }
-      h = h_next;
+      if (h_next == 0.0 && end_step(dynamics)) return;
+      h = h_next == 0.0 ? k_shorter * h_ : h_next;
       continue;
     }
     if (error <= 1.0 && !is_last && passage.wants_other_end()) {
@@ -114,16 +114,21 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
     if (error <= 1.0) {
       const double factor = control_.factor(error, is_retry);
       // A step cut short by the limit says nothing against the longer one that was planned.
-      next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
-      end_step(dynamics);
-      return;
+      const double h_next = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
+      if (end_step(dynamics)) {
+        next_h_ = h_next;
+        return;
+      }
+      ++rejections_;
+      h = k_shorter * h_;
+      continue;
     }
     ++rejections_;
     if (passage.wants_other_stages()) {
       h = SingularPassage::k_shorter_across * h_;
       continue;
     }
-    h = std::isfinite(error) ? h_ * std::clamp(0.9 * std::pow(error, -1.0 / order_), k_shortest_retry, 0.9) : 0.2 * h_;
+    h = std::isfinite(error) ? h_ * std::clamp(0.9 * std::pow(error, -1.0 / order_), k_shortest_retry, 0.9) : k_shorter * h_;
     if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
       throw NumericalFailure("step size fell to " + std::to_string(h) + " s at t = " +
                              std::to_string(t0_) +

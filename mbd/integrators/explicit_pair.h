@@ -50,7 +50,7 @@ protected:
 private:
   [[nodiscard]] bool comes_near_singularity(const Dynamics& dynamics) const;
   double cross_singularity(Dynamics& dynamics, double left);
-  void end_step(Dynamics& dynamics);
+  [[nodiscard]] bool end_step(Dynamics& dynamics);
   [[nodiscard]] SingularCrossing::Step crossing_step(Dynamics& dynamics);
 
   StepControl control_;

@@ -15,6 +15,8 @@ constexpr double k_rate_floor = 60.0;
 constexpr double k_turned_share = 1e-4;
 // Merged joints far from their bounds are looked at about twice inside a step, so far apart.
 constexpr double k_merged_look = 0.25;
+// Of the time, from which on a step that cannot meet the constraints is not shortened any more.
+constexpr double k_shortest_try = 1e-12;
 
 } // namespace
 
@@ -56,7 +58,17 @@ void Integrator::finish_step(Dynamics& dynamics) {
   dynamics.watch_merged(k1_);
   watch1_ = dynamics.watch();
   watch_rate1_ = dynamics.watch_rate();
-  ++steps_;
+}
+
+bool Integrator::try_finish_step(Dynamics& dynamics) {
+  try {
+    finish_step(dynamics);
+    return true;
+  } catch (const ConstraintFailure&) {
+    // Where no step is short enough, the failure itself tells more than the step's length.
+    if (h_ < k_shortest_try * std::max(std::abs(t0_), 1e-3)) throw;
+    return false;
+  }
 }
 
 void Integrator::note_stage_watches(Dynamics& dynamics, const double* dy, double theta) {
@@ -80,7 +92,15 @@ void Integrator::update_weights(const Dynamics& dynamics) {
       weight_[m + i] =
           is_locked ? 0.0 : 1.0 / (tolerance * (k_rate_floor * size + std::abs(y0_[m + i])));
     }
-  weight_[2 * m] = weight_[2 * m + 1] = 0.0;
+  // Dissipated energy and work: relative to the energy there is, was turned over, or would be in the floor's motion.
+  const double floor_rate = k_rate_floor * k_displacement_floor * length_scale_;
+  double energy = std::abs(y0_[2 * m]) + std::abs(y0_[2 * m + 1]);
+  for (int k = 0; k < layout.cluster_count(); ++k) {
+    const double* v = y0_.data() + m + 3 * k;
+    const Cluster& cluster = layout.clusters[k];
+    energy += 0.5 * cluster.mass * (v[0] * v[0] + v[1] * v[1] + floor_rate * floor_rate) + 0.5 * cluster.inertia * v[2] * v[2];
+  }
+  weight_[2 * m] = weight_[2 * m + 1] = energy > 0.0 ? 1.0 / (tolerance * energy) : 0.0;
 }
 
 double Integrator::error_norm(const double* error) const {

@@ -81,6 +81,9 @@ protected:
   }
   /// Projects y1 and evaluates there: rates into k1, watch values into watch1.
   void finish_step(Dynamics& dynamics);
+  /// False where the end cannot be brought onto the constraints: a shorter step may (friction that holds up to an event
+  /// early in the step would have to turn a body far beyond it).
+  [[nodiscard]] bool try_finish_step(Dynamics& dynamics);
   void begin_watch_nodes() {
     nodes_.clear();
     last_merged_look_ = 0.0;

@@ -26,13 +26,12 @@ public:
     const bool is_last = left <= step * (1.0 + 1e-9);
     h_ = is_last ? left : step;
     t1_ = is_last ? t_limit : t0_ + h_;
-    begin_watch_nodes();
-    stage(dynamics, 1, 0.5, k(0));
-    stage(dynamics, 2, 0.5, k(1));
-    stage(dynamics, 3, 1.0, k(2));
-    for (int i = 0; i < n_; ++i)
-      y1_[i] = y0_[i] + h_ / 6.0 * (k(0)[i] + 2.0 * (k(1)[i] + k(2)[i]) + k(3)[i]);
-    finish_step(dynamics);
+    while (!try_step(dynamics)) {
+      ++rejections_;
+      h_ *= 0.5;
+      t1_ = t0_ + h_;
+    }
+    ++steps_;
   }
 
   void dense(Dynamics& dynamics, double theta, double* out) override {
@@ -40,6 +39,15 @@ public:
   }
 
 private:
+  [[nodiscard]] bool try_step(Dynamics& dynamics) {
+    begin_watch_nodes();
+    stage(dynamics, 1, 0.5, k(0));
+    stage(dynamics, 2, 0.5, k(1));
+    stage(dynamics, 3, 1.0, k(2));
+    for (int i = 0; i < n_; ++i)
+      y1_[i] = y0_[i] + h_ / 6.0 * (k(0)[i] + 2.0 * (k(1)[i] + k(2)[i]) + k(3)[i]);
+    return try_finish_step(dynamics);
+  }
   double* k(int i) { return k_.data() + i * stride_; }
   void stage(Dynamics& dynamics, int index, double c, const double* previous) {
     double* y = scratch_.data();

@@ -1,0 +1,315 @@
+// Friction whose rows depend on a drive's, on each other's, or on gears: it holds together only where all of them can be
+// at rest at once, and lets go or turns round together where they cannot.
+#include "tests/physics/scene.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+constexpr double k_pi = std::numbers::pi;
+
+std::string number(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
+const std::vector<Settings> k_methods = {{"auto", 1e-10, 0.5}, {"tsit5", 1e-10, 0.5}, {"dop853", 1e-10, 0.5}, {"rodas5p", 1e-10, 0.5}, {"rk4", 1e-4, 0.5}};
+
+// A wheel turned by a drive at cos(2π f t + phase) rad/s, with bearing friction of 1 N m.
+std::string driven_wheel(double frequency, double phase) {
+  return "[[signal]]\nname = \"turn\"\nkind = \"harmonics\"\namplitudes = [1.0]\nfrequencies = [" + number(frequency) +
+         "]\nphases = [" + number(phase) + "]\n[[body]]\nname = \"wheel\"\nmass = 1.0\ninertia = 1.0\nangular_velocity = " +
+         number(std::cos(phase)) + R"(
+[[element]]
+kind = "revolute"
+name = "pin"
+a = "wheel"
+[[element]]
+kind = "prescribed_motion"
+name = "drive"
+a = "wheel"
+coordinate = "angle"
+signal = "turn"
+as = "velocity"
+[[element]]
+kind = "joint_friction"
+name = "bearing"
+a = "wheel"
+holds = 1.0
+)";
+}
+
+} // namespace
+
+TEST_CASE("dependent friction: on a driven coordinate it slides at the drive's rate, and turns round where the drive does") {
+  for (const double phase : {-0.5 * k_pi, 0.0, 1.0})
+    for (const Settings& s : k_methods) {
+      CAPTURE(s.integrator);
+      CAPTURE(phase);
+      const double frequency = 2.0, w = 2.0 * k_pi * frequency, end = 0.6;
+      Settings whole = s;
+      whole.end = end;
+      whole.output_step = 0.01;
+      const Run r = run(driven_wheel(frequency, phase), whole);
+      // |∫| piecewise: friction of 1 N m takes 1 J a radian.
+      double path = 0.0;
+      constexpr int n = 60000;
+      for (int i = 0; i < n; ++i) path += std::abs(std::cos(w * (i + 0.5) * end / n + phase)) * end / n;
+      CHECK(std::abs(r.result.statistics.dissipated - path) < (s.integrator == "rk4" ? 1e-6 : 1e-8));
+      const std::vector<double> friction = r.series("bearing.friction"), rate = r.series("bearing.slip_rate");
+      for (std::size_t i = 1; i < friction.size(); ++i) {
+        if (std::abs(rate[i]) < 1e-9) continue; // turns round at a sample
+        CHECK(std::abs(friction[i] + (rate[i] > 0.0 ? 1.0 : -1.0)) < 1e-12);
+      }
+      CHECK(r.result.statistics.energy_residual < 1e-7);
+    }
+}
+
+TEST_CASE("dependent friction: a foot dragged by a drive that starts and stops takes what it takes, no more") {
+  // Velocity −haversine of 0.4 s from 0.1 s on, 0.2 m in all, μN = 49.05 N: 9.81 J.
+  const std::string text = R"(
+[[signal]]
+name = "v"
+kind = "haversine"
+peak = -1.0
+start = 0.1
+duration = 0.4
+[[body]]
+name = "box"
+mass = 10.0
+inertia = 1.0
+[[element]]
+kind = "prescribed_motion"
+name = "drive"
+a = "box"
+signal = "v"
+as = "velocity"
+[[element]]
+kind = "rotational_spring_damper"
+name = "rot"
+a = "box"
+stiffness = 1e4
+[[element]]
+kind = "unilateral_contact"
+name = "foot"
+a = "box"
+stiffness = 1e5
+damping = 100.0
+preload = 98.1
+[[element]]
+kind = "coulomb_stick"
+name = "friction"
+contacts = ["foot"]
+static_friction = 0.5
+)";
+  for (const Settings& s : k_methods) {
+    CAPTURE(s.integrator);
+    const Run r = run(text, {s.integrator, s.step_or_tolerance, 0.6});
+    REQUIRE(r.event_times("friction", "slips backward").size() == 1);
+    REQUIRE(r.event_times("friction", "sticks").size() == 1);
+    CHECK(std::abs(r.event_times("friction", "slips backward")[0] - 0.1) < 1e-4); // once the drive outdoes the spring
+    CHECK(std::abs(r.event_times("friction", "sticks")[0] - 0.5) < 1e-4);
+    CHECK(std::abs(r.result.statistics.dissipated - 9.81) < 1e-3); // the lever of the sunk foot turns the box a little
+  }
+}
+
+namespace {
+
+// A box on two feet, each with its own friction, that rocks: on the tilted box the feet are not equally high, and move
+// against each other.
+const char* const k_rocking = R"(
+[[body]]
+name = "box"
+mass = 10.0
+inertia = 0.6
+position = [0.0, 0.25]
+angular_velocity = 0.05
+[[element]]
+kind = "unilateral_contact"
+name = "rear"
+a = { body = "box", at = [-0.3, 0.0] }
+b = { body = "ground", at = [-0.3, 0.0] }
+stiffness = 6e4
+preload = 49.05
+[[element]]
+kind = "unilateral_contact"
+name = "front"
+a = { body = "box", at = [0.3, 0.0] }
+b = { body = "ground", at = [0.3, 0.0] }
+stiffness = 6e4
+preload = 49.05
+[[element]]
+kind = "coulomb_stick"
+name = "fr"
+contacts = ["rear"]
+static_friction = 0.5
+[[element]]
+kind = "coulomb_stick"
+name = "ff"
+contacts = ["front"]
+static_friction = 0.3
+)";
+
+// The same with friction that is smooth over `eps` m/s, by the classical Runge–Kutta method: angular velocity at 0.3 s.
+double regularised(double eps, double h) {
+  using Vector = std::array<double, 6>;
+  const auto rates = [eps](const Vector& s) {
+    double fx = 0.0, fy = -98.1, m = 0.0;
+    const double c = std::cos(s[2]), sine = std::sin(s[2]);
+    for (const auto& [x, mu] : {std::pair{-0.3, 0.5}, std::pair{0.3, 0.3}}) {
+      const double rx = c * x + sine * 0.25, ry = sine * x - c * 0.25, gap = s[1] + ry;
+      const double n = std::max(0.0, 49.05 - 6e4 * gap), lever = ry - gap; // the tip is on the ground
+      const double f = -mu * n * std::tanh((s[3] - s[5] * lever) / eps);
+      fx += f;
+      fy += n;
+      m += rx * n - lever * f;
+    }
+    return Vector{s[3], s[4], s[5], fx / 10.0, fy / 10.0, m / 0.6};
+  };
+  const auto moved = [](const Vector& s, double by, const Vector& k) {
+    Vector r = s;
+    for (std::size_t i = 0; i < 6; ++i) r[i] += by * k[i];
+    return r;
+  };
+  Vector s{0.0, 0.25, 0.0, 0.0, 0.0, 0.05};
+  const int steps = static_cast<int>(std::lround(0.3 / h));
+  for (int i = 0; i < steps; ++i) {
+    const Vector k1 = rates(s), k2 = rates(moved(s, 0.5 * h, k1)), k3 = rates(moved(s, 0.5 * h, k2)), k4 = rates(moved(s, h, k3));
+    for (std::size_t j = 0; j < 6; ++j) s[j] += h / 6.0 * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j]);
+  }
+  return s[5];
+}
+
+} // namespace
+
+TEST_CASE("dependent friction: a box that rocks on two feet goes on rocking, as with smoothed friction in the limit") {
+  // Smoothing over eps errs in proportion to eps: two of them extrapolated.
+  const double coarse = regularised(2e-5, 4e-6), fine = regularised(1e-5, 2e-6), limit = 2.0 * fine - coarse;
+  CHECK(std::abs(fine - coarse) < 5e-4);
+  for (const Settings& s : k_methods) {
+    CAPTURE(s.integrator);
+    const Run r = run(k_rocking, {s.integrator, s.step_or_tolerance, 0.3});
+    CHECK(std::abs(r.last("box.omega") - limit) < 0.2 * std::abs(fine - coarse) + 1e-5);
+    CHECK(r.result.statistics.energy_residual < 1e-6 * r.result.statistics.energy_scale);
+  }
+}
+
+namespace {
+
+// Two geared wheels in bearings with friction, brought to a stop and turned round by a torque: both bearings change
+// their direction at the same instant.
+std::string geared(double inertia_b) {
+  return R"(
+[[signal]]
+name = "pull"
+kind = "constant"
+value = -30.0
+[[body]]
+name = "a"
+mass = 1.0
+inertia = 2.0
+angular_velocity = 3.0
+[[body]]
+name = "b"
+mass = 1.0
+inertia = )" + number(inertia_b) + R"(
+position = [0.5, 0.0]
+angular_velocity = -4.5
+[[element]]
+kind = "revolute"
+name = "pin a"
+a = "a"
+[[element]]
+kind = "revolute"
+name = "pin b"
+a = "b"
+b = { body = "ground", at = [0.5, 0.0] }
+[[element]]
+kind = "gear"
+name = "gear"
+a = "a"
+b = "b"
+radius_a = 0.3
+radius_b = 0.2
+[[element]]
+kind = "joint_friction"
+name = "bearing a"
+a = "a"
+holds = 2.0
+[[element]]
+kind = "joint_friction"
+name = "bearing b"
+a = "b"
+b = { body = "ground", at = [0.5, 0.0] }
+holds = 1.0
+[[element]]
+kind = "load"
+name = "load"
+at = "a"
+torque = "pull"
+)";
+}
+
+} // namespace
+
+TEST_CASE("dependent friction: geared bearings turn round together, at the same instant") {
+  for (const double inertia : {0.5, 0.7, 1.1})
+    for (const Settings& s : k_methods)
+      for (const double tolerance : {s.step_or_tolerance, s.integrator == "rk4" ? 1e-3 : 1e-4}) {
+        CAPTURE(s.integrator);
+        CAPTURE(tolerance);
+        const Run r = run(geared(inertia), {s.integrator, tolerance, 0.6, 0.01});
+        // Seen from a: J = 2 + 1.5² J_b, friction 2 + 1.5 · 1 N m.
+        const double j = 2.0 + 2.25 * inertia, drag = 3.5, stop = 3.0 * j / (30.0 + drag), after = 0.6 - stop;
+        CHECK(std::abs(r.last("a.omega") + (30.0 - drag) / j * after) < (tolerance < 1e-6 || s.integrator == "rk4" ? 1e-9 : 1e-4));
+        for (const char* bearing : {"bearing a", "bearing b"}) {
+          const std::vector<double> friction = r.series(std::string(bearing) + ".friction"), rate = r.series(std::string(bearing) + ".slip_rate");
+          for (std::size_t i = 0; i < rate.size(); ++i) CHECK(friction[i] * rate[i] <= 0.0); // never drives
+          REQUIRE(r.event_times(bearing).size() == 1);
+          CHECK(std::abs(r.event_times(bearing)[0] - stop) < (tolerance < 1e-6 || s.integrator == "rk4" ? 1e-9 : 1e-4));
+        }
+      }
+}
+
+TEST_CASE("dependent friction: work of a machine in which everything is driven is the closed form, with every method") {
+  // 1000 kg at sin(2π 2.2 t): the drive's work is the kinetic energy.
+  for (const double end : {1.0, 0.8, 0.31})
+    for (const Settings& s : {Settings{"auto", 1e-9}, Settings{"tsit5", 1e-9}, Settings{"dop853", 1e-9}, Settings{"rodas5p", 1e-9}, Settings{"rk4", 1e-3}}) {
+      CAPTURE(s.integrator);
+      CAPTURE(end);
+      const Run r = run(R"(
+[[signal]]
+name = "v"
+kind = "harmonics"
+amplitudes = [1.0]
+frequencies = [2.2]
+phases = [-1.5707963267948966]
+[[body]]
+name = "cart"
+mass = 1000.0
+inertia = 100.0
+[[element]]
+kind = "prismatic"
+name = "rail"
+a = "cart"
+[[element]]
+kind = "prescribed_motion"
+name = "drive"
+a = "cart"
+signal = "v"
+as = "velocity"
+)", {s.integrator, s.step_or_tolerance, end});
+      const double speed = std::sin(2.0 * k_pi * 2.2 * end);
+      // Of 500 J to and fro; a hundred steps of an error of 1e-9 each; rk4: h⁴ (2ω)⁵/2880 · 500 J.
+      CHECK(std::abs(r.result.statistics.work - 500.0 * speed * speed) < 1e-4);
+    }
+}
