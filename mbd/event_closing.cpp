@@ -10,7 +10,8 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_max_looks = 100;
+constexpr int k_max_looks = 130;
+constexpr int k_free_looks = 60;         // halving alone from then on: the last 70 close any bracket
 constexpr int k_patience = 6;             // looks that need not halve the bracket
 constexpr double k_least_reach = 4.0;     // in spacings of t
 constexpr double k_unexpected = 16.0;     // times the error expected
@@ -38,14 +39,14 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
     const double width = high_.theta - low_.theta;
     if (width <= std::max(spacing, k_closed * at_first.reach)) return;
     // What reach was needed may have been too wide for what there is of rounding.
-    const bool is_closed = aim_.is_settled && width <= k_closed * aim_.reach;
+    const bool is_closed = looks < k_free_looks && aim_.is_settled && width <= k_closed * aim_.reach;
     if (is_closed && polished++ == k_polish) return;
     double theta = 0.5 * (low_.theta + high_.theta);
     const bool is_below = aim_.root - low_.theta > high_.theta - aim_.root;
     // A kink or a pole inside the bracket cannot stall the search for long.
     if (is_closed) theta = first_secant();
-    else if (aim_.is_settled) theta = is_below ? aim_.root - aim_.reach : aim_.root + aim_.reach;
-    else if (since_halved < k_patience) theta = next_look(theta);
+    else if (aim_.is_settled && looks < k_free_looks) theta = is_below ? aim_.root - aim_.reach : aim_.root + aim_.reach;
+    else if (since_halved < k_patience && looks < k_free_looks) theta = next_look(theta);
     else aim_ = at_first;
     const double edge = std::min(0.5 * width, 0.5 * spacing);
     theta = std::clamp(theta, low_.theta + edge, high_.theta - edge);

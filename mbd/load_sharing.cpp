@@ -17,6 +17,7 @@ constexpr double k_dependent = 1e-6;
 // Rows of a group move against each other: absolute, m/s and m/s², and of the terms that make up their motion.
 constexpr double k_least_rate = 1e-12, k_least_acceleration = 1e-10;
 constexpr double k_discord = 1e-9;
+constexpr double k_open = 1e-6; // of a capacity: bounds of a usage that differ by more have not met
 // Parts of a null vector below this are rounding.
 constexpr double k_no_part = 1e-11;
 // Dense algebra: joints of larger parts than this without friction keep what the solver of the equations gives them.
@@ -334,6 +335,12 @@ void LoadSharing::solve(const Evaluation& evaluation, const double* friction_for
     VecX wrench(group.slot.size());
     for (std::size_t r = 0; r < group.slot.size(); ++r) wrench[static_cast<Eigen::Index>(r)] = friction_force[group.slot[r]];
     group.least.solve(FrictionGauges(system_, evaluation, group.frictions), wrench);
+    // Pivots that run out leave bounds from both sides: only between them is it open whether the group holds.
+    if (group.least.usage() > 1.0 && group.least.lower() < 1.0 - k_open)
+      throw NumericalFailure("whether '" + system_.element_names[system_.frictions[group.frictions.front()].element] +
+                             "' and what shares its load hold cannot be told at t = " + std::to_string(evaluation.t) + " s: between " +
+                             std::to_string(group.least.lower()) + " and " + std::to_string(group.least.usage()) +
+                             " of the capacity are needed. Give feet of one pair of bodies a common coulomb_stick");
   }
 }
 

@@ -24,6 +24,8 @@ constexpr double k_chord_worth = 0.1;
 constexpr double k_chord_pivot = 1e-2;
 // What rounding leaves of a residual: a position is a sum of a few terms as large as the scene.
 constexpr double k_rounded_terms = 32.0;
+// Of the fastest rate (or 1 m/s): more than this left of a velocity residual is no rounding.
+constexpr double k_rate_left = 1e-6;
 double position_rounding(const double* q, int n) {
   double size = 0.0;
   for (int i = 0; i < n; ++i) size = std::max(size, std::abs(q[i]));
@@ -172,6 +174,11 @@ void Dynamics::reach_velocities(double t, double* y, Residual now, double tolera
     now = constraint_values(t, y);
     if (now.velocity >= 0.5 * before && --patience < 0) break; // rounding of fast motions
   }
+  double fastest = 0.0;
+  for (int i = 0; i < coordinate_count(); ++i) fastest = std::max(fastest, std::abs(y[coordinate_count() + i]));
+  if (!(now.velocity <= tolerance + k_rate_left * (1.0 + fastest)))
+    throw NumericalFailure("velocities cannot be brought onto the constraints at t = " + number_text(t) + " s: " +
+                           number_text(now.velocity) + " m/s or rad/s are left. Constraints contradict each other there");
 }
 
 void Dynamics::move_by(const std::vector<double>& residual, double* target) {

@@ -7,7 +7,8 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_curvature_safety = 2.0;
+// A kink between two places shows in the differences at both as half of what would bound it there; and as much again.
+constexpr double k_curvature_safety = 4.0;
 
 // Least of chord − ½ M s (g − s) over 0 < s < g for values a, b at its ends: positive?
 bool is_positive_between(double a, double b, double g, double m) {

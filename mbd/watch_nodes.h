@@ -2,7 +2,8 @@
 //
 // A value w of the step is certain to stay positive between neighbouring places x_j, x_{j+1} if
 //   chord(x) − ½ M (x − x_j)(x_{j+1} − x) > 0,   M ≥ |w″| there,
-// the error of linear interpolation. M is taken as twice the largest second difference through neighbouring places:
+// the error of linear interpolation. M is taken as four times the largest second difference through neighbouring places (a kink
+// between them is bounded, too, as of the gap to a pin that is passed):
 // explicit time dependence is resolved by the places, since no step turns a harmonic of a load or drive further
 // than Integrator::k_largest_turn, and motion is, since the step's error was accepted. Stages are approximations of
 // the motion: what they do not make certain is looked at on dense output (EventFinder).
