@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace steplap {
 
@@ -83,7 +84,7 @@ ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
 double ExtremeFinder::tolerance(std::size_t c) const {
   const Kind& kind = kinds_[kind_[c]];
   const double range = ranges_[c].high.value - ranges_[c].low.value;
-  return k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounding * kind.largest;
+  return k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounding * std::max(kind.largest, kind.scale);
 }
 
 void ExtremeFinder::note(std::size_t c, double value, double t) {
@@ -130,13 +131,35 @@ bool ExtremeFinder::screen(const Snapshot& snapshot) {
   return is_wanted;
 }
 
+// Sizes beside which rounding is seen where everything rests: of lengths, of the forces at the start over all masses.
+void ExtremeFinder::set_scales() {
+  const auto kind_of = [this](const char* unit) -> Kind* {
+    for (std::size_t c = 0; c < count_; ++c)
+      if (ranges_[c].channel->unit == unit) return &kinds_[kind_[c]];
+    return nullptr;
+  };
+  const auto largest = [&](const char* unit) { return kind_of(unit) ? kind_of(unit)->largest : 0.0; };
+  double mass = 0.0;
+  for (const BodyData& body : system_.bodies) mass += body.mass;
+  const double length = largest("m") > 0.0 ? largest("m") : 1.0;
+  const double force = std::max(largest("N"), mass * system_.gravity.norm()), a = mass > 0.0 ? force / mass : 0.0;
+  const double v = std::sqrt(a * length);
+  const std::pair<const char*, double> scales[] = {{"m", length},      {"rad", 1.0},           {"m/s", v},
+                                                   {"rad/s", v / length}, {"m/s^2", a},         {"rad/s^2", a / length},
+                                                   {"N", force},       {"N m", force * length}, {"W", force * v}};
+  for (const auto& [unit, scale] : scales)
+    if (Kind* kind = kind_of(unit)) kind->scale = scale;
+}
+
 void ExtremeFinder::begin(double t, const Snapshot& snapshot) {
   const bool is_start = !is_begun_;
   is_begun_ = true;
   const bool is_everything = screen(snapshot) || is_start;
   evaluate(t, snapshot, node_[0].data(), is_everything);
-  if (is_start)
+  if (is_start) {
     for (std::size_t c = 0; c < count_; ++c) ranges_[c].first = ranges_[c].channel->value(snapshot);
+    set_scales();
+  }
   for (const std::size_t c : dimensionless_)
     if (!ranges_[c].first_above_one && node_[0][c] > 1.0) ranges_[c].first_above_one = t;
   t_ = t;
@@ -176,7 +199,24 @@ void ExtremeFinder::end_at(double t, Integrator& integrator, Dynamics& dynamics)
 }
 
 void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrator, Dynamics& dynamics) {
-  const Snapshot snapshot = dynamics.snapshot(dy);
+  // Where nothing moves a step may pass over many periods of a load: it is looked at piece by piece.
+  const double begin = t_, pieces = std::ceil((t - t_) / system_.shortest_period * k_looks_per_period / k_last);
+  for (double i = 1.0; i < pieces; ++i) {
+    const double piece_end = begin + i / pieces * (t - begin);
+    state_at(piece_end, integrator, dynamics);
+    dynamics.rates(piece_end, y_.data(), dy_.data());
+    arrive(piece_end, dynamics.snapshot(dy_.data()), integrator, dynamics);
+  }
+  if (pieces > 1.0) { // the end was evaluated before
+    state_at(t, integrator, dynamics);
+    dynamics.rates(t, y_.data(), dy_.data());
+    dy = dy_.data();
+  }
+  arrive(t, dynamics.snapshot(dy), integrator, dynamics);
+  steps_ = 0;
+}
+
+void ExtremeFinder::arrive(double t, const Snapshot& snapshot, Integrator& integrator, Dynamics& dynamics) {
   is_screened_wanted_ = screen(snapshot);
   evaluate(t, snapshot, node_[k_last].data(), is_screened_wanted_);
   close(t, integrator, dynamics);
@@ -214,7 +254,6 @@ void ExtremeFinder::close(double t, Integrator& integrator, Dynamics& dynamics) 
   t_last_ = t_;
   h_last_ = h;
   t_ = t;
-  steps_ = 0;
 }
 
 // The channels that may have passed an extreme of the run inside the stretch go to open_; true if there are any.
@@ -262,6 +301,15 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
   const int step = spacing(level);
   const double slack = tolerance(c);
   const ChannelRange& r = ranges_[c];
+  // What the polynomial of half the degree was off by at the new nodes; of a smooth curve twice as many nodes square
+  // the share that is missed.
+  double least = at(c, 0), most = at(c, 0);
+  for (int i = step; i <= k_last; i += step) {
+    least = std::min(least, at(c, i));
+    most = std::max(most, at(c, i));
+  }
+  const double spread = most - least;
+  const double error = level > 1 && spread > 0.0 ? curve_[c].error * std::min(1.0, curve_[c].error / spread) : curve_[c].error;
   for (const double sign : {1.0, -1.0}) {
     const double record = sign > 0.0 ? r.high.value : -r.low.value;
     int best = 0;
@@ -273,9 +321,9 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
     const Extreme top = vertex(point(low), point(middle), point(high));
     const double gain = std::max(0.0, sign * (top.value - at(c, best)));
     // Beyond the nodes by more than anybody asks for?
-    if (sign * at(c, best) + 2.0 * gain + curve_[c].error <= record + slack) continue;
-    if (2.0 * gain + curve_[c].error <= slack) continue;
-    if (curve_[c].error > slack) return false;
+    if (sign * at(c, best) + 2.0 * gain + error <= record + slack) continue;
+    if (2.0 * gain + error <= slack) continue;
+    if (error > slack) return false;
     double a = thetas()[low], b = thetas()[high];
     double p = a + k_golden * (b - a), q = b - k_golden * (b - a);
     double at_p = sign * interpolate(c, level, p), at_q = sign * interpolate(c, level, q);
@@ -323,10 +371,10 @@ void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
       look(0.0, integrator, dynamics, node_[0].data());
       break;
     }
-  const double periods = (t1_ - t_) / system_.shortest_period * k_looks_per_period;
+  const double wanted = (t1_ - t_) / system_.shortest_period * k_looks_per_period;
   for (int level = 1; level <= 3 && !open_.empty(); ++level) {
     refine(level, integrator, dynamics);
-    if (periods > spacing(level - 1)) continue;
+    if (wanted > 1 << level) continue; // what loads do between the nodes would not be seen
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
   }
   for (const std::size_t c : open_) section(c, integrator, dynamics);
@@ -400,7 +448,7 @@ void ExtremeFinder::adapt_length() {
     const double off = std::abs((at(c, k_last) - at(c, 0)) - (at(c, 0) - before_[c]) * (h / h_last_));
     if (!std::isfinite(off)) continue;
     const ChannelRange& r = ranges_[c];
-    const double scale = r.high.value - r.low.value + (k_noise * kinds_[kind_[c]].range + k_rounding * kinds_[kind_[c]].largest) / k_badly_resolved;
+    const double scale = r.high.value - r.low.value + (tolerance(c) / k_badly_resolved);
     worst = std::max(worst, off / scale);
   }
   if (worst < k_well_resolved) longest_ = std::min(2 * longest_, k_longest);

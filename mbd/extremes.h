@@ -68,8 +68,10 @@ private:
   };
   struct Kind { ///< of channels in the same unit
     double range = 0.0, largest = 0.0;
+    double scale = 0.0; ///< size of what moves, where nothing moves yet
   };
 
+  void set_scales();
   void note(std::size_t c, double value, double t);
   void evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything);
   void look(double theta, Integrator& integrator, Dynamics& dynamics, double* values);
@@ -83,6 +85,7 @@ private:
   void section(std::size_t c, Integrator& integrator, Dynamics& dynamics);
   void find_crossings(Integrator& integrator, Dynamics& dynamics);
   void keep_step(const Integrator& integrator, const Dynamics& dynamics);
+  void arrive(double t, const Snapshot& snapshot, Integrator& integrator, Dynamics& dynamics);
   void end_stretch(double t, const double* dy, Integrator& integrator, Dynamics& dynamics);
   void adapt_length();
   [[nodiscard]] double tolerance(std::size_t c) const;

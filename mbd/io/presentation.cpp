@@ -93,14 +93,18 @@ public:
   PresentationCheck(Model& model, const System& system)
       : model_(model), written_(system, model.output.channels), all_(system, {}), system_(system) {}
 
-  void run() {
+  std::vector<std::string> run() {
     for (const Plot& plot : model_.plots)
       check_plot(plot);
     // A plot of what is not written is none; that its channels exist is checked all the same.
-    std::erase_if(model_.plots, [this](const Plot& plot) { return !is_written(plot); });
+    std::erase_if(model_.plots, [this](const Plot& plot) {
+      if (!is_written(plot)) left_out_.push_back(plot.name);
+      return !is_written(plot);
+    });
     for (Criterion& criterion : model_.criteria)
       check_criterion_on(criterion);
     if (!problems_.empty()) throw ModelError(std::move(problems_));
+    return std::move(left_out_);
   }
 
 private:
@@ -200,6 +204,7 @@ private:
   const Trajectory written_, all_;
   const System& system_;
   std::vector<Diagnostic> problems_;
+  std::vector<std::string> left_out_; ///< plots
 };
 
 } // namespace
@@ -248,8 +253,8 @@ const TableKind& acceptance_kind() {
   return kind;
 }
 
-void check_presentation(Model& model, const System& system) {
-  PresentationCheck(model, system).run();
+std::vector<std::string> check_presentation(Model& model, const System& system) {
+  return PresentationCheck(model, system).run();
 }
 
 } // namespace steplap

@@ -14,7 +14,8 @@ namespace steplap {
 
 /// Reads the limits of the model's criteria in the unit of the channels that they are for. Throws ModelError for
 /// limits of another dimension, for patterns that no channel, event or element matches, and for a plot or a
-/// criterion whose channels are of different units. Plots of channels that are not written are left out.
-void check_presentation(Model& model, const System& system);
+/// criterion whose channels are of different units. Plots of channels that are not written are taken out of the model;
+/// returns their names.
+std::vector<std::string> check_presentation(Model& model, const System& system);
 
 } // namespace steplap

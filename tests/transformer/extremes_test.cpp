@@ -106,7 +106,7 @@ TEST_CASE("every model: the same verdict and extremes whatever is written, and h
 
 namespace {
 
-// A mass on a spring, x = 0.1 cos(ω t), ω = √(k/m) = 50 1/s: samples every 0.04 s fall two to a period.
+// A mass on a spring, x = 0.1 sin(ω t), ω = √(k/m) = 50 1/s: samples every 0.04 s are three to a period.
 const std::string k_oscillator = R"(
 gravity = [0, 0]
 [simulation]
@@ -117,7 +117,7 @@ step = 0.04
 name = "mass"
 mass = 1
 inertia = 1
-position = [0.1, 0]
+velocity = [5, 0]
 [[element]]
 kind = "spring_damper"
 name = "spring"
@@ -219,7 +219,7 @@ consequence = "reject"
 TEST_CASE("a run that ends between samples has its last row") {
   const Ran run = run_text(k_oscillator, {"simulation.end=0.99", "simulation.tolerance=1e-9"});
   CHECK(run.result.trajectory->times().back() == 0.99);
-  CHECK(run.result.trajectory->series("mass.x").back() == doctest::Approx(0.1 * std::cos(50.0 * 0.99)).epsilon(1e-6));
+  CHECK(run.result.trajectory->series("mass.x").back() == doctest::Approx(0.1 * std::sin(50.0 * 0.99)).epsilon(1e-6));
   CHECK(run.range("mass.x").final == run.result.trajectory->series("mass.x").back());
   // One that ends on the grid has no row more.
   CHECK(run_text(k_oscillator).result.trajectory->size() == 26);
