@@ -73,7 +73,7 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Sto
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("value", is_angle ? "rad" : "m", "of the coordinate",
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value; });
-  builder.add_channel("force", is_angle ? "N m" : "N", "on a along the coordinate",
+  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", "on a along the coordinate",
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 

@@ -68,7 +68,7 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, MotorLaw 
   law.start = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
   group.entries.push_back({a, b, measure, law});
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel("force", is_angle ? "N m" : "N", "couple or force on a along the coordinate",
+  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", "on a along the coordinate",
                       [&group, i](const Snapshot& s) {
                         const auto m = group.measured(i, *s.evaluation);
                         return group.entries[i].law.force(m.value, m.rate, s.t);

@@ -52,7 +52,7 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Law
                       });
   builder.add_channel("rate", is_angle ? "rad/s" : "m/s", "of the elongation",
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
-  builder.add_channel("force", is_angle ? "N m" : "N", "on a along the measure: −k δ − c δ̇",
+  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", "on a along the measure: −k δ − c δ̇",
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 

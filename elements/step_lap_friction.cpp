@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap {
 
@@ -51,6 +52,9 @@ struct StepLapFriction::Scratch final : FrictionScratch {
   Vec3 asked = Vec3::Zero(); ///< wrench of the last usage(), at this pose
   Pose asked_at;
   RequiredPressure answer;
+  OverlapLoss lost; ///< at this pose
+  Pose lost_at;
+  bool is_lost_known = false;
 };
 
 StepLapFriction::StepLapFriction(int index, int row, std::vector<SheetPair> sheets, bool is_monitor,
@@ -78,6 +82,7 @@ void StepLapFriction::set_scales(const Pose& reference, const BodyData& limb,
   fit->is_valid = true;
   if (!never_slips()) fit->prepare();
   reference_ = std::move(fit);
+  overlaps_ = OverlapReference(sheets_, reference);
   arm_ = patch.centroid() - patch.reference();
   gyration_ = patch.gyration();
   const auto mobility = [&](const BodyData& body, const Vec2& lever) {
@@ -179,6 +184,27 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   own.asked = w;
   own.asked_at = pose;
   return own.answer;
+}
+
+ValueBounds StepLapFriction::usage_between(const Snapshot& s) const {
+  Fit& f = fit(s.evaluation->scratch, present(s), GripLaw::holding);
+  f.prepare();
+  if (!f.has_capacity) return {0.0, std::numeric_limits<double>::infinity()}; // no area left
+  const double* force = s.friction_force + row_;
+  const UsageBounds bounds = usage_bounds(f.capacity, Vec3(force[0], force[1], force[2]));
+  return {bounds.lower, bounds.upper};
+}
+
+const OverlapLoss& StepLapFriction::loss(const Snapshot& s) const {
+  auto& own = static_cast<Scratch&>(*s.evaluation->scratch[index_]);
+  const Pose pose = present(s);
+  const bool is_same = own.is_lost_known && own.lost_at.x == pose.x && own.lost_at.y == pose.y &&
+                       own.lost_at.theta == pose.theta;
+  if (is_same) return own.lost;
+  own.lost = overlaps_.loss_at(sheets_, pose, own.workspace, own.region);
+  own.lost_at = pose;
+  own.is_lost_known = true;
+  return own.lost;
 }
 
 double StepLapFriction::area(const Snapshot& s) const {

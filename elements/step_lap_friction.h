@@ -23,6 +23,7 @@
 
 #include "elements/patch/required_pressure.h"
 #include "elements/step_lap_interface.h"
+#include "elements/step_lap_loss.h"
 #include "mbd/system.h"
 
 namespace steplap {
@@ -50,7 +51,10 @@ public:
   [[nodiscard]] Patch patch_at(const Pose& pose, GripLaw law) const;
   /// Of the wrench in `s`: share of the capacity, direction, centre of rotation.
   [[nodiscard]] const RequiredPressure& usage(const Snapshot& s) const;
+  /// Bounds of its share, which cost little.
+  [[nodiscard]] ValueBounds usage_between(const Snapshot& s) const;
   [[nodiscard]] double area(const Snapshot& s) const;
+  [[nodiscard]] const OverlapLoss& loss(const Snapshot& s) const;
 
   // --- FrictionElement --------------------------------------------------------------------------------
   [[nodiscard]] int dimension() const override { return 3; }
@@ -105,6 +109,7 @@ private:
   std::shared_ptr<const Fit> reference_; ///< in the reference pose, where most joints stay: made once
   int index_ = 0, row_ = 0;
   std::vector<SheetPair> sheets_;
+  OverlapReference overlaps_; ///< in the reference pose
   bool is_monitor_ = false, stops_when_apart_ = true;
   bool is_one_law_ = true;         ///< static and kinetic coefficients are the same
   Vec2 arm_ = Vec2::Zero();        ///< from the limb's centre of gravity to the joint's centre, m

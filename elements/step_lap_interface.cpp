@@ -70,6 +70,8 @@ SheetPair make_sheets(const StepLapInterface& e, const std::string& limb,
   pair.limb = make_sheet(e, e.limb, e.limb_holes, limb, builder);
   pair.static_traction = e.count * e.pressure * e.static_friction;
   pair.kinetic_traction = e.count * e.pressure * e.kinetic_friction.value_or(e.static_friction);
+  pair.count = e.count;
+  pair.clearance = e.clearance;
   return pair;
 }
 
@@ -96,6 +98,9 @@ const ElementKind& step_lap_interface_kind() {
     f.add("static_friction", &T::static_friction).positive().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).positive().doc("mu_k; default: mu_s");
     f.add("count", &T::count).positive().doc("number of equal interfaces in the stack");
+    f.add("clearance", &T::clearance).in("m").not_negative().doc(
+        "by which the limb may move towards the yoke, across the overlap, before the sheets of a layer butt; not given: "
+        "not known, and not looked at");
     k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
     k.compile = compile_interface;
     return k;

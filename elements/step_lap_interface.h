@@ -22,12 +22,15 @@ struct StepLapInterface : Element {
   double static_friction = 0.0;
   std::optional<double> kinetic_friction;
   double count = 1.0;             ///< of equal interfaces
+  std::optional<double> clearance; ///< m, by which the limb may move towards the yoke before sheets butt
 };
 
 /// The two sheets, each in its body's axes about its centre of gravity.
 struct SheetPair {
   Outline yoke, limb;
   double static_traction = 0.0, kinetic_traction = 0.0; ///< count · μ · p, N/m²
+  double count = 1.0;
+  std::optional<double> clearance; ///< m
 };
 
 /// Throws PolygonError for outlines that are none.

@@ -3,6 +3,7 @@
 #include "elements/step_lap_friction.h"
 #include "elements/step_lap_interface.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace steplap {
@@ -26,13 +27,22 @@ void add_wrench_channels(SystemBuilder& builder, const StepLapFriction& friction
 void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction, double pressure) {
   const auto* self = &friction;
   builder.add_channel("u", "", "share of the friction capacity in use; slides at 1",
-                      [self](const Snapshot& s) { return self->usage(s).u; });
+                      [self](const Snapshot& s) { return self->usage(s).u; })
+      .bounds = [self](const Snapshot& s) { return self->usage_between(s); };
   builder.add_channel("p_req", "Pa",
                       "required pressure: all pressures scaled together so that the joint just holds, "
                       "that of its first interface",
-                      [self, pressure](const Snapshot& s) { return self->usage(s).u * pressure; });
+                      [self, pressure](const Snapshot& s) { return self->usage(s).u * pressure; })
+      .bounds = [self, pressure](const Snapshot& s) {
+    const ValueBounds u = self->usage_between(s);
+    return ValueBounds{u.low * pressure, u.high * pressure};
+  };
   builder.add_channel("margin", "", "capacity over what is in use, 1/u; infinite without load",
-                      [self](const Snapshot& s) { return self->usage(s).margin(); });
+                      [self](const Snapshot& s) { return self->usage(s).margin(); })
+      .bounds = [self](const Snapshot& s) {
+    const ValueBounds u = self->usage_between(s);
+    return ValueBounds{1.0 / u.high, 1.0 / u.low};
+  };
   for (const int axis : {0, 1})
     builder.add_channel(axis == 0 ? "centre_x" : "centre_y", "m",
                         "centre about which the limb would start to turn, active part's axes about its "
@@ -40,9 +50,24 @@ void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction,
                         [self, axis](const Snapshot& s) {
                           const auto& centre = self->usage(s).centre;
                           return centre ? (*centre)[axis] : k_nan;
-                        });
+                        })
+        .has_extremes = false; // it passes through infinity
   builder.add_channel("area", "m^2", "overlap of one interface of each kind, added",
                       [self](const Snapshot& s) { return self->area(s); });
+}
+
+// What sliding has done to the overlaps, against the reference pose.
+void add_loss_channels(SystemBuilder& builder, const StepLapFriction& friction, bool has_clearance) {
+  const auto* self = &friction;
+  builder.add_channel("area_lost", "m^2", "overlap lost, summed over the interfaces that lost some, times their number",
+                      [self](const Snapshot& s) { return self->loss(s).area_lost; });
+  builder.add_channel("overlap_left", "", "of the corner that has lost most, the share that is left of its overlap",
+                      [self](const Snapshot& s) { return self->loss(s).overlap_left; });
+  builder.add_channel("slid_share", "", "largest displacement of a corner, of the width of its overlap",
+                      [self](const Snapshot& s) { return self->loss(s).slid_share; });
+  if (has_clearance)
+    builder.add_channel("clearance_left", "m", "until the sheets of a layer butt; below zero the limb has closed beyond it",
+                        [self](const Snapshot& s) { return self->loss(s).clearance_left; });
 }
 
 void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction) {
@@ -117,7 +142,12 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
                          "'frame' of its step_lap_interface elements");
   friction->set_scales(reference, mass_of(e.limb, builder), mass_of(e.active_part, builder));
   add_wrench_channels(builder, *friction);
-  if (friction->has_sheets()) add_usage_channels(builder, *friction, interfaces.front()->pressure);
+  if (friction->has_sheets()) {
+    add_usage_channels(builder, *friction, interfaces.front()->pressure);
+    add_loss_channels(builder, *friction, std::any_of(interfaces.begin(), interfaces.end(), [](const auto* i) {
+                        return i->clearance.has_value();
+                      }));
+  }
   add_slide_channels(builder, *friction);
   builder.add_friction(std::move(friction));
 }
@@ -141,6 +171,10 @@ const ElementKind& step_lap_joint_kind() {
     f.add("on_apart", &T::on_apart)
         .one_of({"stop", "continue"})
         .doc("what happens when no overlap is left: the run ends, or goes on without friction");
+    f.add("least_margin", &T::least_margin).at_least(1.0).doc(
+        "smallest margin (capacity over what is in use) that a run must leave: inspect below it");
+    f.add("most_slide", &T::most_slide).positive().at_most(1.0).doc(
+        "largest displacement of a corner that is borne, a share of the width of its overlap: reject beyond it");
     k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
     k.compile = compile_joint;
     return k;

@@ -16,6 +16,8 @@ struct StepLapJoint : Element {
   std::string limb, active_part;
   std::string mode = "slip";     ///< "slip" or "monitor": never slides, reports what it would take
   std::string on_apart = "stop"; ///< "stop" or "continue"
+  double least_margin = 1.0;     ///< that a run must leave for the joint to be held good
+  double most_slide = 0.1;       ///< of a corner, of the width of its overlap: beyond, the joint is rejected
 };
 
 [[nodiscard]] const ElementKind& step_lap_joint_kind();

@@ -32,6 +32,7 @@ RunResult run_within(const System& system, const State& initial, const Simulatio
 
 SimulationOptions without_samples(SimulationOptions options) {
   options.output_step = 0.0;
+  options.has_extremes = false;
   return options;
 }
 

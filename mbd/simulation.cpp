@@ -36,6 +36,7 @@ SimulationOptions options_of(const Model& model) {
   options.settings.projection_tolerance = s.projection_tolerance;
   options.output_step = model.output.step;
   options.channels = model.output.channels;
+  options.has_extremes = true;
   options.max_events = s.max_events;
   return options;
 }
@@ -56,6 +57,9 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   dynamics_.pack(state_, y_.data());
   dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
   dynamics_.unpack(state_.t, y_.data(), state_);
+  for (const FrictionState& friction : state_.friction) first_phases_.push_back(friction.phase);
+  if (options_.has_extremes)
+    extremes_ = std::make_unique<ExtremeFinder>(system, 6 * system.body_count() + 2);
   restart();
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
   if (options_.output_step > 0.0) record_sample(state_.t);
@@ -79,6 +83,8 @@ void Simulation::restart() {
   approach_limit();
   dynamics_.pack(state_, y_.data());
   integrator_->restart(dynamics_, state_.t, y_.data());
+  if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
+  is_between_events_ = true;
 }
 
 // What no method may pass on.
@@ -153,6 +159,7 @@ void Simulation::guard_against_crawl() {
 }
 
 void Simulation::pass_event(double t, const double* y, const std::vector<int>& fired) {
+  is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
   energy_.check_step(dynamics_, t, y_.data());
@@ -172,6 +179,7 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
 // in which modes change where they will, and the usual methods go on from its end.
 void Simulation::step_through_storm(const std::string& element) {
   if (!stepping_) stepping_ = std::make_unique<TimeStepping>(system_);
+  is_between_events_ = false;
   const double begin = state_.t;
   const double end = std::min(next_limit(), begin + k_storm_steps * k_storm_step);
   events_.push_back({begin, element, "changes " + std::to_string(EventStorm::k_limit) +
@@ -184,9 +192,13 @@ void Simulation::step_through_storm(const std::string& element) {
     if (is_sample) t1 = due;
     stepping_->step(dynamics_, state_, t1, options_.settings.projection_tolerance);
     ++statistics_.steps;
-    if (!is_sample) continue;
+    if (!is_sample && !extremes_) continue;
     dynamics_.pack(state_, y_.data());
-    record_sample(t1);
+    if (extremes_) {
+      dynamics_.rates(t1, y_.data(), dy_.data());
+      extremes_->begin(t1, dynamics_.snapshot(dy_.data()));
+    }
+    if (is_sample) record_sample(t1);
   }
   handler_.settle_phases(state_);
   events_.push_back({state_.t, element, "is followed event by event again"});
@@ -196,21 +208,33 @@ void Simulation::step_through_storm(const std::string& element) {
   restart();
 }
 
+// `evaluations`: as many as there were when the step was made; none since means that `dynamics_` is at its end. (A method
+// that chooses its steps may have used it for more than evaluations.)
+void Simulation::look_for_extremes(long evaluations, bool is_last) {
+  if (!extremes_) return;
+  const bool is_at_end = !integrator_->is_adaptive() && dynamics_.evaluations() == evaluations;
+  extremes_->add_step(*integrator_, dynamics_, is_at_end, is_last);
+}
+
 bool Simulation::advance() {
   if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
   const double limit = next_limit();
   integrator_->step(dynamics_, limit);
+  const long evaluations = dynamics_.evaluations();
   guard_against_crawl();
   if (integrator_->stepped_state()) return pass_stepped();
   check_finite();
   if (finder_.find(*integrator_, dynamics_, handler_.fresh())) {
     const double t = integrator_->t0() + finder_.theta() * integrator_->h();
     const std::vector<double> at_event = finder_.state();
+    if (extremes_) extremes_->end_at(t, *integrator_, dynamics_);
     sample_until(std::nextafter(t, 0.0) - k_output_slack * options_.output_step);
     pass_event(t, at_event.data(), finder_.fired());
+    if (!handler_.stop_reason().empty()) end_run();
     return true;
   }
   const double t1 = integrator_->t1();
+  look_for_extremes(evaluations, t1 >= limit);
   sample_until(t1);
   handler_.clear_fresh();
   if (t1 >= limit && limit < options_.end) {
@@ -220,12 +244,28 @@ bool Simulation::advance() {
   }
   energy_.check_step(dynamics_, t1, integrator_->y1());
   if (t1 >= options_.end) {
-    dynamics_.unpack(t1, integrator_->y1(), state_);
+    integrator_->accept();
+    dynamics_.unpack(t1, integrator_->y0(), state_);
+    end_run();
     return false;
   }
   state_.t = t1;
   integrator_->accept();
   return true;
+}
+
+// The last row, wherever the run ends, and the values that channels end with.
+void Simulation::end_run() {
+  if (!is_between_events_) return; // it broke off at an event
+  is_between_events_ = false;
+  const double t = integrator_->t0();
+  std::copy_n(integrator_->y0(), dynamics_.dimension(), y_.begin());
+  const bool is_sampled = options_.output_step > 0.0;
+  const double last = trajectory_->size() > 0 ? trajectory_->times().back() : -std::numeric_limits<double>::infinity();
+  if (is_sampled && t > last + k_output_slack * options_.output_step) record_sample(t);
+  if (!extremes_) return;
+  dynamics_.rates(t, y_.data(), dy_.data());
+  extremes_->finish(dynamics_.snapshot(dy_.data()));
 }
 
 // A step that has decided the modes itself: they are taken over, and noted where they changed.
@@ -240,7 +280,9 @@ bool Simulation::pass_stepped() {
   statistics_.events += static_cast<long>(events_.size() - known);
   dynamics_.set_time_limit(next_limit());
   restart();
-  return t1 < options_.end;
+  if (t1 < options_.end) return true;
+  end_run();
+  return false;
 }
 
 State Simulation::current_state() const {
@@ -272,7 +314,14 @@ RunStatistics Simulation::statistics() const {
 }
 
 RunResult Simulation::result() && {
+  if (is_between_events_) { // it broke off, in a step that could not be made
+    state_ = current_state();
+    dynamics_.set_state(state_);
+    end_run();
+  }
   RunResult result;
+  if (extremes_) result.ranges = extremes_->ranges();
+  result.first_phases = std::move(first_phases_);
   result.statistics = statistics();
   result.trajectory = std::move(trajectory_);
   result.events = std::move(events_);

@@ -5,6 +5,7 @@
 #include "mbd/event_finder.h"
 #include "mbd/event_handler.h"
 #include "mbd/event_storm.h"
+#include "mbd/extremes.h"
 #include "mbd/integrators/integrator.h"
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/trajectory.h"
@@ -22,7 +23,8 @@ struct SimulationOptions {
   std::string integrator = "rk4";
   IntegratorSettings settings;
   double output_step = 0.0;                ///< s; 0: no samples
-  std::vector<std::string> channels;       ///< patterns; empty: all
+  std::vector<std::string> channels;       ///< patterns of those sampled; empty: all
+  bool has_extremes = false;               ///< look for the extremes of all channels, sampled or not
   long max_events = 100000;
   std::function<void(double t)> progress;  ///< called now and then, if given
 };
@@ -44,6 +46,8 @@ struct RunStatistics {
 
 struct RunResult {
   std::unique_ptr<Trajectory> trajectory;
+  std::vector<ChannelRange> ranges;        ///< of every channel of the system, if they were asked for
+  std::vector<FrictionPhase> first_phases; ///< of the friction elements, at the start
   std::vector<Event> events;
   RunStatistics statistics;
   State final_state;
@@ -73,6 +77,8 @@ public:
 
 private:
   void restart();
+  void end_run();
+  void look_for_extremes(long evaluations, bool is_last);
   void sample_until(double t);
   void record_sample(double t);
   void check_finite();
@@ -93,12 +99,15 @@ private:
   EventFinder finder_;
   std::unique_ptr<Integrator> integrator_;
   std::unique_ptr<Trajectory> trajectory_;
+  std::unique_ptr<ExtremeFinder> extremes_; ///< null if they are not asked for
+  std::vector<FrictionPhase> first_phases_;
   std::vector<Event> events_;
   EventStorm storm_;
   std::unique_ptr<TimeStepping> stepping_; ///< made where a storm asks for it
   std::vector<double> y_, dy_;
   long sample_ = 0;
   EnergyAccount energy_;
+  bool is_between_events_ = false; ///< the integrator and state_ fit each other
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
   long next_look_ = 0;       ///< steps at which the pace is looked at

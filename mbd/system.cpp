@@ -275,10 +275,10 @@ int SystemBuilder::add_friction(std::unique_ptr<FrictionElement> friction) {
   return static_cast<int>(system_->frictions.size()) - 1;
 }
 
-void SystemBuilder::add_channel(const std::string& name, const std::string& unit, const std::string& doc,
-                                std::function<double(const Snapshot&)> value) {
-  system_->channels.push_back(
-      {system_->element_names[element_] + "." + name, unit, doc, std::move(value)});
+Channel& SystemBuilder::add_channel(const std::string& name, const std::string& unit, const std::string& doc,
+                                    std::function<double(const Snapshot&)> value) {
+  return system_->channels.emplace_back(
+      Channel{system_->element_names[element_] + "." + name, unit, doc, std::move(value)});
 }
 
 void SystemBuilder::error(const std::string& message) {

@@ -40,11 +40,19 @@ struct Snapshot {
   const double* memory = nullptr;
 };
 
+/// Between which a value lies.
+struct ValueBounds {
+  double low = 0.0, high = 0.0;
+};
+
 struct Channel {
   std::string name;
   std::string unit;
   std::string doc;
   std::function<double(const Snapshot&)> value;
+  /// Of a value that costs much: bounds that cost little, for whoever only wants to know its extremes.
+  std::function<ValueBounds(const Snapshot&)> bounds = {};
+  bool has_extremes = true; ///< false: it passes through infinity
 };
 
 /// Mass properties and start of a body; index 0 is the ground.
@@ -165,9 +173,9 @@ public:
   int add_memory(double base = 0.0, double base_rate = 0.0);
   void add_rows(std::vector<RowSpec> rows, bool is_rigid = false, int coordinate = -1);
   int add_friction(std::unique_ptr<FrictionElement> friction);
-  /// "<element>.<name>"
-  void add_channel(const std::string& name, const std::string& unit, const std::string& doc,
-                   std::function<double(const Snapshot&)> value);
+  /// "<element>.<name>"; what is returned is good until the next one is added.
+  Channel& add_channel(const std::string& name, const std::string& unit, const std::string& doc,
+                       std::function<double(const Snapshot&)> value);
   [[nodiscard]] int next_row() const { return static_cast<int>(system_->rows.size()); }
   /// Slot in Snapshot::friction_force that the next friction element will get.
   [[nodiscard]] int next_friction_row() const { return system_->friction_row_count; }

@@ -36,6 +36,7 @@ public:
     if (problems_.empty()) check_reach(bands);
     if (!problems_.empty()) throw ModelError(std::move(problems_));
     for (std::size_t i = 0; i < limbs_.size(); ++i) add_joint(i, bands);
+    if (!problems_.empty()) throw ModelError(std::move(problems_));
     draw_limbs();
     draw_active_part();
   }
@@ -58,6 +59,9 @@ private:
   void check_names();
   void check_limb(std::size_t i, const Body& active_part);
   void check_joint(const std::string& name, const std::string& limb);
+  void check_settings(const StepLapJoint& joint);
+  [[nodiscard]] bool is_given(const std::string& field) const { return core_.places.count(field) > 0; }
+  [[nodiscard]] bool has_clearance() const { return is_given("clearance") || core_.clearance > 0.0; }
   void check_dimensions();
   void check_angle(double angle, const std::string& what, const std::string& hint);
   void check_notch();
@@ -70,6 +74,7 @@ private:
                   const std::vector<LapBand>& bands);
   void add_interface(std::size_t i, bool is_top, const CornerFrame& corner, const std::string& name,
                      const LapBand& lap);
+  void refuse_repetition(const StepLapInterface& face);
 
   [[nodiscard]] std::vector<Vec2> limb_corners(std::size_t i) const;
   void draw_limbs();
@@ -133,6 +138,20 @@ void CoreBuilder::check_joint(const std::string& name, const std::string& limb) 
   if (joint->limb != limb || joint->active_part != core_.active_part)
     error("step_lap_joint '" + name + "' holds '" + joint->limb + "' to '" + joint->active_part +
           "', not '" + limb + "' to '" + core_.active_part + "'", "joints");
+  check_settings(*joint);
+}
+
+// What is given here for the joints must be what a joint declared elsewhere has.
+void CoreBuilder::check_settings(const StepLapJoint& joint) {
+  const auto check = [&](const char* field, bool is_same) {
+    if (is_given(field) && !is_same)
+      error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
+            "' exists already with another: set it there, and leave it out here", field);
+  };
+  check("mode", core_.mode == joint.mode);
+  check("on_apart", core_.on_apart == joint.on_apart);
+  check("least_margin", core_.least_margin == joint.least_margin);
+  check("most_slide", core_.most_slide == joint.most_slide);
 }
 
 // --- dimensions ----------------------------------------------------------------------------------------
@@ -179,10 +198,9 @@ std::vector<LapBand> CoreBuilder::counted_bands() {
           (core_.overlap ? "overlap" : "interfaces") + "'", core_.overlap ? "overlap" : "interfaces");
     return {};
   }
-  if (core_.stack_depth || core_.sheet_thickness || core_.step_pitch || core_.steps || core_.clearance > 0.0 ||
-      core_.bands != "mean")
+  if (core_.stack_depth || core_.sheet_thickness || core_.step_pitch || core_.steps || core_.bands != "mean")
     error("give either 'overlap' and 'interfaces', or how the stack is built ('stack_depth', "
-          "'sheet_thickness', 'steps', 'step_pitch', 'clearance', 'bands'), not both", "overlap");
+          "'sheet_thickness', 'steps', 'step_pitch', 'bands'), not both", "overlap");
   return {{-0.5 * *core_.overlap, 0.5 * *core_.overlap, *core_.interfaces}};
 }
 
@@ -233,6 +251,8 @@ void CoreBuilder::add_joint(std::size_t i, const std::vector<LapBand>& bands) {
     joint->active_part = core_.active_part;
     joint->mode = core_.mode;
     joint->on_apart = core_.on_apart;
+    joint->least_margin = core_.least_margin.value_or(joint->least_margin);
+    joint->most_slide = core_.most_slide.value_or(joint->most_slide);
     model_.elements.push_back({&step_lap_joint_kind(), joint});
   }
   const Mitre outer{core_.limb_width, core_.core_height, core_.yoke_height, core_.mitre_angle};
@@ -272,11 +292,32 @@ void CoreBuilder::add_interface(std::size_t i, bool is_top, const CornerFrame& c
   for (std::vector<Vec2>* sheet : {&e->limb, &e->yoke})
     for (Vec2& point : *sheet) point = centre + rotated(point, part.angle);
   e->count = lap.count;
+  if (has_clearance()) e->clearance = core_.clearance;
   e->pressure = is_top ? core_.pressure : core_.bottom_pressure.value_or(core_.pressure);
   e->static_friction = is_top ? core_.static_friction : core_.bottom_static_friction.value_or(core_.static_friction);
   e->kinetic_friction = !is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction
                                                                  : core_.kinetic_friction;
+  refuse_repetition(*e);
   model_.elements.push_back({&step_lap_interface_kind(), e});
+}
+
+bool is_same_sheet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+  constexpr double k_same = 1e-9; // m
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](const Vec2& p, const Vec2& q) { return (p - q).norm() < k_same; });
+}
+
+// The same sheets at the same place twice would bear twice as much.
+void CoreBuilder::refuse_repetition(const StepLapInterface& face) {
+  if (!problems_.empty()) return; // once is enough
+  for (const ElementEntry& entry : model_.elements) {
+    const auto* other = dynamic_cast<const StepLapInterface*>(entry.element.get());
+    if (!other || other->joint != face.joint || !is_same_sheet(other->limb, face.limb) || !is_same_sheet(other->yoke, face.yoke))
+      continue;
+    return error("its sheets at joint '" + face.joint + "' are those of '" + other->name +
+                 "' over again, and would count twice: a core of several packets has one table for each width of sheet; "
+                 "sheets of one width go into one table, as a deeper stack or more 'interfaces'");
+  }
 }
 
 // --- outlines, for bodies whose model gives none ---------------------------------------------------------
@@ -365,7 +406,7 @@ void add_stack(FieldTable& f) {
   f.add("steps", &T::steps).at_least(2).at_most(100).doc("layers in a book");
   f.add("step_pitch", &T::step_pitch).in("m").positive().doc("from layer to layer, across the mitre");
   f.add("clearance", &T::clearance).in("m").not_negative().doc("between the sheets of one layer, across the "
-                                                               "mitre");
+                                                               "mitre; given, a run says whether a limb closes it");
   f.add("bands", &T::bands)
       .one_of({"mean", "each"})
       .doc("mean: all interfaces of a corner have the mean overlap; each: every overlap of a book where it is");
@@ -383,6 +424,8 @@ void add_friction(FieldTable& f) {
                                                                                "different");
   f.add("mode", &T::mode).one_of({"slip", "monitor"}).doc("of the joints added, see step_lap_joint");
   f.add("on_apart", &T::on_apart).one_of({"stop", "continue"}).doc("of the joints added, see step_lap_joint");
+  f.add("least_margin", &T::least_margin).at_least(1.0).doc("of the joints added, see step_lap_joint");
+  f.add("most_slide", &T::most_slide).positive().at_most(1.0).doc("of the joints added, see step_lap_joint");
 }
 
 } // namespace

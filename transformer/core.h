@@ -34,7 +34,7 @@ struct Core : TableObject {
   std::optional<long> steps;
   double stacking_factor = 0.96;
   long sheets_per_layer = 1;
-  double clearance = 0.0;    ///< m
+  double clearance = 0.0;    ///< m; judged only where it is given
   std::string bands = "mean"; ///< "mean" or "each"
 
   double pressure = 0.0; ///< Pa
@@ -43,6 +43,7 @@ struct Core : TableObject {
   std::optional<double> bottom_pressure, bottom_static_friction, bottom_kinetic_friction;
 
   std::string mode = "slip", on_apart = "stop"; ///< of the joints added
+  std::optional<double> least_margin, most_slide; ///< of the joints added
 };
 
 [[nodiscard]] const TableKind& core_kind();

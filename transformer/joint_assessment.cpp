@@ -12,34 +12,38 @@ namespace steplap {
 namespace {
 
 constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_touching = 1e-9; // m: a clearance of zero is not closed by rounding
 
-// The channel's values over the samples; empty if the trajectory does not hold it.
-std::vector<double> samples(const Trajectory& trajectory, const std::string& name) {
-  for (const Channel* channel : trajectory.channels())
-    if (channel->name == name) return trajectory.series(name);
-  return {};
+const ChannelRange* find_range(const RunResult& result, const std::string& name) {
+  for (const ChannelRange& range : result.ranges)
+    if (range.channel->name == name) return &range;
+  return nullptr;
 }
 
-double last_of(const std::vector<double>& values) { return values.empty() ? k_unknown : values.back(); }
+double final_of(const RunResult& result, const std::string& name) {
+  const ChannelRange* range = find_range(result, name);
+  return range ? range->final : k_unknown;
+}
 
-// Channels may be not-a-number where they have no meaning (a margin without load).
-void find_extremes(const Trajectory& trajectory, JointAssessment& result) {
-  const std::vector<double> pressure = samples(trajectory, result.joint + ".p_req");
-  const std::vector<double> margin = samples(trajectory, result.joint + ".margin");
-  result.largest_required_pressure = pressure.empty() ? k_unknown : 0.0;
-  for (std::size_t i = 0; i < pressure.size(); ++i)
-    if (pressure[i] > result.largest_required_pressure) {
-      result.largest_required_pressure = pressure[i];
-      result.time_of_largest = trajectory.times()[i];
-    }
-  result.smallest_margin = margin.empty() ? k_unknown : std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < margin.size(); ++i) {
-    if (!(margin[i] < result.smallest_margin)) continue;
-    result.smallest_margin = margin[i];
-  }
-  if (!result.is_monitored) return;
-  for (std::size_t i = 0; i < margin.size() && !result.first_slip; ++i)
-    if (margin[i] < 1.0) result.first_slip = trajectory.times()[i];
+void read_extremes(const RunResult& result, JointAssessment& a) {
+  const auto extreme = [&](const char* channel, Extreme ChannelRange::*which) {
+    const ChannelRange* range = find_range(result, a.joint + channel);
+    return range ? range->*which : Extreme{};
+  };
+  const Extreme pressure = extreme(".p_req", &ChannelRange::high), margin = extreme(".margin", &ChannelRange::low);
+  a.largest_required_pressure = pressure.value;
+  a.time_of_largest = pressure.t;
+  a.smallest_margin = margin.value;
+  a.time_of_smallest = margin.t;
+  a.slid_share = extreme(".slid_share", &ChannelRange::high);
+  a.overlap_left = extreme(".overlap_left", &ChannelRange::low);
+  a.clearance_left = extreme(".clearance_left", &ChannelRange::low);
+  a.slid_x = final_of(result, a.joint + ".dx");
+  a.slid_y = final_of(result, a.joint + ".dy");
+  a.slid_angle = final_of(result, a.joint + ".theta_acc");
+  a.area_lost = final_of(result, a.joint + ".area_lost");
+  const ChannelRange* usage = find_range(result, a.joint + ".u");
+  if (a.is_monitored && usage) a.first_slip = usage->first_above_one;
 }
 
 void read_events(const std::vector<Event>& events, JointAssessment& result) {
@@ -53,43 +57,46 @@ void read_events(const std::vector<Event>& events, JointAssessment& result) {
   }
 }
 
-// One that slides from the first instant has no event of beginning to.
-void read_modes(const Trajectory& trajectory, JointAssessment& result) {
-  const std::vector<double> mode = samples(trajectory, result.joint + ".mode");
-  for (std::size_t i = 0; i < mode.size(); ++i) {
-    if (mode[i] != static_cast<double>(FrictionPhase::slip)) continue;
-    result.has_slipped = true;
-    if (!result.first_slip || trajectory.times()[i] < *result.first_slip) result.first_slip = trajectory.times()[i];
-    return;
-  }
+// One that slides from the first instant has no event of beginning to, nor one that a method without events let go.
+void read_modes(const RunResult& result, JointAssessment& a) {
+  const ChannelRange* mode = find_range(result, a.joint + ".mode");
+  const double slip = static_cast<double>(FrictionPhase::slip);
+  if (!mode || !(mode->high.value >= slip)) return;
+  a.has_slipped = true;
+  if (mode->first == slip) a.first_slip = 0.0; // where runs begin
+  if (!a.first_slip) a.first_slip = mode->high.t;
+  if (mode->high.value > slip) a.has_come_apart = true;
 }
 
 std::string verdict_of(const JointAssessment& a, bool has_interfaces) {
   if (!has_interfaces) return "not assessed";
   if (a.has_come_apart) return "came apart";
+  if (a.has_parted()) return "a corner parted";
+  if (a.has_slid_too_far()) return "slid too far";
+  if (a.has_left_range()) return "closed its clearance";
   if (a.has_slipped) return "slipped";
-  return a.is_monitored && a.first_slip ? "would slip" : "holds";
+  if (!a.is_known()) return "not known";
+  if (a.is_monitored && a.smallest_margin < 1.0) return "would slip";
+  return a.smallest_margin < a.least_margin ? "little reserve" : "holds";
 }
 
 } // namespace
 
+bool JointAssessment::has_left_range() const { return clearance_left.value < -k_touching; }
+
 std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& result) {
   std::vector<JointAssessment> assessments;
-  const Trajectory& trajectory = *result.trajectory;
   for (const ElementEntry& entry : model.elements) {
     const auto* joint = dynamic_cast<const StepLapJoint*>(entry.element.get());
     if (!joint) continue;
     JointAssessment a;
     a.joint = joint->name;
     a.is_monitored = joint->mode == "monitor";
+    a.least_margin = joint->least_margin;
+    a.most_slide = joint->most_slide;
+    read_extremes(result, a);
     read_events(result.events, a);
-    read_modes(*result.trajectory, a);
-    find_extremes(trajectory, a);
-    a.slid_x = last_of(samples(trajectory, a.joint + ".dx"));
-    a.slid_y = last_of(samples(trajectory, a.joint + ".dy"));
-    a.slid_angle = last_of(samples(trajectory, a.joint + ".theta_acc"));
-    const std::vector<double> area = samples(trajectory, a.joint + ".area");
-    a.area_lost = area.empty() ? k_unknown : area.front() - area.back();
+    read_modes(result, a);
     const bool has_interfaces =
         std::any_of(model.elements.begin(), model.elements.end(), [&](const ElementEntry& other) {
           const auto* face = dynamic_cast<const StepLapInterface*>(other.element.get());

@@ -1,4 +1,5 @@
-// What a run did to each step-lap joint: the figures and the verdict that the receiver asks for.
+// What a run did to each step-lap joint: the figures and the verdict that the receiver asks for. All figures are of
+// the extremes of the run (mbd/extremes.h), whatever was written.
 #pragma once
 
 #include "mbd/model.h"
@@ -14,22 +15,35 @@ struct JointAssessment {
   std::string joint;
   bool has_slipped = false;
   std::optional<double> first_slip;        ///< s; also for a monitored joint that would have slipped
-  double largest_required_pressure = 0.0;  ///< Pa, over the samples
+  double largest_required_pressure = 0.0;  ///< Pa
   double time_of_largest = 0.0;            ///< s
   double smallest_margin = 0.0;            ///< capacity over demand; below 1: it slips, or would
+  double time_of_smallest = 0.0;           ///< s
+  double least_margin = 1.0;               ///< that the model asks for
   double slid_x = 0.0, slid_y = 0.0;       ///< m, at the end, in the active part's axes
   double slid_angle = 0.0;                 ///< rad, θ_acc at the end
-  double area_lost = 0.0;                  ///< m², since the start
+  double area_lost = 0.0;                  ///< m², at the end: of interfaces that lost some, times their number
+  Extreme slid_share;                      ///< largest displacement of a corner, of the width of its overlap
+  double most_slide = 0.0;                 ///< that the model bears
+  Extreme overlap_left;                    ///< least share of its overlap that a corner had left
+  Extreme clearance_left;                  ///< m, the least; not-a-number if the model states no clearance
   bool has_come_apart = false;
   bool is_monitored = false;
 
-  /// "holds", "slipped", "came apart", "would slip" (a monitored joint beyond its limit), "not assessed"
-  /// (a joint without interfaces, which holds whatever it takes).
+  [[nodiscard]] bool has_parted() const { return overlap_left.value <= 0.0; } ///< a whole corner
+  [[nodiscard]] bool has_slid_too_far() const { return slid_share.value > most_slide; }
+  /// It has closed its clearance: sheets butt, of which the model knows nothing.
+  [[nodiscard]] bool has_left_range() const;
+  [[nodiscard]] bool is_known() const { return smallest_margin == smallest_margin; }
+
+  /// "came apart", "a corner parted", "slid too far", "closed its clearance", "slipped", "would slip" (a monitored
+  /// joint beyond its limit), "little reserve" (less margin than the model asks for), "holds", "not assessed" (a joint
+  /// without interfaces, which holds whatever it takes), "not known" (no figures).
   std::string verdict;
 };
 
-/// One entry for every step_lap_joint of the model, in the model's order. Channels that the trajectory
-/// does not hold leave their figures not-a-number.
+/// One entry for every step_lap_joint of the model, in the model's order. Figures are not-a-number where the run did not
+/// look for extremes.
 [[nodiscard]] std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& result);
 
 } // namespace steplap

@@ -9,9 +9,9 @@ namespace steplap {
 
 namespace {
 
-struct Sample {
-  double value = 0.0, t = 0.0;
-  std::size_t column = 0;
+struct Worst {
+  Extreme extreme;
+  const Channel* channel = nullptr;
 };
 
 // How far a value is beyond its limits: negative inside, the least of the distances to them.
@@ -30,18 +30,18 @@ double limit_for(const Criterion& c, double value) {
   return value - *c.at_most > *c.at_least - value ? *c.at_most : *c.at_least;
 }
 
-// The sample that is furthest beyond the limits, or nearest to them; not-a-number has no say.
-std::optional<Sample> worst_sample(const Criterion& c, const Trajectory& trajectory) {
-  std::optional<Sample> worst;
-  for (std::size_t column = 0; column < trajectory.channels().size(); ++column) {
-    if (!matches_pattern(trajectory.channels()[column]->name, c.channel)) continue;
-    for (std::size_t row = 0; row < trajectory.size(); ++row) {
-      const double value = trajectory.value(row, column);
-      if (std::isnan(value)) continue;
-      if (!worst || excess(c, value) > excess(c, worst->value))
-        worst = Sample{value, trajectory.times()[row], column};
-    }
+// The extreme that is furthest beyond the limits, or nearest to them. Empty where a channel had no value.
+std::optional<Worst> worst_extreme(const Criterion& c, const std::vector<ChannelRange>& ranges) {
+  std::optional<Worst> worst;
+  bool is_complete = true;
+  for (const ChannelRange& range : ranges) {
+    if (!matches_pattern(range.channel->name, c.channel)) continue;
+    is_complete = is_complete && !range.had_no_value;
+    for (const Extreme& extreme : {range.low, range.high})
+      if (std::isnan(extreme.value)) is_complete = false;
+      else if (!worst || excess(c, extreme.value) > excess(c, worst->extreme.value)) worst = Worst{extreme, range.channel};
   }
+  if (worst && !is_complete && !(excess(c, worst->extreme.value) > 0.0)) return {};
   return worst;
 }
 
@@ -65,46 +65,106 @@ Verdict consequence_of(const Criterion& c) {
   return c.consequence == "reject" ? Verdict::reject : Verdict::inspect;
 }
 
-CriterionResult judge_channel(const Criterion& c, const Trajectory& trajectory) {
-  CriterionResult result{c.name, limits_text(c, ""), c.reason, consequence_of(c), Verdict::open, c.channel, {}, {}, {}, ""};
-  const std::optional<Sample> worst = worst_sample(c, trajectory);
+CriterionResult result_for(const Criterion& c, const std::string& text, const std::string& where, Verdict outcome) {
+  CriterionResult result;
+  result.name = c.name;
+  result.text = text;
+  result.reason = c.reason;
+  result.consequence = consequence_of(c);
+  result.outcome = outcome;
+  result.where = where;
+  return result;
+}
+
+CriterionResult judge_channel(const Criterion& c, const std::vector<ChannelRange>& ranges) {
+  CriterionResult result = result_for(c, limits_text(c, ""), c.channel, Verdict::open);
+  const std::optional<Worst> worst = worst_extreme(c, ranges);
   if (!worst) return result;
-  const Channel& channel = *trajectory.channels()[worst->column];
-  result.text = limits_text(c, channel.unit);
-  result.where = channel.name;
-  result.unit = channel.unit;
-  result.value = worst->value;
-  result.limit = limit_for(c, worst->value);
-  result.t = worst->t;
-  result.outcome = excess(c, worst->value) > 0.0 ? result.consequence : Verdict::hold;
+  const double value = worst->extreme.value;
+  result.text = limits_text(c, worst->channel->unit);
+  result.where = worst->channel->name;
+  result.unit = worst->channel->unit;
+  result.value = value;
+  result.limit = limit_for(c, value);
+  result.t = worst->extreme.t;
+  result.outcome = excess(c, value) > 0.0 ? result.consequence : Verdict::hold;
   return result;
 }
 
-CriterionResult judge_event(const Criterion& c, const std::vector<Event>& events) {
+// The first time that an event which is not wanted happened; what slides from the start has none of its own.
+CriterionResult judge_event(const Criterion& c, const System& system, const RunResult& run) {
   const std::string element = c.element.empty() ? "*" : c.element;
-  CriterionResult result{c.name, "no '" + c.event + "' of " + (c.element.empty() ? "any element" : "'" + c.element + "'"),
-                         c.reason, consequence_of(c), Verdict::hold, element, {}, {}, {}, ""};
-  const auto found = std::find_if(events.begin(), events.end(), [&](const Event& e) {
-    return matches_pattern(e.element, element) && matches_pattern(e.what, c.event);
-  });
-  if (found == events.end()) return result;
-  result.outcome = result.consequence;
-  result.where = found->element;
-  result.t = found->t;
+  const std::string whose = c.element.empty() ? "any element" : "'" + c.element + "'";
+  CriterionResult result = result_for(c, "no '" + c.event + "' of " + whose, element, Verdict::hold);
+  const auto happen = [&](const std::string& where, double t) {
+    if (result.t && *result.t <= t) return;
+    result.outcome = result.consequence;
+    result.where = where;
+    result.t = t;
+  };
+  for (std::size_t f = 0; f < run.first_phases.size(); ++f) {
+    const std::string& name = system.element_names[system.frictions[f].element];
+    const bool is_meant = matches_pattern(name, element) &&
+                          (matches_pattern("slips", c.event) || matches_pattern("slips forward", c.event) ||
+                           matches_pattern("slips backward", c.event));
+    if (is_meant && run.first_phases[f] == FrictionPhase::slip) happen(name, 0.0);
+  }
+  for (const Event& e : run.events)
+    if (matches_pattern(e.element, element) && matches_pattern(e.what, c.event)) happen(e.element, e.t);
   return result;
 }
 
-CriterionResult judge_joint(const JointAssessment& joint) {
-  CriterionResult result{joint.joint, "the step-lap joint holds", "", Verdict::inspect, Verdict::hold, joint.joint, {}, {}, {}, ""};
+CriterionResult joint_result(const JointAssessment& joint, const std::string& text) {
+  CriterionResult result;
+  result.name = result.where = joint.joint;
+  result.text = text;
+  return result;
+}
+
+CriterionResult judge_holding(const JointAssessment& joint) {
+  const bool has_reserve = joint.least_margin > 1.0;
+  CriterionResult result = joint_result(joint, has_reserve ? "the step-lap joint holds, margin at least " + limit_text(joint.least_margin)
+                                                           : "the step-lap joint holds");
   if (std::isfinite(joint.smallest_margin)) {
     result.value = joint.smallest_margin;
-    result.limit = 1.0;
+    result.limit = joint.least_margin;
+    result.t = joint.time_of_smallest;
   }
-  result.t = joint.first_slip;
-  if (joint.verdict == "not assessed") result.outcome = Verdict::open;
-  if (joint.verdict == "slipped" || joint.verdict == "would slip") result.outcome = Verdict::inspect;
+  if (joint.first_slip) result.t = joint.first_slip;
+  if (joint.verdict == "not assessed" || joint.verdict == "not known") result.outcome = Verdict::open;
+  else if (joint.verdict != "holds") result.outcome = Verdict::inspect;
   if (joint.has_come_apart) result.consequence = result.outcome = Verdict::reject;
   return result;
+}
+
+// Only of a joint whose sheets are known.
+void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& criteria) {
+  if (joint.verdict == "not assessed") return;
+  CriterionResult slid = joint_result(joint, "displacement of its corners, of the overlap's width <= " + limit_text(joint.most_slide));
+  slid.consequence = Verdict::reject;
+  slid.outcome = std::isnan(joint.slid_share.value) ? Verdict::open : Verdict::hold;
+  slid.value = joint.slid_share.value;
+  slid.limit = joint.most_slide;
+  slid.t = joint.slid_share.t;
+  if (joint.has_slid_too_far()) slid.outcome = Verdict::reject;
+  criteria.push_back(slid);
+  if (joint.has_parted()) {
+    CriterionResult parted = joint_result(joint, "no corner parts: share of the overlap left > 0");
+    parted.outcome = parted.consequence = Verdict::reject;
+    parted.value = joint.overlap_left.value;
+    parted.limit = 0.0;
+    parted.t = joint.overlap_left.t;
+    criteria.push_back(parted);
+  }
+  if (std::isnan(joint.clearance_left.value)) return;
+  CriterionResult closed = joint_result(joint, "the limb closes no clearance: left >= 0 m");
+  closed.reason = "beyond it the sheets of a layer butt, of which the model knows nothing: the run is outside its range from then on";
+  closed.outcome = joint.has_left_range() ? Verdict::inspect : Verdict::hold;
+  closed.value = joint.clearance_left.value;
+  closed.limit = 0.0;
+  closed.unit = "m";
+  closed.t = joint.clearance_left.t;
+  criteria.push_back(closed);
 }
 
 } // namespace
@@ -123,16 +183,19 @@ const char* name_of(Verdict verdict) {
   return "reject";
 }
 
-Judgement judge(const Model& model, const RunResult& result, const std::string& failure) {
+Judgement judge(const Model& model, const System& system, const RunResult& result, const std::string& failure) {
   Judgement judgement;
-  for (const JointAssessment& joint : assess_joints(model, result))
-    judgement.criteria.push_back(judge_joint(joint));
+  for (const JointAssessment& joint : assess_joints(model, result)) {
+    judgement.criteria.push_back(judge_holding(joint));
+    judge_overlap(joint, judgement.criteria);
+  }
   for (const Criterion& c : model.criteria)
-    judgement.criteria.push_back(c.event.empty() ? judge_channel(c, *result.trajectory) : judge_event(c, result.events));
+    judgement.criteria.push_back(c.event.empty() ? judge_channel(c, result.ranges) : judge_event(c, system, result));
   judgement.has_criteria = !judgement.criteria.empty();
-  judgement.verdict = failure.empty() && judgement.has_criteria ? Verdict::hold : Verdict::open;
+  judgement.so_far = judgement.has_criteria ? Verdict::hold : Verdict::open;
   for (const CriterionResult& c : judgement.criteria)
-    judgement.verdict = std::max(judgement.verdict, c.outcome);
+    judgement.so_far = std::max(judgement.so_far, c.outcome);
+  judgement.verdict = failure.empty() ? judgement.so_far : Verdict::open;
   return judgement;
 }
 

@@ -1,9 +1,11 @@
 // Hold, inspect or reject: a run judged by the criteria of its model ([[acceptance]]) and by the criteria
 // that every step-lap joint is held to.
 //
-// A joint that slipped, or would have where it is only monitored, means inspect: the core's magnetic
-// circuit is not as it was built. One that came apart means reject. A criterion that could not be
-// evaluated, and a run that did not reach its end, leave the verdict open.
+// Channels are judged by their extremes over the whole run (mbd/extremes.h), whatever is written of them. A joint that
+// slipped, or would have where it is only monitored, or that has less margin than the model asks for, means
+// inspect: the core's magnetic circuit is not as it was built. One that came apart, lost a whole corner or slid
+// further than it bears means reject. A criterion that could not be evaluated is not met: it leaves the verdict
+// open. So does a run that did not reach its end, whatever came before; that is told beside it.
 #pragma once
 
 #include "transformer/joint_assessment.h"
@@ -29,11 +31,13 @@ struct CriterionResult {
 
 struct Judgement {
   Verdict verdict = Verdict::hold;
+  Verdict so_far = Verdict::hold; ///< of what was computed: the verdict itself, but for a run that broke off
   bool has_criteria = false;
   std::vector<CriterionResult> criteria;
 };
 
 /// `failure`: what stopped the run, empty if it reached its end.
-[[nodiscard]] Judgement judge(const Model& model, const RunResult& result, const std::string& failure);
+[[nodiscard]] Judgement judge(const Model& model, const System& system, const RunResult& result,
+                              const std::string& failure);
 
 } // namespace steplap

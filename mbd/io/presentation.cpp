@@ -57,35 +57,80 @@ Quantity read_limit(const std::string& text, const std::string& unit) {
   return bare;
 }
 
-// Compares patterns with what the trajectory will hold.
+// Every word by which an event of a unit or a friction element can be called.
+void add_words_of(const System& system, const std::string& element, std::vector<std::string>& words) {
+  const auto matches = [&](int index) { return matches_pattern(system.element_names[index], element); };
+  constexpr std::uint8_t k_modes = 4;
+  for (const Unit& unit : system.units)
+    if (matches(unit.element))
+      for (std::uint8_t from = 0; from < k_modes; ++from)
+        for (std::uint8_t to = 0; to < k_modes; ++to)
+          if (from != to) words.emplace_back(unit.group->transition_name(from, to));
+  for (const FrictionUnit& unit : system.frictions) {
+    if (!matches(unit.element)) continue;
+    words.insert(words.end(), {"sticks", "loses its normal force"});
+    if (unit.friction->dimension() == 3) words.insert(words.end(), {"slips", "slips another way", "comes apart"});
+    else words.insert(words.end(), {"slips forward", "slips backward"});
+    FrictionState here, there;
+    there.foot = 1;
+    words.emplace_back(unit.friction->place_change_name(here, there));
+    words.emplace_back(unit.friction->place_change_name(there, here));
+  }
+  std::erase(words, "");
+  std::sort(words.begin(), words.end());
+  words.erase(std::unique(words.begin(), words.end()), words.end());
+}
+
+std::string list_of(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "'" : ", '") + word + "'";
+  return text;
+}
+
+// Compares patterns with the channels and events that the system has.
 class PresentationCheck {
 public:
   PresentationCheck(Model& model, const System& system)
-      : model_(model), written_(system, model.output.channels), system_(system) {}
+      : model_(model), written_(system, model.output.channels), all_(system, {}), system_(system) {}
 
-  void run() {
+  std::vector<std::string> run() {
     for (const Plot& plot : model_.plots)
       check_plot(plot);
+    // A plot of what is not written is none; that its channels exist is checked all the same.
+    std::erase_if(model_.plots, [this](const Plot& plot) {
+      if (!is_written(plot)) left_out_.push_back(plot.name);
+      return !is_written(plot);
+    });
     for (Criterion& criterion : model_.criteria)
       check_criterion_on(criterion);
     if (!problems_.empty()) throw ModelError(std::move(problems_));
+    return std::move(left_out_);
   }
 
 private:
   std::vector<const Channel*> matches(const std::string& pattern) const {
     std::vector<const Channel*> found;
-    for (const Channel* channel : written_.channels())
+    for (const Channel* channel : all_.channels())
       if (matches_pattern(channel->name, pattern)) found.push_back(channel);
     return found;
+  }
+
+  bool is_written(const Plot& plot) const {
+    for (const auto* list : {&plot.channels, &plot.bounds})
+      for (const std::string& pattern : *list)
+        if (std::none_of(written_.channels().begin(), written_.channels().end(),
+                         [&](const Channel* channel) { return matches_pattern(channel->name, pattern); }))
+          return false;
+    return true;
   }
 
   std::vector<const Channel*> found(const Location& where, const std::string& subject, const std::string& pattern) {
     auto channels = matches(pattern);
     if (!channels.empty()) return channels;
     std::vector<std::string> known;
-    for (const Channel* channel : written_.channels())
+    for (const Channel* channel : all_.channels())
       known.push_back(channel->name);
-    problems_.push_back({where, subject + ": no channel of the trajectory matches '" + pattern + "'" +
+    problems_.push_back({where, subject + ": no channel matches '" + pattern + "'" +
                                           did_you_mean(pattern, known)});
     return channels;
   }
@@ -113,17 +158,32 @@ private:
   }
 
   void check_criterion_on(Criterion& c) {
-    if (!c.channel.empty()) check_limits(c);
-    if (c.element.empty()) return;
+    if (!c.channel.empty()) return check_limits(c);
     const auto& names = system_.element_names;
-    if (std::none_of(names.begin(), names.end(), [&](const std::string& n) { return matches_pattern(n, c.element); }))
-      complain(c, "element", "no element matches '" + c.element + "'" + did_you_mean(c.element, names));
+    if (!c.element.empty() &&
+        std::none_of(names.begin(), names.end(), [&](const std::string& n) { return matches_pattern(n, c.element); }))
+      return complain(c, "element", "no element matches '" + c.element + "'" + did_you_mean(c.element, names));
+    check_event(c);
+  }
+
+  void check_event(const Criterion& c) {
+    std::vector<std::string> words;
+    add_words_of(system_, c.element.empty() ? "*" : c.element, words);
+    if (std::any_of(words.begin(), words.end(), [&](const std::string& word) { return matches_pattern(word, c.event); }))
+      return;
+    const std::string whose = c.element.empty() ? "of the model" : "of '" + c.element + "'";
+    if (words.empty()) return complain(c, "event", "nothing " + whose + " has events");
+    complain(c, "event", "no event " + whose + " is called '" + c.event + "'" + did_you_mean(c.event, words) +
+                             "; there are " + list_of(words));
   }
 
   void check_limits(Criterion& c) {
     const auto channels = found(c.place("channel"), "acceptance '" + c.name + "'", c.channel);
     if (channels.empty()) return;
     const Channel& first = *channels.front();
+    for (const Channel* channel : channels)
+      if (!channel->has_extremes)
+        return complain(c, "channel", "'" + channel->name + "' passes through infinity and has no extremes: limit another channel");
     for (const Channel* channel : channels)
       if (channel->unit != first.unit)
         return complain(c, "channel", "'" + first.name + "' is in '" + first.unit + "', '" + channel->name + "' in '" +
@@ -141,9 +201,10 @@ private:
   }
 
   Model& model_;
-  const Trajectory written_;
+  const Trajectory written_, all_;
   const System& system_;
   std::vector<Diagnostic> problems_;
+  std::vector<std::string> left_out_; ///< plots
 };
 
 } // namespace
@@ -168,8 +229,8 @@ const TableKind& acceptance_kind() {
     using T = Criterion;
     TableKind k;
     k.name = "acceptance";
-    k.doc = "What a run must meet for the machine to be held good: limits on channels, over the samples of "
-            "the trajectory, or events that must not happen.";
+    k.doc = "What a run must meet for the machine to be held good: limits on channels, written or not, over the whole "
+            "run, or events that must not happen.";
     FieldTable& f = k.fields;
     f.add("channel", &T::channel).doc("channels that are limited, a pattern with * and ?");
     f.add("at_least", &T::at_least_text).as(FieldType::quantity).doc("smallest value allowed");
@@ -192,8 +253,8 @@ const TableKind& acceptance_kind() {
   return kind;
 }
 
-void check_presentation(Model& model, const System& system) {
-  PresentationCheck(model, system).run();
+std::vector<std::string> check_presentation(Model& model, const System& system) {
+  return PresentationCheck(model, system).run();
 }
 
 } // namespace steplap

@@ -3,8 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <random>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -103,54 +105,160 @@ TEST_CASE("conformance: rows do not care where the scene is, and mirror with it"
   }
 }
 
-TEST_CASE("conformance: one-dimensional friction opposes slip, and its sets and watch values agree") {
+namespace {
+
+// Bounds of one-dimensional friction in the scenes, static and kinetic; of three dimensions only their ratio, 1.
+struct Bounds {
+  double stick = 0.0, slip = 0.0;
+};
+
+Bounds bounds_of(const ConformanceScene& scene, const Probe& probe) {
+  if (std::string(scene.kind) == "joint_friction")
+    return std::string(scene.text).find("drags") == std::string::npos ? Bounds{30.0, 30.0} : Bounds{3.0, 2.0};
+  const Evaluation& e = probe.evaluation();
+  const double normal = std::max(0.0, std::accumulate(e.contact_force, e.contact_force + probe.system().contact_count, 0.0));
+  return {0.4 * normal, 0.3 * normal};
+}
+
+template <class Check> void for_each_friction(const Check& check) {
+  int count = 0;
   for (const ConformanceScene& scene : conformance_scenes()) {
-    if (std::string(scene.kind) != "coulomb_stick") continue;
+    CAPTURE(std::string(scene.kind));
+    CAPTURE(std::string(scene.text));
     Probe probe(scene);
-    RandomPoses poses(probe.system());
-    std::mt19937 generator(7);
-    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    if (probe.system().frictions.empty()) continue;
     const FrictionElement& friction = *probe.system().frictions[0].friction;
-    for (int i = 0; i < 200; ++i) {
-      const Pose pose = poses.next();
+    if (friction.never_slips()) continue; // a joint without sheets
+    ++count;
+    RandomPoses poses(probe.system());
+    for (int i = 0; i < k_draws; ++i) {
+      Pose pose = poses.next();
+      // Holding sheets overlap as they did where they began to hold, here in the reference pose.
+      if (friction.dimension() == 3)
+        for (int body = 0; body < 3; ++body) pose.q.segment<3>(3 * body) = probe.system().bodies[body].pose;
       probe.choose_modes(pose);
       probe.forces(pose);
-      const Evaluation& e = probe.evaluation();
-      const double normal = std::max(0.0, std::accumulate(e.contact_force, e.contact_force + probe.system().contact_count, 0.0));
-      FrictionState state;
-      double rate = unit(generator), wrench = 0.0, watch[2];
-      friction.aim(state, &rate);
-      friction.slip_wrench(e, state, &rate, &wrench);
-      CHECK(wrench * rate <= 0.0);
-      CHECK(std::abs(wrench) == doctest::Approx(0.3 * normal));
-      friction.watch_slip(e, state, &rate, watch);
-      CHECK(watch[0] >= 0.0);
-      for (const double share : {-1.01, -0.99, 0.0, 0.99, 1.01}) {
-        wrench = share * 0.4 * normal;
-        friction.watch_stick(e, state, &wrench, watch);
-        CHECK((std::min(watch[0], watch[1]) >= 0.0) == (std::abs(share) <= 1.0 || normal == 0.0));
-        if (std::abs(share) > 1.0 && normal > 0.0) {
-          FrictionState begun = state;
-          friction.begin_slip(e, begun, &wrench);
-          double onset = 0.0, still = 0.0;
-          friction.slip_wrench(e, begun, &still, &onset);
-          CHECK(onset * wrench > 0.0); // the force goes on in the direction in which it held
-        }
-      }
-      // min ½ a w² + b w over |w| ≤ bound: the clipped stationary point, and the acceleration left over.
-      const double a = 0.5 + std::abs(unit(generator)), b = 30.0 * unit(generator);
-      for (const bool is_kinetic : {false, true}) {
-        const double bound = (is_kinetic ? 0.3 : 0.4) * normal;
-        const FrictionBlock block = friction.solve_block(e, state, &a, &b, is_kinetic);
-        CHECK(std::abs(block.wrench[0]) <= bound);
-        const double left = a * block.wrench[0] + b;
-        if (block.is_inside) CHECK(std::abs(left) < 1e-9);
-        else {
-          CHECK(std::abs(block.wrench[0]) == bound);
-          CHECK(left * block.direction[0] >= 0.0);
-          CHECK(block.wrench[0] * block.direction[0] <= 0.0);
-        }
-      }
+      check(scene, probe, friction);
     }
   }
+  CHECK(count == 6); // three coulomb_stick, a step_lap_joint with sheets, two joint_friction
+}
+
+using Wrench = std::array<double, 3>;
+
+double dot(const Wrench& a, const Wrench& b, int n) { return std::inner_product(a.begin(), a.begin() + n, b.begin(), 0.0); }
+
+class Draw {
+public:
+  Wrench wrench(double size) { return {size * unit_(generator_), size * unit_(generator_), size * unit_(generator_)}; }
+  double number() { return unit_(generator_); }
+
+private:
+  std::mt19937 generator_{7};
+  std::uniform_real_distribution<double> unit_{-1.0, 1.0};
+};
+
+} // namespace
+
+TEST_CASE("conformance: friction opposes slip, with all that its set allows") {
+  Draw draw;
+  for_each_friction([&](const ConformanceScene& scene, const Probe& probe, const FrictionElement& friction) {
+    const Evaluation& e = probe.evaluation();
+    const int n = friction.dimension();
+    FrictionState state;
+    const Wrench rate = draw.wrench(1.0), other = draw.wrench(1.0);
+    Wrench wrench{}, watch{};
+    friction.aim(state, rate.data());
+    friction.slip_wrench(e, state, rate.data(), wrench.data());
+    const double power = -dot(wrench, rate, n), most = friction.support(e, state, rate.data());
+    CHECK(power >= 0.0);
+    if (n == 1) {
+      const Bounds b = bounds_of(scene, probe);
+      CHECK(std::abs(wrench[0]) == doctest::Approx(b.slip));
+      CHECK(most == doctest::Approx(b.stick * std::abs(rate[0])));
+    } else {
+      CHECK(power == doctest::Approx(most).epsilon(1e-9)); // both coefficients are the same: −∇h(ν)·ν = h(ν)
+    }
+    friction.watch_slip(e, state, rate.data(), watch.data());
+    CHECK(watch[0] >= 0.0);
+    // h is homogeneous and convex.
+    Wrench twice{}, sum{};
+    for (int k = 0; k < 3; ++k) {
+      twice[k] = 2.0 * rate[k];
+      sum[k] = rate[k] + other[k];
+    }
+    CHECK(friction.support(e, state, twice.data()) == doctest::Approx(2.0 * most).epsilon(1e-12));
+    CHECK(friction.support(e, state, sum.data()) <= (most + friction.support(e, state, other.data())) * (1.0 + 1e-12));
+  });
+}
+
+TEST_CASE("conformance: the set, its gauge and the watch values agree") {
+  Draw draw;
+  for_each_friction([&](const ConformanceScene&, const Probe& probe, const FrictionElement& friction) {
+    const Evaluation& e = probe.evaluation();
+    const int n = friction.dimension();
+    FrictionState state;
+    Wrench w = draw.wrench(100.0), rate = draw.wrench(1.0), normal{}, ignored{};
+    if (!(friction.support(e, state, rate.data()) > 0.0)) return; // no contact pressed
+    const double usage = friction.gauge(e, state, w.data(), normal.data());
+    CHECK(dot(normal, w, n) == doctest::Approx(usage).epsilon(1e-9));
+    const Wrench another = draw.wrench(100.0);
+    CHECK(dot(normal, another, n) <= friction.gauge(e, state, another.data(), ignored.data()) * (1.0 + 1e-9));
+    for (const double share : {0.0, 0.99, 1.01}) {
+      Wrench scaled{}, watch{1.0, 1.0, 1.0};
+      for (int k = 0; k < n; ++k) scaled[k] = share / usage * w[k];
+      friction.watch_stick(e, state, scaled.data(), watch.data());
+      CHECK((std::min(watch[0], watch[1]) >= 0.0) == (share <= 1.0));
+      CHECK((dot(scaled, rate, n) <= friction.support(e, state, rate.data())) >= (share <= 1.0)); // it takes no more than h
+      if (share <= 1.0) continue;
+      FrictionState begun = state;
+      begun.is_starting = true;
+      friction.begin_slip(e, begun, scaled.data());
+      Wrench onset{};
+      const Wrench still{};
+      friction.slip_wrench(e, begun, still.data(), onset.data());
+      CHECK(dot(onset, scaled, n) > 0.0); // the force goes on in the direction in which it held
+    }
+  });
+}
+
+// min ½ wᵀA w + bᵀw over the set: a stationary point inside, or on the bound with A w + b in its normal cone, which a
+// wrench w' of the set proves by (A w + b)·(w' − w) ≥ 0.
+TEST_CASE("conformance: the mode problem's blocks are solved") {
+  Draw draw;
+  for_each_friction([&](const ConformanceScene& scene, const Probe& probe, const FrictionElement& friction) {
+    const Evaluation& e = probe.evaluation();
+    const int n = friction.dimension();
+    FrictionState state;
+    double a[9] = {0.5 + std::abs(draw.number())};
+    if (n == 3) { // positive definite: G Gᵀ and a diagonal
+      double g[9];
+      for (double& value : g) value = draw.number();
+      for (int i = 0; i < 9; ++i) a[i] = g[3 * (i / 3)] * g[3 * (i % 3)] + g[3 * (i / 3) + 1] * g[3 * (i % 3) + 1] + g[3 * (i / 3) + 2] * g[3 * (i % 3) + 2];
+      for (int i = 0; i < 3; ++i) a[4 * i] += 0.5;
+    }
+    const double size = n == 1 ? 30.0 : 3000.0;
+    const Wrench b = draw.wrench(size);
+    for (const bool is_kinetic : {false, true}) {
+      const FrictionBlock block = friction.solve_block(e, state, a, b.data(), is_kinetic);
+      Wrench left{}, w{}, ignored{};
+      for (int r = 0; r < n; ++r) {
+        w[r] = block.wrench[r];
+        left[r] = b[r];
+        for (int c = 0; c < n; ++c) left[r] += a[n * r + c] * block.wrench[c];
+      }
+      const double slack = 1e-8 * size;
+      if (n == 1) CHECK(std::abs(w[0]) <= (is_kinetic ? bounds_of(scene, probe).slip : bounds_of(scene, probe).stick));
+      else CHECK(friction.gauge(e, state, w.data(), ignored.data()) <= 1.0 + 1e-8);
+      if (block.is_inside) {
+        CHECK(std::sqrt(dot(left, left, n)) < slack);
+        continue;
+      }
+      CHECK(dot(w, Wrench{block.direction[0], block.direction[1], block.direction[2]}, n) <= 0.0);
+      // The worst w' of the set against `left` is what it bears against −left: left·w' ≥ −h(left).
+      const double share = n == 1 && is_kinetic ? bounds_of(scene, probe).slip / std::max(bounds_of(scene, probe).stick, 1e-300) : 1.0;
+      const double bound = share * friction.support(e, state, left.data());
+      CHECK(std::abs(dot(left, w, n) + bound) <= 1e-7 * (bound + slack));
+    }
+  });
 }

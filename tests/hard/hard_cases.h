@@ -55,7 +55,7 @@ struct Outcome {
   double error = 0.0;
   double energy_residual = 0.0; ///< of the energy exchanged
   RunStatistics statistics;
-  bool is_finite = true; ///< no sample is NaN or infinite in a coordinate or velocity
+  bool is_finite = false; ///< it reached its end, and no sample is NaN or infinite in a coordinate or velocity
 };
 
 /// Cases that a method is known to get wrong: docs/hard_cases.md says how.

@@ -179,6 +179,22 @@ TEST_CASE("a joint of the model is used as it stands") {
   CHECK(has(refusal(k_shape + k_counted + other), "holds 'back limb' to 'active part', not 'front limb'"));
 }
 
+TEST_CASE("what a core says of joints declared elsewhere is honoured or refused, never ignored") {
+  const std::string joint = "[[element]]\nkind = \"step_lap_joint\"\nname = \"front limb joint\"\n"
+                            "limb = \"front limb\"\nactive_part = \"active part\"\n";
+  const std::string core = k_shape + k_counted;
+  CHECK(has(refusal(core + "mode = \"monitor\"\n" + joint), "'mode' is for joints that this table adds; step_lap_joint 'front limb joint'"));
+  CHECK(has(refusal(core + "on_apart = \"continue\"\n" + joint), "'on_apart' is for joints"));
+  CHECK(has(refusal(core + "least_margin = 1.5\n" + joint), "'least_margin' is for joints"));
+  CHECK(refusal(core + "mode = \"monitor\"\n" + joint + "mode = \"monitor\"\n") == ""); // they agree
+}
+
+TEST_CASE("the same core over again is refused: it would bear twice as much") {
+  std::string again = k_shape + k_counted;
+  again.replace(again.find("name = \"core\""), 13, "name = \"more\"");
+  CHECK(has(refusal(k_shape + k_counted + again), "would count twice"));
+}
+
 // --- the book ---------------------------------------------------------------------------------------------
 
 TEST_CASE("a book of n steps has a mean overlap of 2(n-1)/n step pitches, less the clearance") {

@@ -31,6 +31,16 @@ position = [0, 1]
 velocity = [0, 4.905]
 )";
 
+const std::string k_floor = R"(
+[[element]]
+kind = "unilateral_contact"
+name = "floor"
+a = { body = "ball", at = [0, 0.9] }
+normal = [0, 1]
+stiffness = 1e4
+gap = 0.1
+)";
+
 struct Judged {
   Model model;
   std::unique_ptr<System> system;
@@ -41,7 +51,7 @@ struct Judged {
       : model(parse_model(k_throw + criteria, "a.toml", transformer_catalog())), system(compile(model)) {
     check_presentation(model, *system);
     result = simulate(*system, system->initial_state(), options_of(model));
-    judgement = judge(model, result, failure);
+    judgement = judge(model, *system, result, failure);
   }
   [[nodiscard]] const CriterionResult& only() const {
     REQUIRE(judgement.criteria.size() == 1);
@@ -99,28 +109,22 @@ TEST_CASE("a limit is what its text means in the channel's unit") {
 
 TEST_CASE("a run that stopped is not held good, nor one without criteria") {
   CHECK(Judged(acceptance("channel = \"ball.y\"\nat_most = 3\n"), "step size").judgement.verdict == Verdict::open);
-  CHECK(Judged(acceptance("channel = \"ball.y\"\nat_most = 1\n"), "step size").judgement.verdict == Verdict::inspect);
+  // Open whatever came before, which is told beside it.
+  const Judged broken(acceptance("channel = \"ball.y\"\nat_most = 1\n"), "step size");
+  CHECK(broken.judgement.verdict == Verdict::open);
+  CHECK(broken.judgement.so_far == Verdict::inspect);
   const Judged without("");
   CHECK_FALSE(without.judgement.has_criteria);
   CHECK(without.judgement.verdict == Verdict::open);
 }
 
 TEST_CASE("events that must not happen") {
-  const std::string floor = R"(
-[[element]]
-kind = "unilateral_contact"
-name = "floor"
-a = { body = "ball", at = [0, 0.9] }
-normal = [0, 1]
-stiffness = 1e4
-gap = 0.1
-)";
-  const Judged landed(floor + acceptance("event = \"closes\"\nelement = \"fl*\"\n"));
+  const Judged landed(k_floor + acceptance("event = \"closes\"\nelement = \"fl*\"\n"));
   CHECK(landed.judgement.verdict == Verdict::hold); // it is still in the air at 0.9 s
-  Model longer = parse_model(k_throw + floor + acceptance("event = \"closes\"\n"), "a.toml", transformer_catalog(), {"simulation.end=1.2"});
+  Model longer = parse_model(k_throw + k_floor + acceptance("event = \"closes\"\n"), "a.toml", transformer_catalog(), {"simulation.end=1.2"});
   const auto system = compile(longer);
   const RunResult result = simulate(*system, system->initial_state(), options_of(longer));
-  const Judgement judgement = judge(longer, result, "");
+  const Judgement judgement = judge(longer, *system, result, "");
   CHECK(judgement.verdict == Verdict::inspect);
   CHECK(judgement.criteria.front().where == "floor");
   // Back at the gap of 0.1 m below the start: v t − g t²/2 = −0.1.
@@ -133,7 +137,7 @@ TEST_CASE("step-lap joints are held to their own criterion") {
                                    {"simulation.integrator=dop853", "simulation.tolerance=1e-8"});
     const auto system = compile(model);
     const RunResult result = simulate(*system, system->initial_state(), options_of(model));
-    return judge(model, result, "");
+    return judge(model, *system, result, "");
   };
   CHECK(judge_paper("/paper/no_interference.toml").verdict == Verdict::hold);
   const Judgement weak = judge_paper("/paper/weak_clamping.toml");
@@ -141,6 +145,52 @@ TEST_CASE("step-lap joints are held to their own criterion") {
   CHECK(std::count_if(weak.criteria.begin(), weak.criteria.end(), [](const CriterionResult& c) {
           return c.text == "the step-lap joint holds" && c.outcome == Verdict::inspect && c.t;
         }) == 2);
+}
+
+namespace {
+
+Judgement judge_layout(const std::string& file, const std::vector<std::string>& overrides) {
+  const Model model = read_model(std::string(STEPLAP_MODELS) + "/layouts/" + file, transformer_catalog(), overrides);
+  const auto system = compile(model);
+  const RunResult result = simulate(*system, system->initial_state(), options_of(model));
+  return judge(model, *system, result, "");
+}
+
+const CriterionResult* find(const Judgement& judgement, const std::string& name, const std::string& part) {
+  const auto found = std::find_if(judgement.criteria.begin(), judgement.criteria.end(), [&](const CriterionResult& c) {
+    return c.name == name && c.text.find(part) != std::string::npos;
+  });
+  return found == judgement.criteria.end() ? nullptr : &*found;
+}
+
+} // namespace
+
+TEST_CASE("a joint's verdict needs nothing of what is written") {
+  // At 20 kPa the joints would need 27.6 kPa: monitored, with no channel of theirs written.
+  const Judgement judgement = judge_layout("three_limb_humping.toml", {"output.channels=[\"active part.*\"]", "core.core.pressure=20000",
+                                                                        "core.core.mode=monitor", "simulation.end=0.25"});
+  CHECK(judgement.verdict == Verdict::inspect);
+  const CriterionResult* joint = find(judgement, "front joint", "holds");
+  REQUIRE(joint);
+  CHECK(joint->outcome == Verdict::inspect);
+  REQUIRE(joint->value);
+  CHECK(*joint->value < 1.0);
+}
+
+TEST_CASE("a limb that falls out is rejected as soon as a corner has parted") {
+  const Judgement judgement = judge_layout(
+      "three_limb.toml", {"core.core.static_friction=0.1", "core.core.pressure=50000", "core.core.sheets_per_layer=2", "simulation.end=0.4",
+                          "output.step=0.1"});
+  CHECK(judgement.verdict == Verdict::reject);
+  const CriterionResult* slid = find(judgement, "front joint", "displacement of its corners");
+  REQUIRE(slid);
+  CHECK(slid->outcome == Verdict::reject);
+  CHECK(*slid->value > 1.0); // of the overlap's width
+  const CriterionResult* parted = find(judgement, "front joint", "no corner parts");
+  REQUIRE(parted);
+  CHECK(*parted->value == 0.0);
+  CHECK(*parted->t < 0.4);
+  CHECK(find(judgement, "front joint", "the step-lap joint holds")->outcome == Verdict::inspect); // not wholly apart
 }
 
 TEST_CASE("criteria and plots that make no sense are errors of the model") {
@@ -174,9 +224,12 @@ TEST_CASE("criteria and plots that make no sense are errors of the model") {
   says(acceptance("channel = \"ball.y\"\nwithin = \"-1 m\"\n"), "'within' must be at least 0, got -1");
   says(acceptance("channel = \"ball.y\"\nwithin = nan\n"), "must be finite");
   says(acceptance("channel = \"ball.*y\"\nat_most = 1\n"), "a.toml:16:11: error: acceptance 'c': 'ball.y' is in 'm', 'ball.vy' in 'm/s': limit them apart");
+  says(k_floor + acceptance("event = \"opns\"\n"), "no event of the model is called 'opns' (did you mean 'opens'?)");
+  says(k_floor + acceptance("event = \"slipps\"\nelement = \"floor\"\n"), "no event of 'floor' is called 'slipps'");
+  says(acceptance("event = \"opens\"\n"), "nothing of the model has events");
   says(acceptance("element = \"feet\"\nevent = \"opens\"\n"), "a.toml:16:11: error: acceptance 'c': no element matches 'feet'");
   says("[[plot]]\nname = \"p\"\nchannels = [\"ball.y\"]\nbounds = [\"ball.vy\"]\n", "a.toml:17:10: error: plot 'p'");
   says("[[plot]]\nname = \"p\"\nchannels = [\"ball.y\", \"ball.vy\"]\n", "plot them apart");
-  says("[[plot]]\nname = \"p\"\nchannels = [\"ball.z\"]\n", "no channel of the trajectory matches 'ball.z'");
+  says("[[plot]]\nname = \"p\"\nchannels = [\"ball.z\"]\n", "no channel matches 'ball.z'");
   says("[[plot]]\nname = \"p\"\n", "channels");
 }

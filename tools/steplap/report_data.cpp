@@ -131,11 +131,10 @@ Json events_json(const Results& run) {
 
 // Extremes of channels that the page does not hold would outweigh everything else in large models.
 void keep_extremes(Json& summary, const Results& run, const std::vector<std::size_t>& kept) {
-  Json extremes = Json::object();
-  for (const std::size_t i : kept)
-    if (const auto found = summary["extremes"].find(run.channels[i].name); found != summary["extremes"].end())
-      extremes[run.channels[i].name] = *found;
-  summary["extremes"] = std::move(extremes);
+  std::vector<bool> is_kept(run.channels.size(), false);
+  for (const std::size_t i : kept) is_kept[i] = true;
+  for (std::size_t i = 0; i < is_kept.size(); ++i)
+    if (!is_kept[i]) summary["extremes"].erase(run.channels[i].name);
   summary.erase("final_state");
 }
 

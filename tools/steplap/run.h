@@ -17,6 +17,7 @@ struct LoadedModel {
   std::vector<std::string> overrides; ///< "path=value", laid over the file
   std::string text;                   ///< the effective model as TOML that stands alone
   Model model;
+  std::vector<std::string> plots_left_out; ///< of channels that are not written
   std::unique_ptr<System> system;
   State assembled; ///< given poses and velocities moved onto the joints
 };

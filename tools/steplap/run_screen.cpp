@@ -52,7 +52,7 @@ void print_events(std::ostream& out, const FinishedRun& finished) {
 
 // Channels that are told of: reactions that are not zero throughout.
 bool is_shown(const ChannelRange& range) {
-  return is_reaction(*range.channel) && range.largest().value != 0.0;
+  return is_reaction(*range.channel) && !std::isnan(range.low.value) && range.largest().value != 0.0;
 }
 
 std::string value_text(const ChannelRange& range, const Extreme& extreme) {
@@ -80,7 +80,7 @@ void print_reactions(std::ostream& out, const RunSummary& summary) {
     table.add_row({range.channel->name, value_text(range, range.low), sample_time_text(range.low.t),
                    value_text(range, range.high), sample_time_text(range.high.t)});
   }
-  if (is_any) out << "\nReactions and required pressures, extremes over the samples\n" << table;
+  if (is_any) out << "\nReactions and required pressures, extremes of the whole run\n" << table;
 }
 
 void print_slides(std::ostream& out, const RunSummary& summary) {
@@ -114,7 +114,9 @@ std::string value_beside_limit(const CriterionResult& c) {
 void print_judgement(std::ostream& out, const FinishedRun& finished) {
   const Judgement& judgement = finished.summary.judgement;
   if (!judgement.has_criteria) return;
-  out << "\nVerdict by the criteria of the model: " << name_of(judgement.verdict) << "\n";
+  out << "\nVerdict by the criteria of the model: " << name_of(judgement.verdict);
+  if (!finished.run.failure.empty()) out << "; the run broke off, until then: " << name_of(judgement.so_far);
+  out << "\n";
   TextTable table({Align::left, Align::left, Align::left, Align::right, Align::right});
   for (const CriterionResult& c : judgement.criteria)
     table.add_row({c.name, c.text, c.outcome == Verdict::hold ? "met" : name_of(c.outcome), value_beside_limit(c),
@@ -233,7 +235,7 @@ void print_reactions_side_by_side(std::ostream& out, const std::vector<FinishedR
   table.add_row(heads);
   for (const std::string& name : names)
     add_range_row(table, runs, name);
-  out << "Reactions and required pressures, extremes over the samples (their times: summary.json)\n" << table;
+  out << "Reactions and required pressures, extremes of the whole run (their times: summary.json)\n" << table;
 }
 
 } // namespace

@@ -11,23 +11,7 @@ std::string last_part(const std::string& channel) {
   return channel.substr(channel.rfind('.') + 1);
 }
 
-ChannelRange range_of(const Trajectory& trajectory, std::size_t column) {
-  ChannelRange range;
-  range.channel = trajectory.channels()[column];
-  for (std::size_t row = 0; row < trajectory.size(); ++row) {
-    const Extreme here{trajectory.value(row, column), trajectory.times()[row]};
-    if (row == 0 || here.value < range.low.value) range.low = here;
-    if (row == 0 || here.value > range.high.value) range.high = here;
-    range.final = here.value;
-  }
-  return range;
-}
-
 } // namespace
-
-const Extreme& ChannelRange::largest() const {
-  return std::abs(low.value) > std::abs(high.value) ? low : high;
-}
 
 const ChannelRange* RunSummary::find(const std::string& channel) const {
   for (const ChannelRange& range : ranges)
@@ -37,15 +21,13 @@ const ChannelRange* RunSummary::find(const std::string& channel) const {
 
 RunSummary summarise(const Run& run) {
   RunSummary summary;
-  const Trajectory& trajectory = *run.result.trajectory;
-  for (std::size_t column = 0; column < trajectory.channels().size(); ++column)
-    summary.ranges.push_back(range_of(trajectory, column));
+  summary.ranges = run.result.ranges;
   for (const Event& event : run.result.events)
     ++summary.event_counts[event.what];
   const RunStatistics& s = run.result.statistics;
   if (s.energy_exchanged > 0.0)
     summary.relative_energy_residual = s.energy_residual / s.energy_exchanged;
-  summary.judgement = judge(run.loaded->model, run.result, run.failure);
+  summary.judgement = judge(run.loaded->model, *run.loaded->system, run.result, run.failure);
   return summary;
 }
 

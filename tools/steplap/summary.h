@@ -13,24 +13,9 @@
 
 namespace steplap {
 
-struct Extreme {
-  double value = 0.0;
-  double t = 0.0;
-};
-
-/// Least and largest value of a channel over the samples of the trajectory.
-struct ChannelRange {
-  const Channel* channel = nullptr;
-  Extreme low, high;
-  double final = 0.0; ///< at the end of the trajectory
-
-  /// Whichever is further from zero.
-  [[nodiscard]] const Extreme& largest() const;
-};
-
 /// Pointers lead into the run's compiled system: valid as long as the run.
 struct RunSummary {
-  std::vector<ChannelRange> ranges;          ///< of all channels, in the order of the trajectory
+  std::vector<ChannelRange> ranges;          ///< of all channels of the system, written or not (mbd/extremes.h)
   std::map<std::string, long> event_counts;  ///< by what happened
   double relative_energy_residual = 0.0;     ///< of the energy exchanged
   std::optional<GlobalErrorEstimate> global_error; ///< if it was asked for

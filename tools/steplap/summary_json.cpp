@@ -54,20 +54,21 @@ Json global_error_json(const GlobalErrorEstimate& estimate) {
   return json;
 }
 
+// Numbers that do not exist (no such channel, an infinite margin, no extremes) are null.
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
 Json extremes_json(const RunSummary& summary) {
   Json json = Json::object();
+  const auto time = [](const Extreme& extreme) { return std::isnan(extreme.value) ? Json() : Json(extreme.t); };
   for (const ChannelRange& range : summary.ranges)
     json[range.channel->name] = {{"unit", range.channel->unit},
-                                 {"min", range.low.value},
-                                 {"t_min", range.low.t},
-                                 {"max", range.high.value},
-                                 {"t_max", range.high.t},
-                                 {"final", range.final}};
+                                 {"min", number_json(range.low.value)},
+                                 {"t_min", time(range.low)},
+                                 {"max", number_json(range.high.value)},
+                                 {"t_max", time(range.high)},
+                                 {"final", number_json(range.final)}};
   return json;
 }
-
-// Numbers that do not exist (no sample, no such channel, an infinite margin) are null.
-Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json joints_json(const Run& run) {
   Json json = Json::object();
@@ -79,10 +80,15 @@ Json joints_json(const Run& run) {
                      {"largest_required_pressure", number_json(a.largest_required_pressure)},
                      {"t_largest_required_pressure", a.time_of_largest},
                      {"smallest_margin", number_json(a.smallest_margin)},
+                     {"least_margin_asked", a.least_margin},
                      {"slid_x", number_json(a.slid_x)},
                      {"slid_y", number_json(a.slid_y)},
                      {"slid_angle", number_json(a.slid_angle)},
-                     {"area_lost", number_json(a.area_lost)}};
+                     {"area_lost", number_json(a.area_lost)},
+                     {"largest_slide_share", number_json(a.slid_share.value)},
+                     {"most_slide_share", a.most_slide},
+                     {"least_overlap_left", number_json(a.overlap_left.value)},
+                     {"least_clearance_left", number_json(a.clearance_left.value)}};
   return json;
 }
 
@@ -100,7 +106,7 @@ Json judgement_json(const Judgement& judgement) {
                         {"limit", optional(c.limit)},
                         {"unit", c.unit},
                         {"t", optional(c.t)}});
-  return {{"verdict", name_of(judgement.verdict)}, {"criteria", std::move(criteria)}};
+  return {{"verdict", name_of(judgement.verdict)}, {"so_far", name_of(judgement.so_far)}, {"criteria", std::move(criteria)}};
 }
 
 Json state_json(const System& system, const State& state) {

@@ -103,6 +103,8 @@ std::vector<std::string> warnings_about(const LoadedModel& loaded) {
   if (written.channels().empty())
     warnings.push_back(
         "no channel matches 'channels' of [output]: the trajectory will hold the time only");
+  for (const std::string& name : loaded.plots_left_out)
+    warnings.push_back("plot '" + name + "' is left out: not all of its channels are in 'channels' of [output]");
   return warnings;
 }
 

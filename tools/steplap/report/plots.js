@@ -15,11 +15,20 @@ steplap.Plots = (() => {
       for (const plot of run.drawing.plots)
         if (!figures.has(plot.name)) figures.set(plot.name, plot);
     if (figures.size) return [...figures.values()];
-    const kinds = [['theta', 'Angles'], ['slide', 'Slides'], ['friction', 'Friction forces'], ['force', 'Forces of elements'],
+    const kinds = [['theta', 'Angles'], ['slide', 'Slides'], ['friction', 'Friction forces'], ['force', 'Forces of elements'], ['couple', 'Couples of elements'],
       ['p_req', 'Pressures that the joints need'], ['margin', 'Margins of the joints'], ['reaction', 'Reactions of drives'], ['x', 'Horizontal positions'], ['y', 'Vertical positions']];
     for (const [ending, title] of kinds) {
-      const names = [...new Set(runs.flatMap((r) => r.matching([`*.${ending}`])))].slice(0, 7);
-      if (names.length && figures.size < 6) figures.set(title, { name: title, title: '', channels: names, bounds: [] });
+      // One axis has one unit: what has another gets a figure of its own.
+      const units = new Map();
+      for (const r of runs) for (const name of r.matching([`*.${ending}`])) {
+        const unit = r.channel(name).unit;
+        if (!units.has(unit)) units.set(unit, new Set());
+        units.get(unit).add(name);
+      }
+      for (const [unit, names] of units) {
+        const name = units.size > 1 ? `${title}, ${unit || 'shares'}` : title;
+        if (figures.size < 6) figures.set(name, { name, title: '', channels: [...names].slice(0, 7), bounds: [] });
+      }
     }
     return [...figures.values()];
   }

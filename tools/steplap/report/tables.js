@@ -70,13 +70,13 @@ steplap.tables = (() => {
   function joints(run) {
     const list = Object.entries(run.summary.joints || {});
     if (!list.length) return [];
-    const rows = list.map(([name, j]) => [name, { text: j.verdict, class: j.verdict === 'holds' ? 'met' : 'inspect' }, j.first_slip === null ? '–' : seconds(j.first_slip),
+    const rows = list.map(([name, j]) => [name, { text: j.verdict, class: j.verdict === 'holds' ? 'met' : ['came apart', 'a corner parted', 'slid too far'].includes(j.verdict) ? 'reject' : 'inspect' }, j.first_slip === null ? '–' : seconds(j.first_slip),
       number(j.smallest_margin, ''), number(j.largest_required_pressure, 'Pa'), number(j.slid_x, 'm'), number(j.slid_y, 'm'), number(j.slid_angle, 'rad'), number(j.area_lost, 'm^2', 4)]);
     return [make('h3', {}, 'Step-lap joints: least margin, largest pressure needed, slid distances at the end'), scroll(table(['', '', 'first slip', 'margin', 'needs', 'dx', 'dy', 'turn', 'area lost'], tidy(rows), [2, 3, 4, 5, 6, 7, 8]))];
   }
   // What is rounding beside a micrometre or a microradian is shown as zero; data-value keeps the digits.
   function tidy(rows) {
-    for (const row of rows) for (const c of row.slice(5)) if (c.value !== null && Math.abs(c.value) < 1e-12) c.text = '0';
+    for (const row of rows) for (const c of row.slice(5)) if (c.value !== null && c.value !== undefined && Math.abs(c.value) < 1e-12) c.text = '0';
     return rows;
   }
   const scroll = (content) => make('div', { class: 'scroll' }, content);
@@ -113,7 +113,7 @@ steplap.tables = (() => {
       const judgement = run.summary.judgement;
       if (runs.length > 1) card.append(make('h3', {}, run.summary.model.title || run.name));
       if (judgement) {
-        card.append(make('span', { class: `badge ${judgement.verdict}` }, judgement.verdict.toUpperCase()), make('p', {}, sentences[judgement.verdict] + (run.summary.completed ? '' : ' The run did not reach its end.')), scroll(criteria(run)));
+        card.append(make('span', { class: `badge ${judgement.verdict}` }, judgement.verdict.toUpperCase()), make('p', {}, sentences[judgement.verdict] + (run.summary.completed ? '' : ` The run broke off; what was computed until then: ${judgement.so_far}.`)), scroll(criteria(run)));
       } else card.append(make('p', {}, 'The model states no criteria: what happened is below.'));
       card.append(...joints(run));
       const parts = [friction(run), devices(run)].filter((part) => part.length).map((part) => make('div', {}, ...part));

@@ -1,0 +1,121 @@
+// The least and the largest value of every channel over a whole run, whatever is written and how often.
+//
+// A run is cut into *stretches* in which everything is smooth: one accepted step (several of a fixed-step
+// method, as long as the curves are well resolved), up to an event or a breakpoint, whose two sides are both
+// looked at. All channels are evaluated at the stretch's ends. Where a channel may have passed its extreme so
+// far inside the stretch, which its second difference over three ends tells, all are evaluated on the dense
+// output as well: at the middle, then at the 5 and the 9 points of Chebyshev and Lobatto, until the
+// polynomial through them tells the next ones within `k_resolution` of the channel's range. The extreme is
+// the polynomial's. Where none is found (a kink) the search goes on by sections around the outermost point.
+//
+// What is looked at depends on the steps alone: not on the samples written. Limits: a peak that rises and
+// falls within one step of which neither the ends nor the curve before show anything is not seen, nor is it
+// by the integrator's own error control; of methods that decide contact modes themselves (moreau, storms) the
+// ends of steps are all there is.
+#pragma once
+
+#include "mbd/integrators/integrator.h"
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace steplap {
+
+struct Extreme {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double t = 0.0;
+};
+
+struct ChannelRange {
+  const Channel* channel = nullptr;
+  Extreme low, high;  ///< not-a-number where the channel had no value, or has no extremes (Channel::has_extremes)
+  double first = 0.0; ///< at the start
+  double final = 0.0; ///< at the end
+  bool had_no_value = false;             ///< it was not-a-number at some time
+  std::optional<double> first_above_one; ///< s; of channels without a unit: the first time they passed 1
+
+  /// Whichever is further from zero.
+  [[nodiscard]] const Extreme& largest() const;
+};
+
+class ExtremeFinder {
+public:
+  ExtremeFinder(const System& system, int max_dimension);
+
+  /// A state from which the motion goes on anew: the start, the far side of an event. `snapshot` is there.
+  void begin(double t, const Snapshot& snapshot);
+  /// After a step. `is_at_end`: `dynamics` was last evaluated at the step's end. `is_last`: of its stretch.
+  void add_step(Integrator& integrator, Dynamics& dynamics, bool is_at_end, bool is_last);
+  /// The stretch ends at t, inside the step made.
+  void end_at(double t, Integrator& integrator, Dynamics& dynamics);
+  /// The end of the run.
+  void finish(const Snapshot& snapshot);
+
+  [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return ranges_; }
+
+  static constexpr double k_resolution = 1e-6; ///< of a channel's range
+
+private:
+  static constexpr int k_nodes = 9;        ///< at most, inside a stretch
+  static constexpr int k_longest = 16;     ///< steps of a fixed size in a stretch
+  static constexpr double k_noise = 1e-9;  ///< of the largest range of channels in the same unit
+  static constexpr double k_rounding = 1e-12; ///< of the largest value in the same unit
+  /// What is known of a channel's curve in the stretch being looked at.
+  struct Curve {
+    bool is_open = false;   ///< it may still have an extreme that is not found
+    double error = 0.0;     ///< of the polynomial through the nodes
+  };
+  struct Kind { ///< of channels in the same unit
+    double range = 0.0, largest = 0.0;
+    double scale = 0.0; ///< size of what moves, where nothing moves yet
+  };
+
+  void set_scales();
+  void note(std::size_t c, double value, double t);
+  void evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything);
+  void look(double theta, Integrator& integrator, Dynamics& dynamics, double* values);
+  void state_at(double t, Integrator& integrator, Dynamics& dynamics);
+  void close(double t, Integrator& integrator, Dynamics& dynamics);
+  bool screen(const Snapshot& snapshot);
+  [[nodiscard]] bool suspect(double h);
+  void search(Integrator& integrator, Dynamics& dynamics);
+  void refine(int level, Integrator& integrator, Dynamics& dynamics);
+  [[nodiscard]] bool settle(std::size_t c, int level);
+  void section(std::size_t c, Integrator& integrator, Dynamics& dynamics);
+  void find_crossings(Integrator& integrator, Dynamics& dynamics);
+  void keep_step(const Integrator& integrator, const Dynamics& dynamics);
+  void arrive(double t, const Snapshot& snapshot, Integrator& integrator, Dynamics& dynamics);
+  void end_stretch(double t, const double* dy, Integrator& integrator, Dynamics& dynamics);
+  void adapt_length();
+  [[nodiscard]] double tolerance(std::size_t c) const;
+  [[nodiscard]] double at(std::size_t c, int node) const { return node_[node][c]; }
+  [[nodiscard]] double interpolate(std::size_t c, int level, double theta) const;
+  [[nodiscard]] bool is_screened(std::size_t c) const { return screened_slot_[c] >= 0; }
+
+  const System& system_;
+  std::size_t count_;                ///< of channels
+  std::vector<ChannelRange> ranges_;
+  std::vector<Kind> kinds_;
+  std::vector<int> kind_;            ///< per channel
+  std::vector<int> screened_slot_;   ///< per channel with bounds: place in bounds_, else −1
+  std::vector<std::size_t> tracked_; ///< channels that have extremes
+  std::vector<std::size_t> dimensionless_;
+
+  double t_ = 0.0, t_last_ = 0.0, h_last_ = 0.0; ///< the stretch begins at t_; length of the one before, 0: none
+  double t1_ = 0.0;                              ///< its end
+  std::vector<double> before_;                   ///< values at the beginning of the stretch before
+  std::vector<std::vector<double>> node_;        ///< values at the nodes, 0 and 8 are the ends
+  std::vector<Curve> curve_;
+  std::vector<std::size_t> open_;                ///< channels still followed in this stretch
+  std::vector<ValueBounds> bounds_, bounds_before_;
+  bool is_screened_wanted_ = false;              ///< in this stretch
+
+  int steps_ = 0, longest_ = 1;                  ///< steps in the stretch, and how many there may be
+  std::vector<double> step_t_, step_y_, step_k_; ///< their beginnings
+  std::size_t stride_;
+  std::vector<double> y_, dy_, scratch_;
+  bool is_begun_ = false;
+};
+
+} // namespace steplap

@@ -1,0 +1,233 @@
+// Verdicts and extremes do not hang on what is written, nor how often: every model of models/, and exact extremes of
+// motions that are known.
+#include "mbd/io/presentation.h"
+#include "mbd/io/reader.h"
+#include "mbd/simulation.h"
+#include "transformer/catalog.h"
+#include "transformer/verdict.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+using namespace steplap;
+
+namespace {
+
+struct Ran {
+  Model model;
+  std::unique_ptr<System> system;
+  RunResult result;
+  std::string failure;
+  Judgement judgement;
+
+  explicit Ran(Model model_) : model(std::move(model_)), system(compile(model)) {
+    check_presentation(model, *system);
+    Simulation simulation(*system, system->initial_state(), options_of(model));
+    try {
+      simulation.run();
+    } catch (const NumericalFailure& f) {
+      failure = f.what();
+    }
+    result = std::move(simulation).result();
+    judgement = judge(model, *system, result, failure);
+  }
+  [[nodiscard]] const ChannelRange& range(const std::string& channel) const {
+    const auto found = std::find_if(result.ranges.begin(), result.ranges.end(),
+                                    [&](const ChannelRange& r) { return r.channel->name == channel; });
+    REQUIRE(found != result.ranges.end());
+    return *found;
+  }
+};
+
+Ran run_text(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return Ran(parse_model(text, "a.toml", transformer_catalog(), overrides));
+}
+
+// The same double, not-a-number included.
+bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+void compare(const Ran& a, const Ran& b) {
+  CHECK(a.failure == b.failure);
+  CHECK(a.judgement.verdict == b.judgement.verdict);
+  CHECK(a.judgement.so_far == b.judgement.so_far);
+  REQUIRE(a.judgement.criteria.size() == b.judgement.criteria.size());
+  for (std::size_t i = 0; i < a.judgement.criteria.size(); ++i) {
+    const CriterionResult &x = a.judgement.criteria[i], &y = b.judgement.criteria[i];
+    CAPTURE(x.name);
+    CHECK(x.outcome == y.outcome);
+    CHECK(is_same(x.value.value_or(0.0), y.value.value_or(0.0)));
+  }
+  REQUIRE(a.result.ranges.size() == a.system->channels.size());
+  REQUIRE(a.result.ranges.size() == b.result.ranges.size());
+  for (std::size_t c = 0; c < a.result.ranges.size(); ++c) {
+    const ChannelRange &x = a.result.ranges[c], &y = b.result.ranges[c];
+    CAPTURE(x.channel->name);
+    // Not to a tolerance: what is looked at depends on the steps alone.
+    const bool is_equal = is_same(x.low.value, y.low.value) && is_same(x.high.value, y.high.value) && is_same(x.first, y.first) &&
+                          is_same(x.final, y.final);
+    CHECK(is_equal);
+  }
+}
+
+// Long or costly runs are cut off: what is compared is the same motion under different outputs.
+std::vector<std::string> shortened(const std::string& name) {
+  if (name == "andrews.toml" || name == "andrews_a03.toml") return {"simulation.end=0.005"};
+  if (name == "rest_for_an_hour.toml") return {"simulation.end=1.0"};
+  if (name.find("chain") != std::string::npos || name.find("grid") != std::string::npos || name.find("four_bar") != std::string::npos)
+    return {"simulation.end=0.1"};
+  return {"simulation.end=0.3"};
+}
+
+} // namespace
+
+TEST_CASE("every model: the same verdict and extremes whatever is written, and how often") {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(STEPLAP_MODELS))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  REQUIRE(files.size() > 30);
+  for (const fs::path& file : files) {
+    CAPTURE(file.string());
+    const auto with = [&](const std::string& step, const std::string& channels) {
+      std::vector<std::string> overrides = shortened(file.filename().string());
+      overrides.push_back("output.step=" + step);
+      if (!channels.empty()) overrides.push_back("output.channels=[\"" + channels + "\"]");
+      return Ran(read_model(file.string(), transformer_catalog(), overrides));
+    };
+    const Ran fine = with("1e-4", "");
+    compare(fine, with("1e-3", "no channel has this name"));
+    compare(fine, with("0.1", "*.x"));
+  }
+}
+
+namespace {
+
+// A mass on a spring, x = 0.1 sin(ω t), ω = √(k/m) = 50 1/s: samples every 0.04 s are three to a period.
+const std::string k_oscillator = R"(
+gravity = [0, 0]
+[simulation]
+end = 1
+[output]
+step = 0.04
+[[body]]
+name = "mass"
+mass = 1
+inertia = 1
+velocity = [5, 0]
+[[element]]
+kind = "spring_damper"
+name = "spring"
+a = "mass"
+b = "ground"
+axis = [1, 0]
+stiffness = 2500
+)";
+
+} // namespace
+
+TEST_CASE("extremes are the motion's, not the samples'") {
+  for (const char* method : {"\"rk4\"", "\"dop853\"", "\"tsit5\"", "\"rodas5p\"", "\"auto\""}) {
+    CAPTURE(std::string(method));
+    std::vector<std::string> overrides{"simulation.integrator=" + std::string(method)};
+    overrides.emplace_back(method == std::string("\"rk4\"") ? "simulation.step=2e-4" : "simulation.tolerance=1e-9");
+    const Ran run = run_text(k_oscillator, overrides);
+    // Located to 1e-6 of the range (ExtremeFinder::k_resolution); the run's own error is below 1e-7 of it.
+    CHECK(run.range("mass.x").high.value == doctest::Approx(0.1).epsilon(2e-6));
+    CHECK(run.range("mass.x").low.value == doctest::Approx(-0.1).epsilon(2e-6));
+    CHECK(run.range("mass.vx").high.value == doctest::Approx(5.0).epsilon(2e-6));
+    CHECK(run.range("mass.ax").high.value == doctest::Approx(250.0).epsilon(2e-6));
+    CHECK(run.range("spring.force").low.value == doctest::Approx(-250.0).epsilon(2e-6));
+  }
+}
+
+TEST_CASE("a load that rises and falls within a step of a body at rest is seen") {
+  // Held fast, so that no error limits the step: 8 periods and a half of the load, largest 3 + 2 N.
+  const Ran run = run_text(R"(
+gravity = [0, 0]
+[simulation]
+end = 0.85
+[output]
+step = 0.85
+[[body]]
+name = "mass"
+mass = 1
+inertia = 1
+[[signal]]
+name = "wave"
+kind = "harmonics"
+offset = 3
+amplitudes = [2]
+frequencies = [10]
+[[element]]
+kind = "weld"
+name = "hold"
+a = "mass"
+[[element]]
+kind = "load"
+name = "push"
+at = "mass"
+force_x = "wave"
+)");
+  CHECK(run.range("hold.force_x").low.value == doctest::Approx(-5.0).epsilon(1e-6));
+  CHECK(run.range("hold.force_x").high.value == doctest::Approx(-1.0).epsilon(1e-6));
+}
+
+TEST_CASE("a knock shorter than the output step counts") {
+  // Two balls of 1 kg, one at 1 m/s: with stiffness k the contact's force is v √(k m/2), over π √(m/(2k)) = 0.7 ms.
+  const std::string knock = R"(
+gravity = [0, 0]
+[simulation]
+end = 0.2
+tolerance = 1e-9
+[output]
+step = 0.05
+[[body]]
+name = "one"
+mass = 1
+inertia = 1
+velocity = [1, 0]
+[[body]]
+name = "two"
+mass = 1
+inertia = 1
+position = [0.3, 0]
+[[element]]
+kind = "circle_contact"
+name = "knock"
+a = "one"
+b = "two"
+radius_a = 0.1
+radius_b = 0.1
+stiffness = 1e7
+[[acceptance]]
+name = "knocks"
+channel = "knock.force"
+at_most = "1 kN"
+consequence = "reject"
+)";
+  const Ran run = run_text(knock);
+  CHECK(run.judgement.verdict == Verdict::reject);
+  CHECK(run.range("knock.force").high.value == doctest::Approx(std::sqrt(0.5e7)).epsilon(2e-6));
+  const double contact = 0.1 + 0.5 * M_PI * std::sqrt(0.5e-7); // it touches at 0.1 s, is closest a quarter of a period later
+  CHECK(run.range("knock.force").high.t == doctest::Approx(contact).epsilon(1e-5));
+}
+
+TEST_CASE("a run that ends between samples has its last row") {
+  const Ran run = run_text(k_oscillator, {"simulation.end=0.99", "simulation.tolerance=1e-9"});
+  CHECK(run.result.trajectory->times().back() == 0.99);
+  CHECK(run.result.trajectory->series("mass.x").back() == doctest::Approx(0.1 * std::sin(50.0 * 0.99)).epsilon(1e-6));
+  CHECK(run.range("mass.x").final == run.result.trajectory->series("mass.x").back());
+  // One that ends on the grid has no row more.
+  CHECK(run_text(k_oscillator).result.trajectory->size() == 26);
+}
+
+TEST_CASE("a joint that comes apart between samples: the last row is at the event") {
+  const Ran run(read_model(std::string(STEPLAP_MODELS) + "/layouts/joint_apart.toml", transformer_catalog(), {"output.step=0.1"}));
+  REQUIRE_FALSE(run.result.stop_reason.empty());
+  CHECK(run.result.trajectory->times().back() == run.result.events.back().t);
+  CHECK(run.judgement.verdict == Verdict::reject);
+}
