@@ -1,0 +1,220 @@
+#include "mbd/cross_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_least_part = 1e-3; // of the largest range of its kind: a channel that moves less is measured by that
+constexpr double k_wide_part = 0.1;
+constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // of the differences of three settings
+constexpr double k_doubtful_event = 0.02; // of the run: where an event is or is not, reactions are not compared
+constexpr double k_at_once = 1e-6;        // of the run
+
+std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::string>& bodies) {
+  if (is_audit_channel(channel)) return std::nullopt;
+  if (channel.unit == "N" || channel.unit == "N m") return ErrorKind::reaction;
+  const std::size_t dot = channel.name.rfind('.');
+  if (dot == std::string::npos || bodies.count(channel.name.substr(0, dot)) == 0) return std::nullopt;
+  if (channel.unit == "m" || channel.unit == "rad") return ErrorKind::position;
+  if (channel.unit == "m/s" || channel.unit == "rad/s") return ErrorKind::velocity;
+  return std::nullopt;
+}
+
+double arm_of(const Channel& channel, double size) {
+  if (channel.unit == "rad" || channel.unit == "rad/s") return size;
+  return channel.unit == "N m" ? 1.0 / size : 1.0;
+}
+
+double size_of(const System& system) {
+  double size = 0.0;
+  for (const BodyData& body : system.bodies)
+    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
+  return size > 0.0 ? size : 1.0;
+}
+
+double range_of(const Trajectory& t, std::size_t column) {
+  double low = INFINITY, high = -INFINITY;
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    low = std::min(low, t.value(row, column));
+    high = std::max(high, t.value(row, column));
+  }
+  return high >= low ? high - low : 0.0;
+}
+
+double middle_range(const std::vector<const RunResult*>& runs, std::size_t column) {
+  std::vector<double> ranges;
+  for (const RunResult* run : runs)
+    ranges.push_back(range_of(*run->trajectory, column));
+  std::sort(ranges.begin(), ranges.end());
+  return ranges.empty() ? 0.0 : ranges[ranges.size() / 2];
+}
+
+using Key = std::pair<std::string, std::string>;
+using Times = std::map<Key, std::vector<double>>;
+
+Times times_of(const RunResult& run, const EventFilter& is_counted) {
+  Times times;
+  for (const Event& event : run.events)
+    if (!is_counted || is_counted(event)) times[{event.element, event.what}].push_back(event.t);
+  return times;
+}
+
+double nearest(const std::vector<double>& times, double t) {
+  double best = INFINITY;
+  for (const double other : times)
+    if (std::abs(other - t) < std::abs(best - t)) best = other;
+  return best;
+}
+
+} // namespace
+
+std::vector<ComparedChannel> compared_channels(const System& system, const std::vector<const RunResult*>& runs) {
+  std::set<std::string> bodies;
+  for (const BodyData& body : system.bodies)
+    bodies.insert(body.name);
+  const double size = size_of(system);
+  std::vector<ComparedChannel> list;
+  std::map<ErrorKind, double> largest;
+  const auto& channels = runs.front()->trajectory->channels();
+  for (std::size_t column = 0; column < channels.size(); ++column) {
+    const std::optional<ErrorKind> kind = kind_of(*channels[column], bodies);
+    if (!kind) continue;
+    ComparedChannel c{channels[column], column, *kind, arm_of(*channels[column], size), 0.0, 0.0};
+    c.scale = middle_range(runs, column);
+    largest[*kind] = std::max(largest[*kind], c.arm * c.scale);
+    list.push_back(c);
+  }
+  for (ComparedChannel& c : list) {
+    const double of_kind = (largest[c.kind] > 0.0 ? largest[c.kind] : 1.0) / c.arm;
+    c.wide_scale = std::max(c.scale, k_wide_part * of_kind);
+    c.scale = std::max(c.scale, k_least_part * of_kind);
+  }
+  return list;
+}
+
+double distance_at(const ComparedChannel& channel, const Trajectory& x, const Trajectory& y, std::size_t row, double slack) {
+  const std::size_t c = channel.column, rows = std::min(x.size(), y.size());
+  const double plain = std::abs(x.value(row, c) - y.value(row, c));
+  if (!std::isfinite(plain)) return x.value(row, c) == y.value(row, c) ? 0.0 : INFINITY;
+  if (channel.kind != ErrorKind::reaction || rows < 2) return plain;
+  const double step = x.times()[1] - x.times()[0];
+  const std::size_t reach = 1 + static_cast<std::size_t>(std::min(std::ceil(slack / step), static_cast<double>(rows)));
+  const std::size_t first = row > reach ? row - reach : 0, last = std::min(rows - 1, row + reach);
+  const auto to_graph = [&](const Trajectory& from, const Trajectory& to) {
+    double low = INFINITY, high = -INFINITY;
+    for (std::size_t i = first; i <= last; ++i) {
+      low = std::min(low, to.value(i, c));
+      high = std::max(high, to.value(i, c));
+    }
+    return std::max({0.0, low - from.value(row, c), from.value(row, c) - high});
+  };
+  return std::max(to_graph(x, y), to_graph(y, x));
+}
+
+double extrapolated_error(const std::vector<double>& differences) {
+  const double last = differences.back();
+  if (differences.size() < 2 || last == 0.0) return last;
+  const double before = differences[differences.size() - 2];
+  const double ratio = std::clamp(before > 0.0 ? last / before : k_most_ratio, k_least_ratio, k_most_ratio);
+  return last * ratio / (1.0 - ratio);
+}
+
+MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const std::vector<const RunResult*>& levels,
+                           double step, double end, const EventFilter& is_counted)
+    : channels_(channels), levels_(levels), step_(step) {
+  rows_ = levels_.front()->trajectory->size();
+  for (const RunResult* level : levels_)
+    rows_ = std::min(rows_, level->trajectory->size());
+  estimate_events(is_counted, end);
+  spread_slack(end);
+  estimate_channels();
+  find_known();
+  std::vector<double> dissipated, work;
+  for (std::size_t i = 1; i < levels_.size(); ++i) {
+    dissipated.push_back(std::abs(levels_[i]->statistics.dissipated - levels_[i - 1]->statistics.dissipated));
+    work.push_back(std::abs(levels_[i]->statistics.work - levels_[i - 1]->statistics.work));
+  }
+  dissipated_error_ = extrapolated_error(dissipated);
+  work_error_ = extrapolated_error(work);
+}
+
+void MethodCurves::estimate_events(const EventFilter& is_counted, double end) {
+  const Times coarse = times_of(*levels_[levels_.size() - 2], is_counted), fine = times_of(*levels_.back(), is_counted);
+  std::map<std::string, std::vector<double>> of_element;
+  for (const auto& [key, times] : fine)
+    of_element[key.first].insert(of_element[key.first].end(), times.begin(), times.end());
+  const double at_once = std::max(k_at_once * end, 4.0 * step_);
+  for (const auto& [key, times] : fine) {
+    const auto other = coarse.find(key);
+    for (const double t : times) {
+      TimedEvent event{key.first, key.second, t, INFINITY, false};
+      if (other != coarse.end()) {
+        const double partner = nearest(other->second, t);
+        if (nearest(times, partner) == t) event.shift = std::abs(partner - t) + 2.0 * step_;
+      }
+      const std::vector<double>& all = of_element[key.first];
+      event.is_brief = std::count_if(all.begin(), all.end(), [&](double s) { return std::abs(s - t) <= at_once; }) > 1;
+      events_.push_back(event);
+    }
+  }
+  std::sort(events_.begin(), events_.end(), [](const TimedEvent& a, const TimedEvent& b) { return a.t < b.t; });
+}
+
+void MethodCurves::spread_slack(double end) {
+  slack_.assign(rows_, 2.0 * step_);
+  if (rows_ < 2) return;
+  const std::vector<double>& times = levels_.back()->trajectory->times();
+  const double step = times[1] - times[0];
+  for (const TimedEvent& event : events_) {
+    const double shift = std::min(event.shift, k_doubtful_event * end);
+    for (std::size_t row = 0; row < rows_; ++row)
+      if (std::abs(times[row] - event.t) <= k_margin * shift + step) slack_[row] = std::max(slack_[row], shift);
+  }
+}
+
+void MethodCurves::estimate_channels() {
+  const std::size_t pairs = levels_.size() - 1;
+  estimate_.assign(channels_.size(), std::vector<double>(rows_, 0.0));
+  std::vector<double> difference(pairs);
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    std::fill(difference.begin(), difference.end(), 0.0);
+    for (std::size_t row = 0; row < rows_; ++row) {
+      for (std::size_t i = 0; i < pairs; ++i)
+        difference[i] = std::max(difference[i], distance_at(channels_[c], *levels_[i]->trajectory,
+                                                            *levels_[i + 1]->trajectory, row, slack_[row]));
+      estimate_[c][row] = extrapolated_error(difference);
+    }
+  }
+}
+
+void MethodCurves::find_known() {
+  const std::vector<double>& times = levels_.back()->trajectory->times();
+  std::size_t row = 0;
+  const auto is_lost = [&](std::size_t at) {
+    for (std::size_t c = 0; c < channels_.size(); ++c)
+      if (channels_[c].kind == ErrorKind::position && !(estimate_[c][at] <= k_vague * channels_[c].wide_scale)) return true;
+    return false;
+  };
+  while (row < rows_ && !is_lost(row))
+    ++row;
+  known_until_ = row == 0 ? 0.0 : times[row - 1];
+}
+
+WorstError MethodCurves::largest(ErrorKind kind) const {
+  WorstError worst;
+  if (rows_ == 0) return worst;
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    if (channels_[c].kind != kind) continue;
+    const double error = estimate_[c][rows_ - 1] / channels_[c].wide_scale;
+    if (!(error <= worst.value)) worst = {error, channels_[c].channel->name, levels_.back()->trajectory->times()[rows_ - 1]};
+  }
+  return worst;
+}
+
+} // namespace steplap
