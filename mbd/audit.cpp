@@ -10,6 +10,7 @@ namespace steplap {
 namespace {
 
 const std::string k_prefix = "audit: ";
+constexpr double k_still = 1e-6;
 const char* const k_pushes = ".pushes";
 const char* const k_overload = ".overload";
 
@@ -118,7 +119,10 @@ void add_audit_channels(System& system) {
 bool is_audit_channel(const Channel& channel) { return channel.name.compare(0, k_prefix.size(), k_prefix) == 0; }
 
 double energy_scale(const System& system, const RunResult& run) {
-  double scale = run.statistics.energy_exchanged;
+  double size = 0.0;
+  for (const BodyData& body : system.bodies)
+    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
+  double scale = std::max(run.statistics.energy_exchanged, k_still * largest_force(run) * size);
   const Trajectory& t = *run.trajectory;
   const std::vector<std::size_t> rates = columns(system, t, k_rate_names);
   for (std::size_t row = 0; row < t.size(); ++row)
@@ -126,7 +130,7 @@ double energy_scale(const System& system, const RunResult& run) {
   return scale;
 }
 
-std::vector<AuditFinding> audit(const System& system, const RunResult& run, double share) {
+std::vector<AuditFinding> audit(const System& system, const RunResult& run, double share, int persistent) {
   std::vector<AuditFinding> findings;
   const Trajectory& t = *run.trajectory;
   if (t.size() < 2) return findings;
@@ -141,6 +145,8 @@ std::vector<AuditFinding> audit(const System& system, const RunResult& run, doub
     for (std::size_t row = 0; row < t.size(); ++row) {
       finding.t = t.times()[row];
       finding.value = t.value(row, c);
+      for (int back = 1; back < persistent && finding.value > 0.0; ++back)
+        finding.value = static_cast<std::size_t>(back) > row ? 0.0 : std::min(finding.value, t.value(row - back, c));
       keep_worst(findings, finding);
     }
   }

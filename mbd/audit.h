@@ -27,10 +27,12 @@ struct AuditFinding {
 };
 
 /// The worst of each sort, with the bound that `share` of the run's own powers and forces allows; `value` is
-/// beyond `bound` if it is a breach. Needs the audit channels in the trajectory.
-[[nodiscard]] std::vector<AuditFinding> audit(const System& system, const RunResult& run, double share);
+/// beyond `bound` if it is a breach, the least of `persistent` samples in a row. Needs the audit channels in the
+/// trajectory.
+[[nodiscard]] std::vector<AuditFinding> audit(const System& system, const RunResult& run, double share, int persistent);
 
-/// Kinetic energy and energies exchanged: what a residual of energy is measured by, J.
+/// Kinetic energy and energies exchanged: what a residual of energy is measured by, J. Where nothing moves a
+/// millionth of what the largest force does over the bodies' size.
 [[nodiscard]] double energy_scale(const System& system, const RunResult& run);
 
 /// Bodies that only act on each other, and gravity on them: their momentum changes by gravity alone, and so does

@@ -19,6 +19,7 @@ constexpr double k_integral_floor = 1e-6;
 constexpr double k_energy_allowed = 1e-5;       // residual of an adaptive run over the energy exchanged
 constexpr double k_stepped_energy_allowed = 0.2; // of a run of fixed steps: it damps, and says so
 constexpr double k_law_share = 1e-6, k_stepped_law_share = 1e-2; // of the run's own powers and forces
+constexpr int k_persistent = 4; // samples: time stepping's forces at an instant are not what it steps with
 constexpr double k_own_doubt = 1e-3;            // an adaptive method's estimate beyond it is looked at
 constexpr double k_momentum_allowed = 1e-6;
 constexpr long k_steps_between_looks = 256;
@@ -152,7 +153,7 @@ private:
       note({Doubt::energy, name_of_run(i), "", "", base_.end, residual / allowed,
             number_text(residual) + " J of " + number_text(exchanged) + " J"});
     const bool is_stepping = r.setting.integrator == "moreau";
-    for (const AuditFinding& f : audit(system_, r.result, is_stepping ? k_stepped_law_share : k_law_share))
+    for (const AuditFinding& f : audit(system_, r.result, is_stepping ? k_stepped_law_share : k_law_share, is_stepping ? k_persistent : 1))
       note({Doubt::law, name_of_run(i), "", "'" + f.where + "' " + f.what, f.t, f.ratio(),
             number_text(f.value) + ", allowed " + number_text(f.bound)});
     if (options_.free_groups.empty()) return;
@@ -220,7 +221,7 @@ private:
     const double near = std::max(k_time_floor * base_.end, 4.0 * std::max(x.step(), y.step()));
     Disagreement worst{Doubt::event, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (const TimedEvent& event : x.events()) {
-      if (!std::isfinite(event.shift) || event.t > until || is_brief(x, event, near)) continue;
+      if (!std::isfinite(event.shift) || event.t > until || event.alone < near) continue;
       double distance = INFINITY, allowed = 0.0;
       bool is_doubted = false;
       for (const TimedEvent& other : y.events()) {
@@ -240,13 +241,6 @@ private:
                                            : "is missing";
     }
     note(worst);
-  }
-
-  [[nodiscard]] static bool is_brief(const MethodCurves& curves, const TimedEvent& event, double near) {
-    if (event.is_brief) return true;
-    for (const TimedEvent& other : curves.events())
-      if (&other != &event && other.element == event.element && std::abs(other.t - event.t) < near) return true;
-    return false;
   }
 
   void compare_integrals(std::size_t i, std::size_t j) {

@@ -8,8 +8,9 @@
 // Each is run at two or more settings, and its own error is estimated from them, never assumed: an adaptive
 // method at a hundredth of its tolerance (the finer run's error is taken to be as large as the difference, which is
 // conservative), rk4 with half its step, moreau with three steps h, h/2, h/4, whose differences d₁, d₂ give
-// d₂ r/(1 − r) with the ratio r = d₂/d₁ that it really shows (1/2 where it is of first order). Estimates are
-// functions of time: the largest difference up to t, for every channel.
+// d₂ r/(1 − r) with the ratio r = d₂/d₁ that it really shows (1/2 where it is of first order). For fixed steps the
+// estimate is not less than what passes within a step. Estimates are functions of time: the largest difference up
+// to t, for every channel.
 //
 // Two runs disagree in a channel where they differ by more than k_margin times the sum of both estimates and a
 // floor for rounding. Reactions jump, so theirs is the distance of the two graphs: within a sample and what event

@@ -14,7 +14,7 @@ constexpr double k_least_part = 1e-3; // of the largest range of its kind: a cha
 constexpr double k_wide_part = 0.1;
 constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // of the differences of three settings
 constexpr double k_doubtful_event = 0.02; // of the run: where an event is or is not, reactions are not compared
-constexpr double k_at_once = 1e-6;        // of the run
+constexpr double k_still = 1e-6;          // of the bodies' size: what moves less does not move
 
 std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::string>& bodies) {
   if (is_audit_channel(channel)) return std::nullopt;
@@ -72,6 +72,14 @@ double nearest(const std::vector<double>& times, double t) {
   return best;
 }
 
+// What an event lies away from its like in another run; infinite where it has none of its own.
+double shift_of(double t, const std::vector<double>& times, const Times& other, const Key& key) {
+  const auto found = other.find(key);
+  if (found == other.end()) return INFINITY;
+  const double partner = nearest(found->second, t);
+  return nearest(times, partner) == t ? std::abs(partner - t) : INFINITY;
+}
+
 } // namespace
 
 std::vector<ComparedChannel> compared_channels(const System& system, const std::vector<const RunResult*>& runs) {
@@ -80,7 +88,9 @@ std::vector<ComparedChannel> compared_channels(const System& system, const std::
     bodies.insert(body.name);
   const double size = size_of(system);
   std::vector<ComparedChannel> list;
-  std::map<ErrorKind, double> largest;
+  const std::vector<double>& times = runs.front()->trajectory->times();
+  const double duration = times.size() > 1 ? times.back() - times.front() : 1.0;
+  std::map<ErrorKind, double> largest{{ErrorKind::position, k_still * size}, {ErrorKind::velocity, k_still * size / duration}};
   const auto& channels = runs.front()->trajectory->channels();
   for (std::size_t column = 0; column < channels.size(); ++column) {
     const std::optional<ErrorKind> kind = kind_of(*channels[column], bodies);
@@ -131,7 +141,7 @@ MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const s
   rows_ = levels_.front()->trajectory->size();
   for (const RunResult* level : levels_)
     rows_ = std::min(rows_, level->trajectory->size());
-  estimate_events(is_counted, end);
+  estimate_events(is_counted);
   spread_slack(end);
   estimate_channels();
   find_known();
@@ -144,22 +154,24 @@ MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const s
   work_error_ = extrapolated_error(work);
 }
 
-void MethodCurves::estimate_events(const EventFilter& is_counted, double end) {
-  const Times coarse = times_of(*levels_[levels_.size() - 2], is_counted), fine = times_of(*levels_.back(), is_counted);
-  std::map<std::string, std::vector<double>> of_element;
-  for (const auto& [key, times] : fine)
-    of_element[key.first].insert(of_element[key.first].end(), times.begin(), times.end());
-  const double at_once = std::max(k_at_once * end, 4.0 * step_);
+void MethodCurves::estimate_events(const EventFilter& is_counted) {
+  const Times fine = times_of(*levels_.back(), is_counted);
+  std::vector<Times> coarser;
+  for (std::size_t i = 0; i + 1 < levels_.size(); ++i)
+    coarser.push_back(times_of(*levels_[i], is_counted));
+  std::map<std::string, std::vector<double>> of_element; // counted or not
+  for (const Event& event : levels_.back()->events)
+    of_element[event.element].push_back(event.t);
   for (const auto& [key, times] : fine) {
-    const auto other = coarse.find(key);
     for (const double t : times) {
-      TimedEvent event{key.first, key.second, t, INFINITY, false};
-      if (other != coarse.end()) {
-        const double partner = nearest(other->second, t);
-        if (nearest(times, partner) == t) event.shift = std::abs(partner - t) + 2.0 * step_;
+      TimedEvent event{key.first, key.second, t, 2.0 * step_, INFINITY};
+      for (const Times& other : coarser)
+        event.shift = std::max(event.shift, 2.0 * step_ + shift_of(t, times, other, key));
+      bool is_itself = true;
+      for (const double other : of_element[key.first]) {
+        if (other == t && is_itself) is_itself = false;
+        else event.alone = std::min(event.alone, std::abs(other - t));
       }
-      const std::vector<double>& all = of_element[key.first];
-      event.is_brief = std::count_if(all.begin(), all.end(), [&](double s) { return std::abs(s - t) <= at_once; }) > 1;
       events_.push_back(event);
     }
   }
@@ -190,6 +202,19 @@ void MethodCurves::estimate_channels() {
                                                             *levels_[i + 1]->trajectory, row, slack_[row]));
       estimate_[c][row] = extrapolated_error(difference);
     }
+    if (step_ > 0.0) add_step_of_motion(c);
+  }
+}
+
+// An event lies anywhere within a fixed step, so differences of three steps may be small by chance: such a run is
+// known to what passes within a step at best.
+void MethodCurves::add_step_of_motion(std::size_t c) {
+  const Trajectory& t = *levels_.back()->trajectory;
+  double most = 0.0;
+  for (std::size_t row = 1; row < rows_; ++row) {
+    const double span = t.times()[row] - t.times()[row - 1];
+    most = std::max(most, std::abs(t.value(row, channels_[c].column) - t.value(row - 1, channels_[c].column)) / span);
+    estimate_[c][row] = std::max(estimate_[c][row], step_ * most);
   }
 }
 

@@ -28,7 +28,7 @@ struct TimedEvent {
   std::string element, what;
   double t = 0.0;
   double shift = 0.0; ///< s: what its time is uncertain by; infinite where another setting has it not
-  bool is_brief = false; ///< the element changes again at once: another method may see nothing of it
+  double alone = 0.0; ///< s: to the next change of the element, before or after: who looks coarser may see nothing of it
 };
 
 class MethodCurves {
@@ -53,9 +53,10 @@ public:
   [[nodiscard]] double work_error() const { return work_error_; }
 
 private:
-  void estimate_events(const EventFilter& is_counted, double end);
+  void estimate_events(const EventFilter& is_counted);
   void spread_slack(double end);
   void estimate_channels();
+  void add_step_of_motion(std::size_t channel);
   void find_known();
 
   const std::vector<ComparedChannel>& channels_;

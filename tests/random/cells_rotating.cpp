@@ -79,8 +79,8 @@ std::vector<std::string> stopped_wheel(SceneWriter& w, At place) {
 // Pitch circles touch: the second wheel stands at the sum of the radii, or inside the ring.
 std::vector<std::string> gears(SceneWriter& w, At place) {
   const bool is_ring = w.r.chance(0.25);
-  const double ra = std::stod(number(w.size * w.r.between(0.2, 0.5)));
-  const double rb = std::stod(number(w.size * (is_ring ? w.r.between(0.6, 1.0) : w.r.between(0.1, 0.5))));
+  const double ra = neat((w.size * w.r.between(0.2, 0.5)));
+  const double rb = neat((w.size * (is_ring ? w.r.between(0.6, 1.0) : w.r.between(0.1, 0.5))));
   const double apart = is_ring ? rb - ra : ra + rb;
   const Wheel a = wheel(w, place, w.r.chance(0.5));
   const Wheel b = wheel(w, {place.x + apart, place.y}, w.r.chance(0.3));
@@ -97,7 +97,7 @@ std::vector<std::string> gears(SceneWriter& w, At place) {
 }
 
 std::vector<std::string> rack_and_pinion(SceneWriter& w, At place) {
-  const double radius = std::stod(number(w.size * w.r.between(0.1, 0.4)));
+  const double radius = neat((w.size * w.r.between(0.1, 0.4)));
   const Wheel pinion = wheel(w, {place.x, place.y + radius}, w.r.chance(0.4));
   const double m = std::stod(number(pinion.inertia / (radius * radius) * w.r.decades(-1.0, 1.0)));
   const std::string rack = w.body(m, m * w.size * w.size, place);
@@ -154,7 +154,7 @@ std::vector<std::string> driven_wheel(SceneWriter& w, At place) {
 std::vector<std::string> pendulum(SceneWriter& w, At place) {
   const int count = 1 + w.r.below(3);
   // Long enough that it swings a few times at most.
-  const double length = std::stod(number(std::max(w.size, 0.05 * w.gravity * w.duration * w.duration)));
+  const double length = neat((std::max(w.size, 0.05 * w.gravity * w.duration * w.duration)));
   const bool is_flat = w.r.chance(0.5);
   std::string above;
   At pin = place;
@@ -204,7 +204,7 @@ std::vector<std::string> pendulum(SceneWriter& w, At place) {
 
 // A crank, a massless rod, a slider on a line: distance and point_on_line, or a rod of its own.
 std::vector<std::string> crank(SceneWriter& w, At place) {
-  const double radius = std::stod(number(0.3 * w.size));
+  const double radius = neat((0.3 * w.size));
   const double m = w.some_mass();
   const std::string turning = w.body(m, m * radius * radius, place, {{"angular_velocity", number(w.r.either(0.5, 8.0) / w.duration)}});
   w.element("revolute", {{"a", marker(turning, place)}, {"b", marker("ground", place)}}, {turning});

@@ -20,17 +20,19 @@ void spring(SceneWriter& w, const std::string& a, At at_a, const std::string& b,
   std::vector<std::string> uses{a};
   if (b != "ground") uses.push_back(b);
   if (!axis.empty()) fields.push_back({"axis", axis});
+  bool is_gapped = false;
   if (w.r.chance(0.3)) {
     const double soft = k * w.r.between(0.05, 0.9);
     fields.push_back({"force_table", "[" + pair(-2.0 * reach, -reach * (k + soft)) + ", " + pair(-reach, -reach * k) +
                                          ", [0.0, 0.0], " + pair(reach, reach * soft) + ", " + pair(3.0 * reach, reach * (soft + 2.0 * k)) + "]"});
   } else {
     fields.push_back({"stiffness", number(k)});
-    if (w.r.chance(0.3)) fields.push_back({"gap", number(reach * w.r.between(0.05, 1.0))});
+    is_gapped = w.r.chance(0.3);
+    if (is_gapped) fields.push_back({"gap", number(reach * w.r.between(0.05, 1.0))});
     else if (w.r.chance(0.3)) fields.push_back({"preload", number(k * reach * w.r.either(0.05, 1.0))});
     if (w.r.chance(0.2)) fields.push_back({"count", "2"});
   }
-  if (w.r.chance(0.25)) {
+  if (!is_gapped && w.r.chance(0.25)) {
     const double v = w.size / w.duration, d = std::max(c, 0.1 * std::sqrt(k * m));
     fields.push_back({"damping_table", "[" + pair(-v, -0.4 * d * v) + ", " + pair(-0.2 * v, -0.2 * d * v) +
                                            ", [0.0, 0.0], " + pair(0.1 * v, 0.1 * d * v) + ", " + pair(v, 0.7 * d * v) + "]"});
@@ -121,7 +123,7 @@ std::vector<std::string> plate(SceneWriter& w, At place) {
 
 // A limb between two yokes, held by sheets; the yokes on a driven base, or pulled from.
 std::vector<std::string> step_lap(SceneWriter& w, At place) {
-  const double width = std::stod(number(w.size * w.r.between(0.3, 0.6))), high = w.size, lap = std::stod(number(0.15 * w.size));
+  const double width = neat((w.size * w.r.between(0.3, 0.6))), high = w.size, lap = neat((0.15 * w.size));
   const double m = std::stod(number(w.some_mass()));
   const std::string yokes = w.body(m * 2.0, w.inertia_of(m, w.size), place);
   const std::string limb = w.body(m, m * w.size * w.size / 6.0, place);

@@ -136,7 +136,7 @@ std::string ball(SceneWriter& w, double m, double radius, At at) {
 }
 
 std::vector<std::string> ball_on_hill(SceneWriter& w, At place) {
-  const double m = std::stod(number(w.some_mass())), ra = std::stod(number(w.size * w.r.between(0.1, 0.4))), rb = std::stod(number(w.size * w.r.between(0.5, 2.0)));
+  const double m = std::stod(number(w.some_mass())), ra = neat((w.size * w.r.between(0.1, 0.4))), rb = neat((w.size * w.r.between(0.5, 2.0)));
   const double away = w.r.either(0.0, 0.3), reach = ra + rb + drop(w);
   const std::string name = ball(w, m, ra, {place.x + reach * away, place.y + reach * std::sqrt(1.0 - away * away)});
   Fields fields{{"a", quoted(name)}, {"b", marker("ground", place)}, {"radius_a", number(ra)}, {"radius_b", number(rb)}};
@@ -146,7 +146,7 @@ std::vector<std::string> ball_on_hill(SceneWriter& w, At place) {
 }
 
 std::vector<std::string> ball_in_ring(SceneWriter& w, At place) {
-  const double m = std::stod(number(w.some_mass())), ra = std::stod(number(w.size * w.r.between(0.1, 0.4))), rb = std::stod(number(w.size * w.r.between(0.8, 2.0)));
+  const double m = std::stod(number(w.some_mass())), ra = neat((w.size * w.r.between(0.1, 0.4))), rb = neat((w.size * w.r.between(0.8, 2.0)));
   const double away = w.r.either(0.0, 0.8), reach = (rb - ra) * w.r.between(0.5, 0.98);
   const std::string name = ball(w, m, ra, {place.x + reach * away, place.y - reach * std::sqrt(1.0 - away * away)});
   Fields fields{{"a", quoted(name)}, {"b", marker("ground", place)}, {"radius_a", number(ra)}, {"radius_b", number(rb)}, {"inside", "true"}};
@@ -156,7 +156,7 @@ std::vector<std::string> ball_in_ring(SceneWriter& w, At place) {
 }
 
 std::vector<std::string> ball_on_plate(SceneWriter& w, At place) {
-  const double m = std::stod(number(w.some_mass())), radius = std::stod(number(w.size * w.r.between(0.1, 0.3))), thick = std::stod(number(0.05 * w.size));
+  const double m = std::stod(number(w.some_mass())), radius = neat((w.size * w.r.between(0.1, 0.3))), thick = neat((0.05 * w.size));
   const double slope = w.r.between(-0.5, 0.5);
   const At start{place.x + w.size * w.r.either(0.0, 0.4), place.y + 0.5 * thick + (radius + drop(w)) * 1.2 + 0.25 * w.size};
   const std::string name = ball(w, m, radius, start);
@@ -169,7 +169,7 @@ std::vector<std::string> ball_on_plate(SceneWriter& w, At place) {
 
 // Balls that knock together in free flight, or beside each other on rods.
 std::vector<std::string> two_balls(SceneWriter& w, At place) {
-  const double radius = std::stod(number(0.3 * w.size)), m1 = std::stod(number(w.some_mass())), m2 = std::stod(number(w.some_mass()));
+  const double radius = neat((0.3 * w.size)), m1 = std::stod(number(w.some_mass())), m2 = std::stod(number(w.some_mass()));
   const double apart = 2.0 * radius + 0.2 * w.size, v = w.size / w.duration;
   const std::string a = w.body(m1, 0.4 * m1 * radius * radius, place, {{"velocity", pair(w.r.between(0.5, 2.0) * v, 0.0)}});
   const std::string b = w.body(m2, 0.4 * m2 * radius * radius, {place.x + apart, place.y + 0.15 * radius},

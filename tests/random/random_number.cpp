@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace steplap::random {
 
@@ -23,11 +24,17 @@ int RandomNumber::below(int count) { return static_cast<int>(bits() % static_cas
 
 std::string number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.5g", value == 0.0 ? 0.0 : value);
+  std::snprintf(text, sizeof text, "%.7g", value == 0.0 ? 0.0 : value);
   std::string result = text;
   // A number with a decimal point in TOML, so that it never reads as an integer.
   if (result.find_first_of(".e") == std::string::npos) result += ".0";
   return result;
+}
+
+double neat(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return std::strtod(text, nullptr);
 }
 
 std::string pair(double x, double y) { return "[" + number(x) + ", " + number(y) + "]"; }

@@ -34,9 +34,11 @@ private:
   std::uint64_t state_;
 };
 
-/// Five digits: what differs by rounding between two libraries of mathematics is the same text.
+/// Seven digits: what differs by rounding between two libraries of mathematics is the same text.
 [[nodiscard]] std::string number(double value);
-/// "[1, 2.5]"
+/// Rounded to three digits, so that sums of a few such lengths are exact in text.
+[[nodiscard]] double neat(double value);
+/// "[1.0, 2.5]"
 [[nodiscard]] std::string pair(double x, double y);
 
 } // namespace steplap::random

@@ -9,7 +9,7 @@ SceneWriter::SceneWriter(std::uint64_t seed) : r(seed) {
   scene.seed = seed;
   duration = r.decades(-1.0, 0.4);
   gravity = r.chance(0.2) ? 0.0 : 9.81;
-  size = r.decades(-0.7, 0.5);
+  size = neat(r.decades(-0.7, 0.5));
   mass = r.decades(-1.0, 4.0);
   // As the text has it, so that what is computed from it here is what the run sees.
   duration = std::stod(number(duration));
