@@ -130,6 +130,18 @@ double energy_scale(const System& system, const RunResult& run) {
   return scale;
 }
 
+double audited_power(const RunResult& run) {
+  double most = 0.0;
+  const Trajectory& t = *run.trajectory;
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < t.channels().size(); ++c)
+      if (is_audit_channel(*t.channels()[c]) && ends_with(t.channels()[c]->name, k_pushes)) sum += std::abs(t.value(row, c));
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
 std::vector<AuditFinding> audit(const System& system, const RunResult& run, double share, int persistent) {
   std::vector<AuditFinding> findings;
   const Trajectory& t = *run.trajectory;

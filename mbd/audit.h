@@ -35,6 +35,9 @@ struct AuditFinding {
 /// millionth of what the largest force does over the bodies' size.
 [[nodiscard]] double energy_scale(const System& system, const RunResult& run);
 
+/// The most that all friction together takes at a time, W.
+[[nodiscard]] double audited_power(const RunResult& run);
+
 /// Bodies that only act on each other, and gravity on them: their momentum changes by gravity alone, and so does
 /// their angular momentum. Indices of bodies of the compiled system.
 [[nodiscard]] std::vector<std::vector<int>> free_groups(const Model& model, const System& system);

@@ -19,7 +19,9 @@ constexpr double k_integral_floor = 1e-6;
 constexpr double k_energy_allowed = 1e-5;       // residual of an adaptive run over the energy exchanged
 constexpr double k_stepped_energy_allowed = 0.2; // of a run of fixed steps: it damps, and says so
 constexpr double k_law_share = 1e-6, k_stepped_law_share = 1e-2; // of the run's own powers and forces
+constexpr double k_shrinking = 0.8;               // of the residual at twice the step
 constexpr int k_persistent = 4; // samples: time stepping's forces at an instant are not what it steps with
+constexpr double k_brief_steps = 20.0; // what changes back within so many fixed steps is not missed
 constexpr double k_own_doubt = 1e-3;            // an adaptive method's estimate beyond it is looked at
 constexpr double k_momentum_allowed = 1e-6;
 constexpr long k_steps_between_looks = 256;
@@ -50,7 +52,13 @@ bool is_finite(const RunResult& run) {
 class Checker {
 public:
   Checker(const System& system, const State& initial, const SimulationOptions& base, const CrossCheckOptions& options)
-      : system_(system), initial_(initial), base_(base), options_(options) {}
+      : system_(system), initial_(initial), base_(base), options_(options) {
+    for (const FrictionUnit& unit : system.frictions)
+      friction_names_.insert(system.element_names[unit.element]);
+    is_counted_ = [this](const Event& event) {
+      return friction_names_.count(event.element) > 0 && (!options_.is_event_counted || options_.is_event_counted(event));
+    };
+  }
 
   CrossCheck made() {
     for (const CrossMethod& method : options_.methods)
@@ -120,7 +128,7 @@ private:
         levels.push_back(&coarser);
       levels.push_back(&r.result);
       curves_.push_back(std::make_unique<MethodCurves>(channels_, levels, r.setting.is_step ? r.setting.value : 0.0,
-                                                       base_.end, options_.is_event_counted));
+                                                       base_.end, is_counted_));
       r.estimate = curves_.back()->largest(ErrorKind::position).value;
       r.known_until = curves_.back()->known_until();
     }
@@ -149,7 +157,10 @@ private:
     const CrossRun& r = run_of(i);
     const double exchanged = energy_scale(system_, r.result), residual = r.result.statistics.energy_residual;
     const double allowed = (methods_[i].is_adaptive ? k_energy_allowed : k_stepped_energy_allowed) * exchanged;
-    if (exchanged > 0.0)
+    // Time stepping damps: a residual that goes with the step is its error, and estimated as such.
+    const bool is_shrinking = !methods_[i].is_adaptive &&
+                              residual < k_shrinking * methods_[i].coarser.back().statistics.energy_residual;
+    if (exchanged > 0.0 && !is_shrinking)
       note({Doubt::energy, name_of_run(i), "", "", base_.end, residual / allowed,
             number_text(residual) + " J of " + number_text(exchanged) + " J"});
     const bool is_stepping = r.setting.integrator == "moreau";
@@ -194,11 +205,12 @@ private:
   void compare_channels(std::size_t i, std::size_t j) {
     const MethodCurves &x = *curves_[i], &y = *curves_[j];
     const std::size_t rows = std::min(x.rows(), y.rows());
+    const double until = std::min(x.known_until(), y.known_until()); // beyond it nothing can be told
     Disagreement worst{Doubt::channel, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const ComparedChannel& channel = channels_[c];
       const double floor = (channel.kind == ErrorKind::reaction ? k_reaction_floor : k_floor) * channel.scale;
-      for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t row = 0; row < rows && x.run().trajectory->times()[row] <= until; ++row) {
         const double distance = distance_at(channel, *x.run().trajectory, *y.run().trajectory, row,
                                             k_margin * (x.slack(row) + y.slack(row)));
         const double allowed = k_margin * (x.estimate(c, row) + y.estimate(c, row)) + floor;
@@ -218,10 +230,10 @@ private:
   void compare_events(std::size_t i, std::size_t j) {
     const MethodCurves &x = *curves_[i], &y = *curves_[j];
     const double until = std::min(x.known_until(), y.known_until());
-    const double near = std::max(k_time_floor * base_.end, 4.0 * std::max(x.step(), y.step()));
+    const double near = std::max(k_time_floor * base_.end, k_brief_steps * std::max(x.step(), y.step()));
     Disagreement worst{Doubt::event, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (const TimedEvent& event : x.events()) {
-      if (!std::isfinite(event.shift) || event.t > until || event.alone < near) continue;
+      if (!event.is_counted || !std::isfinite(event.shift) || event.t > until || event.alone < near) continue;
       double distance = INFINITY, allowed = 0.0;
       bool is_doubted = false;
       for (const TimedEvent& other : y.events()) {
@@ -245,7 +257,7 @@ private:
 
   void compare_integrals(std::size_t i, std::size_t j) {
     const RunStatistics &a = run_of(i).result.statistics, &b = run_of(j).result.statistics;
-    const double scale = std::max(a.energy_exchanged, b.energy_exchanged);
+    const double scale = std::max(energy_scale(system_, run_of(i).result), energy_scale(system_, run_of(j).result));
     const auto one = [&](const char* what, double x, double y, double estimates) {
       const double allowed = k_margin * estimates + k_integral_floor * scale;
       if (allowed > 0.0)
@@ -281,6 +293,8 @@ private:
   const SimulationOptions& base_;
   const CrossCheckOptions& options_;
   CrossCheck check_;
+  std::set<std::string> friction_names_;
+  EventFilter is_counted_;
   std::vector<Method> methods_;
   std::vector<ComparedChannel> channels_;
   std::vector<std::unique_ptr<MethodCurves>> curves_;

@@ -13,9 +13,9 @@
 // to t, for every channel.
 //
 // Two runs disagree in a channel where they differ by more than k_margin times the sum of both estimates and a
-// floor for rounding. Reactions jump, so theirs is the distance of the two graphs: within a sample and what event
-// times are uncertain by. Samples decide, so extremes over samples are compared with them. An event disagrees that
-// one run has, certain of it, and the other has not. Nothing is called agreed because two methods share the search
+// floor for rounding. Near events the distance is that of the two graphs, within what the event's time is uncertain by;
+// reactions jump, so theirs always is, within a sample. Samples decide, so extremes over samples are compared with them. An event disagrees that
+// one run has of a friction element, certain of it, and the other has not. Nothing is called agreed because two methods share the search
 // for events: `moreau` is compared with all, and an adaptive method that knows its own answer less well than
 // time stepping does is doubted for that alone.
 //
@@ -41,7 +41,7 @@ struct CrossMethod {
 struct CrossCheckOptions {
   std::vector<CrossMethod> methods; ///< empty: usual_methods()
   double cpu_limit = 60.0;          ///< s, of one run
-  EventFilter is_event_counted;     ///< empty: all
+  EventFilter is_event_counted;     ///< of those of friction elements; empty: all
   /// What the run comes to, in a word; empty: not compared.
   std::function<std::string(const RunResult& run)> verdict;
   std::vector<std::vector<int>> free_groups; ///< whose momentum is looked at

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -14,7 +15,9 @@ constexpr double k_least_part = 1e-3; // of the largest range of its kind: a cha
 constexpr double k_wide_part = 0.1;
 constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // of the differences of three settings
 constexpr double k_doubtful_event = 0.02; // of the run: where an event is or is not, reactions are not compared
-constexpr double k_still = 1e-6;          // of the bodies' size: what moves less does not move
+constexpr double k_part_of_body = 0.3, k_part_of_mechanism = 0.1; // of the largest estimate in it
+constexpr double k_lacking = 0.1;         // of a residual of energy
+constexpr double k_still = 1e-3;          // of the bodies' size: what moves less does not move
 
 std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::string>& bodies) {
   if (is_audit_channel(channel)) return std::nullopt;
@@ -38,6 +41,35 @@ double size_of(const System& system) {
   return size > 0.0 ? size : 1.0;
 }
 
+// Bodies that act on each other without the ground have the same number.
+std::vector<int> mechanisms_of(const System& system) {
+  std::vector<int> number(system.bodies.size());
+  std::iota(number.begin(), number.end(), 0);
+  const auto join = [&](int a, int b) {
+    if (a == k_ground || b == k_ground || number[a] == number[b]) return;
+    const int from = number[a], to = number[b];
+    std::replace(number.begin(), number.end(), from, to);
+  };
+  for (int i = 0; i < system.links.size(); ++i)
+    join(system.links[i].a, system.links[i].b);
+  for (const RowSpec& row : system.rows)
+    join(row.a, row.b);
+  const State start = system.initial_state();
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const RowSpec& row = system.frictions[f].friction->rows(start.friction[f])[0];
+    join(row.a, row.b);
+  }
+  return number;
+}
+
+// Of all bodies, or the force that accelerates them by `acceleration`.
+double weight_of(const System& system, double acceleration) {
+  double mass = 0.0;
+  for (const BodyData& body : system.bodies)
+    mass += body.mass;
+  return mass * (system.gravity.norm() + acceleration);
+}
+
 double range_of(const Trajectory& t, std::size_t column) {
   double low = INFINITY, high = -INFINITY;
   for (std::size_t row = 0; row < t.size(); ++row) {
@@ -58,10 +90,10 @@ double middle_range(const std::vector<const RunResult*>& runs, std::size_t colum
 using Key = std::pair<std::string, std::string>;
 using Times = std::map<Key, std::vector<double>>;
 
-Times times_of(const RunResult& run, const EventFilter& is_counted) {
+Times times_of(const RunResult& run) {
   Times times;
   for (const Event& event : run.events)
-    if (!is_counted || is_counted(event)) times[{event.element, event.what}].push_back(event.t);
+    times[{event.element, event.what}].push_back(event.t);
   return times;
 }
 
@@ -84,18 +116,27 @@ double shift_of(double t, const std::vector<double>& times, const Times& other, 
 
 std::vector<ComparedChannel> compared_channels(const System& system, const std::vector<const RunResult*>& runs) {
   std::set<std::string> bodies;
-  for (const BodyData& body : system.bodies)
-    bodies.insert(body.name);
+  std::map<std::string, int> body_index;
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    bodies.insert(system.bodies[b].name);
+    body_index[system.bodies[b].name] = static_cast<int>(b);
+  }
+  const std::vector<int> mechanism = mechanisms_of(system);
   const double size = size_of(system);
   std::vector<ComparedChannel> list;
   const std::vector<double>& times = runs.front()->trajectory->times();
   const double duration = times.size() > 1 ? times.back() - times.front() : 1.0;
-  std::map<ErrorKind, double> largest{{ErrorKind::position, k_still * size}, {ErrorKind::velocity, k_still * size / duration}};
+  std::map<ErrorKind, double> largest{{ErrorKind::position, k_still * size}, {ErrorKind::velocity, k_still * size / duration},
+                                     {ErrorKind::reaction, k_still * weight_of(system, size / (duration * duration))}};
   const auto& channels = runs.front()->trajectory->channels();
   for (std::size_t column = 0; column < channels.size(); ++column) {
     const std::optional<ErrorKind> kind = kind_of(*channels[column], bodies);
     if (!kind) continue;
-    ComparedChannel c{channels[column], column, *kind, arm_of(*channels[column], size), 0.0, 0.0};
+    ComparedChannel c{channels[column], column, *kind, arm_of(*channels[column], size), 0.0, 0.0, 0, 0};
+    if (*kind != ErrorKind::reaction) {
+      c.body = body_index.at(channels[column]->name.substr(0, channels[column]->name.rfind('.')));
+      c.mechanism = mechanism[c.body];
+    }
     c.scale = middle_range(runs, column);
     largest[*kind] = std::max(largest[*kind], c.arm * c.scale);
     list.push_back(c);
@@ -112,9 +153,11 @@ double distance_at(const ComparedChannel& channel, const Trajectory& x, const Tr
   const std::size_t c = channel.column, rows = std::min(x.size(), y.size());
   const double plain = std::abs(x.value(row, c) - y.value(row, c));
   if (!std::isfinite(plain)) return x.value(row, c) == y.value(row, c) ? 0.0 : INFINITY;
-  if (channel.kind != ErrorKind::reaction || rows < 2) return plain;
-  const double step = x.times()[1] - x.times()[0];
-  const std::size_t reach = 1 + static_cast<std::size_t>(std::min(std::ceil(slack / step), static_cast<double>(rows)));
+  if (rows < 2) return plain;
+  const double step = x.times()[1] - x.times()[0], samples = std::min(slack / step, static_cast<double>(rows));
+  const bool jumps = channel.kind == ErrorKind::reaction;
+  const std::size_t reach = static_cast<std::size_t>(jumps ? 1.0 + std::ceil(samples) : std::floor(samples));
+  if (reach == 0) return plain;
   const std::size_t first = row > reach ? row - reach : 0, last = std::min(rows - 1, row + reach);
   const auto to_graph = [&](const Trajectory& from, const Trajectory& to) {
     double low = INFINITY, high = -INFINITY;
@@ -132,7 +175,7 @@ double extrapolated_error(const std::vector<double>& differences) {
   if (differences.size() < 2 || last == 0.0) return last;
   const double before = differences[differences.size() - 2];
   const double ratio = std::clamp(before > 0.0 ? last / before : k_most_ratio, k_least_ratio, k_most_ratio);
-  return last * ratio / (1.0 - ratio);
+  return std::max(last * ratio / (1.0 - ratio), k_least_ratio * before); // neither of the two may be small by chance
 }
 
 MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const std::vector<const RunResult*>& levels,
@@ -150,21 +193,24 @@ MethodCurves::MethodCurves(const std::vector<ComparedChannel>& channels, const s
     dissipated.push_back(std::abs(levels_[i]->statistics.dissipated - levels_[i - 1]->statistics.dissipated));
     work.push_back(std::abs(levels_[i]->statistics.work - levels_[i - 1]->statistics.work));
   }
-  dissipated_error_ = extrapolated_error(dissipated);
-  work_error_ = extrapolated_error(work);
+  // What the balance lacks is in one of the two.
+  const double lacking = step_ > 0.0 ? k_lacking * levels_.back()->statistics.energy_residual : 0.0;
+  const double in_a_step = std::max(lacking, step_ * audited_power(*levels_.back()));
+  dissipated_error_ = std::max(extrapolated_error(dissipated), in_a_step);
+  work_error_ = std::max(extrapolated_error(work), in_a_step);
 }
 
 void MethodCurves::estimate_events(const EventFilter& is_counted) {
-  const Times fine = times_of(*levels_.back(), is_counted);
+  const Times fine = times_of(*levels_.back());
   std::vector<Times> coarser;
   for (std::size_t i = 0; i + 1 < levels_.size(); ++i)
-    coarser.push_back(times_of(*levels_[i], is_counted));
-  std::map<std::string, std::vector<double>> of_element; // counted or not
+    coarser.push_back(times_of(*levels_[i]));
+  std::map<std::string, std::vector<double>> of_element;
   for (const Event& event : levels_.back()->events)
     of_element[event.element].push_back(event.t);
   for (const auto& [key, times] : fine) {
     for (const double t : times) {
-      TimedEvent event{key.first, key.second, t, 2.0 * step_, INFINITY};
+      TimedEvent event{key.first, key.second, t, 2.0 * step_, INFINITY, !is_counted || is_counted({t, key.first, key.second})};
       for (const Times& other : coarser)
         event.shift = std::max(event.shift, 2.0 * step_ + shift_of(t, times, other, key));
       bool is_itself = true;
@@ -204,6 +250,30 @@ void MethodCurves::estimate_channels() {
     }
     if (step_ > 0.0) add_step_of_motion(c);
   }
+  share_estimates();
+}
+
+// What one coordinate of a body is uncertain by the others hardly escape, nor, in part, the bodies that it acts on:
+// one that has not moved yet in any of the runs may be about to be hit at another time. None is known better by chance.
+// Reactions are all of one mechanism here: what a channel belongs to is not known.
+void MethodCurves::share_estimates() {
+  std::map<std::pair<int, ErrorKind>, std::vector<std::size_t>> bodies, mechanisms;
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    if (channels_[c].kind != ErrorKind::reaction) bodies[{channels_[c].body, channels_[c].kind}].push_back(c);
+    mechanisms[{channels_[c].mechanism, channels_[c].kind}].push_back(c);
+  }
+  const auto share = [&](const auto& groups, double part) {
+    for (const auto& [key, list] : groups)
+      for (std::size_t row = 0; row < rows_; ++row) {
+        double most = 0.0;
+        for (const std::size_t c : list)
+          most = std::max(most, channels_[c].arm * estimate_[c][row]);
+        for (const std::size_t c : list)
+          estimate_[c][row] = std::max(estimate_[c][row], part * most / channels_[c].arm);
+      }
+  };
+  share(bodies, k_part_of_body);
+  share(mechanisms, k_part_of_mechanism);
 }
 
 // An event lies anywhere within a fixed step, so differences of three steps may be small by chance: such a run is

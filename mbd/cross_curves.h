@@ -18,6 +18,7 @@ struct ComparedChannel {
   double arm = 1.0;   ///< m: makes a length of an angle
   double scale = 1.0; ///< its range over the run, or a part of the largest range of its kind; in its own unit
   double wide_scale = 1.0; ///< a greater part: what a motion is lost by
+  int body = 0, mechanism = 0; ///< of a body's channel: bodies that act on each other have the same mechanism
 };
 
 /// Ranges are the middle ones of those of all runs: a single one that has gone astray does not set the scale.
@@ -29,6 +30,7 @@ struct TimedEvent {
   double t = 0.0;
   double shift = 0.0; ///< s: what its time is uncertain by; infinite where another setting has it not
   double alone = 0.0; ///< s: to the next change of the element, before or after: who looks coarser may see nothing of it
+  bool is_counted = true;
 };
 
 class MethodCurves {
@@ -57,6 +59,7 @@ private:
   void spread_slack(double end);
   void estimate_channels();
   void add_step_of_motion(std::size_t channel);
+  void share_estimates();
   void find_known();
 
   const std::vector<ComparedChannel>& channels_;
@@ -69,7 +72,8 @@ private:
   double known_until_ = 0.0, dissipated_error_ = 0.0, work_error_ = 0.0;
 };
 
-/// |x − y| at the sample; for a reaction the distance of the two graphs within `slack` seconds and a sample.
+/// |x − y| at the sample, or the distance of the two graphs within `slack` seconds; for a reaction also within a
+/// sample.
 [[nodiscard]] double distance_at(const ComparedChannel& channel, const Trajectory& x, const Trajectory& y,
                                  std::size_t row, double slack);
 

@@ -18,7 +18,7 @@ struct SceneResult {
 };
 
 /// `folder`: where records are written for the reader. `cpu_limit`: s, of one run.
-[[nodiscard]] SceneResult check_scene(const Scene& scene, const std::string& folder, double cpu_limit = 5.0);
+[[nodiscard]] SceneResult check_scene(const Scene& scene, const std::string& folder, double cpu_limit = 2.0);
 
 /// The smallest scene, by leaving out blocks one after the other, in which something of the same kind is wrong
 /// with one of the same methods.
