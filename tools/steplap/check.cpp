@@ -4,14 +4,17 @@
 #include "mbd/freedom.h"
 #include "mbd/number_text.h"
 #include "mbd/validate.h"
+#include "tools/steplap/cross.h"
 #include "tools/steplap/run.h"
 #include "tools/steplap/text_table.h"
 #include "tools/steplap/warnings.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 #include <ostream>
 
 namespace steplap {
@@ -25,7 +28,20 @@ constexpr std::size_t k_shown_moves = 20;
 struct CheckOptions {
   std::vector<std::string> models;
   std::vector<std::string> overrides;
+  bool is_crossed = false;
+  std::optional<std::string> cpu_limit;
 };
+
+constexpr double k_usual_cpu_limit = 60.0; // s, of one run
+
+double cpu_limit_of(const CheckOptions& options) {
+  if (!options.cpu_limit) return k_usual_cpu_limit;
+  char* end = nullptr;
+  const double value = std::strtod(options.cpu_limit->c_str(), &end);
+  if (options.cpu_limit->empty() || *end != '\0' || !(value > 0.0))
+    throw UsageError("--cpu-limit: '" + *options.cpu_limit + "' should be a number of seconds above zero");
+  return value;
+}
 
 // "16: 2 unilateral_contact, 1 weld"
 template <class Entries, class KindOf>
@@ -113,7 +129,9 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
 }
 
 ExitCode check(const CheckOptions& options, Console& console) {
+  const double cpu_limit = cpu_limit_of(options);
   const auto models = load_models(options.models, options.overrides);
+  if (options.is_crossed) return cross_check_models(models, cpu_limit, console);
   if (console.verbosity == Verbosity::quiet) return ExitCode::done;
   for (const auto& loaded : models)
     print_model(console.out, *loaded);
@@ -126,12 +144,18 @@ Command check_command() {
   const auto o = std::make_shared<CheckOptions>();
   Command command;
   command.name = "check";
-  command.summary = "read models, report all errors, count what is in them, run nothing";
+  command.summary = "read models, report all errors, count what is in them; with --cross run them by several methods";
   command.examples = R"(  steplap check my.toml
   steplap check models/paper/*.toml
+  steplap check --cross my.toml
+Without --cross nothing is run. With it each model is run by explicit, implicit and time stepping methods, each at
+two or three settings, and what they differ by is compared with their own error estimates: exit code 4 if anything
+disagrees beyond these.
 )";
   command.options = {{"MODEL", &o->models, "FILE", "model files (TOML)", true},
-                     {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
+                     {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
+                     {"--cross", &o->is_crossed, "", "run each model by methods that share little, and compare"},
+                     {"--cpu-limit", &o->cpu_limit, "S", "with --cross: a run that needs more CPU time is given up, s (default: 60)"}};
   command.run = [o](Console& console) { return check(*o, console); };
   return command;
 }

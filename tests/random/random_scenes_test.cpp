@@ -1,0 +1,169 @@
+// Random scenes: all methods agree on them, and with an integration that shares nothing with them; and what looks at
+// them sees what is wrong where something is.
+#include "mbd/assembly.h"
+#include "mbd/cross_check.h"
+#include "mbd/io/reader.h"
+#include "tests/random/random_scene.h"
+#include "tests/random/scene_check.h"
+#include "tests/random/smooth_friction.h"
+#include "transformer/catalog.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <unistd.h>
+
+using namespace steplap;
+using namespace steplap::random;
+
+namespace {
+
+constexpr std::uint64_t k_scenes = 60;       // of 500 that the tool runs: what a test has time for
+constexpr std::uint64_t k_rail_scenes = 24;
+
+struct Folder {
+  std::string path = (std::filesystem::temp_directory_path() / ("steplap_random_" + std::to_string(::getpid()))).string();
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() { std::filesystem::remove_all(path); }
+};
+
+// FNV-1a.
+std::uint64_t hash_of(const std::string& text, std::uint64_t hash) {
+  for (const char c : text)
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ULL;
+  return hash;
+}
+
+SimulationOptions every(double end, double output_step) {
+  SimulationOptions options;
+  options.end = end;
+  options.output_step = output_step;
+  return options;
+}
+
+CrossCheck checked(const std::string& text, double end, const std::vector<CrossMethod>& methods) {
+  const Model model = parse_model(text, "scene.toml", transformer_catalog());
+  const auto system = compile(model);
+  add_audit_channels(*system);
+  CrossCheckOptions options;
+  options.methods = methods;
+  options.free_groups = free_groups(model, *system);
+  CrossCheck check = cross_check(*system, assembled_start(*system, assemble(model, *system)), every(end, end / 400.0), options);
+  for (CrossRun& run : check.runs)
+    run.result.trajectory.reset(); // its channels go with the system
+  return check;
+}
+
+bool has(const CrossCheck& check, Doubt doubt) {
+  return std::any_of(check.disagreements.begin(), check.disagreements.end(), [&](const Disagreement& d) { return d.doubt == doubt; });
+}
+
+const std::string k_pendulum = "[[body]]\nname = \"bob\"\nmass = 2.0\ninertia = 0.1\nposition = [1.0, 0.0]\n"
+                               "[[element]]\nkind = \"revolute\"\nname = \"pin\"\na = { body = \"bob\", at = [0.0, 0.0] }\n";
+
+CrossMethod fixed(const char* name, std::vector<double> steps) {
+  CrossMethod method{name, {}};
+  for (const double step : steps)
+    method.levels.push_back({name, step, true});
+  return method;
+}
+
+} // namespace
+
+TEST_CASE("methods agree on random scenes within their own error estimates") {
+  const Folder folder;
+  for (std::uint64_t seed = 1; seed <= k_scenes; ++seed) {
+    const SceneResult result = check_scene(random_scene(seed), folder.path);
+    INFO("seed " << seed << ": " << result.text());
+    CHECK_FALSE(result.is_bad());
+  }
+}
+
+// The margin of 3 is that of the cross check. Sticking, a block creeps by less than ε t = 5e-4 m, of which the
+// extrapolation leaves a part that its own estimate tells; 1e-5 m, of motions of 0.01 to 1 m, is for what the
+// smallest ε cannot resolve: slips shorter than the time in which friction turns, 4 ε m/F = 1e-3 s.
+TEST_CASE("blocks on a rail move as an integration with smoothed friction has it") {
+  const int samples = 20;
+  for (std::uint64_t seed = 1; seed <= k_rail_scenes; ++seed) {
+    const RailBlocks scene = random_rail_blocks(seed);
+    const SmoothMotion smooth = smooth_motion(scene, samples);
+    const Model model = parse_model(scene.text(), "rail.toml", transformer_catalog());
+    const auto system = compile(model);
+    for (const MethodSetting& method : {MethodSetting{"dop853", 1e-9, false}, MethodSetting{"auto", 1e-8, false}, MethodSetting{"tsit5", 1e-9, false},
+                                        MethodSetting{"rodas5p", 1e-7, false}, MethodSetting{"rk4", 1e-4, true}}) {
+      const RunResult run = simulate(*system, assembled_start(*system, assemble(model, *system)), method.applied_to(every(scene.end, scene.end / samples)));
+      double worst = 0.0;
+      for (std::size_t i = 0; i < scene.blocks.size(); ++i) {
+        const std::size_t column = run.trajectory->column("b" + std::to_string(i) + ".x");
+        for (std::size_t s = 0; s < smooth.x.size(); ++s) {
+          const double moved = run.trajectory->value(s + 1, column) - run.trajectory->value(0, column);
+          worst = std::max(worst, std::abs(moved - smooth.x[s][i]) / (3.0 * smooth.estimate[s][i] + 1e-5));
+        }
+      }
+      INFO("seed " << seed << ", " << method.text());
+      CHECK(worst < 1.0);
+    }
+  }
+}
+
+TEST_CASE("a seed gives the same scene everywhere, and seeds reach all kinds of elements and signals") {
+  std::set<std::string> kinds;
+  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    const Scene scene = random_scene(seed);
+    for (const Block& block : scene.blocks)
+      kinds.insert(block.kind);
+    hash = hash_of(scene.text(), hash);
+    for (const auto& [name, text] : scene.files)
+      hash = hash_of(text, hash);
+  }
+  CHECK(hash == 0x8A9E931E3F901FDEULL);
+  for (const ElementKind* kind : transformer_catalog().elements)
+    CHECK_MESSAGE(kinds.count(kind->name) == 1, kind->name);
+  for (const SignalKind* kind : transformer_catalog().signals)
+    CHECK_MESSAGE(kinds.count(kind->name) == 1, kind->name);
+}
+
+// Three equal steps show no difference at all: nothing but what passes within a step is left to hide behind.
+TEST_CASE("a method that is wrong without knowing it is found out") {
+  const CrossCheck check = checked(k_pendulum, 2.0, {{"dop853", {{"dop853", 1e-8, false}, {"dop853", 1e-10, false}}},
+                                                     fixed("moreau", {2e-2, 2e-2, 2e-2})});
+  CHECK(check.outcome == CrossOutcome::disagree);
+  CHECK(has(check, Doubt::channel));
+}
+
+TEST_CASE("coarse time stepping that estimates its error is no disagreement") {
+  const CrossCheck check = checked(k_pendulum, 2.0, {{"dop853", {{"dop853", 1e-8, false}, {"dop853", 1e-10, false}}},
+                                                     fixed("moreau", {4e-3, 2e-3, 1e-3})});
+  CHECK(check.disagreements.empty());
+}
+
+// A double pendulum from above loses 1e-10 within some ten swings: nobody can tell where it is then.
+TEST_CASE("a chaotic motion cannot be told apart, which is no disagreement and no agreement") {
+  const std::string text = k_pendulum + "[[body]]\nname = \"second\"\nmass = 1.0\ninertia = 0.05\nposition = [1.0, 1.0]\n"
+                           "[[element]]\nkind = \"revolute\"\nname = \"pin2\"\na = { body = \"second\", at = [1.0, 0.0] }\nb = { body = \"bob\", at = [1.0, 0.0] }\n";
+  const CrossCheck check = checked(text, 20.0, {{"dop853", {{"dop853", 1e-8, false}, {"dop853", 1e-10, false}}},
+                                                {"rodas5p", {{"rodas5p", 1e-6, false}, {"rodas5p", 1e-8, false}}},
+                                                fixed("moreau", {1e-2, 5e-3, 2.5e-3})});
+  CHECK(check.outcome == CrossOutcome::vague);
+  CHECK(check.known_until > 0.0);
+  CHECK(check.known_until < 10.0);
+}
+
+// Nothing holds the two balls but each other; thrown together they keep the momentum that they have.
+TEST_CASE("what is free of the ground is known by its elements, and its momentum is looked at") {
+  const std::string balls = "[[body]]\nname = \"one\"\nmass = 2.0\ninertia = 0.1\nvelocity = [1.0, 0.2]\n"
+                            "[[body]]\nname = \"two\"\nmass = 1.0\ninertia = 0.05\nposition = [1.0, 0.1]\n"
+                            "[[element]]\nkind = \"circle_contact\"\nname = \"knock\"\na = \"one\"\nb = \"two\"\nradius_a = 0.3\nradius_b = 0.3\nstiffness = 1e5\n";
+  const Model model = parse_model(balls + k_pendulum, "scene.toml", transformer_catalog());
+  const auto system = compile(model);
+  const auto groups = free_groups(model, *system);
+  REQUIRE(groups.size() == 1);
+  CHECK(groups[0] == std::vector<int>{1, 2});
+  const CrossCheck check = checked(balls + k_pendulum, 1.0, {});
+  CHECK_FALSE(has(check, Doubt::momentum));
+}

@@ -1,0 +1,116 @@
+#include "tests/random/scene_writer.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace steplap::random {
+
+SceneWriter::SceneWriter(std::uint64_t seed) : r(seed) {
+  scene.seed = seed;
+  duration = r.decades(-1.0, 0.4);
+  gravity = r.chance(0.2) ? 0.0 : 9.81;
+  size = neat(r.decades(-0.7, 0.5));
+  mass = r.decades(-1.0, 4.0);
+  // As the text has it, so that what is computed from it here is what the run sees.
+  duration = std::stod(number(duration));
+  scene.end = duration;
+  scene.output_step = duration / 400.0;
+  scene.gravity = gravity;
+}
+
+std::string SceneWriter::new_name(const std::string& stem) { return stem + std::to_string(++count_); }
+
+std::string quoted(const std::string& text) { return "\"" + text + "\""; }
+
+std::string marker(const std::string& body, At at) {
+  return "{ body = " + quoted(body) + ", at = " + pair(at.x, at.y) + " }";
+}
+
+namespace {
+
+std::string lines(const SceneWriter::Fields& fields) {
+  std::string text;
+  for (const auto& [key, value] : fields)
+    text += key + " = " + value + "\n";
+  return text;
+}
+
+} // namespace
+
+std::string SceneWriter::body(double body_mass, double inertia, At at, const Fields& more) {
+  Block block{"body", "", new_name("b"), {}, {}};
+  block.fields = lines({{"mass", number(body_mass)}, {"inertia", number(inertia)}, {"position", pair(at.x, at.y)}}) +
+                 lines(more);
+  scene.blocks.push_back(block);
+  return block.name;
+}
+
+std::string SceneWriter::element(const std::string& kind, const Fields& fields, const std::vector<std::string>& uses) {
+  const Block block{"element", kind, new_name(kind.substr(0, 4) + "_"), lines(fields), uses};
+  scene.blocks.push_back(block);
+  return block.name;
+}
+
+// A measured history, quiet but for a few spikes of one sample.
+std::string SceneWriter::record(double peak) {
+  const std::string file = "record_" + std::to_string(scene.seed) + "_" + std::to_string(count_) + ".csv";
+  const int rows = 40 + r.below(160);
+  std::string text = "t,value\n";
+  const double noise = r.chance(0.5) ? 0.02 : 0.0;
+  double value = 0.0;
+  for (int i = 0; i < rows; ++i) {
+    const double t = duration * i / rows;
+    value = r.chance(0.06) ? peak * r.between(-1.3, 1.3) : peak * noise * r.between(-1.0, 1.0);
+    text += number(t) + "," + number(i == 0 ? 0.0 : value) + "\n";
+  }
+  scene.files[file] = text;
+  return file;
+}
+
+std::string SceneWriter::signal(double peak, bool is_smooth) {
+  static const std::vector<std::string> all{"haversine", "harmonics", "harmonics", "half_sine", "triangle",
+                                            "trapezoid", "rectangle", "record",    "constant"};
+  const std::string kind = is_smooth ? (r.chance(0.5) ? "haversine" : "harmonics") : r.one_of(all);
+  Block block{"signal", kind, new_name("s"), {}, {}};
+  const double start = duration * r.between(0.0, 0.4), length = duration * r.between(0.05, 0.9);
+  if (kind == "constant") block.fields = lines({{"value", number(peak)}});
+  else if (kind == "record") block.fields = lines({{"file", quoted(record(peak))}, {"after", r.chance(0.5) ? "\"zero\"" : "\"hold\""}});
+  else if (kind == "harmonics") {
+    const int count = is_smooth ? 1 : 1 + r.below(4);
+    std::string amplitudes, frequencies, phases;
+    for (int i = 0; i < count; ++i) {
+      const std::string comma = i > 0 ? ", " : "";
+      amplitudes += comma + number(peak * r.either(0.2, 1.0) / std::sqrt(count));
+      frequencies += comma + number((is_smooth ? r.decades(-0.3, 0.6) : r.decades(-0.3, 1.6)) / duration);
+      phases += comma + number(is_smooth ? -0.5 * std::numbers::pi : r.between(-3.1, 3.1));
+    }
+    block.fields = lines({{"amplitudes", "[" + amplitudes + "]"}, {"frequencies", "[" + frequencies + "]"},
+                          {"phases", "[" + phases + "]"}});
+    if (!is_smooth && r.chance(0.3)) block.fields += lines({{"start", number(start)}, {"duration", number(length)}});
+  } else {
+    block.fields = lines({{"peak", number(peak)}, {"start", number(start)}, {"duration", number(length)}});
+    if (kind == "trapezoid")
+      block.fields += lines({{"rise", number(length * r.between(0.02, 0.4))}, {"fall", number(length * r.between(0.02, 0.4))}});
+    if (kind == "triangle" && r.chance(0.5)) block.fields += lines({{"rise", number(length * r.between(0.05, 0.9))}});
+  }
+  scene.blocks.push_back(block);
+  return block.name;
+}
+
+double SceneWriter::rate(double least_periods, double most_periods) {
+  const double periods = r.decades(std::log10(least_periods), std::log10(most_periods));
+  return 2.0 * std::numbers::pi * periods / duration;
+}
+
+double SceneWriter::stiffness_for(double m, double least_periods, double most_periods) {
+  const double omega = rate(least_periods, most_periods);
+  return m * omega * omega;
+}
+
+double SceneWriter::damping_for(double m, double k) {
+  return r.chance(0.3) ? 0.0 : 2.0 * r.decades(-2.5, -0.3) * std::sqrt(k * m);
+}
+
+double SceneWriter::inertia_of(double m, double length) { return m * length * length * r.decades(-1.3, 0.0); }
+
+} // namespace steplap::random

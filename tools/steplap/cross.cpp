@@ -1,0 +1,122 @@
+#include "tools/steplap/cross.h"
+
+#include "mbd/cross_check.h"
+#include "mbd/number_text.h"
+#include "tools/steplap/log.h"
+#include "tools/steplap/summary.h"
+#include "tools/steplap/text_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+namespace steplap {
+
+namespace {
+
+using Align = TextTable::Align;
+
+constexpr std::size_t k_shown_disagreements = 6;
+constexpr double k_most_samples = 2000.0, k_least_samples = 400.0;
+
+// As often as the model asks for, within what a comparison needs and can bear.
+SimulationOptions sampled(const Model& model) {
+  SimulationOptions options = options_of(model);
+  options.output_step = std::clamp(options.output_step, options.end / k_most_samples, options.end / k_least_samples);
+  return options;
+}
+
+// "auto 1e-10", "moreau 1e-4 s"
+std::string where_text(const Disagreement& d) {
+  if (d.ratio == 0.0) return "-";
+  std::string text = d.where;
+  if (d.doubt == Doubt::event || d.doubt == Doubt::channel || d.doubt == Doubt::law) text += " at " + time_text(d.t) + " s";
+  if (text.empty() || d.doubt == Doubt::self || d.doubt == Doubt::momentum) text = std::string(name_of(d.doubt)) + (text.empty() ? "" : ", " + text);
+  return text;
+}
+
+std::string ratio_text(double ratio) { return std::isfinite(ratio) ? small_text(ratio) : "beyond all"; }
+
+std::string partner(const CrossRun& run) {
+  const Disagreement& d = run.worst;
+  return d.second.empty() ? "" : d.first == run.setting.integrator ? d.second : d.first;
+}
+
+void print_runs(std::ostream& out, const CrossCheck& check) {
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::left, Align::left});
+  table.add_row({"method", "steps", "CPU s", "own error", "known to s", "worst", "with", "where"});
+  for (const CrossRun& run : check.runs) {
+    if (!run.failure.empty()) {
+      table.add_row({run.setting.text(), "stops", small_text(run.cpu_seconds), "", "", "", "", ""});
+      continue;
+    }
+    table.add_row({run.setting.text(), std::to_string(run.result.statistics.steps), small_text(run.cpu_seconds), small_text(run.estimate),
+                   time_text(run.known_until), ratio_text(run.worst.ratio), partner(run), where_text(run.worst)});
+  }
+  out << table;
+}
+
+void print_disagreements(std::ostream& out, const CrossCheck& check) {
+  const std::size_t shown = std::min(check.disagreements.size(), k_shown_disagreements);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const Disagreement& d = check.disagreements[i];
+    out << "  " << d.first << (d.second.empty() ? "" : " and " + d.second) << (d.second.empty() ? ": " : " disagree: ") << where_text(d)
+        << (d.text.empty() ? "" : ": " + d.text) << "\n";
+  }
+  if (check.disagreements.size() > shown) out << "  and " << check.disagreements.size() - shown << " more\n";
+}
+
+std::size_t finished_runs(const CrossCheck& check) {
+  return static_cast<std::size_t>(std::count_if(check.runs.begin(), check.runs.end(), [](const CrossRun& r) { return r.failure.empty(); }));
+}
+
+std::string conclusion(const CrossCheck& check, double end) {
+  if (finished_runs(check) < 2) return "NOT TO BE TRUSTED: there are no two opinions";
+  if (check.outcome == CrossOutcome::disagree) return "NOT TO BE TRUSTED: methods disagree beyond their error estimates";
+  if (check.outcome == CrossOutcome::vague)
+    return "no disagreement, but cannot be told apart after " + time_text(check.known_until) + " s of " + number_text(end) +
+           " s: small differences grow as large as the motion";
+  return "all agree; the worst disagreement is " + small_text(check.worst_ratio) + " of what the estimates allow";
+}
+
+CrossCheckOptions options_for(const LoadedModel& loaded, double cpu_limit) {
+  CrossCheckOptions options;
+  options.cpu_limit = cpu_limit;
+  options.is_event_counted = is_main_event;
+  options.free_groups = free_groups(loaded.model, *loaded.system);
+  options.verdict = [&loaded](const RunResult& run) { return std::string(name_of(judge(loaded.model, run, "").verdict)); };
+  options.progress = [](const std::string& text) { log_detail(text); };
+  return options;
+}
+
+bool cross_check_one(const LoadedModel& loaded, double cpu_limit, Console& console) {
+  const SimulationOptions base = sampled(loaded.model);
+  const CrossCheck check = cross_check(*loaded.system, initial_state_of(loaded), base, options_for(loaded, cpu_limit));
+  const bool is_trusted = check.outcome != CrossOutcome::disagree && finished_runs(check) >= 2;
+  for (const CrossRun& run : check.runs)
+    if (!run.failure.empty()) log_warning("'" + loaded.path + "': " + run.setting.text() + ": " + run.failure);
+  if (console.verbosity == Verbosity::quiet) return is_trusted;
+  console.out << loaded.path << ": t = 0 to " << number_text(base.end) << " s\n";
+  print_runs(console.out, check);
+  print_disagreements(console.out, check);
+  console.out << loaded.name << ": " << conclusion(check, base.end) << "\n";
+  return is_trusted;
+}
+
+} // namespace
+
+ExitCode cross_check_models(const std::vector<std::shared_ptr<const LoadedModel>>& models, double cpu_limit, Console& console) {
+  ExitCode code = ExitCode::done;
+  for (const auto& loaded : models) {
+    try {
+      add_audit_channels(*loaded->system);
+      if (!cross_check_one(*loaded, cpu_limit, console)) code = ExitCode::numerical_failure;
+    } catch (const NumericalFailure& failure) {
+      log_error("'" + loaded->path + "': " + failure.what());
+      code = ExitCode::numerical_failure;
+    }
+  }
+  return code;
+}
+
+} // namespace steplap
