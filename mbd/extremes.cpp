@@ -12,6 +12,11 @@ namespace steplap {
 
 namespace {
 
+// Of the loads' and drives' harmonics about t, s; infinite if there are none.
+double shortest_period(const System& system, double t) {
+  return 2.0 * std::numbers::pi / system.fastest_at(t);
+}
+
 constexpr int k_last = 8; // node at the stretch's end
 constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -200,7 +205,7 @@ void ExtremeFinder::end_at(double t, Integrator& integrator, Dynamics& dynamics)
 
 void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrator, Dynamics& dynamics) {
   // Where nothing moves a step may pass over many periods of a load: it is looked at piece by piece.
-  const double begin = t_, pieces = std::ceil((t - t_) / system_.shortest_period * k_looks_per_period / k_last);
+  const double begin = t_, pieces = std::ceil((t - t_) / shortest_period(system_, 0.5 * (t_ + t)) * k_looks_per_period / k_last);
   for (double i = 1.0; i < pieces; ++i) {
     const double piece_end = begin + i / pieces * (t - begin);
     state_at(piece_end, integrator, dynamics);
@@ -371,7 +376,7 @@ void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
       look(0.0, integrator, dynamics, node_[0].data());
       break;
     }
-  const double wanted = (t1_ - t_) / system_.shortest_period * k_looks_per_period;
+  const double wanted = (t1_ - t_) / shortest_period(system_, 0.5 * (t_ + t1_)) * k_looks_per_period;
   for (int level = 1; level <= 3 && !open_.empty(); ++level) {
     refine(level, integrator, dynamics);
     if (wanted > 1 << level) continue; // what loads do between the nodes would not be seen
