@@ -24,6 +24,7 @@ constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double k_surprise = 3.0;
 constexpr double k_looks_per_period = 8.0; // of the quickest load
 constexpr int k_most_sections = 40;
+constexpr double k_fine = 3e-4;       // of a stretch, about the top of a polynomial: 1e-7 of its bend
 constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
 constexpr double k_same_crossing = 1e-10; // of a stretch
 constexpr double k_golden = 0.3819660112501051;
@@ -82,6 +83,7 @@ ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
     bounds_.emplace_back();
   }
   bounds_before_ = bounds_;
+  is_wanted_.assign(bounds_.size(), 1);
   kinds_.resize(units.size());
   open_.reserve(count_);
 }
@@ -102,38 +104,37 @@ void ExtremeFinder::note(std::size_t c, double value, double t) {
   if (!(value <= range.high.value)) range.high = {value, t};
 }
 
-// Values where they are known: of screened channels only if `is_everything`.
+void ExtremeFinder::take(std::size_t c, double t, const Snapshot& snapshot, double* values) {
+  const double value = values[c] = ranges_[c].channel->value(snapshot);
+  const bool is_new = !(value >= ranges_[c].low.value && value <= ranges_[c].high.value);
+  if (!is_new) return;
+  note(c, value, t);
+  if (!std::isfinite(value)) return;
+  Kind& kind = kinds_[kind_[c]];
+  const double range = ranges_[c].high.value - ranges_[c].low.value;
+  if (std::isfinite(range)) kind.range = std::max(kind.range, range);
+  kind.largest = std::max(kind.largest, std::abs(value));
+}
+
+// Values of all channels at an end of a stretch; not of those that bounds rule out, unless `is_everything`.
 void ExtremeFinder::evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything) {
-  for (const std::size_t c : tracked_) {
-    if (is_screened(c) && !is_everything) {
-      values[c] = k_unknown;
-      continue;
-    }
-    values[c] = ranges_[c].channel->value(snapshot);
-    const bool is_new = !(values[c] >= ranges_[c].low.value && values[c] <= ranges_[c].high.value);
-    if (!is_new) continue;
-    note(c, values[c], t);
-    Kind& kind = kinds_[kind_[c]];
-    const ChannelRange& r = ranges_[c];
-    if (!std::isfinite(values[c])) continue;
-    kind.range = std::max(kind.range, r.high.value - r.low.value);
-    kind.largest = std::max(kind.largest, std::abs(values[c]));
-  }
+  for (const std::size_t c : tracked_)
+    if (is_everything || !is_ruled_out(c)) take(c, t, snapshot, values);
+    else values[c] = k_unknown;
 }
 
 // Could a channel that costs much be beyond its extremes? The bounds tell, with what they changed by since the last end.
-bool ExtremeFinder::screen(const Snapshot& snapshot) {
-  bool is_wanted = false;
+void ExtremeFinder::screen(const Snapshot& snapshot) {
   std::swap(bounds_, bounds_before_);
   for (const std::size_t c : tracked_) {
-    if (!is_screened(c)) continue;
-    const ValueBounds now = ranges_[c].channel->bounds(snapshot), before = bounds_before_[screened_slot_[c]];
-    bounds_[screened_slot_[c]] = now;
+    const int slot = screened_slot_[c];
+    if (slot < 0) continue;
+    const ValueBounds now = ranges_[c].channel->bounds(snapshot), before = bounds_before_[slot];
+    bounds_[slot] = now;
     const double up = now.high + std::abs(now.high - before.high), down = now.low - std::abs(now.low - before.low);
     const double slack = tolerance(c);
-    is_wanted = is_wanted || !(up <= ranges_[c].high.value + slack) || !(down >= ranges_[c].low.value - slack);
+    is_wanted_[slot] = !(up <= ranges_[c].high.value + slack) || !(down >= ranges_[c].low.value - slack);
   }
-  return is_wanted;
 }
 
 // Sizes beside which rounding is seen where everything rests: of lengths, of the forces at the start over all masses.
@@ -159,8 +160,8 @@ void ExtremeFinder::set_scales() {
 void ExtremeFinder::begin(double t, const Snapshot& snapshot) {
   const bool is_start = !is_begun_;
   is_begun_ = true;
-  const bool is_everything = screen(snapshot) || is_start;
-  evaluate(t, snapshot, node_[0].data(), is_everything);
+  screen(snapshot);
+  evaluate(t, snapshot, node_[0].data(), is_start);
   if (is_start) {
     for (std::size_t c = 0; c < count_; ++c) ranges_[c].first = ranges_[c].channel->value(snapshot);
     set_scales();
@@ -222,8 +223,8 @@ void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrat
 }
 
 void ExtremeFinder::arrive(double t, const Snapshot& snapshot, Integrator& integrator, Dynamics& dynamics) {
-  is_screened_wanted_ = screen(snapshot);
-  evaluate(t, snapshot, node_[k_last].data(), is_screened_wanted_);
+  screen(snapshot);
+  evaluate(t, snapshot, node_[k_last].data(), false);
   close(t, integrator, dynamics);
 }
 
@@ -239,11 +240,11 @@ void ExtremeFinder::state_at(double t, Integrator& integrator, Dynamics& dynamic
   hermite_dense(dynamics.coordinate_count(), (t - step_t_[i]) / h, h, y, y + stride_, k, k + stride_, y_.data());
 }
 
-void ExtremeFinder::look(double theta, Integrator& integrator, Dynamics& dynamics, double* values) {
+Snapshot ExtremeFinder::look(double theta, Integrator& integrator, Dynamics& dynamics) {
   const double t = t_ + theta * (t1_ - t_);
   state_at(t, integrator, dynamics);
   dynamics.rates(t, y_.data(), dy_.data());
-  evaluate(t, dynamics.snapshot(dy_.data()), values, is_screened_wanted_);
+  return dynamics.snapshot(dy_.data());
 }
 
 void ExtremeFinder::close(double t, Integrator& integrator, Dynamics& dynamics) {
@@ -269,7 +270,7 @@ bool ExtremeFinder::suspect(double h) {
     Curve& curve = curve_[c];
     curve.is_open = false;
     curve.error = std::numeric_limits<double>::infinity();
-    if ((is_screened(c) && !is_screened_wanted_) || std::isinf(a) || std::isinf(b)) continue;
+    if (is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
     const double slope = b - a, last = h_last_ > 0.0 ? (a - before_[c]) * (h / h_last_) : k_unknown;
     if (!std::isnan(slope) && !std::isnan(last)) { // over the stretch, and over as long before
       const double bend = k_surprise * std::abs(slope - last) / (1.0 + h_last_ / h);
@@ -332,7 +333,7 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
     double a = thetas()[low], b = thetas()[high];
     double p = a + k_golden * (b - a), q = b - k_golden * (b - a);
     double at_p = sign * interpolate(c, level, p), at_q = sign * interpolate(c, level, q);
-    while (b - a > 1e-6) {
+    while (b - a > k_fine) {
       if (at_p > at_q) {
         b = q;
         q = p;
@@ -355,8 +356,9 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
   for (const std::size_t c : open_) curve_[c].error = level == 1 && h_last_ == 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
   for (int i = step; i < k_last; i += 2 * step) {
     const double theta = thetas()[i];
-    look(theta, integrator, dynamics, node_[i].data());
+    const Snapshot snapshot = look(theta, integrator, dynamics);
     for (const std::size_t c : open_) {
+      take(c, t_ + theta * (t1_ - t_), snapshot, node_[i].data());
       double guess = k_unknown;
       if (level > 1) guess = interpolate(c, level - 1, theta);
       else if (h_last_ > 0.0) { // the parabola through this stretch's ends and the last one's beginning
@@ -371,11 +373,12 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
 }
 
 void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
-  for (const std::size_t c : open_)
-    if (std::isnan(node_[0][c])) { // a screened channel that was not looked at there
-      look(0.0, integrator, dynamics, node_[0].data());
-      break;
-    }
+  const bool is_begun = std::none_of(open_.begin(), open_.end(), [this](std::size_t c) { return std::isnan(node_[0][c]); });
+  if (!is_begun) { // some were ruled out there
+    const Snapshot snapshot = look(0.0, integrator, dynamics);
+    for (const std::size_t c : open_)
+      if (std::isnan(node_[0][c])) take(c, t_, snapshot, node_[0].data());
+  }
   const double wanted = (t1_ - t_) / shortest_period(system_, 0.5 * (t_ + t1_)) * k_looks_per_period;
   for (int level = 1; level <= 3 && !open_.empty(); ++level) {
     refine(level, integrator, dynamics);
@@ -398,7 +401,7 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
     if (!(sign * at(c, best) + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
     double a = thetas()[middle - 1], b = thetas()[middle + 1];
     const auto value = [&](double theta) {
-      look(theta, integrator, dynamics, values);
+      take(c, t_ + theta * (t1_ - t_), look(theta, integrator, dynamics), values);
       return sign * values[c];
     };
     double p = a + k_golden * (b - a), q = b - k_golden * (b - a), at_p = value(p), at_q = value(q);
@@ -430,10 +433,9 @@ void ExtremeFinder::find_crossings(Integrator& integrator, Dynamics& dynamics) {
     }
     const double h = t1_ - t_;
     double low = 0.0, high = std::min(1.0, (r.high.t - t_) / h);
-    is_screened_wanted_ = true;
     while (high - low > k_same_crossing) {
       const double middle = 0.5 * (low + high);
-      look(middle, integrator, dynamics, scratch_.data());
+      take(c, t_ + middle * h, look(middle, integrator, dynamics), scratch_.data());
       (scratch_[c] > 1.0 ? high : low) = middle;
     }
     r.first_above_one = t_ + high * h;

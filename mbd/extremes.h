@@ -74,10 +74,11 @@ private:
   void set_scales();
   void note(std::size_t c, double value, double t);
   void evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything);
-  void look(double theta, Integrator& integrator, Dynamics& dynamics, double* values);
+  void take(std::size_t c, double t, const Snapshot& snapshot, double* values);
+  Snapshot look(double theta, Integrator& integrator, Dynamics& dynamics);
   void state_at(double t, Integrator& integrator, Dynamics& dynamics);
   void close(double t, Integrator& integrator, Dynamics& dynamics);
-  bool screen(const Snapshot& snapshot);
+  void screen(const Snapshot& snapshot);
   [[nodiscard]] bool suspect(double h);
   void search(Integrator& integrator, Dynamics& dynamics);
   void refine(int level, Integrator& integrator, Dynamics& dynamics);
@@ -91,7 +92,7 @@ private:
   [[nodiscard]] double tolerance(std::size_t c) const;
   [[nodiscard]] double at(std::size_t c, int node) const { return node_[node][c]; }
   [[nodiscard]] double interpolate(std::size_t c, int level, double theta) const;
-  [[nodiscard]] bool is_screened(std::size_t c) const { return screened_slot_[c] >= 0; }
+  [[nodiscard]] bool is_ruled_out(std::size_t c) const { return screened_slot_[c] >= 0 && !is_wanted_[screened_slot_[c]]; }
 
   const System& system_;
   std::size_t count_;                ///< of channels
@@ -109,7 +110,7 @@ private:
   std::vector<Curve> curve_;
   std::vector<std::size_t> open_;                ///< channels still followed in this stretch
   std::vector<ValueBounds> bounds_, bounds_before_;
-  bool is_screened_wanted_ = false;              ///< in this stretch
+  std::vector<char> is_wanted_;                  ///< per screened channel: it may be beyond its extremes at the last end
 
   int steps_ = 0, longest_ = 1;                  ///< steps in the stretch, and how many there may be
   std::vector<double> step_t_, step_y_, step_k_; ///< their beginnings
