@@ -35,7 +35,8 @@ double overload_of(const Snapshot& s, const System& system, std::size_t f) {
   const FrictionState& state = s.evaluation->friction[f];
   const double* wrench = s.friction_force + unit.row;
   const int n = unit.friction->dimension();
-  if (unit.friction->never_slips()) return 0.0;
+  // Of a joint of sheets the set is known where it sticks only; sliding, its law is the set's boundary by construction.
+  if (unit.friction->never_slips() || (n > 1 && state.phase == FrictionPhase::slip)) return 0.0;
   const bool is_bearing = std::any_of(wrench, wrench + n, [](double w) { return w != 0.0; });
   if (!is_bearing) return -1.0;
   if (state.phase == FrictionPhase::apart) return INFINITY;
@@ -115,6 +116,8 @@ void add_audit_channels(System& system) {
                                return largest_pull(s, self->contact_count);
                              }});
 }
+
+std::string pushes_channel(const std::string& element) { return k_prefix + element + k_pushes; }
 
 bool is_audit_channel(const Channel& channel) { return channel.name.compare(0, k_prefix.size(), k_prefix) == 0; }
 

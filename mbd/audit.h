@@ -17,6 +17,8 @@ namespace steplap {
 /// Adds the channels, "audit: <element>.pushes" and so on. Once per system, before it is run.
 void add_audit_channels(System& system);
 [[nodiscard]] bool is_audit_channel(const Channel& channel);
+/// Name of a friction element's channel of power.
+[[nodiscard]] std::string pushes_channel(const std::string& element);
 
 struct AuditFinding {
   std::string what;   ///< "friction does positive work"

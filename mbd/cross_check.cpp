@@ -64,8 +64,9 @@ public:
     for (const CrossMethod& method : options_.methods)
       run(method);
     make_curves();
-    for (std::size_t i = 0; i < curves_.size(); ++i) {
+    for (std::size_t i = 0; i < curves_.size(); ++i)
       check_laws(i);
+    for (std::size_t i = 0; i < curves_.size(); ++i) {
       for (std::size_t j = i + 1; j < curves_.size(); ++j)
         compare(i, j);
     }
@@ -160,11 +161,17 @@ private:
     // Time stepping damps: a residual that goes with the step is its error, and estimated as such.
     const bool is_shrinking = !methods_[i].is_adaptive &&
                               residual < k_shrinking * methods_[i].coarser.back().statistics.energy_residual;
-    if (exchanged > 0.0 && !is_shrinking)
+    // One that does not is a step too coarse for the scene: such a run has no opinion.
+    if (!methods_[i].is_adaptive && !is_shrinking && residual > allowed) {
+      curves_[i]->distrust();
+      run_of(i).known_until = 0.0;
+    }
+    if (exchanged > 0.0 && methods_[i].is_adaptive)
       note({Doubt::energy, name_of_run(i), "", "", base_.end, residual / allowed,
             number_text(residual) + " J of " + number_text(exchanged) + " J"});
     const bool is_stepping = r.setting.integrator == "moreau";
-    for (const AuditFinding& f : audit(system_, r.result, is_stepping ? k_stepped_law_share : k_law_share, is_stepping ? k_persistent : 1))
+    const double share = methods_[i].is_adaptive ? k_law_share : k_stepped_law_share;
+    for (const AuditFinding& f : audit(system_, r.result, share, is_stepping ? k_persistent : 1))
       note({Doubt::law, name_of_run(i), "", "'" + f.where + "' " + f.what, f.t, f.ratio(),
             number_text(f.value) + ", allowed " + number_text(f.bound)});
     if (options_.free_groups.empty()) return;
@@ -231,6 +238,8 @@ private:
     const MethodCurves &x = *curves_[i], &y = *curves_[j];
     const double until = std::min(x.known_until(), y.known_until());
     const double near = std::max(k_time_floor * base_.end, k_brief_steps * std::max(x.step(), y.step()));
+    const double energy_allowed = k_margin * (x.dissipated_error() + y.dissipated_error()) +
+                                  k_integral_floor * std::max(energy_scale(system_, x.run()), energy_scale(system_, y.run())) + 1e-300;
     Disagreement worst{Doubt::event, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (const TimedEvent& event : x.events()) {
       if (!event.is_counted || !std::isfinite(event.shift) || event.t > until || event.alone < near) continue;
@@ -244,7 +253,9 @@ private:
         allowed = k_margin * (event.shift + (std::isfinite(other.shift) ? other.shift : 0.0));
       }
       if (is_doubted) continue;
-      const double ratio = std::min(distance, base_.end) / (allowed + near);
+      // What it takes of energy is less than is known of that: nothing can be told.
+      const double energy = std::max(x.friction_energy(event.element, event.t, event.lasts), y.friction_energy(event.element, event.t, event.lasts));
+      const double ratio = std::min(std::min(distance, base_.end) / (allowed + near), energy / energy_allowed);
       if (!(ratio > worst.ratio)) continue;
       worst.where = "'" + event.element + "' " + event.what;
       worst.t = event.t;
@@ -256,6 +267,7 @@ private:
   }
 
   void compare_integrals(std::size_t i, std::size_t j) {
+    if (std::min(curves_[i]->known_until(), curves_[j]->known_until()) < base_.end * (1.0 - 1e-6)) return; // of the whole run
     const RunStatistics &a = run_of(i).result.statistics, &b = run_of(j).result.statistics;
     const double scale = std::max(energy_scale(system_, run_of(i).result), energy_scale(system_, run_of(j).result));
     const auto one = [&](const char* what, double x, double y, double estimates) {

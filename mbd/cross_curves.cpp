@@ -210,13 +210,14 @@ void MethodCurves::estimate_events(const EventFilter& is_counted) {
     of_element[event.element].push_back(event.t);
   for (const auto& [key, times] : fine) {
     for (const double t : times) {
-      TimedEvent event{key.first, key.second, t, 2.0 * step_, INFINITY, !is_counted || is_counted({t, key.first, key.second})};
+      TimedEvent event{key.first, key.second, t, 2.0 * step_, INFINITY, INFINITY, !is_counted || is_counted({t, key.first, key.second})};
       for (const Times& other : coarser)
         event.shift = std::max(event.shift, 2.0 * step_ + shift_of(t, times, other, key));
       bool is_itself = true;
       for (const double other : of_element[key.first]) {
         if (other == t && is_itself) is_itself = false;
         else event.alone = std::min(event.alone, std::abs(other - t));
+        if (other > t) event.lasts = std::min(event.lasts, other - t);
       }
       events_.push_back(event);
     }
@@ -286,6 +287,22 @@ void MethodCurves::add_step_of_motion(std::size_t c) {
     most = std::max(most, std::abs(t.value(row, channels_[c].column) - t.value(row - 1, channels_[c].column)) / span);
     estimate_[c][row] = std::max(estimate_[c][row], step_ * most);
   }
+}
+
+double MethodCurves::friction_energy(const std::string& element, double t, double span) const {
+  const Trajectory& trajectory = *levels_.back()->trajectory;
+  if (rows_ < 2) return 0.0;
+  const std::size_t column = trajectory.column(pushes_channel(element));
+  const double step = trajectory.times()[1] - trajectory.times()[0];
+  double most = 0.0, sum = 0.0;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    const double at = trajectory.times()[row];
+    if (at < t - step || at > t + span + step) continue;
+    const double power = std::abs(trajectory.value(row, column));
+    most = std::max(most, power);
+    if (at >= t && at <= t + span) sum += step * power;
+  }
+  return std::max(sum, std::min(span, step) * most);
 }
 
 void MethodCurves::find_known() {

@@ -30,6 +30,7 @@ struct TimedEvent {
   double t = 0.0;
   double shift = 0.0; ///< s: what its time is uncertain by; infinite where another setting has it not
   double alone = 0.0; ///< s: to the next change of the element, before or after: who looks coarser may see nothing of it
+  double lasts = 0.0; ///< s: to the next change of the element, or the end
   bool is_counted = true;
 };
 
@@ -47,6 +48,10 @@ public:
   [[nodiscard]] double slack(std::size_t row) const { return slack_[row]; }
   [[nodiscard]] const std::vector<TimedEvent>& events() const { return events_; }
   [[nodiscard]] double known_until() const { return known_until_; }
+  /// Its energy does not balance: nothing it says is known.
+  void distrust() { known_until_ = 0.0; }
+  /// J that friction of the element takes from t on for so long.
+  [[nodiscard]] double friction_energy(const std::string& element, double t, double span) const;
   [[nodiscard]] double step() const { return step_; }
   /// Largest own error of a kind at the end, of the channels' scales, and in which channel.
   [[nodiscard]] WorstError largest(ErrorKind kind) const;
