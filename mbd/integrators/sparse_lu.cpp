@@ -164,8 +164,14 @@ bool SparseLu::factor_anew() {
     }
     l_begin_.push_back(static_cast<int>(l_.size()));
   }
-  for (auto* v : {&l_row_, &u_position_}) v->reserve(2 * v->size()); // other pivots fill in elsewhere
-  for (auto* v : {&l_, &u_}) v->reserve(2 * v->size());
+  // Other pivots fill in elsewhere: room for them from the start.
+  const auto make_room = [](auto& list) {
+    if (list.capacity() < list.size() + list.size() / 4) list.reserve(2 * list.size());
+  };
+  make_room(l_row_);
+  make_room(u_position_);
+  make_room(l_);
+  make_room(u_);
   has_pivots_ = true;
   return true;
 }
