@@ -270,13 +270,12 @@ void Simulation::end_run() {
 
 // A step that has decided the modes itself: they are taken over, and noted where they changed.
 bool Simulation::pass_stepped() {
-  const State before = state_;
-  state_ = *integrator_->stepped_state();
   const double t1 = integrator_->t1();
   sample_until(t1);
   energy_.note(dynamics_, t1, integrator_->y1()); // in the layout of the step, which the next line may do away with
   const std::size_t known = events_.size();
-  handler_.note_changes(before, state_, events_);
+  handler_.note_changes(state_, *integrator_->stepped_state(), events_);
+  state_ = *integrator_->stepped_state();
   statistics_.events += static_cast<long>(events_.size() - known);
   dynamics_.set_time_limit(next_limit());
   restart();

@@ -2,9 +2,13 @@
 #include "mbd/integrators/methods.h"
 #include "mbd/integrators/time_stepping.h"
 
+#include <cmath>
+
 namespace steplap {
 
 namespace {
+
+constexpr double k_stretch = 1e-6; // of a step, by which steps may be longer than asked for
 
 class Moreau final : public Integrator {
 public:
@@ -17,19 +21,20 @@ public:
   [[nodiscard]] const State* stepped_state() const override { return &state_; }
 
   void step(Dynamics& dynamics, double t_limit) override {
-    const double left = t_limit - t0_;
-    const bool is_last = left <= settings_.step * (1.0 + 1e-9);
-    h_ = is_last ? left : settings_.step;
-    t1_ = is_last ? t_limit : t0_ + h_;
+    // As many equal steps as there is room for up to the limit: sums of steps end beside it by rounding, and a last
+    // step of that length would tell nothing but rounding.
+    const double left = t_limit - t0_, count = std::ceil(left / settings_.step - k_stretch);
+    h_ = count > 1.0 ? left / count : left;
+    t1_ = count > 1.0 ? t0_ + h_ : t_limit;
     state_ = dynamics.state();
     dynamics.unpack(t0_, y0_.data(), state_);
-    const State start = state_;
+    start_ = state_;
     stepping_.step(dynamics, state_, t1_, settings_.projection_tolerance);
     residual_.position = std::max(residual_.position, stepping_.residual().position);
     residual_.velocity = std::max(residual_.velocity, stepping_.residual().velocity);
     // Both ends in the layout of the new phases, so that one can interpolate between them.
     n_ = dynamics.dimension();
-    dynamics.pack(start, y0_.data());
+    dynamics.pack(start_, y0_.data());
     dynamics.pack(state_, y1_.data());
     dynamics.rates(t1_, y1_.data(), k1_);
     std::fill(watch1_.begin(), watch1_.end(), 1.0);
@@ -43,7 +48,7 @@ public:
 
 private:
   TimeStepping stepping_;
-  State state_;
+  State state_, start_;
   std::vector<double> k_;
 };
 

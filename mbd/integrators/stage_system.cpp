@@ -1,7 +1,5 @@
 #include "mbd/integrators/stage_system.h"
 
-#include <cmath>
-
 namespace steplap {
 
 void StageSystem::set(const Linearization& linearization, const Layout& layout) {
@@ -43,24 +41,9 @@ bool StageSystem::factor(double g) {
     dense_.compute(matrix_);
     return dense_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0;
   }
-  entries_.clear();
-  bool is_finite = true;
-  assemble(g, [&](int i, int j, double value) {
-    is_finite = is_finite && std::isfinite(value);
-    entries_.emplace_back(i, j, value);
-  });
-  if (!is_finite) return false;
-  sparse_matrix_.resize(n_ + m_, n_ + m_);
-  sparse_matrix_.setFromTriplets(entries_.begin(), entries_.end());
-  std::vector<int> pattern(sparse_matrix_.outerIndexPtr(), sparse_matrix_.outerIndexPtr() + n_ + m_ + 1);
-  pattern.insert(pattern.end(), sparse_matrix_.innerIndexPtr(),
-                 sparse_matrix_.innerIndexPtr() + sparse_matrix_.nonZeros());
-  if (pattern != pattern_) {
-    sparse_.analyzePattern(sparse_matrix_);
-    pattern_ = std::move(pattern);
-  }
-  sparse_.factorize(sparse_matrix_);
-  return sparse_.info() == Eigen::Success;
+  sparse_.begin(n_ + m_);
+  assemble(g, [this](int i, int j, double value) { sparse_.add(i, j, value); });
+  return sparse_.factor();
 }
 
 void StageSystem::solve(const double* r, double* u) {
@@ -75,11 +58,30 @@ void StageSystem::solve(const double* r, double* u) {
     right_[n_ + e.row()] += g_ * g_ * e.value() * r[e.col()];
   for (int i = 0; i < m_; ++i)
     if (is_redundant_[i]) right_[n_ + i] = 0.0;
-  if (is_dense_) solution_.noalias() = dense_.solve(right_);
-  else solution_ = sparse_.solve(right_);
+  solve_unknowns();
   for (int i = 0; i < n_; ++i) {
     u[n_ + i] = solution_[i];
     u[i] = g_ * (r[i] + (w[i] > 0.0 ? solution_[i] : 0.0)); // a locked coordinate has a rate of its own
+  }
+}
+
+void StageSystem::solve_unknowns() {
+  if (is_dense_) {
+    solution_.noalias() = dense_.solve(right_);
+    return;
+  }
+  solution_ = right_;
+  sparse_.solve(solution_.data());
+}
+
+void StageSystem::respond(const double* pull, double* u) {
+  const std::vector<double>& w = linearization_->inverse_mass();
+  for (int i = 0; i < n_; ++i) right_[i] = g_ * pull[i];
+  right_.tail(m_).setZero();
+  solve_unknowns();
+  for (int i = 0; i < n_; ++i) {
+    u[n_ + i] = w[i] > 0.0 ? solution_[i] : 0.0;
+    u[i] = g_ * u[n_ + i];
   }
 }
 

@@ -8,13 +8,18 @@
 // Locked coordinates have W = 0: their rows say u_v = g r_v. Rows of redundant constraints, as the
 // Schur complement's factorisation has found them, are left out.
 //
-// Small systems are dense; large ones sparse, with the pattern analysed once while it stays the same.
+// That r is one of rates that meet the constraints: what of it does not is left standing. A force that is added
+// (friction, in time stepping) brings the constraints' answer only with
+//   r = (0, W f), the lower right side 0:   J u_v − g G_v u_v − g² G_q u_v = 0.
+//
+// Small systems are dense; large ones sparse (sparse_lu.h), with the pattern analysed once while it stays the same.
+// Once a system of its size has been solved nothing is allocated.
 #pragma once
 
+#include "mbd/integrators/sparse_lu.h"
 #include "mbd/linearization.h"
 
 #include <Eigen/LU>
-#include <Eigen/SparseLU>
 
 namespace steplap {
 
@@ -26,10 +31,12 @@ public:
   [[nodiscard]] bool factor(double g);
   /// u = (1/g − ∂F/∂y)⁻¹ r; both of length 2n, (q, v).
   void solve(const double* r, double* u);
+  /// The same for forces: `pull` has the n velocities' parts W f of r; rows and locks answer.
+  void respond(const double* pull, double* u);
 
 private:
-  using Sparse = Eigen::SparseMatrix<double>;
   template <class Put> void assemble(double g, const Put& put) const;
+  void solve_unknowns();
 
   static constexpr int k_max_dense = 48; ///< unknowns: beyond, sparse factors are cheaper
   const Linearization* linearization_ = nullptr;
@@ -39,10 +46,7 @@ private:
   bool is_dense_ = true;
   MatX matrix_;
   Eigen::PartialPivLU<MatX> dense_;
-  Sparse sparse_matrix_;
-  Eigen::SparseLU<Sparse> sparse_;
-  std::vector<Linearization::Triplet> entries_;
-  std::vector<int> pattern_;
+  SparseLu sparse_;
   VecX right_, solution_, moved_;
 };
 

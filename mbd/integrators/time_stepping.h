@@ -6,13 +6,19 @@
 // Springs, dampers and contacts enter linearised at the step's begin (linearization.h) and implicitly, so that
 // no stiffness limits the step; which contacts press is found by repeating the step until the pressed ones
 // are those that the end asks for. Friction is the convex problem of friction_modes.h with velocities in
-// place of accelerations, solved by block Gauss–Seidel over the elements; normal forces are those of the
-// step's end, found by repetition. Joints and drives are then met by projection.
+// place of accelerations, solved by block Gauss–Seidel over the elements. Its operator, the change of H v₁ by w, is
+// the one that joints and drives leave: they answer every w within the step. The free velocities H v₁ are those of
+// the step's end, on the constraints, and so are the normal forces: both are found by repetition.
 //
-// First order; no event is located, nothing is asked twice: chattering, simultaneous impacts and jumps cost
-// no more than smooth motion. Vibrations of period T are damped by 2π²h/T of their amplitude in each period
-// (implicit Euler). Source: J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics
-// (CISM 302, 1988); M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235.
+// First order; no event is located: chattering, simultaneous impacts and jumps cost little more than smooth motion.
+// Vibrations of period T are damped by 2π²h/T of their amplitude in each period (implicit Euler). Source:
+// J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988); M. Jean, Comput.
+// Methods Appl. Mech. Eng. 177 (1999) 235.
+//
+// A step is made only if it is consistent: friction and normal forces settled, contact modes those that its end asks
+// for. Where they are not (a contact's damper makes its force jump on closing: within a step that is long against m/c
+// neither mode is right; friction that changes the normal force it hangs on more than itself) the step is halved,
+// where both have an answer, down to a millionth; a run in which that does not help stops.
 #pragma once
 
 #include "mbd/integrators/stage_system.h"
@@ -24,38 +30,82 @@ public:
   explicit TimeStepping(const System& system);
 
   /// Advances `state` by h to its time t1 = t + h, with contact modes, friction phases, anchors, and the two
-  /// integrals of power. `dynamics` is left with `state` set. Locks and rows are met to `tolerance`.
+  /// integrals of power. `dynamics` is left with `state` set. Locks and rows are met to `tolerance`. A step whose
+  /// length is rounding decides nothing. Throws NumericalFailure, `state` then being that before the part of the step
+  /// that cannot be made.
   void step(Dynamics& dynamics, State& state, double t1, double tolerance);
 
   /// Largest residuals met before projection in the last step.
   [[nodiscard]] const Residual& residual() const { return residual_; }
+  /// Parts into which steps were halved so far, beyond one for each step.
+  [[nodiscard]] long extra_parts() const { return extra_parts_; }
 
 private:
   struct FrictionPart {
     int friction = 0, first = 0, dimension = 0; ///< first: among the rows of all parts
     bool is_kinetic = false;
+    bool is_driven = false;        ///< some direction that joints and drives alone decide
+    Mat3 mobility = Mat3::Zero();  ///< of such a part: its own block, exact zeros along those directions
+    Mat3 free = Mat3::Identity();  ///< projector along the others
+    double noise = 0.0;            ///< velocity along those directions that counts as rest
     FrictionBlock block;
   };
+  /// Gradient of a friction row in the coordinates of the clusters of its two sides.
+  struct FrictionGradient {
+    int cluster[2] = {-1, -1};
+    double g[2][3] = {};
+  };
+  /// Why a step could not be made.
+  struct Trouble {
+    const char* what = nullptr; ///< null: it could
+    int element = -1;
+    double residual = 0.0;
+    const char* unit = "";
+  };
+
+  [[nodiscard]] bool is_rounding(double t0, double t1) const;
+  void drift(Dynamics& dynamics, State& state, double t1);
+  [[nodiscard]] Trouble try_part(Dynamics& dynamics, State& state, double t1, double tolerance);
+  [[nodiscard]] Trouble settle_forces(Dynamics& dynamics, double t1, double tolerance);
+  void evaluate(Dynamics& dynamics, double t, const double* y);
+  void move(Dynamics& dynamics, double t1, double tolerance);
+  [[noreturn]] void fail(const Trouble& trouble, double t, double h) const;
+  [[nodiscard]] int changed_unit(const Dynamics& dynamics, State& state);
+  void finish_phases(Dynamics& dynamics, State& state, double h);
+  // time_stepping_friction.cpp
   void collect_friction(Dynamics& dynamics, State& state);
   [[nodiscard]] bool has_held(const FrictionState& friction, int f) const;
-  void load_row(const Dynamics& dynamics, const RowSpec& spec, std::size_t r);
-  void respond(const Dynamics& dynamics, const double* y0);
-  void balance_friction(const Dynamics& dynamics);
+  void load_row(const Dynamics& dynamics, const RowSpec& spec, FrictionGradient& row) const;
+  void respond(const Dynamics& dynamics, double h);
+  void find_driven(FrictionPart& part, double h);
+  void free_rates(const Dynamics& dynamics, double tolerance);
+  [[nodiscard]] Trouble balance_friction(const Dynamics& dynamics, bool keeps_kinetic);
+  [[nodiscard]] double sweep(const Dynamics& dynamics, int& worst);
+  [[nodiscard]] FrictionBlock solve_part(const Evaluation& e, const FrictionPart& part) const;
+  [[nodiscard]] double change_of(const FrictionPart& part, const double* before, double size) const;
+  [[nodiscard]] double size_of(const FrictionPart& part, const double* wrench) const;
   void hold_together();
-  bool update_modes(Dynamics& dynamics, State& state);
-  void finish_phases(Dynamics& dynamics, State& state, double h);
+  void stretch(const Evaluation& e);
+  [[nodiscard]] bool bears(const Evaluation& e, double share) const;
+  void stop_at_rest(double change);
 
   const System& system_;
   Linearization linearization_;
   StageSystem stages_;
   Residual residual_;
   State start_;
+  double longest_ = 0.0; ///< step so far, s
+  long extra_parts_ = 0;
   std::vector<FrictionPart> parts_;
-  int n_ = 0;
-  std::vector<double> y0_, y1_, dy_, right_, free_, change_;
-  std::vector<std::vector<double>> gradient_; ///< per friction row: n entries
-  std::vector<std::vector<double>> response_; ///< per friction row: 2n, change of state by a unit force
-  std::vector<double> compliance_, rate_, wrench_;
+  int n_ = 0, rows_ = 0;
+  std::vector<double> y0_, y1_, dy_, right_, free_;
+  std::vector<FrictionGradient> gradient_;     ///< per friction row
+  std::vector<double> response_;               ///< rows × 2n: change of state by a unit force
+  std::vector<double> compliance_;             ///< rows × rows: change of a row's rate by a unit force along another
+  std::vector<double> rate_;                   ///< per row: rate at the end without wrenches
+  std::vector<double> wrench_, before_, last_; ///< per row: now, before the last repetition, before the last sweep
+  std::vector<int> held_;                      ///< scratch of hold_together
+  std::vector<double> matrix_, together_, rest_;
 };
 
 } // namespace steplap

@@ -23,6 +23,7 @@ constexpr double k_most_samples = 2000.0, k_least_samples = 400.0;
 SimulationOptions sampled(const Model& model) {
   SimulationOptions options = options_of(model);
   options.output_step = std::clamp(options.output_step, options.end / k_most_samples, options.end / k_least_samples);
+  options.has_extremes = true; // verdicts are judged by them
   return options;
 }
 
@@ -84,7 +85,7 @@ CrossCheckOptions options_for(const LoadedModel& loaded, double cpu_limit) {
   options.cpu_limit = cpu_limit;
   options.is_event_counted = is_main_event;
   options.free_groups = free_groups(loaded.model, *loaded.system);
-  options.verdict = [&loaded](const RunResult& run) { return std::string(name_of(judge(loaded.model, run, "").verdict)); };
+  options.verdict = [&loaded](const RunResult& run) { return std::string(name_of(judge(loaded.model, *loaded.system, run, "").verdict)); };
   options.progress = [](const std::string& text) { log_detail(text); };
   return options;
 }
