@@ -13,6 +13,9 @@ constexpr double k_displacement_floor = 1e-3;
 constexpr double k_rate_floor = 60.0;
 // What projection takes away counts by this share: it leaves what directions turn by within a step, twice.
 constexpr double k_turned_share = 1e-4;
+// Errors of velocity stay below this share of what a slip law turns with, whatever the tolerance: where a slip
+// begins and ends, |ν| → 0, an error of the tolerance's size would give the friction any direction.
+constexpr double k_slip_share = 3e-3;
 
 } // namespace
 
@@ -20,7 +23,7 @@ Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& setti
     : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0),
       y1_(max_dimension, 0.0), weight_(max_dimension, 0.0), scratch_(3 * max_dimension, 0.0),
       watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_low_(watch0_), watch_rate0_(watch0_),
-      watch_rate1_(watch0_) {
+      watch_rate1_(watch0_), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_) {
   double size = 0.0;
   for (const BodyData& body : system_.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
@@ -36,6 +39,12 @@ void Integrator::restart(Dynamics& dynamics, double t, const double* y) {
   dynamics.watch_merged(k0_);
   watch0_ = dynamics.watch();
   watch_rate0_ = dynamics.watch_rate();
+  note_slips(dynamics, slip_scale0_, has_slip_scale0_);
+}
+
+void Integrator::note_slips(const Dynamics& dynamics, std::vector<double>& scale, bool& is_any) {
+  is_any = is_adaptive() && dynamics.slip_scales(scale.data());
+  decay_rate_ = is_adaptive() ? 0.0 : dynamics.slip_decay_rate();
 }
 
 void Integrator::accept() {
@@ -44,6 +53,8 @@ void Integrator::accept() {
   std::copy(k1_, k1_ + n_, k0_);
   std::swap(watch0_, watch1_);
   std::swap(watch_rate0_, watch_rate1_);
+  std::swap(slip_scale0_, slip_scale1_);
+  has_slip_scale0_ = has_slip_scale1_;
 }
 
 void Integrator::finish_step(Dynamics& dynamics) {
@@ -54,6 +65,7 @@ void Integrator::finish_step(Dynamics& dynamics) {
   dynamics.watch_merged(k1_);
   watch1_ = dynamics.watch();
   watch_rate1_ = dynamics.watch_rate();
+  note_slips(dynamics, slip_scale1_, has_slip_scale1_);
   ++steps_;
 }
 
@@ -79,6 +91,9 @@ void Integrator::update_weights(const Dynamics& dynamics) {
       weight_[m + i] =
           is_locked ? 0.0 : 1.0 / (tolerance * (k_rate_floor * size + std::abs(y0_[m + i])));
     }
+  if (has_slip_scale0_)
+    for (int i = 0; i < m; ++i)
+      if (weight_[m + i] > 0.0) weight_[m + i] = std::max(weight_[m + i], 1.0 / (k_slip_share * slip_scale0_[i]));
   weight_[2 * m] = weight_[2 * m + 1] = 0.0;
 }
 

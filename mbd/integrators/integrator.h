@@ -74,6 +74,8 @@ protected:
   }
   /// Projects y1 and evaluates there: rates into k1, watch values into watch1.
   void finish_step(Dynamics& dynamics);
+  /// At the last evaluation: how fine velocities have to be known there.
+  void note_slips(const Dynamics& dynamics, std::vector<double>& scale, bool& is_any);
   /// After the rates dy of a stage.
   void note_stage_watches(Dynamics& dynamics, const double* dy);
   /// Weights of the error norm: 1/(tolerance · scale) per coordinate, 0 where locked.
@@ -93,6 +95,9 @@ protected:
   double* k0_ = nullptr;
   double* k1_ = nullptr;
   std::vector<double> watch0_, watch1_, watch_low_, watch_rate0_, watch_rate1_;
+  std::vector<double> slip_scale0_, slip_scale1_; ///< per rate (Dynamics::slip_scales)
+  bool has_slip_scale0_ = false, has_slip_scale1_ = false;
+  double decay_rate_ = 0.0; ///< of slip laws where the next step begins, 1/s; of methods that choose no steps
   long steps_ = 0, rejections_ = 0;
   Residual residual_;
   double length_scale_ = 1.0;

@@ -10,6 +10,12 @@ namespace steplap {
 
 namespace {
 
+// Where a slip law turns velocities faster than the step, steps are this share of its time, …
+constexpr double k_decay_share = 0.5;
+// … and where a slip comes to rest, |ν| → 0, they shrink with that time from here on, s: in proportion to the step
+// chosen, so that the order is kept up to the end.
+constexpr double k_rest_layer = 1e-3;
+
 class Rk4 final : public Integrator {
 public:
   Rk4(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
@@ -21,9 +27,10 @@ public:
 
   void step(Dynamics& dynamics, double t_limit) override {
     const double left = t_limit - t0_;
+    const double h = next_step();
     // A remainder of a step's rounding is taken along rather than left for a step of its own.
-    const bool is_last = left <= settings_.step * (1.0 + 1e-9);
-    h_ = is_last ? left : settings_.step;
+    const bool is_last = left <= h * (1.0 + 1e-9);
+    h_ = is_last ? left : h;
     t1_ = is_last ? t_limit : t0_ + h_;
     std::fill(watch_low_.begin(), watch_low_.end(), 1.0);
     stage(dynamics, 1, 0.5, k(0));
@@ -36,9 +43,26 @@ public:
 
   void dense(Dynamics& dynamics, double theta, double* out) override {
     hermite_dense(dynamics.coordinate_count(), theta, h_, y0_.data(), y1_.data(), k0_, k1_, out);
+    if (h_ < 0.5 * settings_.step) velocities_by_cubic(dynamics.coordinate_count(), theta, out);
   }
 
+protected:
+  void on_restart(Dynamics&) override { last_decay_rate_ = 0.0; }
+
 private:
+  double next_step() {
+    const bool is_coming_to_rest = decay_rate_ > last_decay_rate_;
+    last_decay_rate_ = decay_rate_;
+    if (decay_rate_ == 0.0) return settings_.step;
+    const double h = std::min(settings_.step, k_decay_share / decay_rate_);
+    return is_coming_to_rest ? std::min(h, settings_.step / (k_rest_layer * decay_rate_)) : h;
+  }
+  // The quintic's derivative divides the rounding of positions by h: too much where steps are shortened by decades.
+  void velocities_by_cubic(int n, double theta, double* out) const {
+    const double s = theta, r = 1.0 - theta;
+    for (int i = n; i < 2 * n; ++i)
+      out[i] = r * r * ((1.0 + 2.0 * s) * y0_[i] + s * h_ * k0_[i]) + s * s * ((3.0 - 2.0 * s) * y1_[i] - r * h_ * k1_[i]);
+  }
   double* k(int i) { return k_.data() + i * stride_; }
   void stage(Dynamics& dynamics, int index, double c, const double* previous) {
     double* y = scratch_.data();
@@ -48,6 +72,7 @@ private:
   }
   std::vector<double> k_;
   int stride_;
+  double last_decay_rate_ = 0.0; ///< where the last step began
 };
 
 } // namespace
