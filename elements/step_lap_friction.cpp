@@ -21,11 +21,11 @@ constexpr double k_onset_time = 5e-8;
 constexpr double k_start_reach = 4.0; // |ν|/δ at which a slip no longer counts as starting
 // |ν|/δ from which on it moves: up to there, backward motion is an error of the first steps unless it is this share
 // of δ.
-constexpr double k_moving = 0.2, k_backward = 0.05;
+constexpr double k_moving = 0.2, k_backward = 0.2;
 constexpr double k_cone = 0.5;        // cosine of the cone about the direction last looked at
-// |ν| over grip acceleration, s, from which on a slip ends with the wrench that it has: what that misses is this
-// time, times what the direction had still to turn by.
-constexpr double k_end_time = 1e-12;
+// |ν| over grip acceleration, s, from which on a slip ends: what that misses is this time, times what the direction had
+// still to turn by.
+constexpr double k_end_time = 1e-11;
 constexpr double k_no_end = 2.0;      // times that |ν|: it has not come to rest after all
 // |ν| over speeds to which rounding leaves it a direction; that time over t at which steps are still far from rounding.
 constexpr double k_rounding = 2.5e-13, k_time_rounding = 2e-12;
@@ -273,14 +273,16 @@ void StepLapFriction::aim(FrictionState& state, const double* rate) const {
 }
 
 /// The twist whose wrench is the slip law's: ν but for the first and the last of a slip.
-Vec3 StepLapFriction::law_twist(const FrictionState& state, const Vec3& nu) const {
+Vec3 StepLapFriction::law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const {
   const Vec3 n(state.direction[0], state.direction[1], state.direction[2]);
   const Vec3 y = scaled(nu);
   if (state.is_starting) {
     const double delta = onset_speed(), reach = k_start_reach * delta;
     const double left = 1.0 - y.squaredNorm() / (reach * reach);
     if (left > 0.0) return nu + delta * left * left * left * n;
-  } else if (is_ending(state) || nu.isZero(0.0)) {
+  } else if (is_ending(state)) {
+    return nu + end_speed(e) * n;
+  } else if (nu.isZero(0.0)) {
     return n;
   } else if (y.dot(scaled(n)) < 0.0) {
     return -nu;
@@ -291,7 +293,7 @@ Vec3 StepLapFriction::law_twist(const FrictionState& state, const Vec3& nu) cons
 void StepLapFriction::slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
                                   double* wrench) const {
   const Fit& f = fit(e.scratch, pose_of(e.motion), GripLaw::sliding);
-  Vec3::Map(wrench) = -evaluate_gradient(f.patch, law_twist(state, Vec3(rate[0], rate[1], rate[2]))).gradient;
+  Vec3::Map(wrench) = -evaluate_gradient(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).gradient;
 }
 
 void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
@@ -312,20 +314,18 @@ void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state
   }
 }
 
-SlipScale StepLapFriction::slip_scale(const Evaluation&, const FrictionState& state, const double* rate) const {
+SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const {
   SlipScale scale;
   scale.lever = std::hypot(gyration_, arm_.norm());
-  if (!is_ending(state))
-    scale.speed = scaled(law_twist(state, Vec3(rate[0], rate[1], rate[2]))).norm();
+  scale.speed = scaled(law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).norm();
   return scale;
 }
 
 // The trace of A ∇²h is the sum of the rates, none of which is negative.
 double StepLapFriction::decay_rate(const Evaluation& e, const FrictionState& state, const double* rate) const {
-  if (is_ending(state)) return 0.0;
   const Pose pose = pose_of(e.motion);
   const Fit& f = fit(e.scratch, pose, GripLaw::sliding);
-  const Mat3 curvature = evaluate(f.patch, law_twist(state, Vec3(rate[0], rate[1], rate[2]))).hessian;
+  const Mat3 curvature = evaluate(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).hessian;
   const Vec3 turned(pose.y, -pose.x, -1.0); // of ν as the active part turns
   return (limb_mobility_[0] + part_mobility_[0]) * (curvature(0, 0) + curvature(1, 1)) +
          limb_mobility_[1] * curvature(2, 2) + part_mobility_[1] * turned.dot(curvature * turned);
@@ -334,6 +334,7 @@ double StepLapFriction::decay_rate(const Evaluation& e, const FrictionState& sta
 bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate,
                                        int slot) const {
   const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
+  const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
   const double speed = y.norm(), end = end_speed(e);
   const auto goes_on = [&state](std::uint8_t stage) {
     state.stage = stage;
@@ -347,11 +348,11 @@ bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state
     if (slot == 1) return rests();
     if (!is_moving(state)) return goes_on(k_moving_stage);
   } else if (is_ending(state)) {
-    if (y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2]))) <= 0.0) return rests();
+    if (along <= 0.0) return rests();
     if (speed <= k_no_end * end) return true;
   } else if (slot == 0 || speed < end) {
-    if (slot == 1) return rests(); // through ν = 0 within a step, as along a line
-    aim(state, rate);
+    if (slot == 0) aim(state, rate);
+    else if (along <= 0.0) return rests(); // through ν = 0 within a step, as along a line
     return goes_on(k_ending_stage);
   }
   state.is_starting = false;

@@ -15,8 +15,8 @@
 // is −∇h(ν) alone.
 //
 // |ν| reaches zero with no sign change of anything but ν itself; on the way the direction turns as a power of
-// the time left and tends to a limit. A slip is *ending* below |ν| = (grip acceleration) × 1e-11 s: the wrench keeps
-// the direction that it has, ν runs straight, and is at rest where ν·n passes zero. If |ν| grows again instead, the
+// the time left and tends to a limit. A slip is *ending* below |ν| = ε = (grip acceleration) × 1e-11 s: the law is
+// −∇h(ν + ε n), n the direction there, and the slip is at rest where ν·n passes zero. If |ν| grows again instead, the
 // slip goes on. So that a step may pass through ν = 0, the law is continued there with the wrench it
 // had, ν·n < 0, n being the direction as last looked at. An event is also where ν leaves the cone of 60°
 // about n: n is taken anew and the slip goes on. All of this is derived in docs/limit_surface.md, section 7; methods
@@ -101,7 +101,7 @@ private:
   [[nodiscard]] Vec3 scaled(const Vec3& nu) const;
   void set_direction(FrictionState& state, const Vec3& nu) const;
   [[nodiscard]] double onset_speed() const;
-  [[nodiscard]] Vec3 law_twist(const FrictionState& state, const Vec3& nu) const;
+  [[nodiscard]] Vec3 law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const;
   [[nodiscard]] double end_speed(const Evaluation& e) const;
   [[nodiscard]] bool is_apart(const FrictionState& state, std::size_t i) const {
     return i < k_tracked && (state.foot >> i & 1u) != 0;

@@ -15,7 +15,7 @@ constexpr double k_rate_floor = 60.0;
 constexpr double k_turned_share = 1e-4;
 // Errors of velocity stay below this share of what a slip law turns with, whatever the tolerance: where a slip
 // begins and ends, |ν| → 0, an error of the tolerance's size would give the friction any direction.
-constexpr double k_slip_share = 3e-3;
+constexpr double k_slip_share = 5e-4;
 
 } // namespace
 
