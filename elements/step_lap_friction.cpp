@@ -1,10 +1,12 @@
 #include "elements/step_lap_friction.h"
 
 #include "elements/patch/admissible_projection.h"
+#include "mbd/diagnostics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace steplap {
 
@@ -14,19 +16,40 @@ namespace {
 constexpr double k_bound_slack = 1e-13;
 // Outside this band the certified bounds tell on which side of 1 a wrench is.
 constexpr double k_surely_holds = 0.9, k_surely_slips = 1.1;
-// Onsets are followed down to this time, s: against motions of a millisecond 1e-4 of them, and what is
-// missed is of the second order in that (the slip law of step_lap_friction.h).
-constexpr double k_onset_time = 1e-7;
-// |stiffness × step| of the starting law is 1/this at most: half of what explicit methods of order 4 bear.
-constexpr double k_onset_steps = 0.7;
-constexpr double k_start_reach = 6.0; // |ν|/δ at which a slip no longer counts as starting
+// Onsets are followed down to this time, s: what is missed is of the second order in that, against the time in which
+// the load grows by the grip (the slip law of step_lap_friction.h).
+constexpr double k_onset_time = 5e-8;
+constexpr double k_start_reach = 4.0; // |ν|/δ at which a slip no longer counts as starting
+// |ν|/δ from which on it moves: up to there, backward motion is an error of the first steps unless it is this share
+// of δ.
+constexpr double k_moving = 0.2, k_backward = 0.2;
 constexpr double k_cone = 0.5;        // cosine of the cone about the direction last looked at
-constexpr double k_rest_of_start = 0.05; // of δ: backward motion that ends a slip still starting
-// |ν| over grip acceleration that counts as rest, s: early enough that the ever quicker turning of the
-// last instants does not set off other joints, and, with a fixed step, that a direction which the step no
-// longer follows does not keep |ν| from falling (it then hovers at about a third of step × acceleration).
-constexpr double k_rest_time = 1e-9;
-constexpr double k_rest_steps = 0.5;
+// |ν| over grip acceleration, s, from which on a slip ends: what that misses is this time, times what the direction had
+// still to turn by.
+constexpr double k_end_time = 1e-11;
+constexpr double k_no_end = 2.0;      // times that |ν|: it has not come to rest after all
+// |ν| over speeds to which rounding leaves it a direction; that time over t at which steps are still far from rounding.
+constexpr double k_rounding = 2.5e-13, k_time_rounding = 2e-12;
+
+// FrictionState::stage, 0 at first: of a slip that starts, and of one that ends.
+constexpr std::uint8_t k_moving_stage = 1, k_ending_stage = 1;
+
+// What an iteration may leave, in shares of the capacity. u is then good to 1e-14, its square: what is decided by u is
+// not touched. The direction in which a slip begins is good to 1e-7, and forgotten as soon as it has begun. A wrench of
+// the mode problem is off by as much as the blocks of other joints that it is shared with may jitter.
+constexpr double k_usage_residual = 1e-7, k_block_residual = 1e-9;
+
+void insist(double residual, double bound, const std::string& name, double t, const char* what) {
+  if (residual <= bound) return;
+  std::ostringstream message;
+  message.precision(12);
+  message << "step_lap_joint '" << name << "', t = " << t << " s: " << what << " is known only to " << residual
+          << " of the joint's capacity, which is not enough: its sheets overlap in slivers, or its wrench is infinite";
+  throw NumericalFailure(message.str());
+}
+
+bool is_moving(const FrictionState& state) { return state.is_starting && state.stage == k_moving_stage; }
+bool is_ending(const FrictionState& state) { return !state.is_starting && state.stage == k_ending_stage; }
 
 } // namespace
 
@@ -57,9 +80,9 @@ struct StepLapFriction::Scratch final : FrictionScratch {
   bool is_lost_known = false;
 };
 
-StepLapFriction::StepLapFriction(int index, int row, std::vector<SheetPair> sheets, bool is_monitor,
-                                 bool stops_when_apart)
-    : index_(index), row_(row), sheets_(std::move(sheets)), is_monitor_(is_monitor),
+StepLapFriction::StepLapFriction(std::string name, int index, int row, std::vector<SheetPair> sheets,
+                                 bool is_monitor, bool stops_when_apart)
+    : name_(std::move(name)), index_(index), row_(row), sheets_(std::move(sheets)), is_monitor_(is_monitor),
       stops_when_apart_(stops_when_apart) {
   for (const SheetPair& s : sheets_)
     if (s.kinetic_traction != s.static_traction) is_one_law_ = false;
@@ -89,7 +112,15 @@ void StepLapFriction::set_scales(const Pose& reference, const BodyData& limb,
     if (!(body.mass > 0.0)) return 0.0;
     return 1.0 / body.mass + (gyration_ * gyration_ + lever.squaredNorm()) / body.inertia;
   };
-  grip_acceleration_ = patch.force() * (mobility(limb, arm_) + mobility(active_part, patch.centroid()));
+  const auto take = [](const BodyData& body, double* inverse) {
+    inverse[0] = body.mass > 0.0 ? 1.0 / body.mass : 0.0;
+    inverse[1] = body.mass > 0.0 ? 1.0 / body.inertia : 0.0;
+  };
+  take(limb, limb_mobility_);
+  take(active_part, part_mobility_);
+  // Of the limb, the lighter one: whether the active part is free to move, or driven, or held by joints is not known here.
+  const double of_limb = mobility(limb, arm_);
+  grip_acceleration_ = patch.force() * (of_limb > 0.0 ? of_limb : mobility(active_part, patch.centroid()));
 }
 
 // --- pose and overlap -----------------------------------------------------------------------------------
@@ -140,6 +171,13 @@ StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, cons
   return f;
 }
 
+RequiredPressure StepLapFriction::required(const Patch& patch, const Vec3& wrench, double t) const {
+  const RequiredPressure found = required_pressure(patch, wrench);
+  if (!wrench.allFinite()) return found; // of a step that goes too far, and will be made again
+  insist(found.residual, k_usage_residual, name_, t, "the share of its capacity in use");
+  return found;
+}
+
 // --- holding ----------------------------------------------------------------------------------------------
 
 void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, const double* wrench,
@@ -152,7 +190,7 @@ void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, con
   const UsageBounds bounds = usage_bounds(f.capacity, w);
   if (bounds.upper <= k_surely_holds) watch[0] = 1.0 - bounds.upper;
   else if (bounds.lower >= k_surely_slips) watch[0] = 1.0 - bounds.lower;
-  else watch[0] = 1.0 + k_bound_slack - required_pressure(f.patch, w).u;
+  else watch[0] = 1.0 + k_bound_slack - required(f.patch, w, e.t).u;
 }
 
 double StepLapFriction::support(const Evaluation& e, const FrictionState&, const double* rate) const {
@@ -165,11 +203,11 @@ double StepLapFriction::support(const Evaluation& e, const FrictionState&, const
 double StepLapFriction::gauge(const Evaluation& e, const FrictionState&, const double* wrench, double* normal) const {
   Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
   f.prepare();
-  const RequiredPressure required = required_pressure(f.patch, Vec3(wrench[0], wrench[1], wrench[2]));
-  Vec3 n = required.direction;
-  if (required.u > 0.0) n /= evaluate_gradient(f.patch, n).h;
+  const RequiredPressure need = required(f.patch, Vec3(wrench[0], wrench[1], wrench[2]), e.t);
+  Vec3 n = need.direction;
+  if (need.u > 0.0) n /= evaluate_gradient(f.patch, n).h;
   Vec3::Map(normal) = n;
-  return required.u;
+  return need.u;
 }
 
 const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
@@ -180,7 +218,7 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y &&
                        own.asked_at.theta == pose.theta;
   if (is_same) return own.answer;
-  own.answer = required_pressure(fit(s.evaluation->scratch, pose, GripLaw::holding).patch, w);
+  own.answer = required(fit(s.evaluation->scratch, pose, GripLaw::holding).patch, w, s.t);
   own.asked = w;
   own.asked_at = pose;
   return own.answer;
@@ -218,6 +256,7 @@ FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionSt
   const Mat3 mobility = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a);
   const AdmissibleWrench w =
       admissible_wrench(f.patch, 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));
+  insist(w.residual, k_block_residual, name_, e.t, "whether it sticks, and the wrench on its limb,");
   FrictionBlock block;
   block.is_inside = !w.slips;
   Vec3::Map(block.wrench) = w.wrench;
@@ -238,38 +277,49 @@ void StepLapFriction::set_direction(FrictionState& state, const Vec3& nu) const 
   Vec3::Map(state.direction) = size > 0.0 ? Vec3(nu / size) : nu;
 }
 
-double StepLapFriction::onset_speed(const Evaluation& e) const {
-  return std::max(k_onset_time, k_onset_steps * e.fixed_step) * grip_acceleration_;
-}
+double StepLapFriction::onset_speed() const { return k_onset_time * grip_acceleration_; }
 
-double StepLapFriction::rest_speed(const Evaluation& e) const {
-  return std::max(k_rest_time, k_rest_steps * e.fixed_step) * grip_acceleration_;
+double StepLapFriction::end_speed(const Evaluation& e) const {
+  const Motion<double>&l = e.motion[hold[0].a], &p = e.motion[hold[0].b];
+  const double lever = gyration_ + arm_.norm();
+  const double speed = std::abs(l.vx) + std::abs(l.vy) + std::abs(p.vx) + std::abs(p.vy) +
+                       lever * (std::abs(l.omega) + std::abs(p.omega));
+  return std::max({k_end_time * grip_acceleration_, k_rounding * speed, k_time_rounding * std::abs(e.t) * grip_acceleration_});
 }
 
 void StepLapFriction::begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const {
   const Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
-  set_direction(state, -required_pressure(f.patch, Vec3(wrench[0], wrench[1], wrench[2])).direction);
+  state.stage = 0;
+  set_direction(state, -required(f.patch, Vec3(wrench[0], wrench[1], wrench[2]), e.t).direction);
 }
 
 void StepLapFriction::aim(FrictionState& state, const double* rate) const {
+  state.stage = 0;
   set_direction(state, Vec3(rate[0], rate[1], rate[2]));
+}
+
+/// The twist whose wrench is the slip law's: ν but for the first and the last of a slip.
+Vec3 StepLapFriction::law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const {
+  const Vec3 n(state.direction[0], state.direction[1], state.direction[2]);
+  const Vec3 y = scaled(nu);
+  if (state.is_starting) {
+    const double delta = onset_speed(), reach = k_start_reach * delta;
+    const double left = 1.0 - y.squaredNorm() / (reach * reach);
+    if (left > 0.0) return nu + delta * left * left * left * n;
+  } else if (is_ending(state)) {
+    return nu + end_speed(e) * n;
+  } else if (nu.isZero(0.0)) {
+    return n;
+  } else if (y.dot(scaled(n)) < 0.0) {
+    return -nu;
+  }
+  return nu;
 }
 
 void StepLapFriction::slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
                                   double* wrench) const {
-  const Vec3 n(state.direction[0], state.direction[1], state.direction[2]);
-  Vec3 nu(rate[0], rate[1], rate[2]);
-  const Vec3 y = scaled(nu);
-  if (state.is_starting) {
-    const double delta = onset_speed(e), reach = k_start_reach * delta;
-    const double left = 1.0 - y.squaredNorm() / (reach * reach);
-    if (left > 0.0) nu += delta * left * left * left * n;
-  } else if (y.dot(scaled(n)) < 0.0) {
-    nu = -nu;
-  }
-  if (nu.isZero(0.0)) nu = n;
   const Fit& f = fit(e.scratch, pose_of(e.motion), GripLaw::sliding);
-  Vec3::Map(wrench) = -evaluate_gradient(f.patch, nu).gradient;
+  Vec3::Map(wrench) = -evaluate_gradient(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).gradient;
 }
 
 void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
@@ -278,21 +328,59 @@ void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state
   const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
   const double speed = y.norm();
   if (state.is_starting) {
-    const double delta = onset_speed(e);
-    watch[0] = k_start_reach * delta - speed;
-    watch[1] = along + k_rest_of_start * delta;
+    const double delta = onset_speed();
+    watch[0] = (is_moving(state) ? k_start_reach : k_moving) * delta - speed;
+    watch[1] = along + (is_moving(state) ? end_speed(e) : k_backward * delta);
+  } else if (is_ending(state)) {
+    watch[0] = along;
+    watch[1] = k_no_end * end_speed(e) - speed;
   } else {
-    watch[0] = speed - rest_speed(e);
+    watch[0] = speed - end_speed(e);
     watch[1] = along - k_cone * speed;
   }
 }
 
+SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const {
+  SlipScale scale;
+  scale.lever = std::hypot(gyration_, arm_.norm());
+  scale.speed = scaled(law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).norm();
+  return scale;
+}
+
+// The trace of A ∇²h is the sum of the rates, none of which is negative.
+double StepLapFriction::decay_rate(const Evaluation& e, const FrictionState& state, const double* rate) const {
+  const Pose pose = pose_of(e.motion);
+  const Fit& f = fit(e.scratch, pose, GripLaw::sliding);
+  const Mat3 curvature = evaluate(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).hessian;
+  const Vec3 turned(pose.y, -pose.x, -1.0); // of ν as the active part turns
+  return (limb_mobility_[0] + part_mobility_[0]) * (curvature(0, 0) + curvature(1, 1)) +
+         limb_mobility_[1] * curvature(2, 2) + part_mobility_[1] * turned.dot(curvature * turned);
+}
+
 bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate,
                                        int slot) const {
-  const double speed = scaled(Vec3(rate[0], rate[1], rate[2])).norm();
-  const bool has_started = state.is_starting && slot == 0;
-  const bool has_turned = !state.is_starting && slot == 1 && speed > onset_speed(e);
-  if (!has_started && !has_turned) return false;
+  const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
+  const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
+  const double speed = y.norm(), end = end_speed(e);
+  const auto goes_on = [&state](std::uint8_t stage) {
+    state.stage = stage;
+    return true;
+  };
+  const auto rests = [&state] {
+    state.stage = 0;
+    return false;
+  };
+  if (state.is_starting) {
+    if (slot == 1) return rests();
+    if (!is_moving(state)) return goes_on(k_moving_stage);
+  } else if (is_ending(state)) {
+    if (along <= 0.0) return rests();
+    if (speed <= k_no_end * end) return true;
+  } else if (slot == 0 || speed < end) {
+    if (slot == 0) aim(state, rate);
+    else if (along <= 0.0) return rests(); // through ν = 0 within a step, as along a line
+    return goes_on(k_ending_stage);
+  }
   state.is_starting = false;
   aim(state, rate);
   return true;

@@ -8,17 +8,19 @@
 //
 // At ν = 0 the law has no value, and near it a stiffness of (grip acceleration)/|ν|. After an onset
 // |ν| grows as the square of time only, so that it matters there. While a slip is *starting*,
-// |ν| below a few times δ = (grip acceleration) × (a time short against all else), the law is
+// |ν| below a few times δ = (grip acceleration) × (a time short against all else, 1e-7 s), the law is
 //   W = −∇h(ν + δ (1 − |ν|²/(k δ)²)³ n),  n the normal of the bound at the onset,
 // which is bounded in stiffness, exact at both ends, dissipates what it does work on (no energy is lost
 // from the account), and whose influence is forgotten as the direction settles. Beyond, and for good, it
-// is −∇h(ν) alone. The time is 1e-7 s, or, for a method with a fixed step, what keeps that step stable.
+// is −∇h(ν) alone.
 //
-// |ν| reaches zero with no sign change of anything but ν itself. The slip is at rest where |ν| falls below
-// a hundredth of δ (with a fixed step: most of δ); so that a step may pass through ν = 0, the law is continued there with the wrench it
+// |ν| reaches zero with no sign change of anything but ν itself; on the way the direction turns as a power of
+// the time left and tends to a limit. A slip is *ending* below |ν| = ε = (grip acceleration) × 1e-11 s: the law is
+// −∇h(ν + ε n), n the direction there, and the slip is at rest where ν·n passes zero. If |ν| grows again instead, the
+// slip goes on. So that a step may pass through ν = 0, the law is continued there with the wrench it
 // had, ν·n < 0, n being the direction as last looked at. An event is also where ν leaves the cone of 60°
-// about n: at rest (|ν| < δ) the mode problem decides between holding and sliding anew; in motion n is
-// taken anew and the slip goes on.
+// about n: n is taken anew and the slip goes on. All of this is derived in docs/limit_surface.md, section 7; methods
+// learn how fine velocities have to be known from slip_scale() and decay_rate().
 #pragma once
 
 #include "elements/patch/required_pressure.h"
@@ -35,7 +37,7 @@ class StepLapFriction final : public FrictionElement {
 public:
   /// `index` among the friction elements, `row` its slot in Snapshot::friction_force. Without sheets,
   /// or as a monitor, it holds whatever it takes.
-  StepLapFriction(int index, int row, std::vector<SheetPair> sheets, bool is_monitor,
+  StepLapFriction(std::string name, int index, int row, std::vector<SheetPair> sheets, bool is_monitor,
                   bool stops_when_apart);
 
   RowSpec hold[3]; ///< x and y in the active part's axes, angle
@@ -53,6 +55,8 @@ public:
   [[nodiscard]] const RequiredPressure& usage(const Snapshot& s) const;
   /// Bounds of its share, which cost little.
   [[nodiscard]] ValueBounds usage_between(const Snapshot& s) const;
+  /// Throws NumericalFailure, naming the joint, where an iteration has ended too far from its solution.
+  [[nodiscard]] RequiredPressure required(const Patch& patch, const Vec3& wrench, double t) const;
   [[nodiscard]] double area(const Snapshot& s) const;
   [[nodiscard]] const OverlapLoss& loss(const Snapshot& s) const;
 
@@ -75,6 +79,8 @@ public:
   void aim(FrictionState& state, const double* rate) const override;
   void watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
                   double* watch) const override;
+  [[nodiscard]] SlipScale slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const override;
+  [[nodiscard]] double decay_rate(const Evaluation& e, const FrictionState& state, const double* rate) const override;
   [[nodiscard]] bool goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate,
                                       int slot) const override;
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override;
@@ -98,8 +104,9 @@ private:
              Patch& patch) const;
   [[nodiscard]] Vec3 scaled(const Vec3& nu) const;
   void set_direction(FrictionState& state, const Vec3& nu) const;
-  [[nodiscard]] double onset_speed(const Evaluation& e) const;
-  [[nodiscard]] double rest_speed(const Evaluation& e) const;
+  [[nodiscard]] double onset_speed() const;
+  [[nodiscard]] Vec3 law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const;
+  [[nodiscard]] double end_speed(const Evaluation& e) const;
   [[nodiscard]] bool is_apart(const FrictionState& state, std::size_t i) const {
     return i < k_tracked && (state.foot >> i & 1u) != 0;
   }
@@ -107,6 +114,7 @@ private:
   static constexpr std::size_t k_tracked = 32; ///< interfaces whose parting is an event of its own
 
   std::shared_ptr<const Fit> reference_; ///< in the reference pose, where most joints stay: made once
+  std::string name_;
   int index_ = 0, row_ = 0;
   std::vector<SheetPair> sheets_;
   OverlapReference overlaps_; ///< in the reference pose
@@ -115,6 +123,8 @@ private:
   Vec2 arm_ = Vec2::Zero();        ///< from the limb's centre of gravity to the joint's centre, m
   double gyration_ = 1.0;          ///< of the traction about the joint's centre, m
   double grip_acceleration_ = 1.0; ///< about the largest that it can give, m/s²
+  double limb_mobility_[2] = {0.0, 0.0}; ///< 1/mass, 1/inertia
+  double part_mobility_[2] = {0.0, 0.0};
 };
 
 } // namespace steplap

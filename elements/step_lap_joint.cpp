@@ -132,9 +132,9 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   } catch (const PolygonError&) {
     return;
   }
-  auto friction = std::make_unique<StepLapFriction>(builder.next_friction(), builder.next_friction_row(),
-                                                    std::move(sheets), e.mode == "monitor",
-                                                    e.on_apart == "stop");
+  auto friction = std::make_unique<StepLapFriction>(
+      e.name, builder.next_friction(), builder.next_friction_row(), std::move(sheets), e.mode == "monitor",
+      e.on_apart == "stop");
   add_rows(e, builder, *friction);
   const Pose reference = friction->pose_of(&builder.reference(0));
   if (friction->has_sheets() && friction->patch_at(reference, GripLaw::holding).empty())

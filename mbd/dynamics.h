@@ -45,8 +45,6 @@ public:
   /// Signals are read on the left side of `limit`, a breakpoint that no step passes: a jump there does
   /// not reach into the step that ends at it.
   void set_time_limit(double limit);
-  /// Tells slip laws the step of a method that does not control it (Evaluation::fixed_step).
-  void set_fixed_step(double step) { evaluation_.fixed_step = step; }
 
   /// As last set.
   [[nodiscard]] const State& state() const { return *state_; }
@@ -88,6 +86,11 @@ public:
   /// The loads that sticking elements share in more than one way, as last solved by watch_merged(); null where
   /// every wrench is its element's own.
   [[nodiscard]] const LoadSharing* sharing() const;
+  /// Per rate of a cluster (3 each) what velocity errors must be small against for the slip laws' sake, infinite
+  /// where none asks for it; false if that is everywhere.
+  [[nodiscard]] bool slip_scales(double* scale) const;
+  /// The fastest decay that a slip law gives to changes of velocity, 1/s (an upper bound).
+  [[nodiscard]] double slip_decay_rate() const;
   /// Adds the watch values of joints that are merged, and of groups of sticking elements that share a load: costs
   /// a pass over the merged bodies.
   void watch_merged(const double* dy);
@@ -116,6 +119,7 @@ private:
   void aim_locks(double t);
   void place_member(int body);
   void apply_sliding();
+  void sliding_rates(std::size_t i, double* rate) const;
   void apply_forces();
   template <bool WithBias> MeasureValue<double> load_row(std::size_t r);
   double pull(std::size_t r, const double* a);

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ struct FrictionState {
   std::uint32_t foot = 0;           ///< which of its places it acts at; or a set of places, by bits
   bool has_slipped = false;
   bool is_starting = false;         ///< slip has only begun: `direction` still shares in the slip law
+  std::uint8_t stage = 0;           ///< of a slip's start or end, as its element counts them
   double slid = 0.0;                ///< path length of finished slips (first row), m
   double direction[3] = {0, 0, 0};  ///< of slip, as last looked at, for three-dimensional friction
 };
@@ -53,7 +55,6 @@ struct Evaluation {
   const FrictionState* friction = nullptr;
   const double* memory = nullptr;         ///< of the state: anchors of rows
   FrictionScratch* const* scratch = nullptr; ///< per friction element; null where it wants none
-  double fixed_step = 0.0;                ///< s, of a method that does not control its step, else 0
   double* contact_force = nullptr;        ///< per contact: normal force f ≥ 0 (N = Σ f)
   double* watch = nullptr;                ///< per watch slot: valid while ≥ 0
   double* watch_rate = nullptr;           ///< its rate where the element knows it, else NaN
@@ -113,6 +114,12 @@ struct FrictionBlock {
   bool is_inside = true;           ///< true: sticks
 };
 
+/// How fine velocities have to be known for a slip law that turns with the direction of slip.
+struct SlipScale {
+  double speed = std::numeric_limits<double>::infinity(); ///< m/s: errors have to be small against it
+  double lever = 0.0;                                     ///< m: a rate of turning counts as so much velocity
+};
+
 class FrictionElement {
 public:
   virtual ~FrictionElement() = default;
@@ -156,6 +163,14 @@ public:
                           double* watch) const {
     watch[0] = state.sign * rate[0];
     watch[1] = 1.0;
+  }
+  /// Of a slip at `rate`; infinite where the law does not turn with it.
+  [[nodiscard]] virtual SlipScale slip_scale(const Evaluation&, const FrictionState&, const double* /*rate*/) const {
+    return {};
+  }
+  /// The fastest rate, 1/s, at which friction alone makes a change of `rate` decay (an upper bound).
+  [[nodiscard]] virtual double decay_rate(const Evaluation&, const FrictionState&, const double* /*rate*/) const {
+    return 0.0;
   }
   /// After one of them fell below zero: true if the slip goes on, with `state` brought up to date;
   /// false if it is at rest, so that the mode problem must tell what comes next.

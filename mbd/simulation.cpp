@@ -48,7 +48,6 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   cpu_start_ = thread_cpu_seconds();
   integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
   trajectory_ = std::make_unique<Trajectory>(system, options_.channels);
-  if (!integrator_->is_adaptive()) dynamics_.set_fixed_step(options_.settings.step);
   start_drives(system_, state_);
   dynamics_.set_time_limit(next_limit());
   handler_.start(state_);

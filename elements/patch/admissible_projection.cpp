@@ -119,18 +119,29 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility,
     // Of all wrenches that hold b, the one that uses least of the capacity.
     need = find_gauge(scaled, z0 / size, Vec3::Zero(), k_gauge_tolerance, inverse.range);
     out.evaluations = need.evaluations;
+    out.residual = need.residual;
+    out.converged = need.converged;
     if (size * need.value <= 1) {
       out.wrench = scaled.wrench(inverse.full ? z0 : Vec3(size * need.wrench));
       return out;
     }
   }
-  Point p =
+  const Point opposed =
       start_opposed(scaled, a, b, warm.isZero(0) ? b : scaled.scaled_twist(warm), out.evaluations);
+  Point p = opposed;
   if (holdable) {
     const Point q = start_on_ray(scaled, a, b, inverse, z0, need, out.evaluations);
     if (q.value(b) < p.value(b)) p = q;
   }
   out.converged = minimise(scaled, a, b, p, out.evaluations);
+  if (!out.converged) { // the dual is convex: any other start leads to the same point
+    Point other = opposed;
+    const bool is_better = minimise(scaled, a, b, other, out.evaluations) ||
+                           other.residual().norm() < p.residual().norm();
+    if (is_better) p = other;
+    out.converged = p.residual().norm() <= k_tolerance;
+  }
+  out.residual = p.residual().norm();
   out.slips = p.eta.norm() > k_no_slip * b.norm();
   out.wrench = scaled.wrench(out.slips ? Vec3(-p.d.gradient) : p.z);
   if (out.slips) out.acceleration = scaled.twist(p.eta);

@@ -20,6 +20,7 @@ struct AdmissibleWrench {
   Vec3 acceleration = Vec3::Zero(); ///< η = A W + b [m/s², m/s², rad/s²]; zero when it sticks
   bool slips = false;
   int evaluations = 0; ///< of h
+  double residual = 0; ///< of the optimality condition, in shares of the capacity
   bool converged = true;
 };
 

@@ -88,6 +88,7 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
     residual = reduced(t.residual(w));
     out.converged = residual.norm() <= tolerance;
   }
+  out.residual = residual.norm();
   out.value = w.dot(t.y) / t.d.h;
   out.y = t.y;
   out.wrench = t.d.h * t.d.gradient;

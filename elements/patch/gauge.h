@@ -13,6 +13,7 @@ struct Gauge {
   Vec3 y = Vec3::Zero();      ///< maximiser
   Vec3 wrench = Vec3::Zero(); ///< h∇h
   int evaluations = 0;
+  double residual = 0;        ///< |h∇h − w| on the subspace; the value is good to its square
   bool converged = false;
 };
 

@@ -30,6 +30,7 @@ RequiredPressure required_pressure(const Patch& patch, const Vec3& wrench, const
       find_gauge(scaled, w, warm.isZero(0) ? warm : scaled.scaled_twist(warm), tolerance);
   out.u = size * g.value;
   out.evaluations = g.evaluations;
+  out.residual = g.residual;
   out.converged = g.converged;
   out.direction = scaled.twist(g.y.normalized());
   out.centre = centre_of_rotation(patch.reference(), out.direction);

@@ -21,6 +21,7 @@ struct RequiredPressure {
   Vec3 direction = Vec3::Zero(); ///< maximiser ν, scaled to |(v at the centroid, gyration·ω)| = 1
   std::optional<Vec2> centre;    ///< of rotation in a's axes [m]; none at infinity or if W = 0
   int evaluations = 0;           ///< of h
+  double residual = 0;           ///< |h∇h/u − W| relative to |W|, in the patch's own units
   bool converged = true;
 
   [[nodiscard]] double margin() const { return 1.0 / u; }

@@ -17,6 +17,9 @@ constexpr double k_turned_share = 1e-4;
 constexpr double k_merged_look = 0.25;
 // Of the time, from which on a step that cannot meet the constraints is not shortened any more.
 constexpr double k_shortest_try = 1e-12;
+// Errors of velocity stay below this share of what a slip law turns with, whatever the tolerance: where a slip
+// begins and ends, |ν| → 0, an error of the tolerance's size would give the friction any direction.
+constexpr double k_slip_share = 5e-4;
 
 } // namespace
 
@@ -24,7 +27,7 @@ Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& setti
     : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0),
       y1_(max_dimension, 0.0), weight_(max_dimension, 0.0), scratch_(3 * max_dimension, 0.0),
       watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_rate0_(watch0_),
-      watch_rate1_(watch0_), nodes_(system_.watch_count) {
+      watch_rate1_(watch0_), nodes_(system_.watch_count), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_) {
   double size = 0.0;
   for (const BodyData& body : system_.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
@@ -40,6 +43,12 @@ void Integrator::restart(Dynamics& dynamics, double t, const double* y) {
   dynamics.watch_merged(k0_);
   watch0_ = dynamics.watch();
   watch_rate0_ = dynamics.watch_rate();
+  note_slips(dynamics, slip_scale0_, has_slip_scale0_);
+}
+
+void Integrator::note_slips(const Dynamics& dynamics, std::vector<double>& scale, bool& is_any) {
+  is_any = is_adaptive() && dynamics.slip_scales(scale.data());
+  decay_rate_ = is_adaptive() ? 0.0 : dynamics.slip_decay_rate();
 }
 
 void Integrator::accept() {
@@ -48,6 +57,8 @@ void Integrator::accept() {
   std::copy(k1_, k1_ + n_, k0_);
   std::swap(watch0_, watch1_);
   std::swap(watch_rate0_, watch_rate1_);
+  std::swap(slip_scale0_, slip_scale1_);
+  has_slip_scale0_ = has_slip_scale1_;
 }
 
 void Integrator::finish_step(Dynamics& dynamics) {
@@ -58,6 +69,7 @@ void Integrator::finish_step(Dynamics& dynamics) {
   dynamics.watch_merged(k1_);
   watch1_ = dynamics.watch();
   watch_rate1_ = dynamics.watch_rate();
+  note_slips(dynamics, slip_scale1_, has_slip_scale1_);
 }
 
 bool Integrator::try_finish_step(Dynamics& dynamics) {
@@ -92,6 +104,9 @@ void Integrator::update_weights(const Dynamics& dynamics) {
       weight_[m + i] =
           is_locked ? 0.0 : 1.0 / (tolerance * (k_rate_floor * size + std::abs(y0_[m + i])));
     }
+  if (has_slip_scale0_)
+    for (int i = 0; i < m; ++i)
+      if (weight_[m + i] > 0.0) weight_[m + i] = std::max(weight_[m + i], 1.0 / (k_slip_share * slip_scale0_[i]));
   // Dissipated energy and work: relative to the energy there is, was turned over, or would be in the floor's motion.
   const double floor_rate = k_rate_floor * k_displacement_floor * length_scale_;
   double energy = std::abs(y0_[2 * m]) + std::abs(y0_[2 * m + 1]);

@@ -84,6 +84,8 @@ protected:
   /// False where the end cannot be brought onto the constraints: a shorter step may (friction that holds up to an event
   /// early in the step would have to turn a body far beyond it).
   [[nodiscard]] bool try_finish_step(Dynamics& dynamics);
+  /// At the last evaluation: how fine velocities have to be known there.
+  void note_slips(const Dynamics& dynamics, std::vector<double>& scale, bool& is_any);
   void begin_watch_nodes() {
     nodes_.clear();
     last_merged_look_ = 0.0;
@@ -115,6 +117,9 @@ protected:
   WatchNodes nodes_;
   double longest_step_ = std::numeric_limits<double>::infinity();
   double last_merged_look_ = 0.0; ///< theta at which joints that are merged were last looked at inside the step
+  std::vector<double> slip_scale0_, slip_scale1_; ///< per rate (Dynamics::slip_scales)
+  bool has_slip_scale0_ = false, has_slip_scale1_ = false;
+  double decay_rate_ = 0.0; ///< of slip laws where the next step begins, 1/s; of methods that choose no steps
   long steps_ = 0, rejections_ = 0;
   Residual residual_;
   double length_scale_ = 1.0;
