@@ -10,14 +10,15 @@ namespace steplap {
 namespace {
 
 constexpr int k_scan_points = 8;
-constexpr int k_max_subdivisions = 12;    // of a dip
+constexpr int k_most_dip_looks = 60;      // at one dip
+constexpr double k_least_part = 0.02;     // of a dip's width, to either side of its bottom
 constexpr double k_same_place = 1e-9;     // of a step: the bottom has settled
 constexpr double k_rest = 1e-12;          // change of any coordinate or rate over a step in which nothing moves
 constexpr double k_looks_per_period = 16.0;
 constexpr double k_unseen_share = 8.0;    // of the variation seen: what may be unseen
 constexpr double k_fewest_looks = 8.0, k_most_looks = 1e6;
 
-// Lowest point inside (0, 1) of the cubic with values w0, w1 and slopes s0 < 0 < s1; NaN if none.
+// Lowest point inside (0, 1) of the cubic with values w0, w1 and slopes s0, s1; NaN if none.
 double bottom_of_cubic(double w0, double s0, double w1, double s1) {
   const double a = 2.0 * (w0 - w1) + s0 + s1, b = 3.0 * (w1 - w0) - 2.0 * s0 - s1;
   // 3aθ² + 2bθ + s0 = 0, the root where the curve turns upward
@@ -26,9 +27,10 @@ double bottom_of_cubic(double w0, double s0, double w1, double s1) {
   return -s0 / (b + std::sqrt(discriminant));
 }
 
-double cubic(double theta, double w0, double s0, double w1, double s1) {
-  const double t = theta, u = 1.0 - t;
-  return u * u * ((1.0 + 2.0 * t) * w0 + t * s0) + t * t * ((3.0 - 2.0 * t) * w1 - u * s1);
+// Nothing that is nowhere steeper than at the steeper one of its ends gets below zero if this is false; so no straight
+// line does. False where a slope is not known (NaN).
+bool may_dip(double w0, double s0, double w1, double s1) {
+  return w0 + w1 < std::max(std::abs(s0), std::abs(s1)) && !std::isnan(s0) && !std::isnan(s1);
 }
 
 } // namespace
@@ -75,45 +77,41 @@ EventFinder::Suspicion EventFinder::suspicion(const Integrator& integrator,
       worst = std::max(worst, fresh[i] || starts_negative(integrator, i) ? Suspicion::inside : Suspicion::at_end);
       continue;
     }
-    if (fresh[i]) continue;
+    // A fresh value rises from zero; but a contact may open and close again, or the other way round, in one step.
+    if (fresh[i] && i >= unit_slots_) continue;
     if (integrator.watch_low()[i] < 0.0) worst = Suspicion::inside;
     const double s0 = h * integrator.watch_rate0()[i], s1 = h * integrator.watch_rate1()[i];
-    if (!(s0 < 0.0 && s1 > 0.0)) continue; // also where the rate is not known (NaN)
-    const double theta = bottom_of_cubic(w0, s0, w1, s1);
-    if (!(theta > 0.0 && theta < 1.0)) continue;
-    // The cubic's own error is a fraction of how far it bends away from the chord.
-    const double bend = std::abs(w0 + theta * (w1 - w0) - cubic(theta, w0, s0, w1, s1));
-    if (cubic(theta, w0, s0, w1, s1) > 0.5 * bend) continue;
-    look_at_.push_back(theta);
-    dips_.push_back(i);
-    worst = Suspicion::inside;
+    if (may_dip(w0, fresh[i] ? 0.0 : s0, w1, s1)) dips_.push_back(i);
   }
   return worst;
 }
 
-// A dip may be much shorter than the cubic of a whole step is accurate: the bottom of each cubic halves it, as
-// the rate there tells, until the value is below zero or cannot be.
-void EventFinder::follow_dip(Integrator& integrator, Dynamics& dynamics, int slot) {
+// A gap of something round is not as smooth as the motion: what passes a pin in a flight of one step comes near it for
+// a moment. Parts of the step that can hold no zero are left, the others halved, or divided at the bottom of their
+// cubic, until the value is below zero or cannot be.
+bool EventFinder::follow_dip(Integrator& integrator, Dynamics& dynamics, int slot, const DipEnd& a, const DipEnd& b) {
+  const double width = b.theta - a.theta;
+  if (dip_looks_ >= k_most_dip_looks || width < k_same_place) return false;
+  if (!may_dip(a.value, width * a.slope, b.value, width * b.slope)) return false;
+  const double place = bottom_of_cubic(a.value, width * a.slope, b.value, width * b.slope);
+  const double theta = a.theta + width * (place > k_least_part && place < 1.0 - k_least_part ? place : 0.5);
+  ++dip_looks_;
+  watch_at(integrator, dynamics, theta, middle_);
+  const DipEnd now{theta, middle_.watch[slot], middle_.rate[slot]};
+  if (now.value < 0.0) {
+    look_at_.push_back(theta);
+    return true;
+  }
+  return follow_dip(integrator, dynamics, slot, a, now) || follow_dip(integrator, dynamics, slot, now, b);
+}
+
+void EventFinder::follow_dips(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh) {
   const double h = integrator.h();
-  struct End {
-    double theta, value, slope;
-  };
-  End a{0.0, integrator.watch0()[slot], h * integrator.watch_rate0()[slot]};
-  End b{1.0, integrator.watch1()[slot], h * integrator.watch_rate1()[slot]};
-  double last = -1.0;
-  for (int i = 0; i < k_max_subdivisions; ++i) {
-    const double width = b.theta - a.theta;
-    const double place = bottom_of_cubic(a.value, width * a.slope, b.value, width * b.slope);
-    if (!(place > 0.0 && place < 1.0)) return;
-    const double lowest = cubic(place, a.value, width * a.slope, b.value, width * b.slope);
-    const double bend = std::abs(a.value + place * (b.value - a.value) - lowest);
-    const double theta = a.theta + place * width;
-    if (lowest > 0.5 * bend || std::abs(theta - last) < k_same_place) return;
-    last = theta;
-    watch_at(integrator, dynamics, theta, middle_);
-    const End now{theta, middle_.watch[slot], middle_.rate[slot]};
-    if (now.value < 0.0) return look_at_.push_back(theta);
-    (now.slope < 0.0 ? a : b) = now;
+  for (const int slot : dips_) {
+    dip_looks_ = 0;
+    const double s0 = fresh[slot] ? 0.0 : h * integrator.watch_rate0()[slot];
+    follow_dip(integrator, dynamics, slot, {0.0, integrator.watch0()[slot], s0},
+               {1.0, integrator.watch1()[slot], h * integrator.watch_rate1()[slot]});
   }
 }
 
@@ -195,7 +193,6 @@ EventFinder::Bracket EventFinder::bracket_whole(const Integrator& integrator) {
 EventFinder::Bracket EventFinder::scan(Integrator& integrator, Dynamics& dynamics,
                                        const std::vector<char>& fresh) {
   for (int i = 0; i < slots_; ++i) armed_[i] = !fresh[i] && !starts_negative(integrator, i);
-  for (const int slot : dips_) follow_dip(integrator, dynamics, slot);
   for (int p = 1; p < k_scan_points; ++p) look_at_.push_back(static_cast<double>(p) / k_scan_points);
   // Fresh values often turn within the first fraction of a step.
   if (std::find(armed_.begin(), armed_.end(), 0) != armed_.end())
@@ -224,6 +221,8 @@ bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::ve
   if (slots_ == 0) return false;
   is_resting_ = false;
   Suspicion suspected = suspicion(integrator, fresh);
+  follow_dips(integrator, dynamics, fresh);
+  if (!look_at_.empty()) suspected = Suspicion::inside;
   if (suspected == Suspicion::none && unit_slots_ < slots_ && integrator.is_adaptive()) {
     watch_rest(integrator, dynamics);
     if (!look_at_.empty()) suspected = Suspicion::inside;

@@ -1,8 +1,8 @@
 // Finds the first event inside a step: where a watch value falls below zero.
 //
 // Looked at: the step's end, the stages inside it (free of charge), and, where a value's rate is known
-// at both ends and it dips in between, the bottom of its cubic; if that may be below zero, the dip is followed
-// on dense output, cubic by cubic, down to its bottom. Where nothing moves no error limits an adaptive step, and
+// at both ends and steep enough to reach zero in between and come back, dense output: part by part, as far as the
+// rates there let it be, down to the bottoms of its dips. Where nothing moves no error limits an adaptive step, and
 // loads may rise and fall within it: it is looked at many times in each of their periods. Whatever raises suspicion is scanned on
 // dense output, then the root is closed in on to rounding; all values that are negative on the far side
 // of the bracket fire together.
@@ -39,7 +39,11 @@ private:
   Bracket scan(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
   Bracket bracket_whole(const Integrator& integrator);
   void close_in(Integrator& integrator, Dynamics& dynamics);
-  void follow_dip(Integrator& integrator, Dynamics& dynamics, int slot);
+  struct DipEnd {
+    double theta, value, slope; ///< slope per unit of theta
+  };
+  bool follow_dip(Integrator& integrator, Dynamics& dynamics, int slot, const DipEnd& a, const DipEnd& b);
+  void follow_dips(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
   void watch_rest(Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] bool is_negative_near(Integrator& integrator, Dynamics& dynamics, int slot, double middle, double reach);
   [[nodiscard]] double next_look(double middle);
@@ -76,6 +80,7 @@ private:
   Aim aim_;
   std::vector<double> look_at_;  ///< places inside the step to scan besides the even ones
   std::vector<int> dips_;        ///< slots whose bottom inside the step may be below zero
+  int dip_looks_ = 0;            ///< at the present one
   std::vector<char> armed_;      ///< believed when negative
   std::vector<int> fired_, fired_before_;
 };

@@ -96,6 +96,7 @@ private:
   double energy_start_ = 0.0, kinetic_start_ = 0.0;
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
+  long kinks_ = 0; ///< of characteristics, which long tables have many of: max_events leaves them out
   long next_look_ = 0;       ///< steps at which the pace is looked at
   double last_look_ = 0.0;   ///< t at the last look
   RunStatistics statistics_;

@@ -169,7 +169,7 @@ bool TimeStepping::update_modes(Dynamics& dynamics, State& state) {
   bool is_changed = false;
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
-    const std::uint8_t mode = unit.group->initial_mode(unit.index, dynamics.evaluation());
+    const UnitMode mode = unit.group->initial_mode(unit.index, dynamics.evaluation());
     is_changed = is_changed || mode != state.mode[u];
     state.mode[u] = mode;
   }
