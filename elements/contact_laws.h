@@ -16,21 +16,21 @@ struct KelvinVoigtContact {
   template <class S> [[nodiscard]] S raw(const S& value, const S& rate) const {
     return S(-k) * (value - S(offset)) - S(c) * rate;
   }
-  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     return mode == k_contact_pressed ? raw(value, rate) : S(0);
   }
-  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
     return mode == k_contact_open ? 0.0 : -k * (value - offset);
   }
   [[nodiscard]] double energy(double value) const {
     const double closed = std::min(0.0, value - offset);
     return 0.5 * k * closed * closed;
   }
-  [[nodiscard]] std::uint8_t mode_at(double value, double rate) const {
+  [[nodiscard]] UnitMode mode_at(double value, double rate) const {
     if (value - offset >= 0.0) return k_contact_open;
     return raw(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
   }
-  void watch(double value, double rate, std::uint8_t mode, double* watch, double* watch_rate) const {
+  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
     const double gap = value - offset;
     if (mode == k_contact_open) {
       watch[0] = gap;
@@ -46,12 +46,12 @@ struct KelvinVoigtContact {
       watch[1] = -raw(value, rate);
     }
   }
-  [[nodiscard]] std::uint8_t next_mode(std::uint8_t mode, int slot, double value, double rate) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate) const {
     if (mode == k_contact_open) return raw(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
     if (mode == k_contact_pressed) return value - offset < 0.0 ? k_contact_released : k_contact_open;
     return slot == 0 ? k_contact_open : k_contact_pressed;
   }
-  static const char* transition_name(std::uint8_t from, std::uint8_t to) {
+  static const char* transition_name(UnitMode from, UnitMode to) {
     if (to == k_contact_open) return "opens";
     if (from == k_contact_open) return "closes";
     return to == k_contact_released ? "force reaches zero" : "force returns";
@@ -64,67 +64,77 @@ struct LiteralContact {
   static constexpr bool k_is_contact = true;
   double k = 0.0, c = 0.0, offset = 0.0;
 
-  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     return mode == k_contact_pressed ? S(-k) * (value - S(offset)) - S(c) * rate : S(0);
   }
-  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
     return mode == k_contact_open ? 0.0 : -k * (value - offset);
   }
   [[nodiscard]] double energy(double value) const {
     const double closed = std::min(0.0, value - offset);
     return 0.5 * k * closed * closed;
   }
-  [[nodiscard]] std::uint8_t mode_at(double value, double) const {
+  [[nodiscard]] UnitMode mode_at(double value, double) const {
     return value - offset < 0.0 ? k_contact_pressed : k_contact_open;
   }
-  void watch(double value, double rate, std::uint8_t mode, double* watch, double* watch_rate) const {
+  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
     const double sign = mode == k_contact_open ? 1.0 : -1.0;
     watch[0] = sign * (value - offset);
     watch_rate[0] = sign * rate;
   }
-  [[nodiscard]] std::uint8_t next_mode(std::uint8_t mode, int, double, double) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int, double, double) const {
     return mode == k_contact_open ? k_contact_pressed : k_contact_open;
   }
-  static const char* transition_name(std::uint8_t, std::uint8_t to) {
+  static const char* transition_name(UnitMode, UnitMode to) {
     return to == k_contact_open ? "opens" : "closes";
   }
 };
 
 /// f = k|δ|ⁿ (1 − α δ̇), never below zero (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440).
+///
+/// While the mode says pressed, k|δ|ⁿ goes on beyond δ = 0 with its sign changed, as a line does: stages of a step
+/// that is too long may be thrown out of the contact, on either side of something round, and where they felt nothing
+/// the step's error would be seen as zero.
 struct HuntCrossleyContact {
   static constexpr int k_watches = 2;
   static constexpr bool k_is_contact = true;
   double k = 0.0, exponent = 1.5, alpha = 0.0, offset = 0.0;
 
-  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
-    using std::pow;
-    const S depth = S(offset) - value;
-    if (mode != k_contact_pressed || !(depth > S(0))) return S(0);
-    return S(k) * pow(depth, exponent) * (S(1) - S(alpha) * rate);
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
+    if (mode != k_contact_pressed) return S(0);
+    return S(k) * power(S(offset) - value) * (S(1) - S(alpha) * rate);
   }
-  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
-    return mode != k_contact_open && value < offset ? k * std::pow(offset - value, exponent) : 0.0;
+  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
+    return mode == k_contact_open ? 0.0 : k * power(offset - value);
   }
   [[nodiscard]] double energy(double value) const {
     return value < offset ? k * std::pow(offset - value, exponent + 1.0) / (exponent + 1.0) : 0.0;
   }
-  [[nodiscard]] std::uint8_t mode_at(double value, double rate) const {
+  [[nodiscard]] UnitMode mode_at(double value, double rate) const {
     if (value - offset >= 0.0) return k_contact_open;
     return alpha * rate <= 1.0 ? k_contact_pressed : k_contact_released;
   }
-  void watch(double value, double rate, std::uint8_t mode, double* watch, double* watch_rate) const {
+  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
     const double sign = mode == k_contact_open ? 1.0 : -1.0;
     watch[0] = sign * (value - offset);
     watch_rate[0] = sign * rate;
     watch[1] = mode == k_contact_open ? 1.0 : (mode == k_contact_pressed ? 1.0 : -1.0) * (1.0 - alpha * rate);
   }
-  [[nodiscard]] std::uint8_t next_mode(std::uint8_t mode, int slot, double, double rate) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double, double rate) const {
     if (mode == k_contact_open) return alpha * rate <= 1.0 ? k_contact_pressed : k_contact_released;
     if (slot == 0) return k_contact_open;
     return mode == k_contact_pressed ? k_contact_released : k_contact_pressed;
   }
-  static const char* transition_name(std::uint8_t from, std::uint8_t to) {
+  static const char* transition_name(UnitMode from, UnitMode to) {
     return KelvinVoigtContact::transition_name(from, to);
+  }
+
+private:
+  template <class S> [[nodiscard]] S power(const S& depth) const {
+    using std::pow;
+    if (exponent == 1.0) return depth;
+    if (depth > S(0)) return pow(depth, exponent);
+    return depth < S(0) ? -pow(-depth, exponent) : S(0);
   }
 };
 

@@ -10,36 +10,36 @@ namespace steplap {
 namespace {
 
 // Modes: 0 between the stops; 1, 2 lower stop pressed, released; 3, 4 the upper one.
-constexpr std::uint8_t k_between = 0, k_lower = 1, k_upper = 3;
+constexpr UnitMode k_between = 0, k_lower = 1, k_upper = 3;
 
 struct StopsLaw {
   static constexpr int k_watches = 2;
   static constexpr bool k_is_contact = false;
   KelvinVoigtContact lower, upper; ///< the upper one of the coordinate with its sign changed
 
-  static bool is_upper(std::uint8_t mode) { return mode >= k_upper; }
-  static std::uint8_t contact_mode(std::uint8_t mode) {
+  static bool is_upper(UnitMode mode) { return mode >= k_upper; }
+  static UnitMode contact_mode(UnitMode mode) {
     if (mode == k_between) return k_contact_open;
     return mode == k_lower || mode == k_upper ? k_contact_pressed : k_contact_released;
   }
-  static std::uint8_t stop_mode(std::uint8_t contact, bool is_up) {
+  static UnitMode stop_mode(UnitMode contact, bool is_up) {
     if (contact == k_contact_open) return k_between;
     const int pressed = is_up ? k_upper : k_lower;
-    return static_cast<std::uint8_t>(contact == k_contact_pressed ? pressed : pressed + 1);
+    return static_cast<UnitMode>(contact == k_contact_pressed ? pressed : pressed + 1);
   }
 
-  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     return is_upper(mode) ? -upper.force(-value, -rate, contact_mode(mode)) : lower.force(value, rate, contact_mode(mode));
   }
-  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
     return is_upper(mode) ? -upper.elastic_force(-value, contact_mode(mode)) : lower.elastic_force(value, contact_mode(mode));
   }
   [[nodiscard]] double energy(double value) const { return lower.energy(value) + upper.energy(-value); }
-  [[nodiscard]] std::uint8_t mode_at(double value, double rate) const {
-    if (const std::uint8_t mode = lower.mode_at(value, rate); mode != k_contact_open) return stop_mode(mode, false);
+  [[nodiscard]] UnitMode mode_at(double value, double rate) const {
+    if (const UnitMode mode = lower.mode_at(value, rate); mode != k_contact_open) return stop_mode(mode, false);
     return stop_mode(upper.mode_at(-value, -rate), true);
   }
-  void watch(double value, double rate, std::uint8_t mode, double* watch, double* watch_rate) const {
+  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
     if (mode != k_between) {
       watch_rate[1] = std::numeric_limits<double>::quiet_NaN(); // of a force, or of nothing
       if (is_upper(mode)) upper.watch(-value, -rate, contact_mode(mode), watch, watch_rate);
@@ -51,13 +51,13 @@ struct StopsLaw {
     watch[1] = -value - upper.offset;
     watch_rate[1] = -rate;
   }
-  [[nodiscard]] std::uint8_t next_mode(std::uint8_t mode, int slot, double value, double rate) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate) const {
     const bool is_up = mode == k_between ? slot == 1 : is_upper(mode);
     const KelvinVoigtContact& stop = is_up ? upper : lower;
     const double v = is_up ? -value : value, r = is_up ? -rate : rate;
     return stop_mode(stop.next_mode(contact_mode(mode), mode == k_between ? 0 : slot, v, r), is_up);
   }
-  static const char* transition_name(std::uint8_t from, std::uint8_t to) {
+  static const char* transition_name(UnitMode from, UnitMode to) {
     if (to == k_between) return "leaves its stop";
     if (from == k_between) return is_upper(to) ? "reaches its upper stop" : "reaches its lower stop";
     return KelvinVoigtContact::transition_name(contact_mode(from), contact_mode(to));

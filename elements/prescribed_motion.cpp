@@ -1,5 +1,6 @@
 #include "elements/prescribed_motion.h"
 
+#include "mbd/number_text.h"
 #include "mbd/system.h"
 
 namespace steplap {
@@ -21,11 +22,16 @@ int lockable_coordinate(const RowSpec& row, const CompiledMarker& a) {
   return row.direction == Vec2(0.0, 1.0) ? 1 : -1;
 }
 
-bool is_differentiable_enough(const Signal& signal, DriveLevel level) {
-  if (level == DriveLevel::acceleration) return true;
-  for (std::size_t k = 0; k < signal.breakpoints().size(); ++k)
-    if (signal.breakpoints()[k] > 0.0 && signal.jumps_at(k)) return false;
-  return true;
+// A velocity that jumps is an impact, which a drive is not made for: what hangs on it by joints would have to jump too.
+std::string jump_message(const PrescribedMotion& e, const Signal::Jump& jump) {
+  const std::string what = jump.is_of_rate ? "the rate of signal '" : "signal '";
+  const std::string moved = !jump.is_of_rate && e.as == "position" ? "body" : "body's velocity";
+  const std::string remedy = jump.is_of_rate
+                                 ? "give the motion as = \"velocity\" or as = \"acceleration\" by the signal's derivative, "
+                                   "or use a smooth signal such as haversine"
+                                 : "use a signal without jumps or as = \"acceleration\"";
+  return what + e.signal + "' jumps from " + number_text(jump.before) + " to " + number_text(jump.after) + " at t = " +
+         number_text(jump.t) + " s, so it cannot be a " + e.as + ": the " + moved + " would have to jump; " + remedy;
 }
 
 void compile_prescribed(const Element& element, SystemBuilder& builder) {
@@ -43,9 +49,8 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   else row.direction = builder.direction(b, e.coordinate == "x" ? Vec2(1.0, 0.0) : Vec2(0.0, 1.0));
   row.drive = builder.signal(e.signal);
   row.level = level_of(e.as);
-  if (!is_differentiable_enough(*row.drive, row.level))
-    return builder.error("signal '" + e.signal + "' jumps, so it cannot be a " + e.as +
-                         ": the body would have to jump; use a signal without jumps or as = \"acceleration\"");
+  if (const auto jump = row.drive->first_jump(row.level, 0.0, builder.model().simulation.end))
+    return builder.error(jump_message(e, *jump));
   row.memory = builder.add_memory();
   const int r = builder.next_row();
   builder.add_channel("reaction", row.kind == MeasureKind::angle ? "N m" : "N",

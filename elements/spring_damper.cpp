@@ -30,8 +30,8 @@ bool check(const SpringDamper& e, SystemBuilder& builder) {
                   "the first column of a table must increase from row to row");
   is_bad |= fails(e.gap > 0.0 && (!e.force_table.empty() || !e.damping_table.empty()),
                   "'gap' and tables exclude each other: put the dead band into the table");
-  is_bad |= fails(e.force_table.size() * std::max<std::size_t>(1, e.damping_table.size()) > 200,
-                  "tables are too long: at most 200 combinations of their segments");
+  is_bad |= fails(std::max(e.force_table.size(), e.damping_table.size()) > PiecewiseLinear::k_most_points,
+                  "a table may have at most 65536 points");
   is_bad |= fails(e.stiffness == 0.0 && e.damping == 0.0 && e.force_table.empty() &&
                       e.damping_table.empty(),
                   "gives no force: set 'stiffness', 'damping' or a table");

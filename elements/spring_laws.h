@@ -15,10 +15,10 @@ struct LinearSpring {
   static constexpr bool k_is_contact = false;
   double k = 0.0, c = 0.0, free = 0.0;
 
-  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t) const {
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode) const {
     return S(-k) * (value - S(free)) - S(c) * rate;
   }
-  [[nodiscard]] double elastic_force(double value, std::uint8_t) const { return -k * (value - free); }
+  [[nodiscard]] double elastic_force(double value, UnitMode) const { return -k * (value - free); }
   [[nodiscard]] double energy(double value) const {
     return 0.5 * k * (value - free) * (value - free);
   }
@@ -31,36 +31,36 @@ struct GapSpring {
   static constexpr bool k_is_contact = false;
   double k = 0.0, c = 0.0, free = 0.0, half_gap = 0.0;
 
-  [[nodiscard]] double edge(std::uint8_t mode) const {
+  [[nodiscard]] double edge(UnitMode mode) const {
     return mode == 0 ? free - half_gap : free + half_gap;
   }
-  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     if (mode == 1) return S(0);
     return S(-k) * (value - S(edge(mode))) - S(c) * rate;
   }
-  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
     return mode == 1 ? 0.0 : -k * (value - edge(mode));
   }
   [[nodiscard]] double energy(double value) const {
     const double beyond = std::max(0.0, std::abs(value - free) - half_gap);
     return 0.5 * k * beyond * beyond;
   }
-  [[nodiscard]] std::uint8_t mode_at(double value, double) const {
+  [[nodiscard]] UnitMode mode_at(double value, double) const {
     const double e = value - free;
     return e < -half_gap ? 0 : (e > half_gap ? 2 : 1);
   }
-  void watch(double value, double rate, std::uint8_t mode, double* watch, double* watch_rate) const {
+  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
     const double low = value - (free - half_gap), high = (free + half_gap) - value;
     watch[0] = mode == 0 ? -low : (mode == 1 ? low : -high);
     watch_rate[0] = mode == 1 ? rate : (mode == 0 ? -rate : rate);
     watch[1] = mode == 1 ? high : 1.0;
     watch_rate[1] = mode == 1 ? -rate : 0.0;
   }
-  [[nodiscard]] std::uint8_t next_mode(std::uint8_t mode, int slot, double, double) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double, double) const {
     if (mode != 1) return 1;
     return slot == 0 ? 0 : 2;
   }
-  static const char* transition_name(std::uint8_t, std::uint8_t to) {
+  static const char* transition_name(UnitMode, UnitMode to) {
     return to == 1 ? "enters its gap" : "closes its gap";
   }
 };
@@ -68,8 +68,17 @@ struct GapSpring {
 /// Piecewise linear characteristic y(x), continued with its end slopes.
 class PiecewiseLinear {
 public:
+  static constexpr std::size_t k_most_points = 1U << 16U; ///< two segments fit into a UnitMode
+
   PiecewiseLinear() = default;
-  explicit PiecewiseLinear(std::vector<Vec2> points) : points_(std::move(points)) {}
+  explicit PiecewiseLinear(std::vector<Vec2> points) : points_(std::move(points)) {
+    primitive_.resize(points_.size());
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      const Vec2 &a = points_[i - 1], &b = points_[i];
+      primitive_[i] = primitive_[i - 1] + 0.5 * (a.y() + b.y()) * (b.x() - a.x());
+    }
+    at_zero_ = primitive(0.0);
+  }
   [[nodiscard]] int segments() const { return std::max(1, static_cast<int>(points_.size()) - 1); }
   [[nodiscard]] double low(int segment) const {
     return segment == 0 ? -1e300 : points_[segment].x();
@@ -78,9 +87,15 @@ public:
     return segment == segments() - 1 ? 1e300 : points_[segment + 1].x();
   }
   [[nodiscard]] int segment_at(double x) const {
-    int s = 0;
-    while (s < segments() - 1 && x >= points_[s + 1].x()) ++s;
-    return s;
+    if (points_.size() < 3) return 0;
+    const auto after = std::upper_bound(points_.begin() + 1, points_.end() - 1, x,
+                                        [](double value, const Vec2& p) { return value < p.x(); });
+    return static_cast<int>(after - points_.begin()) - 1;
+  }
+  /// The segment that follows `segment` on one side; a jump of x may have left more than one behind.
+  [[nodiscard]] int segment_beyond(int segment, bool is_above, double x) const {
+    const int now = segment_at(x);
+    return is_above ? std::min(std::max(segment + 1, now), segments() - 1) : std::max(std::min(segment - 1, now), 0);
   }
   template <class S> [[nodiscard]] S value(const S& x, int segment) const {
     if (points_.empty()) return S(0);
@@ -92,46 +107,47 @@ public:
                               : (points_[s + 1].y() - points_[s].y()) / (points_[s + 1].x() - points_[s].x());
   }
   /// ∫ from 0 to x.
-  [[nodiscard]] double integral(double x) const {
-    return primitive(x) - primitive(0.0);
-  }
+  [[nodiscard]] double integral(double x) const { return primitive(x) - at_zero_; }
 
 private:
   [[nodiscard]] double primitive(double x) const {
     if (points_.empty()) return 0.0;
-    const int last = segment_at(x);
-    double sum = 0.0;
-    for (int s = 0; s < last; ++s)
-      sum += 0.5 * (points_[s].y() + points_[s + 1].y()) * (points_[s + 1].x() - points_[s].x());
-    const double d = x - points_[last].x();
-    return sum + d * (points_[last].y() + 0.5 * slope(last) * d);
+    const int s = segment_at(x);
+    const double d = x - points_[s].x();
+    return primitive_[s] + d * (points_[s].y() + 0.5 * slope(s) * d);
   }
   std::vector<Vec2> points_;
+  std::vector<double> primitive_; ///< from the first point to each
+  double at_zero_ = 0.0;
 };
 
-/// f = −T(value − free) − D(rate) with tables T, D; the mode is the pair of segments.
+/// f = −T(value − free) − D(rate) with tables T, D; the mode is the pair of segments. Only the ends of the present
+/// segments are watched, so that a step costs the same however long the tables are.
 struct TabulatedSpring {
   static constexpr int k_watches = 4;
   static constexpr bool k_is_contact = false;
+  static constexpr bool k_has_only_kinks = true;
   PiecewiseLinear spring, damper;
   double free = 0.0, count = 1.0;
 
-  [[nodiscard]] int spring_segment(std::uint8_t mode) const { return mode % spring.segments(); }
-  [[nodiscard]] int damper_segment(std::uint8_t mode) const { return mode / spring.segments(); }
+  static int spring_segment(UnitMode mode) { return static_cast<int>(mode & 0xffffU); }
+  static int damper_segment(UnitMode mode) { return static_cast<int>(mode >> 16U); }
+  static UnitMode mode_of(int spring_segment, int damper_segment) {
+    return static_cast<UnitMode>(spring_segment) | static_cast<UnitMode>(damper_segment) << 16U;
+  }
 
-  template <class S> [[nodiscard]] S force(const S& value, const S& rate, std::uint8_t mode) const {
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     return S(-count) * (spring.value(value - S(free), spring_segment(mode)) +
                         damper.value(rate, damper_segment(mode)));
   }
-  [[nodiscard]] double elastic_force(double value, std::uint8_t mode) const {
+  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
     return -count * spring.value(value - free, spring_segment(mode));
   }
   [[nodiscard]] double energy(double value) const { return count * spring.integral(value - free); }
-  [[nodiscard]] std::uint8_t mode_at(double value, double rate) const {
-    return static_cast<std::uint8_t>(spring.segment_at(value - free) +
-                                     spring.segments() * damper.segment_at(rate));
+  [[nodiscard]] UnitMode mode_at(double value, double rate) const {
+    return mode_of(spring.segment_at(value - free), damper.segment_at(rate));
   }
-  void watch(double value, double rate, std::uint8_t mode, double* watch, double* watch_rate) const {
+  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
     const int s = spring_segment(mode), d = damper_segment(mode);
     const double e = value - free;
     watch[0] = e - spring.low(s);
@@ -141,13 +157,13 @@ struct TabulatedSpring {
     watch_rate[0] = rate;
     watch_rate[1] = -rate;
   }
-  [[nodiscard]] std::uint8_t next_mode(std::uint8_t mode, int slot, double, double) const {
-    int s = spring_segment(mode), d = damper_segment(mode);
-    if (slot < 2) s += slot == 0 ? -1 : 1;
-    else d += slot == 2 ? -1 : 1;
-    return static_cast<std::uint8_t>(s + spring.segments() * d);
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate) const {
+    const int s = spring_segment(mode), d = damper_segment(mode);
+    const bool is_above = slot == 1 || slot == 3;
+    return slot < 2 ? mode_of(spring.segment_beyond(s, is_above, value - free), d)
+                    : mode_of(s, damper.segment_beyond(d, is_above, rate));
   }
-  static const char* transition_name(std::uint8_t, std::uint8_t) { return "passes a kink of its table"; }
+  static const char* transition_name(UnitMode, UnitMode) { return "passes a kink of its table"; }
 };
 
 } // namespace steplap

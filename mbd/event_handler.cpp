@@ -105,14 +105,15 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
     const int u = unit_of_slot_[slot];
     if (u < 0) continue;
     const Unit& unit = system_.units[u];
-    const std::uint8_t from = state.mode[u];
-    const std::uint8_t to =
+    const UnitMode from = state.mode[u];
+    const UnitMode to =
         unit.group->next_mode(unit.index, from, slot - unit.watch, dynamics_.evaluation());
     if (to == from) continue;
     state.mode[u] = to;
     is_any = true;
     for (int w = 0; w < unit.watch_count; ++w) fresh_[unit.watch + w] = 1;
-    events.push_back({state.t, system_.element_names[unit.element], unit.group->transition_name(from, to)});
+    events.push_back({state.t, system_.element_names[unit.element], unit.group->transition_name(from, to),
+                      unit.group->has_only_kinks()});
   }
   return is_any;
 }
@@ -202,7 +203,7 @@ void EventHandler::note_changes(const State& before, const State& state, std::ve
     const Unit& unit = system_.units[u];
     if (before.mode[u] != state.mode[u])
       events.push_back({state.t, system_.element_names[unit.element],
-                        unit.group->transition_name(before.mode[u], state.mode[u])});
+                        unit.group->transition_name(before.mode[u], state.mode[u]), unit.group->has_only_kinks()});
   }
   note_friction(before, state, events);
   clear_fresh();

@@ -14,6 +14,7 @@ struct Event {
   double t = 0.0;
   std::string element;
   std::string what; ///< "opens", "closes", "slips forward", "sticks", …
+  bool is_kink = false; ///< of a characteristic: no force jumps
 };
 
 class EventHandler {

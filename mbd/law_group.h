@@ -6,7 +6,8 @@
 //   S force(S value, S rate, mode)           force along the measure's gradient
 //   double elastic_force(value, mode)        −dU/dvalue of the stored energy, smooth within a mode
 //   double energy(value)                     U
-//   and, if k_watches > 0: mode_at, next_mode, watch, transition_name.
+//   and, if k_watches > 0: mode_at, next_mode, watch, transition_name;
+//   static constexpr bool k_has_only_kinks   true: its force is continuous across changes of mode.
 // It dissipates (elastic_force − force)·rate.
 #pragma once
 
@@ -110,22 +111,25 @@ public:
     for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
 
-  [[nodiscard]] std::uint8_t initial_mode(int element, const Evaluation& e) const override {
+  [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     if constexpr (Law::k_watches > 0) {
       const auto m = measured(element, e);
       return entries[element].law.mode_at(m.value, m.rate);
     }
     return 0;
   }
-  [[nodiscard]] std::uint8_t next_mode(int element, std::uint8_t mode, int slot,
-                                       const Evaluation& e) const override {
+  [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     if constexpr (Law::k_watches > 0) {
       const auto m = measured(element, e);
       return entries[element].law.next_mode(mode, slot, m.value, m.rate);
     }
     return mode;
   }
-  [[nodiscard]] const char* transition_name(std::uint8_t from, std::uint8_t to) const override {
+  [[nodiscard]] bool has_only_kinks() const override {
+    if constexpr (requires { Law::k_has_only_kinks; }) return Law::k_has_only_kinks;
+    return false;
+  }
+  [[nodiscard]] const char* transition_name(UnitMode from, UnitMode to) const override {
     if constexpr (Law::k_watches > 0) return Law::transition_name(from, to);
     return "";
   }
@@ -141,7 +145,7 @@ public:
   }
 
 private:
-  static std::uint8_t mode_of(const Entry& entry, const Evaluation& e) {
+  static UnitMode mode_of(const Entry& entry, const Evaluation& e) {
     if constexpr (Law::k_watches > 0) return e.mode[entry.unit];
     return 0;
   }

@@ -20,6 +20,9 @@
 
 namespace steplap {
 
+/// Mode of a unit: which of the smooth pieces of its law holds. Wide enough for two segments of tables of 65 536.
+using UnitMode = std::uint32_t;
+
 enum class FrictionPhase : std::uint8_t {
   free,  ///< no normal force: no friction
   stick, ///< its rows hold as constraints
@@ -51,7 +54,7 @@ struct Evaluation {
   BodyForce* force = nullptr;             ///< per body, accumulated
   const Motion<double>* link_motion = nullptr; ///< per slot of links (link.h): of a, seen from b
   BodyForce* link_force = nullptr;        ///< per slot: on a, about its centre, in b's axes; accumulated
-  const std::uint8_t* mode = nullptr;     ///< per unit
+  const UnitMode* mode = nullptr;         ///< per unit
   const FrictionState* friction = nullptr;
   const double* memory = nullptr;         ///< of the state: anchors of rows
   FrictionScratch* const* scratch = nullptr; ///< per friction element; null where it wants none
@@ -96,13 +99,14 @@ public:
   virtual void enter_links(LinkTable& /*links*/) {}
 
   /// Modes, for groups whose elements are units. `slot` is the watch value that fell below zero.
-  [[nodiscard]] virtual std::uint8_t initial_mode(int /*element*/, const Evaluation&) const { return 0; }
-  [[nodiscard]] virtual std::uint8_t next_mode(int /*element*/, std::uint8_t mode, int /*slot*/,
-                                               const Evaluation&) const {
+  [[nodiscard]] virtual UnitMode initial_mode(int /*element*/, const Evaluation&) const { return 0; }
+  [[nodiscard]] virtual UnitMode next_mode(int /*element*/, UnitMode mode, int /*slot*/, const Evaluation&) const {
     return mode;
   }
+  /// Changes of mode are kinks of a characteristic, which no force jumps at: many in a short time are no storm.
+  [[nodiscard]] virtual bool has_only_kinks() const { return false; }
   /// What the change is called in the list of events ("closes", "opens", "force reaches zero").
-  [[nodiscard]] virtual const char* transition_name(std::uint8_t /*from*/, std::uint8_t /*to*/) const {
+  [[nodiscard]] virtual const char* transition_name(UnitMode /*from*/, UnitMode /*to*/) const {
     return "";
   }
 };
@@ -196,7 +200,7 @@ public:
 };
 
 /// Mode of a contact unit in which it presses; every contact law uses these three.
-inline constexpr std::uint8_t k_contact_open = 0, k_contact_pressed = 1, k_contact_released = 2;
+inline constexpr UnitMode k_contact_open = 0, k_contact_pressed = 1, k_contact_released = 2;
 
 /// Watch slots of a friction element: two for stick bounds or the end of slip, one for its place.
 inline constexpr int k_friction_watches = 3;

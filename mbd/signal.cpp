@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace steplap {
@@ -201,17 +202,68 @@ bool Signal::is_constant() const {
          p.c[2] == 0.0 && p.c[3] == 0.0;
 }
 
-bool Signal::jumps_at(std::size_t k) const {
-  constexpr double k_rounding = 1e-12;
-  const Piece& right = pieces_.at(k);
-  double before = 0.0, scale = magnitude(right, 0.0);
-  if (k > 0) {
-    const Piece& left = pieces_[k - 1];
-    const double length = right.start - left.start;
-    before = evaluate(left, length).value;
-    scale = std::max(scale, magnitude(left, length));
+namespace {
+
+constexpr double k_rounding = 1e-12;
+
+// On either side of a breakpoint, and how much of it may be rounding.
+struct Sides {
+  double before = 0.0, after = 0.0, scale = 0.0;
+  [[nodiscard]] bool differ() const { return std::abs(after - before) > k_rounding * scale; }
+};
+
+Sides values_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
+  const Signal::Piece& right = pieces.at(k);
+  Sides sides{0.0, evaluate(right, 0.0).value, magnitude(right, 0.0)};
+  if (k == 0) return sides;
+  const Signal::Piece& left = pieces[k - 1];
+  const double length = right.start - left.start;
+  sides.before = evaluate(left, length).value;
+  sides.scale = std::max(sides.scale, magnitude(left, length));
+  return sides;
+}
+
+// A bound of the terms of a piece's rate up to τ.
+double rate_magnitude(const Signal::Piece& piece, double tau) {
+  double sum = std::abs(piece.c[1]) + tau * (2.0 * std::abs(piece.c[2]) + tau * 3.0 * std::abs(piece.c[3]));
+  for (const Signal::Harmonic& h : piece.harmonics) sum += std::abs(h.amplitude * h.frequency);
+  return sum;
+}
+
+// The slope of a line between two samples is rounded as their values and times are, over its length.
+double slope_rounding(const Signal::Piece& piece, double length) {
+  const double value = magnitude(piece, length) + std::abs(piece.start) * rate_magnitude(piece, length);
+  return 16.0 * std::numeric_limits<double>::epsilon() * value / length;
+}
+
+Sides rates_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
+  const Signal::Piece& right = pieces.at(k);
+  Sides sides{0.0, evaluate(right, 0.0).rate, rate_magnitude(right, 0.0)};
+  if (k + 1 < pieces.size()) sides.scale += slope_rounding(right, pieces[k + 1].start - right.start) / k_rounding;
+  if (k == 0) return sides;
+  const Signal::Piece& left = pieces[k - 1];
+  const double length = right.start - left.start;
+  sides.before = evaluate(left, length).rate;
+  sides.scale = std::max(sides.scale, rate_magnitude(left, length) + slope_rounding(left, length) / k_rounding);
+  return sides;
+}
+
+} // namespace
+
+bool Signal::jumps_at(std::size_t k) const { return values_at(pieces_, k).differ(); }
+
+bool Signal::rate_jumps_at(std::size_t k) const { return rates_at(pieces_, k).differ(); }
+
+std::optional<Signal::Jump> Signal::first_jump(DriveLevel level, double from, double end) const {
+  if (level == DriveLevel::acceleration) return std::nullopt;
+  for (std::size_t k = 0; k < breakpoints_.size(); ++k) {
+    const double t = breakpoints_[k];
+    if (t <= from || t >= end) continue;
+    if (const Sides values = values_at(pieces_, k); values.differ()) return Jump{t, values.before, values.after, false};
+    if (level != DriveLevel::position) continue;
+    if (const Sides rates = rates_at(pieces_, k); rates.differ()) return Jump{t, rates.before, rates.after, true};
   }
-  return std::abs(evaluate(right, 0.0).value - before) > k_rounding * scale;
+  return std::nullopt;
 }
 
 } // namespace steplap

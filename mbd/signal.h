@@ -10,6 +10,7 @@
 #include "mbd/fields.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,15 @@ public:
   [[nodiscard]] double fastest_at(double t) const;
   /// True where the value itself jumps at breakpoint k by more than rounding.
   [[nodiscard]] bool jumps_at(std::size_t k) const;
+  /// True where its rate does.
+  [[nodiscard]] bool rate_jumps_at(std::size_t k) const;
+  /// Where a coordinate that follows the signal, read at `level`, cannot: its place or its velocity would jump.
+  struct Jump {
+    double t = 0.0, before = 0.0, after = 0.0;
+    bool is_of_rate = false; ///< before, after: rates of the signal, else values
+  };
+  /// The first with from < t < end.
+  [[nodiscard]] std::optional<Jump> first_jump(DriveLevel level, double from, double end) const;
 
 private:
   [[nodiscard]] const Piece* piece_at(double t) const;

@@ -46,6 +46,8 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
       handler_(system, dynamics_), finder_(system, 6 * system.body_count() + 2),
       y_(6 * system.bodies.size() + 2), dy_(y_.size()) {
   cpu_start_ = thread_cpu_seconds();
+  if (options_.end > system.drives_end)
+    throw NumericalFailure("a drive jumps at t = " + std::to_string(system.drives_end) + " s, before the end of the run");
   integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
   trajectory_ = std::make_unique<Trajectory>(system, options_.channels);
   start_drives(system_, state_);
@@ -128,7 +130,7 @@ void Simulation::guard_against_chatter(double t) {
   events_at_once_ = is_same ? events_at_once_ + 1 : 0;
   last_event_ = t;
   ++statistics_.events;
-  if (events_at_once_ < k_max_events_at_once && statistics_.events < options_.max_events) return;
+  if (events_at_once_ < k_max_events_at_once && statistics_.events - kinks_ < options_.max_events) return;
   std::ostringstream message;
   message.precision(12);
   message << (events_at_once_ >= k_max_events_at_once ? "events repeat without end at t = "
@@ -167,9 +169,12 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
   const std::size_t known = events_.size();
   handler_.handle(state_, fired, events_);
   energy_.check_settled(state_.t, handler_.settled());
+  const auto is_kink = [](const Event& event) { return event.is_kink; };
+  if (events_.size() > known && std::all_of(events_.begin() + static_cast<std::ptrdiff_t>(known), events_.end(), is_kink))
+    ++kinks_;
   if (options_.integrator == "auto" && handler_.stop_reason().empty())
     for (std::size_t i = known; i < events_.size(); ++i)
-      if (storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
+      if (!events_[i].is_kink && storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
   if (!fired.empty()) guard_against_chatter(t);
   restart();
 }

@@ -110,6 +110,7 @@ private:
   bool is_between_events_ = false; ///< the integrator and state_ fit each other
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
+  long kinks_ = 0; ///< of characteristics, which long tables have many of: max_events leaves them out
   long next_look_ = 0;       ///< steps at which the pace is looked at
   double last_look_ = 0.0;   ///< t at the last look
   RunStatistics statistics_;

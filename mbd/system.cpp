@@ -1,6 +1,8 @@
 #include "mbd/system.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace steplap {
 
@@ -263,6 +265,11 @@ void SystemBuilder::add_rows(std::vector<RowSpec> rows, bool is_rigid, int coord
   const int first = static_cast<int>(system_->rows.size());
   for (RowSpec& row : rows) {
     row.element = element_;
+    if (row.drive) { // elements have refused those that jump within the model's own run
+      constexpr double k_ever = std::numeric_limits<double>::infinity();
+      const auto jump = row.drive->first_jump(row.level, std::nextafter(model_.simulation.end, 0.0), k_ever);
+      if (jump) system_->drives_end = std::min(system_->drives_end, jump->t);
+    }
     system_->rows.push_back(row);
   }
   system_->row_blocks.push_back({first, static_cast<int>(rows.size()), is_rigid, coordinate, element_});

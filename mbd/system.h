@@ -6,6 +6,7 @@
 #include "mbd/roles.h"
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <typeinfo>
 #include <memory>
@@ -22,7 +23,7 @@ class System;
 struct State {
   double t = 0.0;
   std::vector<double> q, v;
-  std::vector<std::uint8_t> mode;       ///< per unit
+  std::vector<UnitMode> mode;           ///< per unit
   std::vector<FrictionState> friction;  ///< per friction element
   std::vector<double> memory;           ///< bases of rows
   double dissipated = 0.0;              ///< J, since the start
@@ -102,6 +103,7 @@ public:
   std::vector<FrictionUnit> frictions;
   std::vector<Channel> channels;
   std::vector<double> breakpoints; ///< of all signals in use, ascending
+  double drives_end = std::numeric_limits<double>::infinity(); ///< the first drive jumps there: no run may pass it, s
   std::vector<double> initial_memory;
   std::vector<char> is_body_used; ///< per body: some force element or friction refers to it
   int contact_count = 0;

@@ -89,6 +89,7 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
   update_weights(dynamics);
   double h = std::min(next_h_, h_max);
   SingularPassage passage(dynamics);
+  if (is_restarted_) h = restrained_step(dynamics, h);
   bool has_tried_crossing = false;
   for (bool is_retry = false;; is_retry = true) {
     const bool is_last = h >= left * (1.0 - 1e-10);

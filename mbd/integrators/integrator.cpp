@@ -43,6 +43,7 @@ void Integrator::restart(Dynamics& dynamics, double t, const double* y) {
   dynamics.watch_merged(k0_);
   watch0_ = dynamics.watch();
   watch_rate0_ = dynamics.watch_rate();
+  is_restarted_ = true;
   note_slips(dynamics, slip_scale0_, has_slip_scale0_);
 }
 
@@ -70,6 +71,7 @@ void Integrator::finish_step(Dynamics& dynamics) {
   watch1_ = dynamics.watch();
   watch_rate1_ = dynamics.watch_rate();
   note_slips(dynamics, slip_scale1_, has_slip_scale1_);
+  is_restarted_ = false;
 }
 
 bool Integrator::try_finish_step(Dynamics& dynamics) {
@@ -131,6 +133,26 @@ double Integrator::projected_error_norm(Dynamics& dynamics, double* error) const
   const double all = error_norm(error);
   dynamics.remove_held(error);
   return std::max(error_norm(error), k_turned_share * all);
+}
+
+// Where the motion would be after h if nothing changed, the forces are those that the new modes have there: a contact
+// that has closed presses all the more the deeper that is. Within a step they may change a velocity by as much as itself.
+double Integrator::restrained_step(Dynamics& dynamics, double h) {
+  constexpr int k_most_tries = 12;
+  constexpr double k_most_shortened = 0.03;
+  const int m = dynamics.coordinate_count();
+  double* const y = scratch_.data();
+  double* const f = y + n_;
+  for (int attempt = 0; attempt < k_most_tries; ++attempt) {
+    for (int i = 0; i < n_; ++i) y[i] = y0_[i] + h * k0_[i];
+    dynamics.rates(t0_ + h, y, f);
+    double turned = 0.0;
+    for (int i = m; i < 2 * m; ++i)
+      turned = std::max(turned, settings_.tolerance * weight_[i] * h * std::abs(f[i] - k0_[i]));
+    if (turned <= 1.0) return h;
+    h *= std::isfinite(turned) ? std::max(k_most_shortened, 0.8 / std::sqrt(turned)) : k_most_shortened;
+  }
+  return h;
 }
 
 // Hairer, Nørsett, Wanner, Solving ODEs I, II.4: from the size of y, f and a difference of f.

@@ -105,10 +105,14 @@ protected:
   /// near the step's end.
   [[nodiscard]] double projected_error_norm(Dynamics& dynamics, double* error) const;
   [[nodiscard]] double first_step(Dynamics& dynamics, int order, double h_max);
+  /// h, or as much of it as the forces of the present modes allow without stopping and turning the motion: what
+  /// limited the steps before an event knew nothing of them. After update_weights.
+  [[nodiscard]] double restrained_step(Dynamics& dynamics, double h);
 
   const System& system_;
   IntegratorSettings settings_;
   int n_ = 0; ///< dimension now
+  bool is_restarted_ = false; ///< no step was made since
   double t0_ = 0.0, t1_ = 0.0, h_ = 0.0;
   std::vector<double> y0_, y1_, weight_, scratch_;
   double* k0_ = nullptr;

@@ -181,9 +181,10 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
   const double h_max = limited(left);
   if (next_h_ <= 0.0) next_h_ = first_step(dynamics, 4, h_max);
   update_weights(dynamics);
+  double h = std::min(next_h_, h_max);
+  if (is_restarted_) h = restrained_step(dynamics, h);
   linearization_.evaluate(dynamics, t0_, y0_.data());
   system_of_stages_.set(linearization_, dynamics.layout());
-  double h = std::min(next_h_, h_max);
   for (bool is_retry = false;; is_retry = true) {
     const bool is_last = h >= left * (1.0 - 1e-10);
     h_ = is_last ? left : (2.0 * h > left ? 0.5 * left : h);

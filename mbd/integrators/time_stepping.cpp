@@ -142,7 +142,7 @@ int TimeStepping::changed_unit(const Dynamics& dynamics, State& state) {
   int first = -1;
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
-    const std::uint8_t mode = unit.group->initial_mode(unit.index, dynamics.evaluation());
+    const UnitMode mode = unit.group->initial_mode(unit.index, dynamics.evaluation());
     if (mode != state.mode[u] && first < 0) first = static_cast<int>(u);
     state.mode[u] = mode;
   }

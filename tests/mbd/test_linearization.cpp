@@ -183,7 +183,7 @@ TEST_CASE("linearisation: the paper's transformer sticking, sliding, with feet l
       if (state.t < next || is_starting) continue; // a starting joint's law bends within 1e-7 s
       next = state.t + 0.01;
       for (const FrictionState& f : state.friction) ++phases[static_cast<int>(f.phase)];
-      for (const std::uint8_t mode : state.mode) open += mode == k_contact_open ? 1 : 0;
+      for (const UnitMode mode : state.mode) open += mode == k_contact_open ? 1 : 0;
       CAPTURE(state.t);
       CHECK(deviation(dynamics, state, 1e-6, 1e-6) < 1e-6);
       ++looks;
