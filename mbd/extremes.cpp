@@ -24,7 +24,7 @@ constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double k_surprise = 3.0;
 constexpr double k_looks_per_period = 8.0; // of the quickest load
 constexpr int k_most_sections = 40;
-constexpr double k_fine = 3e-4;       // of a stretch, about the top of a polynomial: 1e-7 of its bend
+constexpr double k_fine = 3e-4, k_about = 1e-3; // of a stretch, near the top of a polynomial
 constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
 constexpr double k_same_crossing = 1e-10; // of a stretch
 constexpr double k_golden = 0.3819660112501051;
@@ -346,7 +346,12 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
         at_q = sign * interpolate(c, level, q = b - k_golden * (b - a));
       }
     }
-    note(c, sign * std::max(at_p, at_q), t_ + (at_p > at_q ? p : q) * (t1_ - t_));
+    // The last digits by a parabola about it.
+    const double x = std::clamp(at_p > at_q ? p : q, k_about, 1.0 - k_about);
+    const auto about = [&](double theta) { return Extreme{sign * interpolate(c, level, theta), theta}; };
+    const Extreme last = vertex(about(x - k_about), about(x), about(x + k_about));
+    const Extreme found = last.value > std::max(at_p, at_q) ? last : at_p > at_q ? Extreme{at_p, p} : Extreme{at_q, q};
+    note(c, sign * found.value, t_ + found.t * (t1_ - t_));
   }
   return true;
 }
