@@ -167,6 +167,13 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
   criteria.push_back(closed);
 }
 
+// Energy made or lost beyond what the method's errors can be: an hundredth of what was turned over.
+std::string distrust_of(const RunStatistics& s) {
+  if (!(s.energy_residual > EnergyAccount::k_untrusted * s.energy_scale && s.energy_residual > s.energy_rounding)) return "";
+  return "the energy balance is off by " + limit_text(s.energy_residual) + " J of " + limit_text(s.energy_scale) +
+         " J turned over: try a smaller step or tolerance, or another integrator";
+}
+
 } // namespace
 
 const char* name_of(Verdict verdict) {
@@ -195,7 +202,8 @@ Judgement judge(const Model& model, const System& system, const RunResult& resul
   judgement.so_far = judgement.has_criteria ? Verdict::hold : Verdict::open;
   for (const CriterionResult& c : judgement.criteria)
     judgement.so_far = std::max(judgement.so_far, c.outcome);
-  judgement.verdict = failure.empty() ? judgement.so_far : Verdict::open;
+  if (failure.empty()) judgement.distrust = distrust_of(result.statistics);
+  judgement.verdict = failure.empty() && judgement.distrust.empty() ? judgement.so_far : Verdict::open;
   return judgement;
 }
 

@@ -5,7 +5,8 @@
 // slipped, or would have where it is only monitored, or that has less margin than the model asks for, means
 // inspect: the core's magnetic circuit is not as it was built. One that came apart, lost a whole corner or slid
 // further than it bears means reject. A criterion that could not be evaluated is not met: it leaves the verdict
-// open. So does a run that did not reach its end, whatever came before; that is told beside it.
+// open. So does a run that did not reach its end, whatever came before; that is told beside it. And so does one whose
+// energy does not balance (mbd/energy_account.h): it is not to be trusted.
 #pragma once
 
 #include "transformer/joint_assessment.h"
@@ -33,6 +34,7 @@ struct Judgement {
   Verdict verdict = Verdict::hold;
   Verdict so_far = Verdict::hold; ///< of what was computed: the verdict itself, but for a run that broke off
   bool has_criteria = false;
+  std::string distrust; ///< not empty: why the run itself is not to be trusted, and what to try; its verdict is then open
   std::vector<CriterionResult> criteria;
 };
 

@@ -142,6 +142,12 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility,
     out.converged = p.residual().norm() <= k_tolerance;
   }
   out.residual = p.residual().norm();
+  // Beyond the bound by a rounding, η is below what b + A z can tell: held at the bound is nearer than any slip found.
+  if (!out.converged && holdable && size * need.value - 1.0 < out.residual) {
+    out.residual = size * need.value - 1.0;
+    out.wrench = scaled.wrench(Vec3(need.wrench / need.value));
+    return out;
+  }
   out.slips = p.eta.norm() > k_no_slip * b.norm();
   out.wrench = scaled.wrench(out.slips ? Vec3(-p.d.gradient) : p.z);
   if (out.slips) out.acceleration = scaled.twist(p.eta);

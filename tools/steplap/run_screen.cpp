@@ -113,6 +113,7 @@ std::string value_beside_limit(const CriterionResult& c) {
 
 void print_judgement(std::ostream& out, const FinishedRun& finished) {
   const Judgement& judgement = finished.summary.judgement;
+  if (!judgement.distrust.empty()) out << "\nNOT TO BE TRUSTED: " << judgement.distrust << "\n";
   if (!judgement.has_criteria) return;
   out << "\nVerdict by the criteria of the model: " << name_of(judgement.verdict);
   if (!finished.run.failure.empty()) out << "; the run broke off, until then: " << name_of(judgement.so_far);

@@ -145,7 +145,11 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
   const bool is_held = std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) {
     return run.summary.judgement.verdict == Verdict::hold;
   });
-  if (options.is_hold_required && !is_held && code == ExitCode::done) code = ExitCode::criterion_failed;
+  const bool is_trusted = std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) {
+    return run.summary.judgement.distrust.empty();
+  });
+  if (options.is_hold_required && !is_held && code == ExitCode::done)
+    code = is_trusted ? ExitCode::criterion_failed : ExitCode::numerical_failure;
   if (options.is_reported) {
     std::vector<std::string> folders;
     for (const FinishedRun& run : runs)

@@ -106,7 +106,7 @@ Json judgement_json(const Judgement& judgement) {
                         {"limit", optional(c.limit)},
                         {"unit", c.unit},
                         {"t", optional(c.t)}});
-  return {{"verdict", name_of(judgement.verdict)}, {"so_far", name_of(judgement.so_far)}, {"criteria", std::move(criteria)}};
+  return {{"verdict", name_of(judgement.verdict)}, {"so_far", name_of(judgement.so_far)}, {"distrust", judgement.distrust}, {"criteria", std::move(criteria)}};
 }
 
 Json state_json(const System& system, const State& state) {

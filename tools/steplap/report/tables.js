@@ -113,7 +113,7 @@ steplap.tables = (() => {
       const judgement = run.summary.judgement;
       if (runs.length > 1) card.append(make('h3', {}, run.summary.model.title || run.name));
       if (judgement) {
-        card.append(make('span', { class: `badge ${judgement.verdict}` }, judgement.verdict.toUpperCase()), make('p', {}, sentences[judgement.verdict] + (run.summary.completed ? '' : ` The run broke off; what was computed until then: ${judgement.so_far}.`)), scroll(criteria(run)));
+        card.append(make('span', { class: `badge ${judgement.verdict}` }, judgement.verdict.toUpperCase()), make('p', {}, sentences[judgement.verdict] + (run.summary.completed ? '' : ` The run broke off; what was computed until then: ${judgement.so_far}.`) + (judgement.distrust ? ` NOT TO BE TRUSTED: ${judgement.distrust}.` : '')), scroll(criteria(run)));
       } else card.append(make('p', {}, 'The model states no criteria: what happened is below.'));
       card.append(...joints(run));
       const parts = [friction(run), devices(run)].filter((part) => part.length).map((part) => make('div', {}, ...part));
