@@ -10,18 +10,22 @@ namespace steplap {
 
 namespace {
 
-constexpr int k_max_mode_passes = 12;  // beyond, contacts go round in a circle: the step is halved
-constexpr int k_max_force_passes = 60; // repetitions for the normal forces of the step's end; beyond, it is halved
-constexpr int k_passes_in_full = 12;   // later ones go half the way: two that throw each other to and fro meet
-constexpr int k_passes_static = 6;     // later ones leave an element that has slipped its kinetic coefficient
+constexpr int k_max_mode_passes = 12; // beyond, contacts go round in a circle: the step is halved
+constexpr int k_max_force_passes =
+    60; // repetitions for the normal forces of the step's end; beyond, it is halved
+constexpr int k_passes_in_full =
+    12; // later ones go half the way: two that throw each other to and fro meet
+constexpr int k_passes_static =
+    6; // later ones leave an element that has slipped its kinetic coefficient
 constexpr int k_max_halvings = 20;
-// Wrenches that still change by so much, of an element's, are settled: far below the method's own error.
+// Wrenches that still change by so much, of an element's, are settled: far below the method's own
+// error.
 constexpr double k_settled = 1e-8;
-// What changes by no more than this, and no longer less and less, may stay: the wrenches are those of a step whose
-// normal forces and free velocities differ by so much, relatively, from its own.
+// What changes by no more than this, and no longer less and less, may stay: the wrenches are those
+// of a step whose normal forces and free velocities differ by so much, relatively, from its own.
 constexpr double k_tolerated = 1e-6;
-// A step shorter than this share of the longest is one of rounding: residual velocities of the steps before, 1e-8 of
-// what a step adds, would be taken for forces a hundred times those that act.
+// A step shorter than this share of the longest is one of rounding: residual velocities of the
+// steps before, 1e-8 of what a step adds, would be taken for forces a hundred times those that act.
 constexpr double k_negligible = 1e-6;
 constexpr double k_roundings_of_time = 64.0;
 constexpr double k_whole = 1e-6; // of a part: what is left beyond is added to it
@@ -30,11 +34,13 @@ constexpr double k_whole = 1e-6; // of a part: what is left beyond is added to i
 
 TimeStepping::TimeStepping(const System& system) : system_(system) {
   const std::size_t n = 6 * system.bodies.size() + 2;
-  for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_}) v->assign(n, 0.0);
+  for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_})
+    v->assign(n, 0.0);
 }
 
 bool TimeStepping::is_rounding(double t0, double t1) const {
-  const double rounding = k_roundings_of_time * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0), std::abs(t1));
+  const double rounding = k_roundings_of_time * std::numeric_limits<double>::epsilon() *
+                          std::max(std::abs(t0), std::abs(t1));
   return t1 - t0 <= std::max(rounding, k_negligible * longest_);
 }
 
@@ -44,7 +50,8 @@ void TimeStepping::drift(Dynamics& dynamics, State& state, double t1) {
   dynamics.set_state(state);
   dynamics.pack(state, y1_.data());
   dynamics.rates(state.t, y1_.data(), dy_.data());
-  for (int i = 0; i < dynamics.dimension(); ++i) y1_[i] += h * dy_[i];
+  for (int i = 0; i < dynamics.dimension(); ++i)
+    y1_[i] += h * dy_[i];
   dynamics.unpack(t1, y1_.data(), state);
 }
 
@@ -83,10 +90,11 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
 }
 
 void TimeStepping::fail(const Trouble& trouble, double t, double h) const {
-  std::string message = "a time step at t = " + number_text(t) + " s, halved down to " + number_text(h) +
-                        " s, has no consistent end: " + trouble.what;
+  std::string message = "a time step at t = " + number_text(t) + " s, halved down to " +
+                        number_text(h) + " s, has no consistent end: " + trouble.what;
   if (trouble.element >= 0)
-    message += " of '" + system_.element_names[trouble.element] + "', off by " + number_text(trouble.residual) + trouble.unit;
+    message += " of '" + system_.element_names[trouble.element] + "', off by " +
+               number_text(trouble.residual) + trouble.unit;
   throw NumericalFailure(message);
 }
 
@@ -98,10 +106,13 @@ void TimeStepping::evaluate(Dynamics& dynamics, double t, const double* y) {
 // The step's end with the wrenches as they are, on the constraints.
 void TimeStepping::move(Dynamics& dynamics, double t1, double tolerance) {
   std::copy(y0_.begin(), y0_.begin() + 2 * n_ + 2, y1_.begin());
-  for (int i = 0; i < 2 * n_; ++i) y1_[i] += free_[i];
+  for (int i = 0; i < 2 * n_; ++i)
+    y1_[i] += free_[i];
   for (int r = 0; r < rows_; ++r)
-    if (const double* const response = &response_[static_cast<std::size_t>(r) * 2 * n_]; wrench_[r] != 0.0)
-      for (int i = 0; i < 2 * n_; ++i) y1_[i] += response[i] * wrench_[r];
+    if (const double* const response = &response_[static_cast<std::size_t>(r) * 2 * n_];
+        wrench_[r] != 0.0)
+      for (int i = 0; i < 2 * n_; ++i)
+        y1_[i] += response[i] * wrench_[r];
   const Residual found = dynamics.project(t1, y1_.data(), tolerance);
   residual_.position = std::max(residual_.position, found.position);
   residual_.velocity = std::max(residual_.velocity, found.velocity);
@@ -116,28 +127,32 @@ TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1,
   for (int pass = 0; pass < k_max_force_passes && !parts_.empty(); ++pass) {
     before_ = wrench_;
     free_rates(dynamics, tolerance);
-    if (const Trouble trouble = balance_friction(dynamics, pass >= k_passes_static); trouble.what) return trouble;
+    if (const Trouble trouble = balance_friction(dynamics, pass >= k_passes_static); trouble.what)
+      return trouble;
     if (pass >= k_passes_in_full)
-      for (int r = 0; r < rows_; ++r) wrench_[r] = 0.5 * (before_[r] + wrench_[r]);
+      for (int r = 0; r < rows_; ++r)
+        wrench_[r] = 0.5 * (before_[r] + wrench_[r]);
     move(dynamics, t1, tolerance);
     const double last = change;
     change = 0.0;
     double size = 0.0;
-    for (const FrictionPart& part : parts_) size = std::max(size, size_of(part, wrench_.data()));
+    for (const FrictionPart& part : parts_)
+      size = std::max(size, size_of(part, wrench_.data()));
     for (std::size_t p = 0; p < parts_.size(); ++p)
       if (const double c = change_of(parts_[p], &before_[parts_[p].first], size); !(c <= change)) {
         change = c;
         worst = static_cast<int>(p);
       }
-    if (change <= k_settled || (change <= k_tolerated && pass > 0 && change > 0.5 * last)) return {};
+    if (change <= k_settled || (change <= k_tolerated && pass > 0 && change > 0.5 * last))
+      return {};
   }
   if (change <= k_tolerated) return {};
-  return {"friction and the normal forces it hangs on", system_.frictions[parts_[worst].friction].element, change,
-          " of its force"};
+  return {"friction and the normal forces it hangs on",
+          system_.frictions[parts_[worst].friction].element, change, " of its force"};
 }
 
-// Modes that the end of the step asks for, taken over; the first unit whose mode differs from that which the step was
-// made with, or −1.
+// Modes that the end of the step asks for, taken over; the first unit whose mode differs from that
+// which the step was made with, or −1.
 int TimeStepping::changed_unit(const Dynamics& dynamics, State& state) {
   int first = -1;
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
@@ -150,10 +165,12 @@ int TimeStepping::changed_unit(const Dynamics& dynamics, State& state) {
 }
 
 // From start_ to t1, in y1_ and the modes of `state`.
-TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, double t1, double tolerance) {
+TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, double t1,
+                                             double tolerance) {
   const double h = t1 - state.t;
   for (std::size_t f = 0; f < state.friction.size(); ++f)
-    if (state.friction[f].phase != FrictionPhase::apart && !system_.frictions[f].friction->never_slips())
+    if (state.friction[f].phase != FrictionPhase::apart &&
+        !system_.frictions[f].friction->never_slips())
       state.friction[f].phase = FrictionPhase::free;
   dynamics.set_state(state);
   n_ = dynamics.coordinate_count();
@@ -182,7 +199,8 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
     }
     const Unit& changed = system_.units[unit];
     const double* const watch = &dynamics.watch()[changed.watch];
-    trouble = {"the mode", changed.element, *std::min_element(watch, watch + changed.watch_count), ""};
+    trouble = {"the mode", changed.element, *std::min_element(watch, watch + changed.watch_count),
+               ""};
   }
   return trouble;
 }
@@ -212,7 +230,8 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     friction.sign = part.block.direction[0] > 0.0 ? 1 : -1;
     if (part.dimension == 3) element.aim(friction, rate);
   }
-  if (has_rejoined) dynamics.forget_layouts(); // those that merge the two have them where they held before
+  if (has_rejoined)
+    dynamics.forget_layouts(); // those that merge the two have them where they held before
   dynamics.set_state(state);
   dynamics.pack(state, y1_.data());
   dynamics.rates(state.t, y1_.data(), dy_.data());

@@ -1,24 +1,27 @@
-// Time stepping after Moreau and Jean: forces as impulses over a fixed step, laws met at the step's end.
+// Time stepping after Moreau and Jean: forces as impulses over a fixed step, laws met at the step's
+// end.
 //
 //   M (v₁ − v₀) = h (Q(q₁, v₁, t₁) + Jᵀλ₁ + Hᵀw),   q₁ = q₀ + h v₁,   J v₁ = target's rate,
-//   −H v₁ in the normal cone of K at w: each friction element bears any w inside its convex set K and slides
-//   only on the set's boundary, the way that dissipates most.
-// Springs, dampers and contacts enter linearised at the step's begin (linearization.h) and implicitly, so that
-// no stiffness limits the step; which contacts press is found by repeating the step until the pressed ones
-// are those that the end asks for. Friction is the convex problem of friction_modes.h with velocities in
-// place of accelerations, solved by block Gauss–Seidel over the elements. Its operator, the change of H v₁ by w, is
-// the one that joints and drives leave: they answer every w within the step. The free velocities H v₁ are those of
-// the step's end, on the constraints, and so are the normal forces: both are found by repetition.
+//   −H v₁ in the normal cone of K at w: each friction element bears any w inside its convex set K
+//   and slides only on the set's boundary, the way that dissipates most.
+// Springs, dampers and contacts enter linearised at the step's begin (linearization.h) and
+// implicitly, so that no stiffness limits the step; which contacts press is found by repeating the
+// step until the pressed ones are those that the end asks for. Friction is the convex problem of
+// friction_modes.h with velocities in place of accelerations, solved by block Gauss–Seidel over the
+// elements. Its operator, the change of H v₁ by w, is the one that joints and drives leave: they
+// answer every w within the step. The free velocities H v₁ are those of the step's end, on the
+// constraints, and so are the normal forces: both are found by repetition.
 //
-// First order; no event is located: chattering, simultaneous impacts and jumps cost little more than smooth motion.
-// Vibrations of period T are damped by 2π²h/T of their amplitude in each period (implicit Euler). Source:
-// J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988); M. Jean, Comput.
-// Methods Appl. Mech. Eng. 177 (1999) 235.
+// First order; no event is located: chattering, simultaneous impacts and jumps cost little more
+// than smooth motion. Vibrations of period T are damped by 2π²h/T of their amplitude in each period
+// (implicit Euler). Source: J. J. Moreau, Unilateral contact and dry friction in finite freedom
+// dynamics (CISM 302, 1988); M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235.
 //
-// A step is made only if it is consistent: friction and normal forces settled, contact modes those that its end asks
-// for. Where they are not (a contact's damper makes its force jump on closing: within a step that is long against m/c
-// neither mode is right; friction that changes the normal force it hangs on more than itself) the step is halved,
-// where both have an answer, down to a millionth; a run in which that does not help stops.
+// A step is made only if it is consistent: friction and normal forces settled, contact modes those
+// that its end asks for. Where they are not (a contact's damper makes its force jump on closing:
+// within a step that is long against m/c neither mode is right; friction that changes the normal
+// force it hangs on more than itself) the step is halved, where both have an answer, down to a
+// millionth; a run in which that does not help stops.
 #pragma once
 
 #include "mbd/integrators/stage_system.h"
@@ -29,10 +32,10 @@ class TimeStepping {
 public:
   explicit TimeStepping(const System& system);
 
-  /// Advances `state` by h to its time t1 = t + h, with contact modes, friction phases, anchors, and the two
-  /// integrals of power. `dynamics` is left with `state` set. Locks and rows are met to `tolerance`. A step whose
-  /// length is rounding decides nothing. Throws NumericalFailure, `state` then being that before the part of the step
-  /// that cannot be made.
+  /// Advances `state` by h to its time t1 = t + h, with contact modes, friction phases, anchors,
+  /// and the two integrals of power. `dynamics` is left with `state` set. Locks and rows are met to
+  /// `tolerance`. A step whose length is rounding decides nothing. Throws NumericalFailure, `state`
+  /// then being that before the part of the step that cannot be made.
   void step(Dynamics& dynamics, State& state, double t1, double tolerance);
 
   /// Largest residuals met before projection in the last step.
@@ -44,10 +47,11 @@ private:
   struct FrictionPart {
     int friction = 0, first = 0, dimension = 0; ///< first: among the rows of all parts
     bool is_kinetic = false;
-    bool is_driven = false;        ///< some direction that joints and drives alone decide
-    Mat3 mobility = Mat3::Zero();  ///< of such a part: its own block, exact zeros along those directions
-    Mat3 free = Mat3::Identity();  ///< projector along the others
-    double noise = 0.0;            ///< velocity along those directions that counts as rest
+    bool is_driven = false; ///< some direction that joints and drives alone decide
+    Mat3 mobility =
+        Mat3::Zero(); ///< of such a part: its own block, exact zeros along those directions
+    Mat3 free = Mat3::Identity(); ///< projector along the others
+    double noise = 0.0;           ///< velocity along those directions that counts as rest
     FrictionBlock block;
   };
   /// Gradient of a friction row in the coordinates of the clusters of its two sides.
@@ -99,12 +103,14 @@ private:
   std::vector<FrictionPart> parts_;
   int n_ = 0, rows_ = 0;
   std::vector<double> y0_, y1_, dy_, right_, free_;
-  std::vector<FrictionGradient> gradient_;     ///< per friction row
-  std::vector<double> response_;               ///< rows × 2n: change of state by a unit force
-  std::vector<double> compliance_;             ///< rows × rows: change of a row's rate by a unit force along another
-  std::vector<double> rate_;                   ///< per row: rate at the end without wrenches
-  std::vector<double> wrench_, before_, last_; ///< per row: now, before the last repetition, before the last sweep
-  std::vector<int> held_;                      ///< scratch of hold_together
+  std::vector<FrictionGradient> gradient_; ///< per friction row
+  std::vector<double> response_;           ///< rows × 2n: change of state by a unit force
+  std::vector<double>
+      compliance_;           ///< rows × rows: change of a row's rate by a unit force along another
+  std::vector<double> rate_; ///< per row: rate at the end without wrenches
+  std::vector<double> wrench_, before_,
+      last_;              ///< per row: now, before the last repetition, before the last sweep
+  std::vector<int> held_; ///< scratch of hold_together
   std::vector<double> matrix_, together_, rest_;
 };
 
