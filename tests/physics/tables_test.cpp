@@ -1,0 +1,115 @@
+// Tabulated springs and dampers of any length: the answer is the table's, to rounding, and the smooth law's to what the
+// straight lines between its points leave out, Δ²/8 of its second derivative.
+#include "elements/spring_damper.h"
+#include "elements/spring_laws.h"
+#include "tests/physics/model_text.h"
+#include "tests/physics/scene.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+// Points of `law` from −reach to reach, none of them at a round place.
+std::vector<Vec2> points(int count, double reach, const std::function<double(double)>& law) {
+  std::vector<Vec2> table;
+  for (int i = 0; i < count; ++i) {
+    const double x = reach * (2.0 * i / (count - 1) - 1.0);
+    table.push_back({x, law(x)});
+  }
+  return table;
+}
+
+std::string text_of(const char* key, const std::vector<Vec2>& table) {
+  std::ostringstream text;
+  text.precision(17);
+  text << key << " = [";
+  for (const Vec2& p : table) text << "[" << p.x() << ", " << p.y() << "],";
+  text << "]\n";
+  return text.str();
+}
+
+std::string spring(const std::string& gravity, const std::string& x, const std::string& tables) {
+  return "gravity = " + gravity + "\n" + body("mass", "mass = 2.0; inertia = 1.0; position = [" + x + ", 0.0]") +
+         element("spring_damper", "spring", "a = 'mass'; axis = [1.0, 0.0]; free_length = 0.0") + tables;
+}
+
+} // namespace
+
+TEST_CASE("a fall through tabulated quadratic drag: 10, 400 and 10 000 points") {
+  const double c = 2.0 * 9.81 / (1.333 * 1.333); // m g = c v² at 1.333 m/s
+  const auto drag = [c](double v) { return c * v * std::abs(v); };
+  for (const int count : {10, 400, 10000})
+    for (const Settings& settings : {Settings{"dop853", 1e-10, 3.0, 0.1}, Settings{"auto", 1e-8, 3.0, 0.1},
+                                     Settings{"rodas5p", 1e-10, 3.0, 0.1}, Settings{"rk4", 5e-3, 3.0, 0.1}}) {
+      CAPTURE(count);
+      CAPTURE(settings.integrator);
+      const std::vector<Vec2> table = points(count, 2.0, drag);
+      const Run r = run(spring("[9.81, 0.0]", "0.0", text_of("damping_table", table)), settings);
+      // The straight line of the table that the weight is met on. 3 s are 44 time constants v/2g.
+      int i = 1;
+      while (table[i].y() < 2.0 * 9.81) ++i;
+      const double share = (2.0 * 9.81 - table[i - 1].y()) / (table[i].y() - table[i - 1].y());
+      const double terminal = table[i - 1].x() + share * (table[i].x() - table[i - 1].x());
+      CHECK(std::abs(r.last("mass.vx") - terminal) < 1e-8);
+      // v = 1.333 tanh(g t/1.333). The table gives too much drag, by up to c Δ²/4: over a time constant so much velocity.
+      const double step = 4.0 / (count - 1), left_out = 0.25 * c * step * step / 2.0 * (1.333 / (2.0 * 9.81));
+      // rk4: (h/τ)⁵/120 in each of some twenty steps, τ = 0.07 s, and as much again at kinks
+      const double of_method = settings.integrator == "rk4" ? 1e-6 : 1e-8;
+      for (std::size_t k = 0; k < r.times().size(); ++k)
+        CHECK(std::abs(r.series("mass.vx")[k] - 1.333 * std::tanh(9.81 * r.times()[k] / 1.333)) < 2.0 * left_out + of_method);
+    }
+}
+
+TEST_CASE("a hardening spring from a table keeps its energy, and the smooth one's but for the table's lines") {
+  const double k = 500.0, reach = 0.3;
+  for (const int count : {10, 400, 10000}) {
+    CAPTURE(count);
+    const std::vector<Vec2> table = points(count, 0.4, [k](double x) { return k * x * x * x; });
+    SimulationOptions o = options({"auto", 1e-9, 2.0, 0.05});
+    o.max_events = 100; // kinks are not what this limit is for
+    const auto system = compile(scene(spring("[0.0, 0.0]", "0.3", text_of("force_table", table)) + "\n[simulation]\nstep = 1e-3\n"));
+    const RunResult r = simulate(*system, system->initial_state(), o);
+    CHECK(r.statistics.energy_residual < 1e-8 * r.statistics.energy_exchanged);
+    const double energy = 0.25 * k * std::pow(reach, 4.0);
+    // Between lines and cubic: Δ²/8 · 6 k x at most, over the way of 0.3 m, there and where it started.
+    const double step = 0.8 / (count - 1), left_out = 2.0 * step * step / 8.0 * 6.0 * k * reach * reach;
+    const std::vector<double> x = r.trajectory->series("mass.x"), v = r.trajectory->series("mass.vx");
+    for (std::size_t i = 0; i < x.size(); ++i)
+      CHECK(std::abs(v[i] * v[i] + 0.25 * k * std::pow(x[i], 4.0) - energy) < left_out + 1e-7 * energy);
+  }
+}
+
+TEST_CASE("a table's segments: found in any number, and several passed at once") {
+  const PiecewiseLinear table(points(60001, 3.0, [](double x) { return x * x; }));
+  CHECK(table.segments() == 60000);
+  for (const double x : {-5.0, -3.0, -2.99995, 0.00005, 1.23456, 2.99995, 3.0, 7.0}) {
+    const int s = table.segment_at(x);
+    CHECK(table.low(s) <= x);
+    CHECK(x < table.high(s));
+  }
+  CHECK(table.segment_beyond(10, true, table.low(10)) == 11);    // at the kink, to rounding
+  CHECK(table.segment_beyond(10, false, table.high(10)) == 9);
+  CHECK(table.segment_beyond(10, true, 1.00005) == table.segment_at(1.00005)); // a jump
+  CHECK(std::abs(table.integral(2.0) - 8.0 / 3.0) < 2.0 * 1e-8 / 12.0 * 2.0 + 1e-12);
+  TabulatedSpring law{table, table, 0.0, 1.0};
+  const UnitMode mode = law.mode_at(2.5, -1.5);
+  CHECK(TabulatedSpring::spring_segment(mode) == table.segment_at(2.5));
+  CHECK(TabulatedSpring::damper_segment(mode) == table.segment_at(-1.5));
+  CHECK(std::abs(law.force(2.5, -1.5, mode) + 2.5 * 2.5 + 1.5 * 1.5) < 1e-8);
+}
+
+TEST_CASE("a table of more points than a mode can number is refused") {
+  const Model model = scene(spring("[0.0, 0.0]", "0.3", "stiffness = 0.0\nforce_table = [[-1.0, -1.0], [1.0, 1.0]]\n"));
+  auto& element = dynamic_cast<SpringDamper&>(*model.elements.at(0).element);
+  element.force_table = points(65536, 1.0, [](double x) { return x; });
+  CHECK_NOTHROW(compile(model));
+  element.force_table = points(65537, 1.0, [](double x) { return x; });
+  CHECK_THROWS_AS(compile(model), ModelError);
+}
