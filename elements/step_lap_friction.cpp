@@ -24,8 +24,8 @@ constexpr double k_start_reach = 4.0; // |ν|/δ at which a slip no longer count
 // of δ.
 constexpr double k_moving = 0.2, k_backward = 0.2;
 constexpr double k_cone = 0.5;        // cosine of the cone about the direction last looked at
-// |ν| over grip acceleration, s, from which on a slip ends: what that misses is this time, times what the direction had
-// still to turn by.
+// |ν| over grip acceleration, s, from which on a slip ends: what that misses is this time, times what the direction
+// had still to turn by.
 constexpr double k_end_time = 1e-11;
 constexpr double k_no_end = 2.0;      // times that |ν|: it has not come to rest after all
 // |ν| over speeds to which rounding leaves it a direction; that time over t at which steps are still far from rounding.
@@ -118,7 +118,7 @@ void StepLapFriction::set_scales(const Pose& reference, const BodyData& limb,
   };
   take(limb, limb_mobility_);
   take(active_part, part_mobility_);
-  // Of the limb, the lighter one: whether the active part is free to move, or driven, or held by joints is not known here.
+  // Of the limb, the lighter one: whether the active part is free, driven, or held by joints is not known here.
   const double of_limb = mobility(limb, arm_);
   grip_acceleration_ = patch.force() * (of_limb > 0.0 ? of_limb : mobility(active_part, patch.centroid()));
 }
@@ -284,7 +284,8 @@ double StepLapFriction::end_speed(const Evaluation& e) const {
   const double lever = gyration_ + arm_.norm();
   const double speed = std::abs(l.vx) + std::abs(l.vy) + std::abs(p.vx) + std::abs(p.vy) +
                        lever * (std::abs(l.omega) + std::abs(p.omega));
-  return std::max({k_end_time * grip_acceleration_, k_rounding * speed, k_time_rounding * std::abs(e.t) * grip_acceleration_});
+  const double time = std::max(k_end_time, k_time_rounding * std::abs(e.t));
+  return std::max(time * grip_acceleration_, k_rounding * speed);
 }
 
 void StepLapFriction::begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const {

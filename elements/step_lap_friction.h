@@ -79,8 +79,10 @@ public:
   void aim(FrictionState& state, const double* rate) const override;
   void watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
                   double* watch) const override;
-  [[nodiscard]] SlipScale slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const override;
-  [[nodiscard]] double decay_rate(const Evaluation& e, const FrictionState& state, const double* rate) const override;
+  [[nodiscard]] SlipScale slip_scale(const Evaluation& e, const FrictionState& state,
+                                     const double* rate) const override;
+  [[nodiscard]] double decay_rate(const Evaluation& e, const FrictionState& state,
+                                  const double* rate) const override;
   [[nodiscard]] bool goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate,
                                       int slot) const override;
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override;

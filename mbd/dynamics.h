@@ -138,6 +138,7 @@ private:
   void reach_velocities(double t, double* y, Residual now, double tolerance);
   void move_by(const std::vector<double>& residual, double* target);
   [[noreturn]] void fail_projection(double t) const;
+  [[noreturn]] void fail_velocities(double t) const;
   void factor_rows(double shift = 0.0);
   void add_response(double* change);
   void body_accelerations(const double* dy);

@@ -10,11 +10,11 @@ namespace steplap {
 namespace {
 
 // Of scale(): what one step may make or lose, per unit of tolerance, and at least.
-constexpr double k_step_share = 1e3, k_least_share = 1e-6;
+constexpr double k_step_share = 1e4, k_least_share = 1e-3;
 // Of scale(): what setting to rest may take at one event. Velocities of rounding are far below, a blow is far above.
 constexpr double k_settled_share = 1e-4;
-// Motion to which tolerances are absolute, against the bodies' size (Integrator): rad/s.
-constexpr double k_floor_rate = 0.06;
+// Ten times the energy of the motion to which tolerances are absolute, 0.06 of the bodies' size a second (Integrator).
+constexpr double k_floor_rate = 0.2;
 
 struct Kinetic {
   double total = 0.0, about_centre = 0.0, of_floor = 0.0;

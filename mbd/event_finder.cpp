@@ -7,8 +7,20 @@
 
 namespace steplap {
 
+namespace {
+
+constexpr int k_usual_parts = 128; // as many as a survey may hold without allocating
+
+} // namespace
+
 EventFinder::EventFinder(const System& system, int max_dimension)
-    : slots_(system.watch_count), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), armed_(slots_, 1) {}
+    : slots_(system.watch_count), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), armed_(slots_, 1), armed_before_(slots_, 1) {
+  near_.reserve(slots_);
+  fired_.reserve(slots_);
+  fired_before_.reserve(slots_);
+  parts_.reserve(k_usual_parts);
+  for (Look& look : place_) look.watch.resize(slots_), look.rate.resize(slots_);
+}
 
 void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look) {
   integrator.dense(dynamics, theta, y_.data());

@@ -85,7 +85,7 @@ private:
   std::array<Look, k_places> place_; ///< of the part of the step being looked through
   std::vector<int> near_;        ///< slots that ends and stages do not make certain
   std::vector<Part> parts_;      ///< still to be looked through, the first one last
-  std::vector<char> armed_;      ///< believed when negative
+  std::vector<char> armed_, armed_before_; ///< believed when negative
   std::vector<int> fired_, fired_before_;
 };
 

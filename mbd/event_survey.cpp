@@ -96,7 +96,7 @@ bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const
   const Chebyshev& table = chebyshev();
   const double width = part.end - part.begin;
   place_[0] = low_;
-  const std::vector<char> armed_before = armed_;
+  armed_before_ = armed_;
   std::size_t last = k_order; // place up to which nothing has been seen below zero
   for (std::size_t k = 1; k <= k_order; ++k) {
     const double theta = k == k_order ? part.end : part.begin + table.place[k] * width;
@@ -112,7 +112,7 @@ bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const
     const double cut = part.begin + std::clamp(unclear, k_margin_of_cut, 1.0 - k_margin_of_cut) * width;
     parts_.push_back({cut, part.end, part.depth + 1});
     parts_.push_back({part.begin, cut, part.depth + 1});
-    armed_ = armed_before;
+    armed_ = armed_before_;
     return false;
   }
   if (last < k_order) {

@@ -71,6 +71,18 @@ void Dynamics::fail_projection(double t) const {
                           spec.element, row_value_[worst], spec.kind == MeasureKind::angle);
 }
 
+void Dynamics::fail_velocities(double t) const {
+  const Layout& layout = *layout_;
+  std::size_t worst = 0;
+  for (std::size_t r = 1; r < layout.active.size(); ++r)
+    if (!(std::abs(row_rate_[r]) <= std::abs(row_rate_[worst]))) worst = r;
+  const RowSpec& spec = *layout.active[worst].spec;
+  throw NumericalFailure("the rate of constraint " + std::string(spec.quantity) + " of '" + system_.element_names[spec.element] +
+                         "' cannot be met at t = " + number_text(t) + " s: " + number_text(row_rate_[worst]) +
+                         (spec.kind == MeasureKind::angle ? " rad/s" : " m/s") +
+                         " are left. It contradicts other joints or drives there");
+}
+
 void Dynamics::factor_rows(double shift) {
   layout_->schur.factor(layout_->schur_rows, shift);
   is_factored_ = true;
@@ -177,8 +189,7 @@ void Dynamics::reach_velocities(double t, double* y, Residual now, double tolera
   double fastest = 0.0;
   for (int i = 0; i < coordinate_count(); ++i) fastest = std::max(fastest, std::abs(y[coordinate_count() + i]));
   if (!(now.velocity <= tolerance + k_rate_left * (1.0 + fastest)))
-    throw NumericalFailure("velocities cannot be brought onto the constraints at t = " + number_text(t) + " s: " +
-                           number_text(now.velocity) + " m/s or rad/s are left. Constraints contradict each other there");
+    fail_velocities(t);
 }
 
 void Dynamics::move_by(const std::vector<double>& residual, double* target) {

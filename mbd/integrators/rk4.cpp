@@ -74,7 +74,8 @@ private:
   void velocities_by_cubic(int n, double theta, double* out) const {
     const double s = theta, r = 1.0 - theta;
     for (int i = n; i < 2 * n; ++i)
-      out[i] = r * r * ((1.0 + 2.0 * s) * y0_[i] + s * h_ * k0_[i]) + s * s * ((3.0 - 2.0 * s) * y1_[i] - r * h_ * k1_[i]);
+      out[i] = r * r * ((1.0 + 2.0 * s) * y0_[i] + s * h_ * k0_[i]) +
+               s * s * ((3.0 - 2.0 * s) * y1_[i] - r * h_ * k1_[i]);
   }
   double* k(int i) { return k_.data() + i * stride_; }
   void stage(Dynamics& dynamics, int index, double c, const double* previous) {

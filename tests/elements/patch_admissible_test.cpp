@@ -28,6 +28,7 @@ constexpr double k_optimal = 1e-10;
 void check_optimal(const Patch& patch, const Mat3& a, const Vec3& b, const AdmissibleWrench& r) {
   const Vec3 scale(1, 1, reach(patch)); // angular parts as speeds at the rim
   REQUIRE(r.converged);
+  CHECK(r.residual <= 1e-10); // what is told of the solution: of the gauge where it sticks, else of the dual
   const double u = required_pressure(patch, r.wrench).u;
   CHECK(u < 1 + k_optimal);
   const Vec3 rest = a * r.wrench + b - r.acceleration;

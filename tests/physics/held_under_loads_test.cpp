@@ -186,11 +186,12 @@ TEST_CASE("held under loads: bursts, and a record with a single spike") {
 }
 
 TEST_CASE("held under loads: a margin that only grazes its bound between two ends of a step") {
-  // Peaks of both tones, of 5 and 6 Hz, fall together at 0.5 s only: 10.02 N m, above the bound for about 2.6 ms.
+  // Peaks of both tones, of 5 and 6 Hz, fall together at 0.5 s only: 10.02 N m, above the bound for about 2.6 ms,
+  // after which what slipped has to come to rest.
   const Torque torque{{{6.0, 5.0, k_pi}, {4.02, 6.0, 0.0}}};
   const std::vector<Change> exact = exact_changes(torque, 10.0, 1.0);
   REQUIRE(exact.size() == 2);
-  CHECK(exact[1].t - exact[0].t < 5e-3);
+  CHECK(exact[1].t - exact[0].t < 6e-3);
   for (const Settings& s : {Settings{"auto", 1e-9, 1.0}, Settings{"dop853", 1e-5, 1.0}, Settings{"tsit5", 1e-9, 1.0}, Settings{"rk4", 0.05, 1.0}}) {
     CAPTURE(s.integrator);
     check_changes(run(wheel(torque, 10.0, 0.0), s), exact, 1e-6);
