@@ -81,11 +81,12 @@ struct CrossCheck {
   std::vector<CrossRun> runs;
   std::vector<Disagreement> disagreements; ///< ratio above 1, the largest first; one for each pair and doubt
   CrossOutcome outcome = CrossOutcome::agree;
-  double known_until = 0.0; ///< s, of time stepping beside the best other
+  double known_until = 0.0; ///< s, of time stepping beside the best other; 0 where its energy does not balance
   double worst_ratio = 0.0;
 };
 
-inline constexpr double k_margin = 3.0;
+/// Estimates are those of differences at single instants, and of first order near events: good to a factor of some two.
+inline constexpr double k_margin = 5.0;
 inline constexpr double k_vague = 0.1;
 
 /// `step`: of the model if it has one, else 0.

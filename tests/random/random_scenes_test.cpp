@@ -83,7 +83,7 @@ TEST_CASE("methods agree on random scenes within their own error estimates") {
   }
 }
 
-// The margin of 3 is that of the cross check. Sticking, a block creeps by less than ε t = 5e-4 m, of which the
+// Twice smoothing by half leaves estimates good to a factor of three. Sticking, a block creeps by less than ε t = 5e-4 m, of which the
 // extrapolation leaves a part that its own estimate tells; 1e-5 m, of motions of 0.01 to 1 m, is for what the
 // smallest ε cannot resolve: slips shorter than the time in which friction turns, 4 ε m/F = 1e-3 s.
 TEST_CASE("blocks on a rail move as an integration with smoothed friction has it") {

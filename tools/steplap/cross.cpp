@@ -27,7 +27,6 @@ SimulationOptions sampled(const Model& model) {
   return options;
 }
 
-// "auto 1e-10", "moreau 1e-4 s"
 std::string where_text(const Disagreement& d) {
   if (d.ratio == 0.0) return "-";
   std::string text = d.where;
@@ -74,6 +73,8 @@ std::size_t finished_runs(const CrossCheck& check) {
 std::string conclusion(const CrossCheck& check, double end) {
   if (finished_runs(check) < 2) return "NOT TO BE TRUSTED: there are no two opinions";
   if (check.outcome == CrossOutcome::disagree) return "NOT TO BE TRUSTED: methods disagree beyond their error estimates";
+  if (check.outcome == CrossOutcome::vague && check.known_until == 0.0)
+    return "no disagreement, but time stepping has no opinion: its steps are too coarse for what happens here";
   if (check.outcome == CrossOutcome::vague)
     return "no disagreement, but cannot be told apart after " + time_text(check.known_until) + " s of " + number_text(end) +
            " s: small differences grow as large as the motion";
