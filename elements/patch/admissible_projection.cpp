@@ -15,6 +15,7 @@ constexpr int k_max_newton = 100;
 constexpr double k_tolerance = 1e-11;       // on z + ∇h(η), in units of the capacity
 constexpr double k_gauge_tolerance = 1e-10; // on the direction; u is good to its square
 constexpr double k_rank = 1e-12;    // eigenvalues of A below this share of the largest: zero
+constexpr double k_touches = 1e-12; // a load beyond the bound by this share of itself: below the tolerance
 constexpr double k_no_slip = 1e-15; // η below this share of b is rounding of b + A z
 
 /// Pseudo-inverse and range of a symmetric positive semidefinite matrix.
@@ -126,20 +127,26 @@ AdmissibleWrench admissible_wrench(const Patch& patch, const Mat3& mobility,
       return out;
     }
   }
-  const Point opposed =
-      start_opposed(scaled, a, b, warm.isZero(0) ? b : scaled.scaled_twist(warm), out.evaluations);
-  Point p = opposed;
+  // At the bound η is rounding of b + A z and has no direction that Newton could find. The bound's own wrench is then
+  // off by that share, and the slip goes along its normal.
+  if (holdable && size * need.value - 1 <= k_touches) {
+    out.slips = true;
+    out.wrench = scaled.wrench(need.wrench / need.value);
+    out.acceleration = scaled.twist(start_on_ray(scaled, a, b, inverse, z0, need, out.evaluations).eta);
+    return out;
+  }
+  Point p = start_opposed(scaled, a, b, warm.isZero(0) ? b : scaled.scaled_twist(warm), out.evaluations);
+  Point other = p;
   if (holdable) {
     const Point q = start_on_ray(scaled, a, b, inverse, z0, need, out.evaluations);
-    if (q.value(b) < p.value(b)) p = q;
+    // At the bound itself the values differ by rounding only, but the ray is the solution.
+    const bool is_solved = q.residual().norm() <= k_tolerance;
+    (is_solved || q.value(b) < p.value(b) ? p : other) = q;
   }
   out.converged = minimise(scaled, a, b, p, out.evaluations);
   if (!out.converged) { // the dual is convex: any other start leads to the same point
-    Point other = opposed;
-    const bool is_better = minimise(scaled, a, b, other, out.evaluations) ||
-                           other.residual().norm() < p.residual().norm();
-    if (is_better) p = other;
-    out.converged = p.residual().norm() <= k_tolerance;
+    out.converged = minimise(scaled, a, b, other, out.evaluations);
+    if (out.converged || other.residual().norm() < p.residual().norm()) p = other;
   }
   out.residual = p.residual().norm();
   // Beyond the bound by a rounding, η is below what b + A z can tell: held at the bound is nearer than any slip found.

@@ -66,6 +66,33 @@ TEST_CASE("admissible wrench: optimal for regular mobilities") {
   MESSAGE("most evaluations: " << most);
 }
 
+TEST_CASE("admissible wrench: loads that exceed the bound by no more than rounding") {
+  // A square pushed along x by its capacity, where the slip's acceleration is rounding of its terms: the wrench is the
+  // bound's, not some other.
+  const double half = 0.3, traction = 2.5e6, force = 4.0 * half * half * traction;
+  Patch square;
+  square.add(Polygon{{{-half, -half}, {half, -half}, {half, half}, {-half, half}}, {}}, traction);
+  const Mat3 a = Vec3(1e-7, 1e-7, 1.0 / 7e6).asDiagonal();
+  for (const double excess : {1e-16, 3e-16, 1e-15, 4e-14, 1e-13, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4}) {
+    CAPTURE(excess);
+    const Vec3 b(a(0, 0) * force * (1.0 + excess), 0.0, 0.0);
+    const AdmissibleWrench r = admissible_wrench(square, a, b);
+    check_optimal(square, a, b, r);
+    CHECK(std::abs(r.wrench[0] + force) < 1e-10 * force);
+    CHECK(std::abs(r.wrench[2]) < 1e-10 * force * half);
+  }
+  Draw draw(53);
+  Patch patch;
+  for (int i = 0; i < cases(10000); ++i) {
+    if (i % 10 == 0) patch = patch_cases::patch(draw);
+    const Mat3 any = mobility(draw, patch, 4);
+    const Vec3 w(draw.within(-1, 1), draw.within(-1, 1), draw.within(-1, 1) * reach(patch));
+    const double excess = draw.scale(1e-16, 1e-2);
+    const Vec3 b = any * w * (excess + 1.0) / required_pressure(patch, w).u;
+    check_optimal(patch, any, b, admissible_wrench(patch, any, b));
+  }
+}
+
 TEST_CASE("admissible wrench: optimal for singular mobilities, held or not") {
   Draw draw(52);
   Patch patch;
