@@ -10,7 +10,7 @@ namespace steplap {
 namespace {
 
 // Of scale(): what one step may make or lose, per unit of tolerance, and at least.
-constexpr double k_step_share = 1e4, k_least_share = 1e-3;
+constexpr double k_step_share = 1e4, k_least_share = 1e-3, k_most_share = 5e-2;
 // Of scale(): what setting to rest may take at one event. Velocities of rounding are far below, a blow is far above.
 constexpr double k_settled_share = 1e-4;
 // Ten times the energy of the motion to which tolerances are absolute, 0.06 of the bodies' size a second (Integrator).
@@ -46,7 +46,7 @@ void EnergyAccount::start(Dynamics& dynamics, double t, const double* y, double 
   const Kinetic kinetic = kinetic_energy(dynamics, y);
   kinetic_start_ = kinetic.total;
   floor_ = kinetic.of_floor;
-  if (tolerance > 0.0) allowed_ = std::clamp(k_step_share * tolerance, k_least_share, k_untrusted);
+  if (tolerance > 0.0) allowed_ = std::clamp(k_step_share * tolerance, k_least_share, k_most_share);
   start_ = dynamics.mechanical_energy(t, y) + y[dynamics.dimension() - 2] - y[dynamics.dimension() - 1];
   note(dynamics, t, y);
 }

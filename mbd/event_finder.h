@@ -44,7 +44,17 @@ private:
   /// A part of the step, interpolated.
   struct Part {
     double begin = 0.0, end = 1.0;
-    int depth = 0;
+    int slot = -1;      ///< whose polynomial was not exact enough in the part that this one is a piece of
+    double error = 0.0; ///< of it there
+    double parent = 1.0; ///< width of that one
+    int stalled = 0;    ///< generations in which dividing has not made it more exact
+  };
+  /// Where a value may be below zero between places known to be positive.
+  struct Unclear {
+    double place = -1.0; ///< in the part, 0 … 1; −1: nowhere
+    int slot = -1;
+    double error = 0.0;
+    int stalled = 0;
   };
 
   [[nodiscard]] Suspicion suspicion(Integrator& integrator, const std::vector<char>& fresh);
@@ -53,7 +63,7 @@ private:
   Bracket survey(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
   bool look_along(Integrator& integrator, Dynamics& dynamics, double theta);
   bool look_through(Integrator& integrator, Dynamics& dynamics, const Part& part);
-  [[nodiscard]] double unclear_place(std::size_t count) const;
+  [[nodiscard]] Unclear unclear_place(const Part& part, std::size_t last) const;
   // --- event_closing.cpp
   void close_in(Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] double next_look(double middle);
@@ -85,6 +95,7 @@ private:
   std::array<Look, k_places> place_; ///< of the part of the step being looked through
   std::vector<int> near_;        ///< slots that ends and stages do not make certain
   std::vector<Part> parts_;      ///< still to be looked through, the first one last
+  int looked_through_ = 0;       ///< parts so far
   std::vector<char> armed_, armed_before_; ///< believed when negative
   std::vector<int> fired_, fired_before_;
 };

@@ -21,7 +21,8 @@ constexpr int k_samples = 32;          // of the polynomial, to find its least v
 constexpr double k_shortest = 1e-9;    // part of a step that is not divided
 constexpr double k_margin_of_cut = 0.1; // of a part: not nearer to its ends
 constexpr double k_rounding = 1e-15;   // of a value's largest: coefficients below it are rounding
-constexpr int k_most_depth = 60;
+constexpr int k_most_stalled = 3;      // generations
+constexpr int k_most_parts = 400;      // of one step
 
 struct Chebyshev {
   double place[k_order + 1];                       // in [0, 1]
@@ -48,10 +49,33 @@ const Chebyshev& chebyshev() {
   return table;
 }
 
+double sum_at(const double* a, double x) {
+  const double u = 2.0 * x - 1.0;
+  double b1 = 0.0, b2 = 0.0;
+  for (int j = k_order; j > 0; --j) {
+    const double b = a[j] + 2.0 * u * b1 - b2;
+    b2 = b1;
+    b1 = b;
+  }
+  return a[0] + u * b1 - b2;
+}
+
+// Least value of the series between the samples beside x, where it is moved to (golden section).
+double bottom_near(const double* a, double& x) {
+  constexpr double k_golden = 0.3819660112501051;
+  double low = x - 1.0 / k_samples, high = x + 1.0 / k_samples;
+  for (int i = 0; i < 40; ++i) {
+    const double left = low + k_golden * (high - low), right = high - k_golden * (high - low);
+    (sum_at(a, left) < sum_at(a, right) ? high : low) = sum_at(a, left) < sum_at(a, right) ? right : left;
+  }
+  x = 0.5 * (low + high);
+  return sum_at(a, x);
+}
+
 } // namespace
 
 // Where in the part between the first `count` + 1 places some near value may be below zero (0 … 1), −1 if nowhere.
-double EventFinder::unclear_place(std::size_t last) const {
+EventFinder::Unclear EventFinder::unclear_place(const Part& part, std::size_t last) const {
   const Chebyshev& table = chebyshev();
   const double until = table.place[last];
   for (const int slot : near_) {
@@ -64,20 +88,30 @@ double EventFinder::unclear_place(std::size_t last) const {
     }
     double error = std::abs(a[k_order]) + std::abs(a[k_order - 1]);
     if (error < k_rounding * largest) error = 0.0;
+    // What dividing does not make more exact is rounding (a contact that touches without being pressed), or a jump: its
+    // values at the places are all there is to know. Errors at a kink fall with the width, those of what is smooth much
+    // faster.
+    const bool is_stalled = slot == part.slot && error * error * part.parent > part.error * part.error * (part.end - part.begin);
+    const int stalled = slot != part.slot ? 0 : is_stalled ? part.stalled + 1 : part.stalled;
+    if (stalled >= k_most_stalled) continue;
+    double p[k_samples + 1];
+    for (int m = 0; m <= k_samples; ++m) {
+      p[m] = 0.0;
+      for (int j = 0; j <= k_order; ++j) p[m] += a[j] * table.sample[m][j];
+    }
     double least = error, at = -1.0;
     // The ends are known; what leaves one upward is above the error at the first sample.
-    for (int m = 1; m < k_samples; ++m) {
-      const double x = static_cast<double>(m) / k_samples;
-      if (x > until) break;
-      double p = 0.0;
-      for (int j = 0; j <= k_order; ++j) p += a[j] * table.sample[m][j];
-      if (p > least) continue;
-      least = p;
-      at = x;
+    for (int m = 1; m < k_samples && static_cast<double>(m) / k_samples <= until; ++m) {
+      double place = static_cast<double>(m) / k_samples, value = p[m];
+      const bool is_bottom = p[m] <= p[m - 1] && p[m] <= p[m + 1] && p[m] < p[m - 1] - 2.0 * p[m] + p[m + 1];
+      if (is_bottom && value > least) value = bottom_near(a, place);
+      if (value > least) continue;
+      least = value;
+      at = place;
     }
-    if (at >= 0.0) return at;
+    if (at >= 0.0) return {at, slot, error, stalled};
   }
-  return -1.0;
+  return {};
 }
 
 // A look beyond low_: true if something falls below zero between the two.
@@ -107,11 +141,12 @@ bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const
       for (int i = 0; i < slots_; ++i)
         if (place_[k].watch[i] > 0.0) armed_[i] = 1;
   }
-  const double unclear = width > k_shortest && part.depth < k_most_depth ? unclear_place(last) : -1.0;
-  if (unclear >= 0.0) {
-    const double cut = part.begin + std::clamp(unclear, k_margin_of_cut, 1.0 - k_margin_of_cut) * width;
-    parts_.push_back({cut, part.end, part.depth + 1});
-    parts_.push_back({part.begin, cut, part.depth + 1});
+  const bool may_divide = width > k_shortest && ++looked_through_ < k_most_parts;
+  const Unclear unclear = may_divide ? unclear_place(part, last) : Unclear{};
+  if (unclear.slot >= 0) {
+    const double cut = part.begin + std::clamp(unclear.place, k_margin_of_cut, 1.0 - k_margin_of_cut) * width;
+    parts_.push_back({cut, part.end, unclear.slot, unclear.error, width, unclear.stalled});
+    parts_.push_back({part.begin, cut, unclear.slot, unclear.error, width, unclear.stalled});
     armed_ = armed_before_;
     return false;
   }
@@ -132,6 +167,7 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
     armed_[i] = !fresh[i] && low_.watch[i] >= 0.0;
     is_any_unarmed = is_any_unarmed || !armed_[i];
   }
+  looked_through_ = 0;
   parts_.clear();
   parts_.push_back({});
   // Fresh values often turn within the first fraction of a step.

@@ -24,8 +24,10 @@ bool is_positive_between(double a, double b, double g, double m) {
 void WatchNodes::add(double theta, const double* watch) {
   if (count_ == k_most || !(theta > 0.0 && theta < 1.0)) return;
   for (int i = 0; i < count_; ++i)
-    if (theta_[i] == theta) { // a later stage at the same place is the better one
-      std::copy(watch, watch + slots_, values_.begin() + static_cast<std::ptrdiff_t>(i) * slots_);
+    if (theta_[i] == theta) {
+      // Of two stages at one place, the midpoints of rk4, one is off to either side, by h² a/8: their mean is not.
+      double* const known = values_.data() + static_cast<std::ptrdiff_t>(i) * slots_;
+      for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + watch[k]);
       return;
     }
   theta_[count_] = theta;
@@ -71,6 +73,9 @@ bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const Watch
                              (x[j + 1] - x[j - 1]));
   bend[0] = bend[1];
   bend[n] = bend[n - 1];
+  // What is known of slopes at the ends tells more than the stages.
+  if (!std::isnan(start.slope)) bend[0] = 2.0 * std::abs((w[1] - w[0]) / x[1] - start.slope) / x[1];
+  if (!std::isnan(end.slope)) bend[n] = 2.0 * std::abs(end.slope - (w[n] - w[n - 1]) / (1.0 - x[n - 1])) / (1.0 - x[n - 1]);
   for (int j = 0; j < n; ++j) {
     const double m = k_curvature_safety * std::max(bend[j], bend[j + 1]), g = x[j + 1] - x[j];
     if (is_positive_between(w[j], w[j + 1], g, m)) continue;

@@ -22,6 +22,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_time_step = 1.0 / 32.0; // of h, between the points of ∂F/∂t
+constexpr double k_share_of_cube = 0.1;
 const double k_lobatto[2] = {0.5 - std::sqrt(0.05), 0.5 + std::sqrt(0.05)};
 
 class Rodas5p final : public Integrator {
@@ -162,7 +163,7 @@ void Rodas5p::finish_powers(Dynamics& dynamics) {
 }
 
 // For power that turns by φ within the step, cos φτ, Lobatto's rule with four points is off by φ⁶/1.5e6 of its size and
-// the rule of the inner two points by δ = φ²/20: the finer one's error is about δ³/100; δ³ is taken.
+// the rule of the inner two points by δ = φ²/20: the finer one's error is about δ³/100; ten times that is taken.
 double Rodas5p::error_of_powers() const {
   const int e = n_ - 2;
   double worst = 0.0;
@@ -171,7 +172,7 @@ double Rodas5p::error_of_powers() const {
     const double largest = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2]), std::abs(p[3])});
     if (largest == 0.0) continue;
     const double share = std::abs((p[0] + p[3] + 5.0 * (p[1] + p[2])) / 12.0 - 0.5 * (p[1] + p[2])) / largest;
-    worst = std::max(worst, h_ * largest * share * share * share * weight_[e + i]);
+    worst = std::max(worst, k_share_of_cube * h_ * largest * share * share * share * weight_[e + i]);
   }
   return worst / std::sqrt(static_cast<double>(n_)); // as part of the norm
 }

@@ -167,11 +167,11 @@ double regularised(double eps, double h) {
     const double c = std::cos(s[2]), sine = std::sin(s[2]);
     for (const auto& [x, mu] : {std::pair{-0.3, 0.5}, std::pair{0.3, 0.3}}) {
       const double rx = c * x + sine * 0.25, ry = sine * x - c * 0.25, gap = s[1] + ry;
-      const double n = std::max(0.0, 49.05 - 6e4 * gap), lever = ry - gap; // the tip is on the ground
-      const double f = -mu * n * std::tanh((s[3] - s[5] * lever) / eps);
+      const double n = std::max(0.0, 49.05 - 6e4 * gap);
+      const double f = -mu * n * std::tanh((s[3] - s[5] * ry) / eps);
       fx += f;
       fy += n;
-      m += rx * n - lever * f;
+      m += rx * n - ry * f;
     }
     return Vector{s[3], s[4], s[5], fx / 10.0, fy / 10.0, m / 0.6};
   };
