@@ -37,8 +37,16 @@ bool may_dip(double w0, double s0, double w1, double s1) {
 
 EventFinder::EventFinder(const System& system, int max_dimension)
     : shortest_period_(system.shortest_period), slots_(system.watch_count),
-      unit_slots_(system.frictions.empty() ? slots_ : system.frictions.front().watch), y_(max_dimension, 0.0), dy_(max_dimension, 0.0),
-      armed_(slots_, 1) {}
+      unit_slots_(system.frictions.empty() ? slots_ : system.frictions.front().watch), y_(max_dimension, 0.0),
+      dy_(max_dimension, 0.0),
+      armed_(slots_, 1) {
+  for (Look* const look : {&low_, &high_, &middle_}) {
+    look->watch.assign(slots_, 0.0);
+    look->rate.assign(slots_, 0.0);
+  }
+  dips_.reserve(slots_);
+  look_at_.reserve(slots_ + 2 * k_scan_points);
+}
 
 void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look) {
   integrator.dense(dynamics, theta, y_.data());
