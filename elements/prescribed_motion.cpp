@@ -27,8 +27,8 @@ std::string jump_message(const PrescribedMotion& e, const Signal::Jump& jump) {
   const std::string what = jump.is_of_rate ? "the rate of signal '" : "signal '";
   const std::string moved = !jump.is_of_rate && e.as == "position" ? "body" : "body's velocity";
   const std::string remedy = jump.is_of_rate
-                                 ? "give the motion as = \"velocity\" or as = \"acceleration\" by the signal's derivative, "
-                                   "or use a smooth signal such as haversine"
+                                 ? "give the motion as = \"velocity\" or as = \"acceleration\" by the signal's "
+                                   "derivative, or use a smooth signal such as haversine"
                                  : "use a signal without jumps or as = \"acceleration\"";
   return what + e.signal + "' jumps from " + number_text(jump.before) + " to " + number_text(jump.after) + " at t = " +
          number_text(jump.t) + " s, so it cannot be a " + e.as + ": the " + moved + " would have to jump; " + remedy;

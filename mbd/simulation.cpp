@@ -170,8 +170,8 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
   handler_.handle(state_, fired, events_);
   energy_.check_settled(state_.t, handler_.settled());
   const auto is_kink = [](const Event& event) { return event.is_kink; };
-  if (events_.size() > known && std::all_of(events_.begin() + static_cast<std::ptrdiff_t>(known), events_.end(), is_kink))
-    ++kinks_;
+  const auto first_new = events_.begin() + static_cast<std::ptrdiff_t>(known);
+  if (first_new != events_.end() && std::all_of(first_new, events_.end(), is_kink)) ++kinks_;
   if (options_.integrator == "auto" && handler_.stop_reason().empty())
     for (std::size_t i = known; i < events_.size(); ++i)
       if (!events_[i].is_kink && storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));

@@ -58,12 +58,13 @@ TEST_CASE("a fall through tabulated quadratic drag: 10, 400 and 10 000 points") 
       const double share = (2.0 * 9.81 - table[i - 1].y()) / (table[i].y() - table[i - 1].y());
       const double terminal = table[i - 1].x() + share * (table[i].x() - table[i - 1].x());
       CHECK(std::abs(r.last("mass.vx") - terminal) < 1e-8);
-      // v = 1.333 tanh(g t/1.333). The table gives too much drag, by up to c Δ²/4: over a time constant so much velocity.
+      // v = 1.333 tanh(g t/1.333). The table gives too much drag, by up to c Δ²/4, over a time constant.
       const double step = 4.0 / (count - 1), left_out = 0.25 * c * step * step / 2.0 * (1.333 / (2.0 * 9.81));
       // rk4: (h/τ)⁵/120 in each of some twenty steps, τ = 0.07 s, and as much again at kinks
       const double of_method = settings.integrator == "rk4" ? 1e-6 : 1e-8;
       for (std::size_t k = 0; k < r.times().size(); ++k)
-        CHECK(std::abs(r.series("mass.vx")[k] - 1.333 * std::tanh(9.81 * r.times()[k] / 1.333)) < 2.0 * left_out + of_method);
+        CHECK(std::abs(r.series("mass.vx")[k] - 1.333 * std::tanh(9.81 * r.times()[k] / 1.333)) <
+              2.0 * left_out + of_method);
     }
 }
 
@@ -74,7 +75,7 @@ TEST_CASE("a hardening spring from a table keeps its energy, and the smooth one'
     const std::vector<Vec2> table = points(count, 0.4, [k](double x) { return k * x * x * x; });
     SimulationOptions o = options({"auto", 1e-9, 2.0, 0.05});
     o.max_events = 100; // kinks are not what this limit is for
-    const auto system = compile(scene(spring("[0.0, 0.0]", "0.3", text_of("force_table", table)) + "\n[simulation]\nstep = 1e-3\n"));
+    const auto system = compile(scene(spring("[0.0, 0.0]", "0.3", text_of("force_table", table))));
     const RunResult r = simulate(*system, system->initial_state(), o);
     CHECK(r.statistics.energy_residual < 1e-8 * r.statistics.energy_exchanged);
     const double energy = 0.25 * k * std::pow(reach, 4.0);
