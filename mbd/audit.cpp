@@ -100,9 +100,16 @@ std::vector<std::size_t> columns(const System& system, const Trajectory& t, cons
   return list;
 }
 
+bool may_pull(const Model& model) {
+  for (const ElementEntry& entry : model.elements)
+    if (const Field* law = entry.kind->fields.find("law"))
+      if (std::get<std::string>(law->get(entry.element.get())) == "literal") return true;
+  return false;
+}
+
 } // namespace
 
-void add_audit_channels(System& system) {
+void add_audit_channels(System& system, const Model& model) {
   System* self = &system;
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const std::string name = k_prefix + system.element_names[system.frictions[f].element];
@@ -112,6 +119,7 @@ void add_audit_channels(System& system) {
     system.channels.push_back({name + k_overload, "", "share of its bound that friction takes, less 1",
                                [self, f](const Snapshot& s) { return overload_of(s, *self, f); }});
   }
+  if (may_pull(model)) return;
   system.channels.push_back({k_prefix + "contacts.pull", "", "largest tension in a contact, N", [self](const Snapshot& s) {
                                return largest_pull(s, self->contact_count);
                              }});

@@ -14,8 +14,9 @@
 
 namespace steplap {
 
-/// Adds the channels, "audit: <element>.pushes" and so on. Once per system, before it is run.
-void add_audit_channels(System& system);
+/// Adds the channels, "audit: <element>.pushes" and so on. Once per system, before it is run. Where a contact of the
+/// model has the paper's literal law, which may pull, contacts are not looked at.
+void add_audit_channels(System& system, const Model& model);
 [[nodiscard]] bool is_audit_channel(const Channel& channel);
 /// Name of a friction element's channel of power.
 [[nodiscard]] std::string pushes_channel(const std::string& element);

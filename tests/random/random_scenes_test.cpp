@@ -48,7 +48,7 @@ SimulationOptions every(double end, double output_step) {
 CrossCheck checked(const std::string& text, double end, const std::vector<CrossMethod>& methods) {
   const Model model = parse_model(text, "scene.toml", transformer_catalog());
   const auto system = compile(model);
-  add_audit_channels(*system);
+  add_audit_channels(*system, model);
   CrossCheckOptions options;
   options.methods = methods;
   options.free_groups = free_groups(model, *system);

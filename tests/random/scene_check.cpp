@@ -45,7 +45,7 @@ SceneResult check_scene(const Scene& scene, const std::string& folder, double cp
     const Model model = model_of(scene, folder);
     const std::unique_ptr<System> system = compile(model);
     const State initial = assembled_start(*system, assemble(model, *system));
-    add_audit_channels(*system);
+    add_audit_channels(*system, model);
     CrossCheckOptions options;
     options.cpu_limit = cpu_limit;
     options.is_event_counted = is_friction_event;

@@ -111,7 +111,7 @@ ExitCode cross_check_models(const std::vector<std::shared_ptr<const LoadedModel>
   ExitCode code = ExitCode::done;
   for (const auto& loaded : models) {
     try {
-      add_audit_channels(*loaded->system);
+      add_audit_channels(*loaded->system, loaded->model);
       if (!cross_check_one(*loaded, cpu_limit, console)) code = ExitCode::numerical_failure;
     } catch (const NumericalFailure& failure) {
       log_error("'" + loaded->path + "': " + failure.what());
