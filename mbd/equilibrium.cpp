@@ -16,6 +16,8 @@ namespace {
 constexpr double k_acceleration_tolerance = 1e-9; // m/s²: 1e-10 of gravity
 constexpr int k_max_newton = 60;
 constexpr int k_max_damped_swings = 400;
+constexpr int k_most_looks = 12;      // for a swing's peak
+constexpr double k_same_top = 1e-3;   // of the times about it
 constexpr double k_swing_time = 20.0; // s of motion before giving up on a swing
 constexpr double k_least_used = 1e-9; // share of a friction element's capacity that is rounding
 
@@ -249,10 +251,22 @@ State swing(const System& system, const State& start) {
     std::copy(energy + 1, energy + 3, energy);
     state = now;
   }
-  if (energy[2] < energy[1] && t[0] < t[1]) {
-    Simulation to_peak(system, start, swing_options(top_of_parabola(t, energy)));
-    to_peak.run();
-    state = to_peak.current_state();
+  // Few steps make a swing: the parabola's top is looked at and takes the place of one of the three, until it stays.
+  for (int look = 0; look < k_most_looks && energy[2] < energy[1] && t[0] < t[1]; ++look) {
+    const double top = top_of_parabola(t, energy);
+    if (std::abs(top - t[1]) < k_same_top * (t[2] - t[0])) break;
+    Simulation to_top(system, start, swing_options(top));
+    to_top.run();
+    const State there = to_top.current_state();
+    const double reached = system.kinetic_energy(there);
+    const bool is_higher = reached > energy[1], is_later = top > t[1];
+    const int replaced = is_higher == is_later ? 0 : 2;
+    t[replaced] = is_higher ? t[1] : top;
+    energy[replaced] = is_higher ? energy[1] : reached;
+    if (!is_higher) continue;
+    t[1] = top;
+    energy[1] = reached;
+    state = there;
   }
   state.t = start.t;
   std::fill(state.v.begin(), state.v.end(), 0.0);

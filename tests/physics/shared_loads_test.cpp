@@ -256,9 +256,14 @@ TEST_CASE("shared loads: two joints side by side let go as one joint with both a
       // Cutting planes of curved sets: bounds from both sides meet to 1e-12 or so.
       CHECK(std::abs(two.result.events[0].t / onset - 1.0) < 1e-11);
       CHECK(std::abs(two.result.events[1].t / onset - 1.0) < 1e-11);
-      // Each joint regularises its own onset: 1e-7 s of a motion of a tenth of a second.
+      // Each joint regularises its own onset: 1e-7 s of a motion of a fiftieth of a second. (Later one of the two comes
+      // apart, which of the one joint only an interface does.)
+      const Settings sliding = settings("dop853", onset + 0.02);
+      const Run one_slides = run(limb_on_two_patches(true, is_free, load), sliding),
+                two_slide = run(limb_on_two_patches(false, is_free, load), sliding);
+      CHECK(std::abs(one_slides.last("limb.theta")) > 1e-4);
       for (const char* channel : {"limb.x", "limb.y", "limb.theta"})
-        CHECK(std::abs(two.last(channel) - one.last(channel)) < 1e-6);
+        CHECK(std::abs(two_slide.last(channel) - one_slides.last(channel)) < 1e-6);
     }
 }
 
