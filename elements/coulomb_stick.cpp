@@ -40,7 +40,6 @@ public:
     return std::max(0.0, sum); // the paper's literal contact law may pull
   }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
-    if (mu_static == 0.0) return false; // holds nothing and drags nothing
     return std::any_of(contacts.begin(), contacts.end(), [&e](const ContactIndex& contact) {
       return e.mode[contact.unit] == k_contact_pressed;
     });

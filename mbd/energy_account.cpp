@@ -58,6 +58,7 @@ void EnergyAccount::note(Dynamics& dynamics, double t, const double* y) {
   last_ = energy + dissipated - work - start_;
   worst_ = std::max(worst_, std::abs(last_));
   exchanged_ = std::max({exchanged_, std::abs(dissipated), std::abs(work), std::abs(kinetic.total - kinetic_start_)});
+  peak_kinetic_ = std::max(peak_kinetic_, kinetic.total);
   peak_about_centre_ = std::max(peak_about_centre_, kinetic.about_centre);
   largest_ = std::max({largest_, std::abs(energy), kinetic.total, std::abs(energy - kinetic.total), std::abs(start_)});
 }
@@ -66,15 +67,15 @@ void EnergyAccount::check_step(Dynamics& dynamics, double t, const double* y) {
   const double before = last_;
   note(dynamics, t, y);
   const double made = last_ - before;
-  if (std::abs(made) <= allowed_ * scale() + rounding()) return;
+  if (std::abs(made) <= allowed_ * std::max(scale(), peak_kinetic_) + rounding()) return;
   throw NumericalFailure("a step to t = " + number_text(t) + " s " + (made > 0.0 ? "made " : "lost ") +
-                         number_text(std::abs(made)) + " J of " + number_text(scale()) +
+                         number_text(std::abs(made)) + " J of " + number_text(std::max(scale(), peak_kinetic_)) +
                          " J turned over: its result is not to be trusted. Try a smaller tolerance or step, or another "
                          "integrator (rodas5p for stiff scenes)");
 }
 
 void EnergyAccount::check_settled(double t, double lost) const {
-  if (std::abs(lost) <= k_settled_share * scale() + rounding()) return;
+  if (std::abs(lost) <= k_settled_share * std::max(scale(), peak_kinetic_) + rounding()) return;
   throw NumericalFailure("at t = " + number_text(t) + " s friction that begins to hold would take " + number_text(lost) +
                          " J from the motion at once, of " + number_text(scale()) +
                          " J turned over: what is taken for rest is none. Try a smaller tolerance, or another integrator");

@@ -35,7 +35,7 @@ public:
 private:
   static constexpr double k_rounding = 1e-11;
   double start_ = 0.0, kinetic_start_ = 0.0, floor_ = 0.0, allowed_ = 5e-2;
-  double exchanged_ = 0.0, peak_about_centre_ = 0.0, worst_ = 0.0, last_ = 0.0, largest_ = 0.0;
+  double exchanged_ = 0.0, peak_about_centre_ = 0.0, peak_kinetic_ = 0.0, worst_ = 0.0, last_ = 0.0, largest_ = 0.0;
 };
 
 } // namespace steplap

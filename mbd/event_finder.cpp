@@ -14,7 +14,8 @@ constexpr int k_usual_parts = 128; // as many as a survey may hold without alloc
 } // namespace
 
 EventFinder::EventFinder(const System& system, int max_dimension)
-    : slots_(system.watch_count), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), armed_(slots_, 1), armed_before_(slots_, 1) {
+    : system_(system), slots_(system.watch_count), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), armed_(slots_, 1), armed_before_(slots_, 1) {
+  slack_.assign(slots_, 0.0);
   near_.reserve(slots_);
   fired_.reserve(slots_);
   fired_before_.reserve(slots_);
@@ -67,11 +68,20 @@ EventFinder::Suspicion EventFinder::suspicion(Integrator& integrator, const std:
 }
 
 // Slots that were believed positive in `low` and are negative in `high` go to fired_.
-bool EventFinder::crosses(const Look& low, const Look& high) {
+bool EventFinder::crosses(const Look& low, const Look& high, bool is_inside) {
   fired_.clear();
   for (int i = 0; i < slots_; ++i)
-    if (armed_[i] && high.watch[i] < 0.0 && low.watch[i] >= 0.0) fired_.push_back(i);
+    if (armed_[i] && high.watch[i] < (is_inside ? -slack_[i] : 0.0) && low.watch[i] >= 0.0) fired_.push_back(i);
   return !fired_.empty();
+}
+
+void EventFinder::set_slack(const Integrator& integrator, const Dynamics& dynamics) {
+  const double slack = integrator.rate_accuracy(dynamics);
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
+    const FrictionUnit& unit = system_.frictions[f];
+    const bool is_rate = unit.friction->dimension() == 1 && dynamics.state().friction[f].phase == FrictionPhase::slip;
+    slack_[unit.watch] = is_rate ? slack : 0.0;
+  }
 }
 
 EventFinder::Bracket EventFinder::bracket_whole(const Integrator& integrator) {
@@ -85,6 +95,7 @@ bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::ve
   if (slots_ == 0) return false;
   const Suspicion suspected = suspicion(integrator, fresh);
   if (suspected == Suspicion::none) return false;
+  set_slack(integrator, dynamics);
   const Bracket bracket = suspected == Suspicion::inside ? survey(integrator, dynamics, fresh)
                                                          : bracket_whole(integrator);
   if (bracket == Bracket::none) return false;

@@ -46,7 +46,6 @@ private:
     double begin = 0.0, end = 1.0;
     int slot = -1;      ///< whose polynomial was not exact enough in the part that this one is a piece of
     double error = 0.0; ///< of it there
-    double parent = 1.0; ///< width of that one
     int stalled = 0;    ///< generations in which dividing has not made it more exact
   };
   /// Where a value may be below zero between places known to be positive.
@@ -71,8 +70,11 @@ private:
 
   void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look);
   static void look_at_end(const Integrator& integrator, bool is_last, Look& look);
-  [[nodiscard]] bool crosses(const Look& low, const Look& high);
+  /// `is_inside`: high is no end of a step.
+  [[nodiscard]] bool crosses(const Look& low, const Look& high, bool is_inside = false);
+  void set_slack(const Integrator& integrator, const Dynamics& dynamics);
 
+  const System& system_;
   int slots_;
   double theta_ = 0.0;
   std::vector<double> y_, dy_;
@@ -93,6 +95,9 @@ private:
   Aim aim_;
   static constexpr std::size_t k_places = 7;
   std::array<Look, k_places> place_; ///< of the part of the step being looked through
+  /// Per slot: a dip that is not deeper and comes up again within the step is none. Of rates of slip, that to which
+  /// velocities are known; 0 of all else.
+  std::vector<double> slack_;
   std::vector<int> near_;        ///< slots that ends and stages do not make certain
   std::vector<Part> parts_;      ///< still to be looked through, the first one last
   int looked_through_ = 0;       ///< parts so far

@@ -19,9 +19,11 @@ namespace {
 constexpr int k_order = 6;
 constexpr int k_samples = 32;          // of the polynomial, to find its least value
 constexpr double k_shortest = 1e-9;    // part of a step that is not divided
-constexpr double k_margin_of_cut = 0.1; // of a part: not nearer to its ends
+constexpr double k_margin_of_cut = 0.1; // of a part: not nearer to its ends;
+constexpr double k_margin_if_rough = 0.3, k_rough = 1e-3; // … where the error is a larger share of the values than this
 constexpr double k_rounding = 1e-15;   // of a value's largest: coefficients below it are rounding
-constexpr int k_most_stalled = 3;      // generations
+constexpr double k_stalled = 0.9;      // of the error of the part before: no more exact
+constexpr int k_most_stalled = 4;      // generations in a row
 constexpr int k_most_parts = 400;      // of one step
 
 struct Chebyshev {
@@ -91,15 +93,15 @@ EventFinder::Unclear EventFinder::unclear_place(const Part& part, std::size_t la
     // What dividing does not make more exact is rounding (a contact that touches without being pressed), or a jump: its
     // values at the places are all there is to know. Errors at a kink fall with the width, those of what is smooth much
     // faster.
-    const bool is_stalled = slot == part.slot && error * error * part.parent > part.error * part.error * (part.end - part.begin);
-    const int stalled = slot != part.slot ? 0 : is_stalled ? part.stalled + 1 : part.stalled;
+    const bool is_stalled = slot == part.slot && error > k_stalled * part.error;
+    const int stalled = is_stalled ? part.stalled + 1 : 0;
     if (stalled >= k_most_stalled) continue;
     double p[k_samples + 1];
     for (int m = 0; m <= k_samples; ++m) {
       p[m] = 0.0;
       for (int j = 0; j <= k_order; ++j) p[m] += a[j] * table.sample[m][j];
     }
-    double least = error, at = -1.0;
+    double least = error - slack_[slot], at = -1.0;
     // The ends are known; what leaves one upward is above the error at the first sample.
     for (int m = 1; m < k_samples && static_cast<double>(m) / k_samples <= until; ++m) {
       double place = static_cast<double>(m) / k_samples, value = p[m];
@@ -109,7 +111,8 @@ EventFinder::Unclear EventFinder::unclear_place(const Part& part, std::size_t la
       least = value;
       at = place;
     }
-    if (at >= 0.0) return {at, slot, error, stalled};
+    const double margin = error > k_rough * largest ? k_margin_if_rough : k_margin_of_cut;
+    if (at >= 0.0) return {std::clamp(at, margin, 1.0 - margin), slot, error, stalled};
   }
   return {};
 }
@@ -118,7 +121,7 @@ EventFinder::Unclear EventFinder::unclear_place(const Part& part, std::size_t la
 bool EventFinder::look_along(Integrator& integrator, Dynamics& dynamics, double theta) {
   if (theta == 1.0) look_at_end(integrator, true, high_);
   else watch_at(integrator, dynamics, theta, high_);
-  if (crosses(low_, high_)) return true;
+  if (crosses(low_, high_, theta < 1.0)) return true;
   for (int i = 0; i < slots_; ++i)
     if (high_.watch[i] > 0.0) armed_[i] = 1;
   std::swap(low_, high_);
@@ -136,7 +139,7 @@ bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const
     const double theta = k == k_order ? part.end : part.begin + table.place[k] * width;
     if (theta == 1.0) look_at_end(integrator, true, place_[k]);
     else watch_at(integrator, dynamics, theta, place_[k]);
-    if (last == k_order && crosses(place_[k - 1], place_[k])) last = k - 1;
+    if (last == k_order && crosses(place_[k - 1], place_[k], theta < 1.0)) last = k - 1;
     if (last == k_order)
       for (int i = 0; i < slots_; ++i)
         if (place_[k].watch[i] > 0.0) armed_[i] = 1;
@@ -144,14 +147,14 @@ bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const
   const bool may_divide = width > k_shortest && ++looked_through_ < k_most_parts;
   const Unclear unclear = may_divide ? unclear_place(part, last) : Unclear{};
   if (unclear.slot >= 0) {
-    const double cut = part.begin + std::clamp(unclear.place, k_margin_of_cut, 1.0 - k_margin_of_cut) * width;
-    parts_.push_back({cut, part.end, unclear.slot, unclear.error, width, unclear.stalled});
-    parts_.push_back({part.begin, cut, unclear.slot, unclear.error, width, unclear.stalled});
+    const double cut = part.begin + unclear.place * width;
+    parts_.push_back({cut, part.end, unclear.slot, unclear.error, unclear.stalled});
+    parts_.push_back({part.begin, cut, unclear.slot, unclear.error, unclear.stalled});
     armed_ = armed_before_;
     return false;
   }
   if (last < k_order) {
-    (void)crosses(place_[last], place_[last + 1]);
+    (void)crosses(place_[last], place_[last + 1], place_[last + 1].theta < 1.0);
     std::swap(low_, place_[last]);
     std::swap(high_, place_[last + 1]);
     return true;

@@ -52,6 +52,15 @@ void Integrator::note_slips(const Dynamics& dynamics, std::vector<double>& scale
   decay_rate_ = is_adaptive() ? 0.0 : dynamics.slip_decay_rate();
 }
 
+double Integrator::rate_accuracy(const Dynamics& dynamics) const {
+  constexpr double k_rounding = 1e-12;
+  const int m = dynamics.coordinate_count();
+  double fastest = 0.0;
+  for (int i = 0; i < m; ++i) fastest = std::max(fastest, std::abs(y1_[m + i]));
+  const double tolerance = is_adaptive() ? std::max(settings_.tolerance, k_rounding) : k_rounding;
+  return tolerance * (k_rate_floor * k_displacement_floor * length_scale_ + fastest) + k_rounding;
+}
+
 void Integrator::accept() {
   t0_ = t1_;
   std::swap(y0_, y1_);

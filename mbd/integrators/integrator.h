@@ -67,6 +67,8 @@ public:
   /// Watch values met at the stages inside the step.
   [[nodiscard]] virtual WatchNodes& watch_nodes() { return nodes_; }
 
+  /// How well velocities are known in the step made, m/s: its tolerance, or their rounding.
+  [[nodiscard]] double rate_accuracy(const Dynamics& dynamics) const;
   [[nodiscard]] long steps() const { return steps_; }
   [[nodiscard]] long rejections() const { return rejections_; }
   [[nodiscard]] double max_position_residual() const { return residual_.position; }
