@@ -62,6 +62,7 @@ private:
   Bracket survey(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
   bool look_along(Integrator& integrator, Dynamics& dynamics, double theta);
   bool look_through(Integrator& integrator, Dynamics& dynamics, const Part& part);
+  [[nodiscard]] double tangents_meet_below(int slot, std::size_t last) const;
   [[nodiscard]] Unclear unclear_place(const Part& part, std::size_t last) const;
   // --- event_closing.cpp
   void close_in(Integrator& integrator, Dynamics& dynamics);

@@ -1,8 +1,7 @@
 // EventFinder: what watch values do inside a step that its ends and stages do not make certain.
 //
 // Part by part from the step's start, values at seven Chebyshev–Lobatto places of dense output are interpolated. With
-// the Chebyshev coefficients a_0 … a_6 of a value, |a_5| + |a_6| stands for the error of the polynomial (it is that of
-// the one of order 4): a part is clear of a value that stays above it. Else the part is divided, where the polynomial is
+// the Chebyshev coefficients a_0 … a_6 of a value, 4 (|a_5| + |a_6|) stands for the error of the polynomial: a part is clear of a value that stays above it. Else the part is divided, where the polynomial is
 // least, so that the bottom of a dip becomes an end of both halves; a value that is negative at any place makes the
 // bracket of an event. What dips below zero for less than k_shortest of a step, and only by rounding, is no event.
 #include "mbd/event_finder.h"
@@ -21,6 +20,9 @@ constexpr int k_samples = 32;          // of the polynomial, to find its least v
 constexpr double k_shortest = 1e-9;    // part of a step that is not divided
 constexpr double k_margin_of_cut = 0.1; // of a part: not nearer to its ends;
 constexpr double k_margin_if_rough = 0.3, k_rough = 1e-3; // … where the error is a larger share of the values than this
+// Coefficients fall as 1/j² at a kink, the gap to a pin that is passed, and the rest of them sum up to so many of the
+// last two; those of what is smooth fall much faster.
+constexpr double k_tail = 4.0;
 constexpr double k_rounding = 1e-15;   // of a value's largest: coefficients below it are rounding
 constexpr double k_stalled = 0.9;      // of the error of the part before: no more exact
 constexpr int k_most_stalled = 4;      // generations in a row
@@ -76,19 +78,36 @@ double bottom_near(const double* a, double& x) {
 
 } // namespace
 
+// Where the tangents at two neighbouring places, falling at one and rising at the next, meet below zero: the bottom of
+// what is convex between them, as the gap to anything round that is flown past, may be as low. −1: nowhere, or rates
+// are not known.
+double EventFinder::tangents_meet_below(int slot, std::size_t last) const {
+  const double begin = place_[0].theta, width = place_[k_order].theta - begin;
+  for (std::size_t k = 0; k < last; ++k) {
+    const double w0 = place_[k].watch[slot], w1 = place_[k + 1].watch[slot];
+    const double s0 = place_[k].rate[slot], s1 = place_[k + 1].rate[slot];
+    if (!(s0 < 0.0 && s1 > 0.0)) continue;
+    const double gap = place_[k + 1].theta - place_[k].theta, x = (w1 - w0 - s1 * gap) / (s0 - s1);
+    if (x > 0.0 && x < gap && w0 + s0 * x < 0.0)
+      return std::clamp((place_[k].theta + x - begin) / width, k_margin_of_cut, 1.0 - k_margin_of_cut);
+  }
+  return -1.0;
+}
+
 // Where in the part between the first `count` + 1 places some near value may be below zero (0 … 1), −1 if nowhere.
 EventFinder::Unclear EventFinder::unclear_place(const Part& part, std::size_t last) const {
   const Chebyshev& table = chebyshev();
   const double until = table.place[last];
   for (const int slot : near_) {
     if (!armed_[slot] || place_[0].watch[slot] < 0.0) continue; // not believed yet, or followed by the looks themselves
+    if (const double x = tangents_meet_below(slot, last); x >= 0.0) return {x, slot, 0.0, 0};
     double a[k_order + 1] = {}, largest = 0.0;
     for (int k = 0; k <= k_order; ++k) {
       const double w = place_[k].watch[slot];
       largest = std::max(largest, std::abs(w));
       for (int j = 0; j <= k_order; ++j) a[j] += table.transform[j][k] * w;
     }
-    double error = std::abs(a[k_order]) + std::abs(a[k_order - 1]);
+    double error = k_tail * (std::abs(a[k_order]) + std::abs(a[k_order - 1]));
     if (error < k_rounding * largest) error = 0.0;
     // What dividing does not make more exact is rounding (a contact that touches without being pressed), or a jump: its
     // values at the places are all there is to know. Errors at a kink fall with the width, those of what is smooth much
