@@ -64,7 +64,7 @@ private:
       for (Eigen::Index j = 0; j < n; ++j) a(i, j) = candidates_.compliance[i * n + j];
     }
     const BoxSolution solution = solve_box_problem(a, b, bound, rounding);
-    if (!solution.is_solved) fail("the search for what sticks repeats itself");
+    if (!solution.is_solved) return sweep_until_settled(); // its set of bounds repeats itself, by rounding
     for (Eigen::Index i = 0; i < n; ++i) {
       FrictionBlock& block = blocks_[i];
       block = {};
