@@ -216,7 +216,8 @@ TEST_CASE("Newmark's sliding block under four pulses") {
       for (const Settings& settings : {Settings{"rk4", 1e-3, 1.0}, Settings{"dop853", 1e-10, 1.0}}) {
         const Run r = run(on_a_base(pulses()[p].kind, mu), settings);
         // The load is smooth between its breakpoints: rk4 makes (ωh)⁴ ~ 1e-7 of it, and the slip depends
-        // on where it starts only to second order. dop853: some ten steps, each off by the tolerance of its displacement.
+        // on where it starts only to second order. dop853 was within 1e-10 before steps
+        // after events were restrained; 5e-10 now (half_sine, mu = 0.2): why is open, and the bound is to go back.
         CHECK(std::abs(r.last("friction.slide") - exact) < (settings.integrator == "rk4" ? 1e-7 : 1e-9) * exact + 1e-13);
         CHECK(r.last("friction.mode") == 1.0);
         CHECK(std::abs(r.last("block.vx") - r.last("base.vx")) < 1e-12); // the projection's tolerance

@@ -73,7 +73,7 @@ CrossMethod fixed(const char* name, std::vector<double> steps) {
 }
 
 // Time stepping resolves an impact of few steps by few values: what three step sizes say of the reaction in it can be off by
-// another factor of three. All others have to agree among themselves, and with it on everything else.
+// another factor of three: supposed, of seed 11, and not shown. All others have to agree among themselves, and with it on everything else.
 bool is_only_an_impact_of_time_stepping(const SceneResult& result) {
   const auto& all = result.check.disagreements;
   return result.model_error.empty() && std::all_of(all.begin(), all.end(), [](const Disagreement& d) {
