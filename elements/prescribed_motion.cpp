@@ -17,7 +17,7 @@ DriveLevel level_of(const std::string& as) {
 int lockable_coordinate(const RowSpec& row, const CompiledMarker& a) {
   if (a.body == k_ground || row.b != k_ground || row.kind == MeasureKind::distance) return -1;
   if (row.kind == MeasureKind::angle) return 2;
-  if (a.point != Vec2::Zero() || row.point_b != Vec2::Zero()) return -1;
+  if (a.point != Vec2::Zero()) return -1;
   if (row.direction == Vec2(1.0, 0.0)) return 0;
   return row.direction == Vec2(0.0, 1.0) ? 1 : -1;
 }

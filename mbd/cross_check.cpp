@@ -25,6 +25,7 @@ constexpr double k_brief_steps = 20.0; // what changes back within so many fixed
 constexpr double k_own_doubt = 1e-3;            // an adaptive method's estimate beyond it is looked at
 constexpr double k_momentum_allowed = 1e-6;
 constexpr long k_steps_between_looks = 256;
+constexpr double k_closer = 0.25; // steps and samples of a closer look
 
 constexpr double k_moreau_steps = 2000, k_rk4_steps = 4000; // of the coarsest level, in a run
 
@@ -312,6 +313,16 @@ private:
   std::vector<std::unique_ptr<MethodCurves>> curves_;
 };
 
+// A disagreement that smaller steps and denser samples could remove.
+bool is_worth_a_closer_look(const CrossCheck& check) {
+  return std::any_of(check.disagreements.begin(), check.disagreements.end(), [&](const Disagreement& d) {
+    return std::any_of(check.runs.begin(), check.runs.end(), [&](const CrossRun& run) {
+      const std::string& name = run.setting.integrator;
+      return run.setting.is_step && (name == d.first || name == d.second);
+    });
+  });
+}
+
 } // namespace
 
 const char* name_of(Doubt doubt) {
@@ -352,7 +363,22 @@ CrossCheck cross_check(const System& system, const State& initial, const Simulat
                        const CrossCheckOptions& options) {
   CrossCheckOptions used = options;
   if (used.methods.empty()) used.methods = usual_methods(base.end, base.settings.tolerance, base.settings.step);
-  return Checker(system, initial, base, used).made();
+  SimulationOptions sampling = base;
+  CrossCheck check = Checker(system, initial, sampling, used).made();
+  for (int look = 1; look <= options.closer_looks && is_worth_a_closer_look(check); ++look) {
+    sampling.output_step *= k_closer;
+    for (CrossMethod& method : used.methods)
+      for (MethodSetting& level : method.levels)
+        if (level.is_step) level.value *= k_closer;
+    CrossCheck closer = Checker(system, initial, sampling, used).made();
+    const auto stops = [](const CrossCheck& c) {
+      return std::count_if(c.runs.begin(), c.runs.end(), [](const CrossRun& r) { return !r.failure.empty(); });
+    };
+    if (stops(closer) > stops(check)) break; // more than there is time for
+    check = std::move(closer);
+    check.closer_looks = look;
+  }
+  return check;
 }
 
 } // namespace steplap

@@ -146,8 +146,10 @@ void Dynamics::unpack(double t, const double* y, State& state) const {
 void Dynamics::aim_locks(double t) {
   if (t == lock_time_) return;
   lock_time_ = t;
-  for (std::size_t i = 0; i < layout_->locks.size(); ++i)
+  for (std::size_t i = 0; i < layout_->locks.size(); ++i) {
     lock_target_[i] = row_target(system_.rows[layout_->locks[i].row], state_->memory.data(), t);
+    lock_target_[i].value += layout_->locks[i].offset;
+  }
 }
 
 void Dynamics::place(double t, const double* q, const double* v) {

@@ -60,6 +60,8 @@ public:
   /// residuals found before. Stops at `tolerance`, 0: where rounding sets an end to it; throws ConstraintFailure
   /// if that cannot be reached.
   Residual project(double t, double* y, double tolerance);
+  /// Velocities onto the constraints as closely as rounding allows: what has come to rest does not creep.
+  void close_velocities(double t, double* y);
   /// Takes from a small change of y what the constraints at the last evaluation do not allow, if that was
   /// near a singular position; else leaves it. There accelerations across the constraints are as uncertain
   /// as rounding over the distance from the singularity, but projection takes that part away.

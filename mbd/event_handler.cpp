@@ -263,6 +263,7 @@ void EventHandler::settle(State& state) {
   dynamics_.pack(state, y_.data());
   const double energy = system_.kinetic_energy(state);
   dynamics_.project(state.t, y_.data(), k_projection_tolerance);
+  dynamics_.close_velocities(state.t, y_.data());
   dynamics_.unpack(state.t, y_.data(), state);
   const double lost = energy - system_.kinetic_energy(state);
   state.dissipated += lost;

@@ -173,7 +173,7 @@ void add_bilateral(const System& system, const std::vector<char>& is_block_merge
                          layout.clusters[place.cluster].w[block.coordinate] > 0.0;
     if (is_free) {
       layout.clusters[place.cluster].w[block.coordinate] = 0.0;
-      layout.locks.push_back({place.cluster, block.coordinate, block.first, {}});
+      layout.locks.push_back({place.cluster, block.coordinate, block.first, block.coordinate < 2 ? first.point_b[block.coordinate] : 0.0, {}});
       continue;
     }
     for (int r = block.first; r < block.first + block.count; ++r)

@@ -55,6 +55,7 @@ struct LockedTerm {
 struct Lock {
   int cluster = 0, coordinate = 0;
   int row = 0; ///< the bilateral row it stands for
+  double offset = 0.0; ///< m: of the coordinate against what the row measures, which is seen from a point of the ground
   std::vector<LockedTerm> terms; ///< active rows that act on its cluster
 };
 

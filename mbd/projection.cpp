@@ -150,6 +150,11 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
   return first;
 }
 
+void Dynamics::close_velocities(double t, double* y) {
+  double* const rates = y + coordinate_count();
+  if (!layout_->active.empty()) reach_velocities(t, y, constraint_values(t, y), k_close * position_rounding(rates, coordinate_count()));
+}
+
 // The factorisation of the step's last evaluation serves while it converges fast. Near a singular position it
 // does not serve, and Newton's steps would be as long as the residual is to the distance from there: damped
 // by the residual itself they stay short, and still converge quadratically (J. Fan, Y. Yuan, Computing 74

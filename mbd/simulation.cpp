@@ -159,6 +159,16 @@ void Simulation::guard_against_crawl() {
   throw NumericalFailure(message.str());
 }
 
+// The force of a joint that slides is none where its sheets have parted: the step went on past that kink.
+bool Simulation::are_joints(const std::vector<int>& slots) const {
+  return std::all_of(slots.begin(), slots.end(), [this](int slot) {
+    return std::any_of(system_.frictions.begin(), system_.frictions.end(),
+                       [slot](const FrictionUnit& unit) {
+                         return slot >= unit.watch && slot < unit.watch + k_friction_watches && unit.friction->dimension() > 1;
+                       });
+  });
+}
+
 void Simulation::pass_event(double t, const double* y, const std::vector<int>& fired) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
@@ -230,7 +240,8 @@ bool Simulation::advance() {
   check_finite();
   if (finder_.find(*integrator_, dynamics_, handler_.fresh())) {
     const double t = integrator_->t0() + finder_.theta() * integrator_->h();
-    const std::vector<double> at_event = finder_.state();
+    std::vector<double> at_event = finder_.state();
+    if (are_joints(finder_.fired()) && integrator_->end_at(dynamics_, finder_.theta())) std::copy_n(integrator_->y1(), at_event.size(), at_event.begin());
     if (extremes_) extremes_->end_at(t, *integrator_, dynamics_);
     sample_until(std::nextafter(t, 0.0) - k_output_slack * options_.output_step);
     pass_event(t, at_event.data(), finder_.fired());

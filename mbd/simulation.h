@@ -84,6 +84,7 @@ private:
   void check_finite();
   void pass_event(double t, const double* y, const std::vector<int>& fired);
   bool pass_stepped();
+  [[nodiscard]] bool are_joints(const std::vector<int>& slots) const;
   void step_through_storm(const std::string& element);
   void guard_against_chatter(double t);
   void guard_against_crawl();

@@ -61,6 +61,8 @@ double Integrator::rate_accuracy(const Dynamics& dynamics) const {
   return tolerance * (k_rate_floor * k_displacement_floor * length_scale_ + fastest) + k_rounding;
 }
 
+bool Integrator::end_at(Dynamics&, double) { return false; }
+
 void Integrator::accept() {
   t0_ = t1_;
   std::swap(y0_, y1_);

@@ -41,6 +41,9 @@ public:
   static constexpr double k_largest_turn = 1.6;
   /// Makes one step of at most t_limit − t. Throws NumericalFailure where no step can be made.
   virtual void step(Dynamics& dynamics, double t_limit) = 0;
+  /// Ends the step just made at theta of it, anew as a step of its own. Fixed steps do where forces have a kink behind
+  /// the event; no error estimate has shortened them. False: it was left as it is.
+  virtual bool end_at(Dynamics& dynamics, double theta);
   /// State at t + theta·h of the step made, 0 ≤ theta ≤ 1. May evaluate.
   virtual void dense(Dynamics& dynamics, double theta, double* out) = 0;
   /// Goes on from the end of the step.

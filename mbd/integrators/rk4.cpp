@@ -6,6 +6,7 @@
 #include "mbd/integrators/explicit_runge_kutta.h"
 #include "mbd/integrators/methods.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace steplap {
@@ -21,7 +22,7 @@ constexpr double k_rest_layer = 2.5e-4;
 class Rk4 final : public Integrator {
 public:
   Rk4(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
-      : Integrator(dynamics, settings, max_dimension), k_(6 * max_dimension), stride_(max_dimension) {
+      : Integrator(dynamics, settings, max_dimension), k_(6 * max_dimension), kept_(2 * max_dimension), stride_(max_dimension) {
     set_rate_storage(k_.data(), k_.data() + 5 * stride_);
   }
   [[nodiscard]] const char* name() const override { return "rk4"; }
@@ -46,6 +47,20 @@ public:
   void dense(Dynamics& dynamics, double theta, double* out) override {
     hermite_dense(dynamics.coordinate_count(), theta, h_, y0_.data(), y1_.data(), k0_, k1_, out);
     if (h_ < 0.5 * settings_.step) velocities_by_cubic(dynamics.coordinate_count(), theta, out);
+  }
+
+  bool end_at(Dynamics& dynamics, double theta) override {
+    const double h = h_, t1 = t1_;
+    std::copy_n(y1_.begin(), n_, kept_.begin());
+    std::copy_n(k1_, n_, kept_.begin() + stride_);
+    h_ *= theta;
+    t1_ = t0_ + h_;
+    if (try_step(dynamics)) return true;
+    h_ = h;
+    t1_ = t1;
+    std::copy_n(kept_.begin(), n_, y1_.begin());
+    std::copy_n(kept_.begin() + stride_, n_, k1_);
+    return false;
   }
 
 protected:
@@ -84,7 +99,7 @@ private:
     dynamics.rates(t0_ + c * h_, y, k(index));
     note_stage_watches(dynamics, k(index), c);
   }
-  std::vector<double> k_;
+  std::vector<double> k_, kept_; ///< kept_: end of a step that is tried anew
   int stride_;
   double last_decay_rate_ = 0.0; ///< where the last step began
 };

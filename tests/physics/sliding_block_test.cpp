@@ -213,12 +213,13 @@ TEST_CASE("Newmark's sliding block under four pulses") {
       CAPTURE(mu);
       const double exact = newmark_slip(pulses()[p], mu * 9.81);
       CHECK(std::abs(1e3 * exact - published[p][i]) < 0.51e-3 * (p == 2 && i == 0 ? 10.0 : 1.0));
-      for (const Settings& settings : {Settings{"rk4", 1e-3, 1.0}, Settings{"dop853", 1e-10, 1.0}}) {
+      for (const Settings& settings : {Settings{"rk4", 1e-3, 1.0}, Settings{"dop853", 1e-11, 1.0}}) {
         const Run r = run(on_a_base(pulses()[p].kind, mu), settings);
         // The load is smooth between its breakpoints: rk4 makes (ωh)⁴ ~ 1e-7 of it, and the slip depends
-        // on where it starts only to second order. dop853 was within 1e-10 before steps
-        // after events were restrained; 5e-10 now (half_sine, mu = 0.2): why is open, and the bound is to go back.
-        CHECK(std::abs(r.last("friction.slide") - exact) < (settings.integrator == "rk4" ? 1e-7 : 1e-9) * exact + 1e-13);
+        // on where it starts only to second order. dop853: ten times its tolerance. The block rests on its sole, and where
+        // the pulse is over nothing but rounding limits a step: dense output of one of 20 periods' radians makes up to
+        // 2e-9 m/s of that at tolerance 1e-10, which the friction hands on to the slip.
+        CHECK(std::abs(r.last("friction.slide") - exact) < (settings.integrator == "rk4" ? 1e-7 : 1e-10) * exact + 1e-13);
         CHECK(r.last("friction.mode") == 1.0);
         CHECK(std::abs(r.last("block.vx") - r.last("base.vx")) < 1e-12); // the projection's tolerance
         // Slips and sticks; under the rectangle it slips from the start, which is no event.
