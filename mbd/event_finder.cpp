@@ -68,10 +68,17 @@ EventFinder::Suspicion EventFinder::suspicion(Integrator& integrator, const std:
 }
 
 // Slots that were believed positive in `low` and are negative in `high` go to fired_.
-bool EventFinder::crosses(const Look& low, const Look& high, bool is_inside) {
+bool EventFinder::crosses(const Look& low, const Look& high) {
   fired_.clear();
   for (int i = 0; i < slots_; ++i)
-    if (armed_[i] && high.watch[i] < (is_inside ? -slack_[i] : 0.0) && low.watch[i] >= 0.0) fired_.push_back(i);
+    if (armed_[i] && high.watch[i] < 0.0 && low.watch[i] >= 0.0) fired_.push_back(i);
+  return !fired_.empty();
+}
+
+bool EventFinder::falls(const Look& low, const Look& high) {
+  fired_.clear();
+  for (int i = 0; i < slots_; ++i)
+    if (armed_[i] && high.watch[i] < (high.theta < 1.0 ? -slack_[i] : 0.0) && low.watch[i] >= -slack_[i]) fired_.push_back(i);
   return !fired_.empty();
 }
 

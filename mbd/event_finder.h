@@ -71,8 +71,12 @@ private:
 
   void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look);
   static void look_at_end(const Integrator& integrator, bool is_last, Look& look);
-  /// `is_inside`: high is no end of a step.
-  [[nodiscard]] bool crosses(const Look& low, const Look& high, bool is_inside = false);
+  /// From zero or above to below.
+  [[nodiscard]] bool crosses(const Look& low, const Look& high);
+  /// The same for what velocities are known to: from the slack below zero or above to below that, or below zero at the
+  /// step's end. What crosses zero within the slack is neither lost nor found twice.
+  [[nodiscard]] bool falls(const Look& low, const Look& high);
+  [[nodiscard]] Bracket bracket_of_fall();
   void set_slack(const Integrator& integrator, const Dynamics& dynamics);
 
   const System& system_;

@@ -27,6 +27,7 @@ constexpr double k_rounding = 1e-15;   // of a value's largest: coefficients bel
 constexpr double k_stalled = 0.9;      // of the error of the part before: no more exact
 constexpr int k_most_stalled = 4;      // generations in a row
 constexpr int k_most_parts = 400;      // of one step
+constexpr double k_at_once = 1e-4;     // of the step: where what was never positive is decided anew
 
 struct Chebyshev {
   double place[k_order + 1];                       // in [0, 1]
@@ -140,7 +141,7 @@ EventFinder::Unclear EventFinder::unclear_place(const Part& part, std::size_t la
 bool EventFinder::look_along(Integrator& integrator, Dynamics& dynamics, double theta) {
   if (theta == 1.0) look_at_end(integrator, true, high_);
   else watch_at(integrator, dynamics, theta, high_);
-  if (crosses(low_, high_, theta < 1.0)) return true;
+  if (falls(low_, high_)) return true;
   for (int i = 0; i < slots_; ++i)
     if (high_.watch[i] > 0.0) armed_[i] = 1;
   std::swap(low_, high_);
@@ -158,7 +159,7 @@ bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const
     const double theta = k == k_order ? part.end : part.begin + table.place[k] * width;
     if (theta == 1.0) look_at_end(integrator, true, place_[k]);
     else watch_at(integrator, dynamics, theta, place_[k]);
-    if (last == k_order && crosses(place_[k - 1], place_[k], theta < 1.0)) last = k - 1;
+    if (last == k_order && falls(place_[k - 1], place_[k])) last = k - 1;
     if (last == k_order)
       for (int i = 0; i < slots_; ++i)
         if (place_[k].watch[i] > 0.0) armed_[i] = 1;
@@ -173,7 +174,7 @@ bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const
     return false;
   }
   if (last < k_order) {
-    (void)crosses(place_[last], place_[last + 1], place_[last + 1].theta < 1.0);
+    (void)falls(place_[last], place_[last + 1]);
     std::swap(low_, place_[last]);
     std::swap(high_, place_[last + 1]);
     return true;
@@ -195,21 +196,30 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
   // Fresh values often turn within the first fraction of a step.
   if (is_any_unarmed)
     for (const double theta : {1e-4, 1e-3, 1e-2}) {
-      if (look_along(integrator, dynamics, theta)) return Bracket::found;
+      if (look_along(integrator, dynamics, theta)) return bracket_of_fall();
       parts_.back().begin = theta;
     }
   while (!parts_.empty()) {
     const Part part = parts_.back();
     parts_.pop_back();
-    if (look_through(integrator, dynamics, part)) return Bracket::found;
+    if (look_through(integrator, dynamics, part)) return bracket_of_fall();
   }
   // Values that were never positive: the mode chosen is not the one the motion takes. The event
-  // is at once; the handler decides anew a hair later.
+  // is at once; the handler decides anew a hair later. No step ends with a value below zero.
   fired_.clear();
   for (int i = 0; i < slots_; ++i)
-    if (!armed_[i] && low_.watch[i] < 0.0) fired_.push_back(i);
+    if (low_.watch[i] < 0.0) fired_.push_back(i);
   if (fired_.empty()) return Bracket::none;
-  high_.theta = 1e-4;
+  high_.theta = k_at_once;
+  return Bracket::at_once;
+}
+
+// Of a value that lies within the slack below zero where the bracket begins, that is the event.
+EventFinder::Bracket EventFinder::bracket_of_fall() {
+  const auto is_above = [this](int slot) { return low_.watch[slot] >= 0.0; };
+  if (std::all_of(fired_.begin(), fired_.end(), is_above)) return Bracket::found;
+  fired_.erase(std::remove_if(fired_.begin(), fired_.end(), is_above), fired_.end());
+  high_.theta = std::max(low_.theta, k_at_once);
   return Bracket::at_once;
 }
 
