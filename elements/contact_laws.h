@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mbd/law_group.h"
+#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 
@@ -108,7 +109,8 @@ struct HuntCrossleyContact {
     return mode == k_contact_open ? 0.0 : k * power(offset - value);
   }
   [[nodiscard]] double energy(double value) const {
-    return value < offset ? k * std::pow(offset - value, exponent + 1.0) / (exponent + 1.0) : 0.0;
+    return value < offset ? k * portable::pow(offset - value, exponent + 1.0) / (exponent + 1.0)
+                          : 0.0;
   }
   [[nodiscard]] UnitMode mode_at(double value, double rate) const {
     if (value - offset >= 0.0) return k_contact_open;
@@ -131,7 +133,7 @@ struct HuntCrossleyContact {
 
 private:
   template <class S> [[nodiscard]] S power(const S& depth) const {
-    using std::pow;
+    using portable::pow;
     if (exponent == 1.0) return depth;
     if (depth > S(0)) return pow(depth, exponent);
     return depth < S(0) ? -pow(-depth, exponent) : S(0);

@@ -2,6 +2,7 @@
 
 #include "elements/patch/admissible_projection.h"
 #include "mbd/diagnostics.h"
+#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>
@@ -343,7 +344,7 @@ void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state
 
 SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const {
   SlipScale scale;
-  scale.lever = std::hypot(gyration_, arm_.norm());
+  scale.lever = portable::hypot(gyration_, arm_.norm());
   scale.speed = scaled(law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).norm();
   return scale;
 }

@@ -1,6 +1,7 @@
 #include "elements/step_lap_interface.h"
 
 #include "elements/step_lap_joint.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/system.h"
 
 #include <cmath>
@@ -23,11 +24,10 @@ Vec2 in_body(const Vec2& point, bool is_in_body_frame, const std::string& body,
 // Regular, and of the circle's area: n/2 r² sin(2π/n) = π d²/4.
 Ring round_hole(const Vec2& centre, double diameter, long sides) {
   const double step = 2.0 * std::numbers::pi / static_cast<double>(sides);
-  const double radius = 0.5 * diameter * std::sqrt(step / std::sin(step));
+  const double radius = 0.5 * diameter * std::sqrt(step / portable::sin(step));
   Ring ring;
   for (long i = 0; i < sides; ++i)
-    ring.push_back(centre + radius * Vec2(std::cos(step * static_cast<double>(i)),
-                                          std::sin(step * static_cast<double>(i))));
+    ring.push_back(centre + radius * rotated({1.0, 0.0}, step * static_cast<double>(i)));
   return ring;
 }
 

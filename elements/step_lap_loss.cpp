@@ -1,5 +1,7 @@
 #include "elements/step_lap_loss.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +28,7 @@ bool contains(const Ring& ring, const Vec2& p) {
 }
 
 Vec2 unplaced(const Vec2& p, const Pose& b_in_a) {
-  const double c = std::cos(b_in_a.theta), s = std::sin(b_in_a.theta);
+  const auto [s, c] = portable::sin_cos(b_in_a.theta);
   const Vec2 d = p - Vec2(b_in_a.x, b_in_a.y);
   return {c * d.x() + s * d.y(), c * d.y() - s * d.x()};
 }

@@ -1,6 +1,7 @@
 #include "elements/unilateral_contact.h"
 
 #include "elements/contact_laws.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/system.h"
 
 namespace steplap {
@@ -56,7 +57,7 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   double offset = 0.0;
   if (e.gap) offset = now - *e.gap;
   if (e.interference) offset = now + *e.interference;
-  if (e.preload) offset = now + std::pow(*e.preload / k, 1.0 / e.exponent);
+  if (e.preload) offset = now + portable::pow(*e.preload / k, 1.0 / e.exponent);
   const KelvinVoigtContact kelvin_voigt{k, n * e.damping, offset};
   if (e.law == "literal") add(g, g.gap, LiteralContact{k, n * e.damping, offset}, builder);
   else if (e.law == "hunt_crossley")

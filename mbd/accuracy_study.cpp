@@ -1,6 +1,7 @@
 #include "mbd/accuracy_study.h"
 
 #include "mbd/global_error.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/number_text.h"
 
 #include <algorithm>
@@ -144,7 +145,7 @@ struct Point {
 ErrorSlope fitted(const std::string& integrator, const std::vector<Point>& points) {
   double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, low = INFINITY, high = -INFINITY;
   for (const Point& p : points) {
-    const double x = std::log10(p.value), y = std::log10(p.error);
+    const double x = portable::log10(p.value), y = portable::log10(p.error);
     n += 1.0;
     sx += x;
     sy += y;

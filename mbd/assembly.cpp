@@ -1,6 +1,7 @@
 #include "mbd/assembly.h"
 
 #include "mbd/dynamics.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/number_text.h"
 
 #include <algorithm>
@@ -166,9 +167,10 @@ std::vector<AssemblyMove> assembly_moves(const State& given, const State& assemb
     };
     AssemblyMove move;
     move.body = static_cast<int>(i / 3);
-    move.shift = std::hypot(change(given.q, assembled.q, 0), change(given.q, assembled.q, 1));
+    move.shift = portable::hypot(change(given.q, assembled.q, 0), change(given.q, assembled.q, 1));
     move.turn = change(given.q, assembled.q, 2);
-    move.velocity = std::hypot(change(given.v, assembled.v, 0), change(given.v, assembled.v, 1));
+    move.velocity =
+        portable::hypot(change(given.v, assembled.v, 0), change(given.v, assembled.v, 1));
     move.angular_velocity = change(given.v, assembled.v, 2);
     if (std::max({move.shift, std::abs(move.turn), move.velocity, std::abs(move.angular_velocity)}) > threshold)
       moves.push_back(move);

@@ -1,5 +1,7 @@
 #include "mbd/audit.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -257,8 +259,9 @@ Momentum momentum_of(const System& system, const std::vector<int>& group, const 
     const double ux = t.value(row, rates[3 * b]) - vx, uy = t.value(row, rates[3 * b + 1]) - vy;
     const double spin = body.inertia * t.value(row, rates[3 * b + 2]);
     sum.turn += body.mass * (rx * uy - ry * ux) + spin;
-    sum.turn_size += body.mass * std::hypot(rx, ry) * std::hypot(ux, uy) + std::abs(spin);
-    sum.size += body.mass * std::hypot(t.value(row, rates[3 * b]), t.value(row, rates[3 * b + 1]));
+    sum.turn_size += body.mass * portable::hypot(rx, ry) * portable::hypot(ux, uy) + std::abs(spin);
+    sum.size +=
+        body.mass * portable::hypot(t.value(row, rates[3 * b]), t.value(row, rates[3 * b + 1]));
   }
   sum.x -= mass * system.gravity.x() * t.times()[row];
   sum.y -= mass * system.gravity.y() * t.times()[row];
@@ -279,8 +282,9 @@ AuditFinding momentum_change(const System& system, const std::vector<std::vector
       const Momentum now = momentum_of(system, group, t, row, places, rates);
       size = std::max(size, now.size);
       turn_size = std::max(turn_size, now.turn_size);
-      const double change = std::max(size > 0.0 ? std::hypot(now.x - first.x, now.y - first.y) / size : 0.0,
-                                     turn_size > 0.0 ? std::abs(now.turn - first.turn) / turn_size : 0.0);
+      const double change =
+          std::max(size > 0.0 ? portable::hypot(now.x - first.x, now.y - first.y) / size : 0.0,
+                   turn_size > 0.0 ? std::abs(now.turn - first.turn) / turn_size : 0.0);
       if (!(change <= worst.value)) {
         worst.where = system.bodies[group.front()].name;
         worst.t = t.times()[row];

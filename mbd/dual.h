@@ -5,6 +5,8 @@
 // Pair<S> and MeasureValue<S>.
 #pragma once
 
+#include "mbd/math/portable_math.h"
+
 #include <Eigen/Core>
 
 #include <cmath>
@@ -43,13 +45,19 @@ template <int N> struct Dual {
     const double r = std::sqrt(a.v);
     return {r, a.d / (2.0 * r)};
   }
-  friend Dual sin(const Dual& a) { return {std::sin(a.v), std::cos(a.v) * a.d}; }
-  friend Dual cos(const Dual& a) { return {std::cos(a.v), -std::sin(a.v) * a.d}; }
+  friend Dual sin(const Dual& a) {
+    const auto [s, c] = portable::sin_cos(a.v);
+    return {s, c * a.d};
+  }
+  friend Dual cos(const Dual& a) {
+    const auto [s, c] = portable::sin_cos(a.v);
+    return {c, -s * a.d};
+  }
   friend Dual atan2(const Dual& y, const Dual& x) {
-    return {std::atan2(y.v, x.v), (x.v * y.d - y.v * x.d) / (x.v * x.v + y.v * y.v)};
+    return {portable::atan2(y.v, x.v), (x.v * y.d - y.v * x.d) / (x.v * x.v + y.v * y.v)};
   }
   friend Dual pow(const Dual& a, double n) {
-    return {std::pow(a.v, n), n * std::pow(a.v, n - 1.0) * a.d};
+    return {portable::pow(a.v, n), n * portable::pow(a.v, n - 1.0) * a.d};
   }
   friend Dual abs(const Dual& a) { return a.v < 0.0 ? -a : a; }
 };

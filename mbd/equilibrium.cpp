@@ -1,6 +1,7 @@
 #include "mbd/equilibrium.h"
 
 #include "mbd/friction_modes.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/simulation.h"
 
 #include <Eigen/Eigenvalues>
@@ -83,7 +84,7 @@ public:
     const Snapshot snapshot = dynamics_.snapshot(dy_.data());
     int worst = 1;
     const auto size = [&](int i) {
-      return std::hypot(snapshot.acceleration[3 * i], snapshot.acceleration[3 * i + 1]);
+      return portable::hypot(snapshot.acceleration[3 * i], snapshot.acceleration[3 * i + 1]);
     };
     for (int i = 2; i < system_.body_count(); ++i)
       if (size(i) > size(worst)) worst = i;
@@ -169,13 +170,13 @@ private:
       element.watch_stick(dynamics_.evaluation(), state, scaled, watch);
       return watch[0] >= 0.0 && watch[1] >= 0.0;
     };
-    double low = -std::log10(k_least_used), high = low; // of the decimal logarithm of s
-    if (holds(std::pow(10.0, high))) return 0.0;
+    double low = -portable::log10(k_least_used), high = low; // of the decimal logarithm of s
+    if (holds(portable::pow(10.0, high))) return 0.0;
     for (low = -high; high - low > 1e-12;) {
       const double middle = 0.5 * (low + high);
-      (holds(std::pow(10.0, middle)) ? low : high) = middle;
+      (holds(portable::pow(10.0, middle)) ? low : high) = middle;
     }
-    return std::pow(10.0, -low);
+    return portable::pow(10.0, -low);
   }
   void evaluate_state() {
     dynamics_.set_state(state_);

@@ -5,6 +5,7 @@
 // least, so that the bottom of a dip becomes an end of both halves; a value that is negative at any place makes the
 // bracket of an event. What dips below zero for less than k_shortest of a step, and only by rounding, is no event.
 #include "mbd/event_finder.h"
+#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,16 +37,22 @@ struct Chebyshev {
 
   Chebyshev() {
     const double pi = std::numbers::pi;
-    for (int k = 0; k <= k_order; ++k) place[k] = 0.5 * (1.0 - std::cos(pi * k / k_order));
+    for (int k = 0; k <= k_order; ++k)
+      place[k] = 0.5 * (1.0 - portable::cos(pi * k / k_order));
     for (int j = 0; j <= k_order; ++j)
       for (int k = 0; k <= k_order; ++k) {
-        double w = 2.0 / k_order * std::cos(pi * j * (k_order - k) / k_order);
+        double w = 2.0 / k_order * portable::cos(pi * j * (k_order - k) / k_order);
         if (j == 0 || j == k_order) w *= 0.5;
         if (k == 0 || k == k_order) w *= 0.5;
         transform[j][k] = w;
       }
-    for (int m = 0; m <= k_samples; ++m)
-      for (int j = 0; j <= k_order; ++j) sample[m][j] = std::cos(j * std::acos(std::clamp(-1.0 + 2.0 * m / k_samples, -1.0, 1.0)));
+    for (int m = 0; m <= k_samples; ++m) { // T_j+1 = 2u T_j − T_j−1
+      const double u = -1.0 + 2.0 * m / k_samples;
+      sample[m][0] = 1.0;
+      sample[m][1] = u;
+      for (int j = 2; j <= k_order; ++j)
+        sample[m][j] = 2.0 * u * sample[m][j - 1] - sample[m][j - 2];
+    }
   }
 };
 

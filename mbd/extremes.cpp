@@ -1,6 +1,7 @@
 #include "mbd/extremes.h"
 
 #include "mbd/integrators/methods.h"
+#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <array>
@@ -32,7 +33,9 @@ constexpr double k_golden = 0.3819660112501051;
 // stretches of a fixed-step method become longer and shorter.
 constexpr double k_well_resolved = 0.01, k_badly_resolved = 0.05;
 
-double node_theta(int node) { return 0.5 * (1.0 - std::cos(std::numbers::pi * node / k_last)); }
+double node_theta(int node) {
+  return 0.5 * (1.0 - portable::cos(std::numbers::pi * node / k_last));
+}
 
 // Nodes of levels 1, 2, 3: every fourth, second, every one; barycentric weights of Chebyshev and Lobatto.
 constexpr int spacing(int level) { return 8 >> level; }

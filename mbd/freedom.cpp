@@ -1,5 +1,7 @@
 #include "mbd/freedom.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseQR>
 
@@ -23,7 +25,7 @@ void add_column(const RowSpec& row, const std::vector<Motion<double>>& motion, i
                               -d.x, -d.y, -cross(m.lever_b, d) - m.couple};
   double norm = 0.0;
   for (const double g : gradient)
-    norm = std::hypot(norm, g);
+    norm = portable::hypot(norm, g);
   if (norm == 0.0) return;
   for (int k = 0; k < 6; ++k) {
     const int body = k < 3 ? row.a : row.b;

@@ -1,5 +1,7 @@
 #include "mbd/layout.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -91,8 +93,9 @@ void make_clusters(const System& system, const State& state, std::vector<int>& p
     const Vec2 lever = Vec2(state.q[3 * i], state.q[3 * i + 1]) - centre[cluster_of[i]];
     place.offset = rotated(lever, -root_angle);
     place.angle = state.q[3 * i + 2] - root_angle;
-    place.c = std::cos(place.angle);
-    place.s = std::sin(place.angle);
+    const portable::SinCos turn = portable::sin_cos(place.angle);
+    place.c = turn.cos;
+    place.s = turn.sin;
     cluster.inertia += system.bodies[i].mass * lever.squaredNorm();
   }
   int extra = system.links.slot_count();

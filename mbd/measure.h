@@ -9,6 +9,7 @@
 //   bias = second time derivative at zero accelerations (q̇ᵀ f_qq q̇; γ of physics.md §1 is −bias).
 #pragma once
 
+#include "mbd/math/portable_math.h"
 #include "mbd/motion.h"
 
 namespace steplap {
@@ -215,7 +216,7 @@ struct RollRoundMeasure {
   double radius_a = 0.0, radius_b = 0.0;
   template <bool WithBias, class S, class B>
   STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
-    using std::atan2;
+    using portable::atan2;
     using std::sqrt;
     MeasureValue<S> m;
     const S reach(radius_a + radius_b);

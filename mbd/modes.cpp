@@ -54,7 +54,7 @@ std::vector<std::complex<double>> shape_of(const System& system, const Dynamics&
     shape[3 * i + 2] = turn;
     const double gyration = std::sqrt(system.bodies[i].inertia / system.bodies[i].mass);
     for (const auto& part : {shape[3 * i], shape[3 * i + 1], gyration * turn})
-      if (std::abs(part) > std::abs(largest)) largest = part;
+      if (size_of(part) > size_of(largest)) largest = part;
   }
   if (largest != 0.0)
     for (auto& part : shape) part /= largest;
@@ -64,8 +64,12 @@ std::vector<std::complex<double>> shape_of(const System& system, const Dynamics&
 } // namespace
 
 double VibrationMode::frequency() const { return std::abs(eigenvalue.imag()) / k_two_pi; }
-double VibrationMode::natural_frequency() const { return std::abs(eigenvalue) / k_two_pi; }
-double VibrationMode::damping_ratio() const { return -eigenvalue.real() / std::abs(eigenvalue); }
+double VibrationMode::natural_frequency() const {
+  return size_of(eigenvalue) / k_two_pi;
+}
+double VibrationMode::damping_ratio() const {
+  return -eigenvalue.real() / size_of(eigenvalue);
+}
 
 VibrationModes vibration_modes(const System& system, const State& state) {
   Dynamics dynamics(system);
@@ -102,10 +106,12 @@ VibrationModes vibration_modes(const System& system, const State& state) {
   const Eigen::EigenSolver<MatX> solver(companion);
   if (solver.info() != Eigen::Success) throw NumericalFailure("the eigenvalues of the small vibrations do not converge");
   const auto& values = solver.eigenvalues();
-  const double largest = values.cwiseAbs().maxCoeff();
+  double largest = 0.0;
+  for (int i = 0; i < 2 * r; ++i)
+    largest = std::max(largest, size_of(values[i]));
   int rigid = 0;
   for (int i = 0; i < 2 * r; ++i) {
-    if (std::abs(values[i]) <= k_rigid_tolerance * largest) {
+    if (size_of(values[i]) <= k_rigid_tolerance * largest) {
       ++rigid;
       continue;
     }

@@ -8,12 +8,18 @@
 #pragma once
 
 #include "mbd/dynamics.h"
+#include "mbd/math/portable_math.h"
 
 #include <complex>
 #include <string>
 #include <vector>
 
 namespace steplap {
+
+/// |z|, where std::abs would call the C library.
+[[nodiscard]] inline double size_of(const std::complex<double>& z) {
+  return portable::hypot(z.real(), z.imag());
+}
 
 struct VibrationMode {
   std::complex<double> eigenvalue; ///< 1/s; of a pair the one with the positive imaginary part

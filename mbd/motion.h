@@ -1,6 +1,7 @@
 // Motion of a body and the wrench that acts on it, as every element sees them.
 #pragma once
 
+#include "mbd/math/portable_math.h"
 #include "mbd/types.h"
 
 #include <cmath>
@@ -17,8 +18,9 @@ template <class S> struct Motion {
   S vx{0}, vy{0}, omega{0};
 };
 
-/// Sets θ with its cosine and sine. Machines in transit turn by a few milliradians: up to 0.2 rad the
-/// series to θ¹² (remainder below 1e-20) costs a third of the library's functions, which hold beyond.
+/// Sets θ with its cosine and sine. Machines in transit turn by a few milliradians: up to 0.2 rad
+/// the series to θ¹² (remainder below 1e-20) costs a third of portable_math.h's functions, which
+/// hold beyond.
 STEPLAP_INLINE void set_angle(Motion<double>& m, double theta) {
   m.theta = theta;
   const double z = theta * theta;
@@ -30,8 +32,9 @@ STEPLAP_INLINE void set_angle(Motion<double>& m, double theta) {
     m.s = theta - theta * z * ((1.0 / 6.0 - z * (1.0 / 120.0)) +
                                z2 * ((1.0 / 5040.0 - z * (1.0 / 362880.0)) + z2 * (1.0 / 39916800.0)));
   } else {
-    m.c = std::cos(theta);
-    m.s = std::sin(theta);
+    const portable::SinCos turn = portable::sin_cos(theta);
+    m.c = turn.cos;
+    m.s = turn.sin;
   }
 }
 

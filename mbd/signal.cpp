@@ -1,5 +1,7 @@
 #include "mbd/signal.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +18,7 @@ struct PieceJet {
 
 // sin x − x without cancellation.
 double sine_minus_argument(double x) {
-  if (std::abs(x) > 0.5) return std::sin(x) - x;
+  if (std::abs(x) > 0.5) return portable::sin(x) - x;
   const double y = x * x;
   // Taylor series; the first term left out is x¹⁷/17! < 1e-19 of the first at |x| = 0.5.
   return x * y *
@@ -31,7 +33,7 @@ double sine_minus_argument(double x) {
 // ∫ = A/ω [cos φ sin x − sin φ (1−cos x)], ∬ = A/ω² [cos φ (1−cos x) + sin φ (sin x − x)].
 void add_harmonic(const Signal::Harmonic& h, double tau, PieceJet& jet) {
   const double x = h.frequency * tau;
-  const double s = std::sin(0.5 * x), c = std::cos(0.5 * x);
+  const auto [s, c] = portable::sin_cos(0.5 * x);
   const double sine = 2.0 * s * c, versine = 2.0 * s * s, cosine = 1.0 - versine;
   const double value = h.amplitude * (h.cos_phase * cosine - h.sin_phase * sine);
   const double slope = -h.amplitude * (h.sin_phase * cosine + h.cos_phase * sine);
@@ -105,8 +107,9 @@ Signal::Signal(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
   for (Piece& piece : pieces_) {
     piece.is_level = piece.c[1] == 0.0 && piece.c[2] == 0.0 && piece.c[3] == 0.0;
     for (Harmonic& h : piece.harmonics) {
-      h.cos_phase = std::cos(h.phase);
-      h.sin_phase = std::sin(h.phase);
+      const portable::SinCos phase = portable::sin_cos(h.phase);
+      h.cos_phase = phase.cos;
+      h.sin_phase = phase.sin;
       h.integral_scale = h.amplitude / h.frequency;
       h.double_integral_scale = h.integral_scale / h.frequency;
     }

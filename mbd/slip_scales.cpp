@@ -1,6 +1,7 @@
 // What slip laws that turn with the direction of slip ask of a method: how fine velocities have to be known, and how
 // short steps have to be.
 #include "mbd/dynamics.h"
+#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +32,8 @@ bool Dynamics::slip_scales(double* scale) const {
       const int cluster = layout_->placements[body].cluster;
       if (cluster < 0) continue;
       const Motion<double>& centre = motion_[layout_->clusters[cluster].motion];
-      const double lever = found.lever + std::hypot(motion_[row.a].x - centre.x, motion_[row.a].y - centre.y);
+      const double lever =
+          found.lever + portable::hypot(motion_[row.a].x - centre.x, motion_[row.a].y - centre.y);
       double* const of_cluster = scale + 3 * cluster;
       for (int c = 0; c < 3; ++c)
         of_cluster[c] = std::min(of_cluster[c], c < 2 ? found.speed : found.speed / lever);

@@ -3,6 +3,8 @@
 // Frame: x forward (direction of travel), y up, angles counter-clockwise. SI units and radians.
 #pragma once
 
+#include "mbd/math/portable_math.h"
+
 #include <Eigen/Core>
 
 namespace steplap {
@@ -25,7 +27,7 @@ inline constexpr int k_ground = 0; ///< index of the ground among the bodies of 
 
 /// R(angle) a.
 [[nodiscard]] inline Vec2 rotated(const Vec2& a, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
+  const auto [s, c] = portable::sin_cos(angle);
   return {c * a.x() - s * a.y(), s * a.x() + c * a.y()};
 }
 

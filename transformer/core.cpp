@@ -2,6 +2,7 @@
 
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/number_text.h"
 #include "transformer/book.h"
 #include "transformer/corner.h"
@@ -162,8 +163,11 @@ void CoreBuilder::check_dimensions() {
           metres(core_.core_height) + ": 'core_height' is from the bottom of the lower yoke to the top of "
           "the upper", "core_height");
   if (!core_.limbs.empty())
-    check_angle(core_.mitre_angle.value_or(std::atan2(core_.yoke_height, core_.limb_width)), "mitre",
-                core_.mitre_angle ? "" : "; it follows from 'yoke_height' and 'limb_width' unless 'mitre_angle' is given");
+    check_angle(
+        core_.mitre_angle.value_or(portable::atan2(core_.yoke_height, core_.limb_width)), "mitre",
+        core_.mitre_angle
+            ? ""
+            : "; it follows from 'yoke_height' and 'limb_width' unless 'mitre_angle' is given");
   if (!core_.middle_limbs.empty()) check_notch();
 }
 
@@ -175,7 +179,8 @@ void CoreBuilder::check_angle(double angle, const std::string& what, const std::
 
 void CoreBuilder::check_notch() {
   check_angle(notch_angle(), "notch", "");
-  const double depth = 0.5 * core_.limb_width * std::tan(notch_angle());
+  const auto [s, c] = portable::sin_cos(notch_angle());
+  const double depth = 0.5 * core_.limb_width * s / c;
   if (depth > core_.yoke_height)
     error("the point of a middle limb, " + metres(depth) + " high, is higher than the yoke of " +
           metres(core_.yoke_height) + ": take a smaller 'notch_angle'", "notch_angle");

@@ -1,16 +1,19 @@
 #include "transformer/corner.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace steplap {
 
 CornerFrame corner_frame(const Mitre& mitre, double side, double level) {
-  const double diagonal = std::hypot(mitre.limb_width, mitre.yoke_height);
+  const double diagonal = portable::hypot(mitre.limb_width, mitre.yoke_height);
   double c = mitre.limb_width / diagonal, s = mitre.yoke_height / diagonal;
   if (mitre.angle) {
-    c = std::cos(*mitre.angle);
-    s = std::sin(*mitre.angle);
+    const portable::SinCos angle = portable::sin_cos(*mitre.angle);
+    c = angle.cos;
+    s = angle.sin;
   }
   CornerFrame frame;
   frame.origin = {-0.5 * side * mitre.limb_width, level * (0.5 * mitre.core_height - mitre.yoke_height)};
@@ -22,7 +25,7 @@ CornerFrame corner_frame(const Mitre& mitre, double side, double level) {
 
 CornerFrame notch_frame(const Mitre& mitre, double side, double level) {
   CornerFrame frame = corner_frame(mitre, side, level);
-  frame.length = 0.5 * mitre.limb_width / std::cos(*mitre.angle);
+  frame.length = 0.5 * mitre.limb_width / portable::cos(*mitre.angle);
   return frame;
 }
 

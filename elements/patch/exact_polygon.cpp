@@ -1,5 +1,7 @@
 #include "elements/patch/exact_polygon.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <CGAL/Boolean_set_operations_2.h>
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
@@ -67,7 +69,8 @@ std::optional<std::array<std::size_t, 4>> clash_within(const Ring& r, std::size_
 
 ExactRing exact_ring(const Ring& ring, const Pose& pose) {
   // The affine map itself is exact: a simple ring stays simple whatever sine and cosine round to.
-  const Exact::FT c(std::cos(pose.theta)), s(std::sin(pose.theta)), x(pose.x), y(pose.y);
+  const portable::SinCos turn = portable::sin_cos(pose.theta);
+  const Exact::FT c(turn.cos), s(turn.sin), x(pose.x), y(pose.y);
   const bool moved = pose.theta != 0;
   ExactRing out;
   for (const Vec2& p : ring) {

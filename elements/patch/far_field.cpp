@@ -1,5 +1,7 @@
 #include "elements/patch/far_field.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -28,7 +30,7 @@ struct GaussRule {
 GaussRule gauss_rule() {
   GaussRule rule;
   for (int i = 0; i < k_nodes; ++i) {
-    double z = std::cos(std::numbers::pi * (i + 0.75) / (k_nodes + 0.5)), slope = 1;
+    double z = portable::cos(std::numbers::pi * (i + 0.75) / (k_nodes + 0.5)), slope = 1;
     for (int pass = 0; pass < 8; ++pass) {
       double p = 1, before = 0;
       for (int n = 1; n <= k_nodes; ++n)

@@ -42,7 +42,8 @@ PieceDissipation evaluate_near(const PatchEdge* edges, const Patch::Piece& piece
 template <bool WithCurvature>
 PieceDissipation evaluate_piece(const Patch& patch, std::size_t i, const Vec2& v, double omega) {
   const Patch::Piece& piece = patch.pieces()[i];
-  if (v.squaredNorm() <= std::pow(k_far_ratio * piece.radius * omega, 2))
+  const double reach = k_far_ratio * piece.radius * omega;
+  if (v.squaredNorm() <= reach * reach)
     return omega == 0 ? PieceDissipation{}
                       : evaluate_near<WithCurvature>(patch.edges(piece), piece, v, omega);
   if (const FarField* far = PatchAccess::far(patch, i))

@@ -1,5 +1,7 @@
 #include "elements/patch/overlap.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +12,7 @@ namespace steplap {
 namespace {
 
 void place(const Ring& ring, const Pose& pose, Ring& out) {
-  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+  const auto [s, c] = portable::sin_cos(pose.theta);
   out.resize(ring.size());
   for (std::size_t i = 0; i < ring.size(); ++i)
     out[i] = {c * ring[i].x() - s * ring[i].y() + pose.x,
@@ -69,7 +71,7 @@ double widest_gap(const Ring& ring, const Ring& other) {
 } // namespace
 
 Vec2 placed(const Vec2& p, const Pose& pose) {
-  const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+  const auto [s, c] = portable::sin_cos(pose.theta);
   return {c * p.x() - s * p.y() + pose.x, s * p.x() + c * p.y() + pose.y};
 }
 

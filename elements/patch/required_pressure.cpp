@@ -1,6 +1,7 @@
 #include "elements/patch/required_pressure.h"
 
 #include "elements/patch/gauge.h"
+#include "mbd/math/portable_math.h"
 
 #include <cmath>
 #include <limits>
@@ -9,7 +10,7 @@ namespace steplap {
 
 std::optional<Vec2> centre_of_rotation(const Vec2& reference, const Vec3& nu) {
   constexpr double infinite = 1e12; // [m]
-  if (std::hypot(nu[0], nu[1]) >= infinite * std::abs(nu[2])) return std::nullopt;
+  if (portable::hypot(nu[0], nu[1]) >= infinite * std::abs(nu[2])) return std::nullopt;
   return reference + Vec2(-nu[1], nu[0]) / nu[2];
 }
 

@@ -1,6 +1,7 @@
 #include "mbd/integrators/explicit_pair.h"
 
 #include "mbd/integrators/singular_passage.h"
+#include "mbd/math/portable_math.h"
 
 #include <limits>
 
@@ -129,7 +130,9 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
       h = SingularPassage::k_shorter_across * h_;
       continue;
     }
-    h = std::isfinite(error) ? h_ * std::clamp(0.9 * std::pow(error, -1.0 / order_), k_shortest_retry, 0.9) : k_shorter * h_;
+    h = std::isfinite(error)
+            ? h_ * std::clamp(0.9 * portable::pow(error, -1.0 / order_), k_shortest_retry, 0.9)
+            : k_shorter * h_;
     if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
       throw NumericalFailure("step size fell to " + std::to_string(h) + " s at t = " +
                              std::to_string(t0_) +

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "mbd/integrators/integrator.h"
+#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +49,9 @@ struct StepControl {
 
   [[nodiscard]] double factor(double error, bool is_after_rejection) {
     const double alpha = 1.0 / order - 0.75 * beta;
-    double f = error > 0.0 ? safety * std::pow(error, -alpha) * std::pow(previous_error, beta) : largest;
+    double f = error > 0.0
+                   ? safety * portable::pow(error, -alpha) * portable::pow(previous_error, beta)
+                   : largest;
     f = std::clamp(f, smallest, is_after_rejection ? 1.0 : largest);
     previous_error = std::max(error, 1e-4);
     return f;

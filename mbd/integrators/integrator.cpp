@@ -1,5 +1,7 @@
 #include "mbd/integrators/integrator.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -182,7 +184,7 @@ double Integrator::first_step(Dynamics& dynamics, int order, double h_max) {
   dynamics.rates(t0_ + h, y, f);
   for (int i = 0; i < n_; ++i) change[i] = (f[i] - k0_[i]) / h;
   const double curvature = std::max(slope, error_norm(change));
-  const double h1 = curvature > 0.0 ? std::pow(0.01 / curvature, 1.0 / (order + 1)) : h_max;
+  const double h1 = curvature > 0.0 ? portable::pow(0.01 / curvature, 1.0 / (order + 1)) : h_max;
   return std::min({100.0 * h, h1, h_max});
 }
 

@@ -14,6 +14,7 @@
 #include "mbd/integrators/methods.h"
 #include "mbd/integrators/stage_system.h"
 #include "mbd/integrators/tableau_rodas5p.h"
+#include "mbd/math/portable_math.h"
 
 #include <limits>
 
@@ -204,7 +205,9 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
       return;
     }
     ++rejections_;
-    h = std::isfinite(error) ? h_ * std::clamp(0.9 * std::pow(error, -1.0 / control_.order), 0.1, 0.9) : 0.2 * h_;
+    h = std::isfinite(error)
+            ? h_ * std::clamp(0.9 * portable::pow(error, -1.0 / control_.order), 0.1, 0.9)
+            : 0.2 * h_;
     if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
       throw NumericalFailure("step size fell to " + std::to_string(h) + " s at t = " +
                              std::to_string(t0_) +

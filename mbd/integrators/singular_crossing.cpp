@@ -1,5 +1,7 @@
 #include "mbd/integrators/singular_crossing.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -70,7 +72,7 @@ const GaussTable& gauss_table() {
     GaussTable t;
     std::array<long double, n> c{};
     for (int i = 0; i < n; ++i) {
-      long double x = -std::cos(std::numbers::pi_v<long double> * (i + 0.75L) / (n + 0.5L));
+      long double x = -portable::cos(std::numbers::pi * (i + 0.75) / (n + 0.5));
       for (int k = 0; k < 20; ++k) {
         const Legendre p = legendre(n, x);
         x -= p.value / p.slope;

@@ -1,6 +1,7 @@
 // Friction in a time step: its rows, what wrenches along them do, and which of them the elements
 // bear.
 #include "mbd/integrators/time_stepping.h"
+#include "mbd/math/portable_math.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -197,8 +198,8 @@ void TimeStepping::free_rates(const Dynamics& dynamics, double tolerance) {
         rate_[r] -= compliance_[r * rows_ + j] * wrench_[j];
       for (const int body : {specs[i].a, specs[i].b})
         if (body != k_ground)
-          speed = std::max(
-              {speed, std::hypot(motion[body].vx, motion[body].vy), std::abs(motion[body].omega)});
+          speed = std::max({speed, portable::hypot(motion[body].vx, motion[body].vy),
+                            std::abs(motion[body].omega)});
     }
     part.noise = k_rest * speed + k_tolerances_at_rest * tolerance;
   }

@@ -4,6 +4,7 @@
 // μ = 0.25, p = 0.10 MPa. Wrenches about the limb's centre of gravity.
 #include "elements/patch/overlap.h"
 #include "elements/patch/required_pressure.h"
+#include "mbd/math/portable_math.h"
 #include "transformer/book.h"
 #include "transformer/corner.h"
 
@@ -63,7 +64,7 @@ void write_section(const std::string& path, const Patch& patch, int i, int j) {
   constexpr int k_points = 360;
   for (int k = 0; k <= k_points; ++k) {
     const double phi = 2.0 * std::numbers::pi * k / k_points;
-    const Vec3 w = a * std::cos(phi) * Vec3::Unit(i) + b * std::sin(phi) * Vec3::Unit(j);
+    const Vec3 w = a * portable::cos(phi) * Vec3::Unit(i) + b * portable::sin(phi) * Vec3::Unit(j);
     const double u = required_pressure(patch, w).u;
     file << w[i] / u / 1e3 << ' ' << w[j] / u / 1e3 << ' ' << w[i] / 1e3 << ' ' << w[j] / 1e3 << '\n';
   }
@@ -80,10 +81,12 @@ void write_slices(const std::string& path, const Patch& patch) {
       double low = 0.0, high = patch.force();
       for (int step = 0; step < 40; ++step) {
         const double f = 0.5 * (low + high);
-        const bool is_inside = required_pressure(patch, {f * std::cos(phi), f * std::sin(phi), share * most}).u < 1.0;
+        const bool is_inside =
+            required_pressure(patch, {f * portable::cos(phi), f * portable::sin(phi), share * most})
+                .u < 1.0;
         (is_inside ? low : high) = f;
       }
-      file << low * std::cos(phi) / 1e3 << ' ' << low * std::sin(phi) / 1e3 << '\n';
+      file << low * portable::cos(phi) / 1e3 << ' ' << low * portable::sin(phi) / 1e3 << '\n';
     }
     file << "\n\n";
   }

@@ -1,6 +1,7 @@
 #include "tools/steplap/accuracy_report.h"
 
 #include "mbd/io/csv.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/number_text.h"
 #include "tools/steplap/text_table.h"
 
@@ -73,14 +74,14 @@ struct Axis {
   double from = 0.0, to = 1.0;             ///< on the paper
   void take(double value) {
     if (!(value > 0.0)) return;
-    low = std::min(low, std::floor(std::log10(value)));
-    high = std::max(high, std::ceil(std::log10(value)));
+    low = std::min(low, std::floor(portable::log10(value)));
+    high = std::max(high, std::ceil(portable::log10(value)));
   }
   void close() {
     if (!(low < high)) high = low + 1.0;
   }
   [[nodiscard]] double at(double value) const {
-    return from + (to - from) * (std::log10(value) - low) / (high - low);
+    return from + (to - from) * (portable::log10(value) - low) / (high - low);
   }
 };
 
@@ -125,11 +126,11 @@ std::string grid(const Axis& x, const Axis& y) {
   std::string svg;
   const std::string style = "stroke=\"#dddddd\"";
   for (double d = x.low; d <= x.high + 0.5; d += 1.0) {
-    const double at = x.at(std::pow(10.0, d));
+    const double at = x.at(portable::pow(10.0, d));
     svg += line(at, y.from, at, y.to, style) + label(at, y.from + 18.0, "middle", power_of_ten(d));
   }
   for (double d = y.low; d <= y.high + 0.5; d += 1.0) {
-    const double at = y.at(std::pow(10.0, d));
+    const double at = y.at(portable::pow(10.0, d));
     svg +=
         line(x.from, at, x.to, at, style) + label(x.from - 8.0, at + 4.0, "end", power_of_ten(d));
   }
@@ -254,7 +255,8 @@ std::string work_precision_svg(const AccuracyStudy& study, const std::string& ti
   double resolution = 0.0;
   for (const ErrorKind kind : k_kinds)
     if (study.is_resolved(kind)) resolution = std::max(resolution, study.resolution.of(kind).value);
-  if (resolution > 0.0 && std::log10(resolution) >= x.low && std::log10(resolution) <= x.high)
+  if (resolution > 0.0 && portable::log10(resolution) >= x.low &&
+      portable::log10(resolution) <= x.high)
     svg += line(x.at(resolution), y.from, x.at(resolution), y.to,
                 "stroke=\"#888888\" stroke-dasharray=\"4 3\"");
   const std::vector<std::string> names = integrators_of(points);

@@ -45,7 +45,8 @@ std::string shape_text(const System& system, const VibrationMode& mode) {
     static constexpr const char* names[] = {".x", ".y", ".theta"};
     for (int c = 0; c < 3; ++c) {
       const std::complex<double> part = (c < 2 ? 1.0 : gyration) * mode.shape[3 * i + c];
-      parts.push_back({body.name + names[c], std::abs(part), std::copysign(std::abs(part), part.real())});
+      const double size = size_of(part);
+      parts.push_back({body.name + names[c], size, std::copysign(size, part.real())});
     }
   }
   constexpr std::size_t k_shown = 3;

@@ -1,5 +1,6 @@
 #include "tools/steplap/run_screen.h"
 
+#include "mbd/math/portable_math.h"
 #include "mbd/number_text.h"
 #include "mbd/validate.h"
 #include "tools/steplap/text_table.h"
@@ -99,9 +100,9 @@ void print_joints(std::ostream& out, const FinishedRun& finished) {
   table.add_row({"", "verdict", "first slip", "largest p_req", "at", "margin", "slid", "area lost"});
   for (const JointAssessment& a : joints)
     table.add_row({a.joint, a.verdict, a.first_slip ? time_text(*a.first_slip) + " s" : "–",
-                   quantity_text(a.largest_required_pressure, "Pa"), sample_time_text(a.time_of_largest),
-                   small_margin_text(a.smallest_margin),
-                   quantity_text(std::hypot(a.slid_x, a.slid_y), "m", 1e-3),
+                   quantity_text(a.largest_required_pressure, "Pa"),
+                   sample_time_text(a.time_of_largest), small_margin_text(a.smallest_margin),
+                   quantity_text(portable::hypot(a.slid_x, a.slid_y), "m", 1e-3),
                    quantity_text(a.area_lost, "m^2", 1.0)});
   if (!joints.empty()) out << "\nStep-lap joints\n" << table;
 }
