@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace steplap {
@@ -14,8 +15,10 @@ namespace {
 // What a row is beyond the others, of its length: a box that has turned by a microradian. The pivots of the constraint
 // equations are squares of it and leave rows out below 3e-7: whatever they leave out is found here.
 constexpr double k_dependent = 1e-6;
-// Rows of a group move against each other: absolute, m/s and m/s², and of the terms that make up their motion.
-constexpr double k_least_rate = 1e-12, k_least_acceleration = 1e-10;
+// Rows of a group move against each other: absolute, m/s and m/s², and of the terms that make up their motion; or are held
+// at places that are apart, m: less than what projection is content with (IntegratorSettings).
+constexpr double k_least_rate = 1e-12, k_least_acceleration = 1e-10, k_least_gap = 3e-13;
+constexpr double k_place_rounding = 8.0 * std::numeric_limits<double>::epsilon(); // of coordinates
 constexpr double k_discord = 1e-9;
 constexpr double k_open = 1e-6; // of a capacity: bounds of a usage that differ by more have not met
 // Parts of a null vector below this are rounding.
@@ -296,7 +299,7 @@ double LoadSharing::discord(int group, const Evaluation& e, const double* accele
     for (std::size_t g = 0; g < part.groups.size(); ++g) {
       if (part.groups[g] != group) continue;
       for (const int column : part.columns[g]) {
-        double rate = 0.0, rate_terms = 0.0, second = 0.0, second_terms = 0.0, length = 0.0;
+        double gap = 0.0, farthest = 0.0, rate = 0.0, rate_terms = 0.0, second = 0.0, second_terms = 0.0, length = 0.0;
         for (std::size_t r = 0; r < part.rows.size(); ++r) {
           const double n = part.null(static_cast<Eigen::Index>(r), column);
           if (n == 0.0) continue;
@@ -309,6 +312,7 @@ double LoadSharing::discord(int group, const Evaluation& e, const double* accele
           for (const int side : {0, 1}) {
             const int body = side == 0 ? spec.a : spec.b;
             if (body == k_ground) continue;
+            farthest = std::max({farthest, std::abs(e.motion[body].x), std::abs(e.motion[body].y)});
             const double v[3] = {e.motion[body].vx, e.motion[body].vy, e.motion[body].omega};
             for (int c = 0; c < 3; ++c) {
               const double term = j.side[side][c] * acceleration[3 * body + c];
@@ -317,13 +321,14 @@ double LoadSharing::discord(int group, const Evaluation& e, const double* accele
               rate_sum += std::abs(j.side[side][c] * v[c]);
             }
           }
+          gap += n * off_target(spec, m.value, target.value);
           rate += n * (m.rate - target.rate);
           rate_terms += std::abs(n) * rate_sum;
           second += n * along;
           second_terms += std::abs(n) * terms;
           length += std::abs(n);
         }
-        worst = std::max({worst, std::abs(rate) / (k_discord * rate_terms + k_least_rate * length),
+        worst = std::max({worst, std::abs(gap) / ((k_least_gap + k_place_rounding * farthest) * length), std::abs(rate) / (k_discord * rate_terms + k_least_rate * length),
                           std::abs(second) / (k_discord * second_terms + k_least_acceleration * length)});
       }
     }
