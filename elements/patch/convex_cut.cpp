@@ -9,6 +9,8 @@ namespace steplap {
 
 namespace {
 
+constexpr double k_straight = 1e-9; // rad
+
 /// One side of a part as it is being merged: half of an edge or of a cut.
 struct Half {
   std::size_t from = 0;           ///< vertex of the polygon
@@ -72,12 +74,13 @@ public:
 private:
   void add_ring(const Ring& ring) { points_.insert(points_.end(), ring.begin(), ring.end()); }
 
-  /// Without this half and its twin the corner where it starts would still be convex.
+  /// Without this half and its twin the corner where it starts would still be convex. And not straight: of two sides on
+  /// one line clipping could not tell which is which.
   [[nodiscard]] bool turns_left(std::size_t h) const {
     const Vec2& a = points_[halves_[halves_[h].prev].from];
     const Vec2& b = points_[halves_[h].from];
     const Vec2& c = points_[halves_[halves_[halves_[halves_[h].twin].next].next].from];
-    return cross(b - a, c - b) >= 0;
+    return cross(b - a, c - b) > k_straight * (b - a).norm() * (c - b).norm();
   }
 
   void take_out(std::size_t h) {

@@ -85,10 +85,14 @@ ExactPolygon exact_polygon(const Polygon& polygon, const Pose& pose) {
   return out;
 }
 
+/// To a double's own rounding. to_double() of the number as it stands settles for the middle of an interval that may
+/// be 1e-5 wide, as it is where nearly parallel edges cross.
+double rounded(const Exact::FT& x) { return CGAL::to_double(x.exact()); }
+
 Ring rounded(const ExactRing& ring) {
   Ring out;
   for (auto v = ring.vertices_begin(); v != ring.vertices_end(); ++v)
-    out.emplace_back(CGAL::to_double(v->x()), CGAL::to_double(v->y()));
+    out.emplace_back(rounded(v->x()), rounded(v->y()));
   return out;
 }
 

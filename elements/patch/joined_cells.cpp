@@ -9,6 +9,9 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_none = CellWorkspace::k_none;
+// Roundings that the ends of one side, clipped twice, may be apart. Along the cut they differ the more the flatter
+// another edge crosses it; that costs nothing, the rings stay closed and on the lines of the edges.
+constexpr double k_ends = 1e7;
 
 bool is_apart(const Box& a, const Box& b) {
   return a.high.x() < b.low.x() || b.high.x() < a.low.x() || a.high.y() < b.low.y() || b.high.y() < a.low.y();
@@ -94,7 +97,7 @@ private:
   }
 
   [[nodiscard]] bool agree(std::size_t k, std::size_t l) const {
-    return (w_.corners[k].at - w_.corners[l].at).lpNorm<Eigen::Infinity>() <= rounding_;
+    return (w_.corners[k].at - w_.corners[l].at).lpNorm<Eigen::Infinity>() <= k_ends * rounding_;
   }
 
   /// The cell with more corners looks through the one with fewer.
@@ -128,11 +131,12 @@ private:
     return k;
   }
 
-  /// The ring that side `start` belongs to; edges that cuts had divided are put together again.
+  /// The ring that side `start` belongs to; edges that cuts had divided are put together again. Not so cuts that had to
+  /// stay: the ring may turn back at the end of one, along its other side.
   void write_ring(std::size_t start, Region& out) {
     const auto is_same = [&](std::size_t k, std::size_t l) {
       const Corner &c = w_.corners[k], &d = w_.corners[l];
-      return c.is_second == d.is_second && c.side.edge == d.side.edge;
+      return c.side.beyond < 0 && c.is_second == d.is_second && c.side.edge == d.side.edge;
     };
     Ring ring = spare_ring();
     std::size_t k = start;

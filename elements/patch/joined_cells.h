@@ -37,7 +37,7 @@ struct CellWorkspace {
 };
 
 /// Appends a ∩ b, b's corners being those in w.placed, to `out`: polygons with more than
-/// `least_area`, their storage taken from w's spare ones. Lengths below `rounding` are none.
+/// `least_area`, their storage taken from w's spare ones. Coordinates are good to `rounding`, and what is narrower is nothing.
 void join_cells(const ConvexCut& a, const ConvexCut& b, double rounding, double least_area, CellWorkspace& w,
                 Region& out);
 

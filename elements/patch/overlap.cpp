@@ -9,7 +9,7 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_rounding = 1e-15; // of coordinates, after turning, adding and clipping, relative to the largest
+constexpr double k_rounding = 1e-16; // of coordinates, turned and shifted, relative to the sheets' reach together
 
 void place(const Ring& ring, const Pose& pose, Ring& out) {
   const double c = std::cos(pose.theta), s = std::sin(pose.theta);
