@@ -17,6 +17,16 @@ bool is_apart(const Box& a, const Box& b) {
   return a.high.x() < b.low.x() || b.high.x() < a.low.x() || a.high.y() < b.low.y() || b.high.y() < a.low.y();
 }
 
+/// One of the part's sides has the whole box on its outside: long parts that lie askew have large boxes.
+bool has_outside(const Vec2* corners, std::size_t count, const Box& box) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 &from = corners[i], along = corners[i + 1 == count ? 0 : i + 1] - from;
+    const Vec2 innermost(along.y() > 0 ? box.low.x() : box.high.x(), along.x() > 0 ? box.high.y() : box.low.y());
+    if (cross(along, innermost - from) < 0) return true;
+  }
+  return false;
+}
+
 class Joiner {
 public:
   Joiner(const ConvexCut& a, const ConvexCut& b, double rounding, CellWorkspace& w)
@@ -70,6 +80,7 @@ private:
 
   void make_cell(std::size_t i, std::size_t j) {
     const ConvexPart &p = a_.parts[i], &q = b_.parts[j];
+    if (has_outside(&a_.corners[p.first], p.count, w_.boxes[j]) || has_outside(&w_.placed[q.first], q.count, p.box)) return;
     clip({&a_.corners[p.first], &a_.sides[p.first], p.count}, {&w_.placed[q.first], &b_.sides[q.first], q.count},
          w_.clip);
     const std::vector<Corner>& ring = w_.clip.ring;

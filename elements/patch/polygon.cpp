@@ -66,6 +66,11 @@ bool is_idle(const Vec2& a, const Vec2& b, const Vec2& c, double size) {
          std::abs(cross(b - a, c - b)) <= k_collinear * size * longest;
 }
 
+std::string vertex_name(const TracedRing& r, std::size_t i) {
+  return "vertex " + std::to_string(r.from[i]) + " (" + std::to_string(r.ring[i].x()) + ", " +
+         std::to_string(r.ring[i].y()) + ")";
+}
+
 TracedRing without_idle_vertices(const Ring& input, const std::string& name) {
   TracedRing out;
   out.name = name;
@@ -90,7 +95,9 @@ TracedRing without_idle_vertices(const Ring& input, const std::string& name) {
     }
   }
   if (out.ring.size() < 3)
-    throw PolygonError(name + ": has no area; it needs three vertices that are not on one line");
+    throw PolygonError(name + ": has no area" +
+                       (input.empty() ? "" : ", with " + vertex_name({name, input, {0}}, 0)) +
+                       "; it needs three vertices that are not on one line");
   return out;
 }
 
@@ -99,11 +106,6 @@ void orient(TracedRing& traced, bool ccw) {
   if ((signed_area(traced.ring) > 0) == ccw) return;
   std::reverse(traced.ring.begin(), traced.ring.end());
   std::reverse(traced.from.begin(), traced.from.end());
-}
-
-std::string vertex_name(const TracedRing& r, std::size_t i) {
-  return "vertex " + std::to_string(r.from[i]) + " (" + std::to_string(r.ring[i].x()) + ", " +
-         std::to_string(r.ring[i].y()) + ")";
 }
 
 std::string edge_name(const TracedRing& r, std::size_t edge) {

@@ -176,6 +176,15 @@ TEST_CASE("concave overlap: nearly on each other") {
   }
 }
 
+TEST_CASE("exact overlap: coordinates are rounded from exact numbers") {
+  // Squares of side 1 on one centre, turned by φ: an octagon of area 2/(1 + sin φ + cos φ). Its edges cross at the angle
+  // φ, and an interval about such a crossing is 1e-16/φ wide: its middle was up to 1e-5 off.
+  for (const double phi : {0.5, 1e-3, 1e-6, 1e-9, 1e-11, 1e-13}) {
+    const Polygon square = box(-0.5, -0.5, 0.5, 0.5);
+    CHECK(std::abs(area(exact_intersection(square, square, {0, 0, phi})) - 2 / (1 + std::sin(phi) + std::cos(phi))) < 1e-15);
+  }
+}
+
 TEST_CASE("concave overlap: slits") {
   Both both;
   for (const double width : {1e-3, 1e-6, 1e-9, 1e-12}) {
