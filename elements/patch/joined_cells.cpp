@@ -80,7 +80,8 @@ private:
 
   void make_cell(std::size_t i, std::size_t j) {
     const ConvexPart &p = a_.parts[i], &q = b_.parts[j];
-    if (has_outside(&a_.corners[p.first], p.count, w_.boxes[j]) || has_outside(&w_.placed[q.first], q.count, p.box)) return;
+    if (has_outside(&a_.corners[p.first], p.count, w_.boxes[j])) return;
+    if (has_outside(&w_.placed[q.first], q.count, p.box)) return;
     clip({&a_.corners[p.first], &a_.sides[p.first], p.count}, {&w_.placed[q.first], &b_.sides[q.first], q.count},
          w_.clip);
     const std::vector<Corner>& ring = w_.clip.ring;

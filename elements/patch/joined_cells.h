@@ -30,7 +30,8 @@ struct CellWorkspace {
   std::vector<Cell> cells;
   std::vector<std::size_t> cell_of; ///< by pair of parts; all k_none between calls
   std::vector<Corner> corners;      ///< of all cells
-  std::vector<std::size_t> cell_at, partner; ///< by corner: its cell; the other half of its side, or k_none
+  std::vector<std::size_t> cell_at; ///< by corner
+  std::vector<std::size_t> partner; ///< by corner: the other half of its side, or k_none
   std::vector<char> is_written;     ///< by corner
   std::vector<Polygon> polygons;    ///< spare ones
   std::vector<Ring> rings;          ///< spare ones

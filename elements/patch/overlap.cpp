@@ -69,7 +69,8 @@ double depth_of_parts(const Outline& a, const Outline& b, CellWorkspace& w) {
   for (std::size_t j = 0; j < m; ++j)
     w.boxes[j] = box_of(&w.placed[b.cut.parts[j].first], b.cut.parts[j].count);
   const auto of_pair = [&](std::size_t i, std::size_t j) {
-    return std::min(depth(a.cut.parts[i].box, w.boxes[j]), depth(part(a.cut, i, a.cut.corners), part(b.cut, j, w.placed)));
+    return std::min(depth(a.cut.parts[i].box, w.boxes[j]),
+                    depth(part(a.cut, i, a.cut.corners), part(b.cut, j, w.placed)));
   };
   std::size_t likely[2] = {0, 0};
   double most = -std::numeric_limits<double>::infinity();
