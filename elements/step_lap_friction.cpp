@@ -154,8 +154,11 @@ void StepLapFriction::build(const Pose& pose, GripLaw law, OverlapWorkspace& wor
 Patch StepLapFriction::patch_at(const Pose& pose, GripLaw law) const {
   OverlapWorkspace workspace;
   Region region;
-  Patch patch;
-  build(pose, law, workspace, region, patch);
+  Patch patch({pose.x, pose.y});
+  for (const SheetPair& s : sheets_) {
+    intersect_exactly(s.yoke, s.limb, pose, workspace, region);
+    patch.add(region, law == GripLaw::holding ? s.static_traction : s.kinetic_traction);
+  }
   return patch;
 }
 

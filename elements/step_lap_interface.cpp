@@ -31,16 +31,48 @@ Ring round_hole(const Vec2& centre, double diameter, long sides) {
   return ring;
 }
 
-Outline make_sheet(const StepLapInterface& e, const std::vector<Vec2>& outline,
-                   const std::vector<Vec2>& holes, const std::string& body,
+/// One of the two sheets as the model file gives it.
+struct Sheet {
+  const char* name;
+  const std::vector<Vec2>* outline;
+  const std::vector<Vec2>* holes;
+  const std::vector<std::vector<Vec2>>* cutouts;
+};
+
+Sheet yoke_of(const StepLapInterface& e) { return {"yoke", &e.yoke, &e.yoke_holes, &e.yoke_cutouts}; }
+Sheet limb_of(const StepLapInterface& e) { return {"limb", &e.limb, &e.limb_holes, &e.limb_cutouts}; }
+
+Outline make_sheet(const StepLapInterface& e, const Sheet& sheet, const std::string& body,
                    const SystemBuilder& builder) {
   const bool is_in_body_frame = e.frame == "body";
+  const auto ring_in_body = [&](const std::vector<Vec2>& points) {
+    Ring ring;
+    for (const Vec2& p : points) ring.push_back(in_body(p, is_in_body_frame, body, builder));
+    return ring;
+  };
   Polygon polygon;
-  for (const Vec2& p : outline) polygon.outer.push_back(in_body(p, is_in_body_frame, body, builder));
-  for (const Vec2& p : holes)
+  polygon.outer = ring_in_body(*sheet.outline);
+  for (const Vec2& p : *sheet.holes)
     polygon.holes.push_back(
         round_hole(in_body(p, is_in_body_frame, body, builder), e.hole_diameter, e.hole_sides));
+  for (const std::vector<Vec2>& cutout : *sheet.cutouts) polygon.holes.push_back(ring_in_body(cutout));
   return make_outline(std::move(polygon));
+}
+
+/// Throws PolygonError, which names rings by the fields of the model file and places by its coordinates.
+void check_sheet(const StepLapInterface& e, const Sheet& sheet) {
+  Polygon polygon{*sheet.outline, {}};
+  std::vector<std::string> names;
+  const std::string start = std::string("'") + sheet.name;
+  for (std::size_t i = 0; i < sheet.holes->size(); ++i) {
+    polygon.holes.push_back(round_hole((*sheet.holes)[i], e.hole_diameter, e.hole_sides));
+    names.push_back(start + "_holes[" + std::to_string(i) + "]'");
+  }
+  for (std::size_t i = 0; i < sheet.cutouts->size(); ++i) {
+    polygon.holes.push_back((*sheet.cutouts)[i]);
+    names.push_back(start + "_cutouts[" + std::to_string(i) + "]'");
+  }
+  static_cast<void>(repaired(std::move(polygon), names));
 }
 
 void compile_interface(const Element& element, SystemBuilder& builder) {
@@ -54,8 +86,9 @@ void compile_interface(const Element& element, SystemBuilder& builder) {
     return builder.error("has holes: 'hole_diameter' must be more than 0 m");
   // Each on its own, so that the message can say which of the two.
   for (const bool is_yoke : {true, false}) try {
-      static_cast<void>(make_sheet(e, is_yoke ? e.yoke : e.limb, is_yoke ? e.yoke_holes : e.limb_holes,
-                                   is_yoke ? joint->active_part : joint->limb, builder));
+      const Sheet sheet = is_yoke ? yoke_of(e) : limb_of(e);
+      check_sheet(e, sheet);
+      static_cast<void>(make_sheet(e, sheet, is_yoke ? joint->active_part : joint->limb, builder));
     } catch (const PolygonError& error) {
       builder.error(std::string(is_yoke ? "'yoke'" : "'limb'") + ": " + error.what());
     }
@@ -66,8 +99,8 @@ void compile_interface(const Element& element, SystemBuilder& builder) {
 SheetPair make_sheets(const StepLapInterface& e, const std::string& limb,
                       const std::string& active_part, const SystemBuilder& builder) {
   SheetPair pair;
-  pair.yoke = make_sheet(e, e.yoke, e.yoke_holes, active_part, builder);
-  pair.limb = make_sheet(e, e.limb, e.limb_holes, limb, builder);
+  pair.yoke = make_sheet(e, yoke_of(e), active_part, builder);
+  pair.limb = make_sheet(e, limb_of(e), limb, builder);
   pair.static_traction = e.count * e.pressure * e.static_friction;
   pair.kinetic_traction = e.count * e.pressure * e.kinetic_friction.value_or(e.static_friction);
   pair.count = e.count;
@@ -92,8 +125,10 @@ const ElementKind& step_lap_interface_kind() {
         .doc("corners in ground coordinates of the reference pose, or each in its body's frame");
     f.add("yoke_holes", &T::yoke_holes).in("m").doc("centres of round holes in the yoke sheet");
     f.add("limb_holes", &T::limb_holes).in("m").doc("centres of round holes in the limb sheet");
-    f.add("hole_diameter", &T::hole_diameter).in("m").not_negative().doc("of all of them");
-    f.add("hole_sides", &T::hole_sides).at_least(3).at_most(360).doc("a hole is a polygon of the circle's area");
+    f.add("yoke_cutouts", &T::yoke_cutouts).in("m").doc("holes in the yoke sheet of any shape: corners of each, either sense");
+    f.add("limb_cutouts", &T::limb_cutouts).in("m").doc("holes in the limb sheet of any shape: corners of each, either sense");
+    f.add("hole_diameter", &T::hole_diameter).in("m").not_negative().doc("of all round holes");
+    f.add("hole_sides", &T::hole_sides).at_least(3).at_most(360).doc("a round hole is a polygon of the circle's area");
     f.add("pressure", &T::pressure).in("Pa").positive().required().doc("clamping pressure, constant");
     f.add("static_friction", &T::static_friction).positive().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).positive().doc("mu_k; default: mu_s");

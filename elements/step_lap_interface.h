@@ -16,6 +16,7 @@ struct StepLapInterface : Element {
   std::vector<Vec2> yoke, limb;   ///< m, either sense
   std::string frame = "ground";   ///< "ground": reference pose; "body": each in its own body's frame
   std::vector<Vec2> yoke_holes, limb_holes; ///< centres of round holes, m, in the same frame
+  std::vector<std::vector<Vec2>> yoke_cutouts, limb_cutouts; ///< rings of corners, m, either sense, same frame
   double hole_diameter = 0.0;     ///< m
   long hole_sides = 24;           ///< a hole is a regular polygon of the circle's area
   double pressure = 0.0;          ///< Pa

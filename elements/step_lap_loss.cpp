@@ -43,7 +43,7 @@ OverlapReference::OverlapReference(const std::vector<SheetPair>& sheets, const P
     const SheetPair& s = sheets[i];
     Overlap& o = overlaps_.emplace_back();
     o.corner = i;
-    intersect(s.yoke, s.limb, reference, workspace, region);
+    intersect_exactly(s.yoke, s.limb, reference, workspace, region);
     if (region.empty()) continue;
     o.area = area(region);
     double around = 0.0;

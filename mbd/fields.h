@@ -27,6 +27,7 @@ enum class FieldType {
   vec2,        ///< [x, y], both in `unit`
   numbers,     ///< list of numbers, each in `unit`
   points,      ///< list of [x, y]; x in `unit`, y in `unit2` (same as unit if empty)
+  rings,       ///< list of lists of [x, y]
   body,        ///< name of a body, or "ground"
   marker,      ///< name of a marker or body, or an inline marker { body, at | point, ... }
   signal,      ///< name of a signal
@@ -39,7 +40,7 @@ enum class FieldType {
 
 /// What a field holds, after reading: units removed, inline markers replaced by a marker's name.
 using FieldValue = std::variant<double, long, bool, std::string, Vec2, std::vector<double>,
-                                std::vector<Vec2>, std::vector<std::string>>;
+                                std::vector<Vec2>, std::vector<std::vector<Vec2>>, std::vector<std::string>>;
 
 struct Field {
   std::string name;
@@ -112,6 +113,7 @@ template <class M> constexpr FieldType default_field_type() {
   else if constexpr (std::is_same_v<M, Vec2>) return FieldType::vec2;
   else if constexpr (std::is_same_v<M, std::vector<double>>) return FieldType::numbers;
   else if constexpr (std::is_same_v<M, std::vector<Vec2>>) return FieldType::points;
+  else if constexpr (std::is_same_v<M, std::vector<std::vector<Vec2>>>) return FieldType::rings;
   else return FieldType::texts;
 }
 

@@ -116,6 +116,11 @@ void FieldChecker::check_field(const Field& field, const FieldValue& value,
     for (const Vec2& p : std::get<std::vector<Vec2>>(value))
       if (!is_fine(p.x()) || !is_fine(p.y())) break;
     break;
+  case FieldType::rings:
+    for (const std::vector<Vec2>& ring : std::get<std::vector<std::vector<Vec2>>>(value))
+      for (const Vec2& p : ring)
+        if (!is_fine(p.x()) || !is_fine(p.y())) return;
+    break;
   case FieldType::choice:
     check_choice(field, std::get<std::string>(value), subject, where);
     break;

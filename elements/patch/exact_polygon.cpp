@@ -88,10 +88,14 @@ ExactPolygon exact_polygon(const Polygon& polygon, const Pose& pose) {
   return out;
 }
 
+/// To a double's own rounding. to_double() of the number as it stands settles for the middle of an interval that may
+/// be 1e-5 wide, as it is where nearly parallel edges cross.
+double rounded(const Exact::FT& x) { return CGAL::to_double(x.exact()); }
+
 Ring rounded(const ExactRing& ring) {
   Ring out;
   for (auto v = ring.vertices_begin(); v != ring.vertices_end(); ++v)
-    out.emplace_back(CGAL::to_double(v->x()), CGAL::to_double(v->y()));
+    out.emplace_back(rounded(v->x()), rounded(v->y()));
   return out;
 }
 
@@ -154,22 +158,25 @@ Region exact_intersection(const Polygon& a, const Polygon& b, const Pose& b_in_a
   return out;
 }
 
-std::vector<Ring> triangulated(const Polygon& polygon) {
-  std::vector<Ring> out;
+std::vector<std::array<std::size_t, 3>> triangulated(const Polygon& polygon) {
+  std::vector<std::array<std::size_t, 3>> out;
   try {
     Triangulation mesh;
+    std::map<Triangulation::Vertex_handle, std::size_t> number;
     const auto insert = [&](const Ring& ring) {
+      std::vector<Triangulation::Vertex_handle> vertices;
+      for (const Vec2& p : ring) {
+        vertices.push_back(mesh.insert(point(p)));
+        number.emplace(vertices.back(), number.size());
+      }
       for (std::size_t i = 0; i < ring.size(); ++i)
-        mesh.insert_constraint(point(ring[i]), point(ring[next(i, ring.size())]));
+        mesh.insert_constraint(vertices[i], vertices[next(i, ring.size())]);
     };
     insert(polygon.outer);
     for (const Ring& hole : polygon.holes)
       insert(hole);
     for (const auto& face : faces_inside(mesh)) {
-      Ring triangle;
-      for (int i = 0; i < 3; ++i)
-        triangle.emplace_back(face->vertex(i)->point().x(), face->vertex(i)->point().y());
-      out.push_back(std::move(triangle));
+      out.push_back({number.at(face->vertex(0)), number.at(face->vertex(1)), number.at(face->vertex(2))});
     }
   } catch (const std::exception& e) {
     throw PolygonError(std::string("a polygon could not be cut into triangles: ") + e.what());

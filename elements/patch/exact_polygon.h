@@ -29,7 +29,8 @@ struct Pose {
 /// and vertices without area give nothing. Throws PolygonError should the exact kernel refuse.
 [[nodiscard]] Region exact_intersection(const Polygon& a, const Polygon& b, const Pose& b_in_a);
 
-/// Triangles (counter-clockwise, on the polygon's own vertices) that make up the polygon.
-[[nodiscard]] std::vector<Ring> triangulated(const Polygon& polygon);
+/// Triangles (counter-clockwise) that make up the polygon: numbers of its vertices, counted through
+/// the outer ring and the holes.
+[[nodiscard]] std::vector<std::array<std::size_t, 3>> triangulated(const Polygon& polygon);
 
 } // namespace steplap

@@ -11,6 +11,8 @@ namespace steplap {
 
 namespace {
 
+constexpr double k_rounding = 1e-16; // of coordinates, turned and shifted, relative to the sheets' reach together
+
 void place(const Ring& ring, const Pose& pose, Ring& out) {
   const auto [s, c] = portable::sin_cos(pose.theta);
   out.resize(ring.size());
@@ -44,28 +46,69 @@ void clip_convex(const Ring& a, OverlapWorkspace& w) {
   }
 }
 
-/// Empties the region, keeping the storage of its first polygon for the next time.
-void empty_keeping_storage(Region& out, OverlapWorkspace& w) {
-  if (!out.empty()) std::swap(w.spare, out.front());
-  out.clear();
-}
-
 bool circles_apart(const Outline& a, const Outline& b, const Pose& pose) {
   return (placed(b.centre, pose) - a.centre).norm() > (a.radius + b.radius) * (1 + 1e-12);
 }
 
-/// Greatest signed distance of the nearest vertex of `other` from an edge of `ring`, outwards
-/// positive: positive means that the edge separates them.
-double widest_gap(const Ring& ring, const Ring& other) {
-  double widest = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Vec2 e = ring[i + 1 == ring.size() ? 0 : i + 1] - ring[i];
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Vec2& p : other)
-      nearest = std::min(nearest, -cross(e, p - ring[i]));
-    widest = std::max(widest, nearest / e.norm());
+RingView part(const ConvexCut& cut, std::size_t i, const Ring& corners) {
+  const ConvexPart& p = cut.parts[i];
+  return {&corners[p.first], &cut.sides[p.first], p.count};
+}
+
+/// Of convex rings: the least overlap over all edge normals of both.
+double depth(const RingView& a, const RingView& b) {
+  return -std::max(widest_gap(a, b), widest_gap(b, a));
+}
+
+double depth(const Box& a, const Box& b) {
+  return (a.high.cwiseMin(b.high) - a.low.cwiseMax(b.low)).minCoeff();
+}
+
+/// No pair of parts is deeper than its boxes: most need not be looked at.
+double depth_of_parts(const Outline& a, const Outline& b, CellWorkspace& w) {
+  const std::size_t n = a.cut.parts.size(), m = b.cut.parts.size();
+  w.boxes.resize(m);
+  for (std::size_t j = 0; j < m; ++j)
+    w.boxes[j] = box_of(&w.placed[b.cut.parts[j].first], b.cut.parts[j].count);
+  const auto of_pair = [&](std::size_t i, std::size_t j) {
+    return std::min(depth(a.cut.parts[i].box, w.boxes[j]),
+                    depth(part(a.cut, i, a.cut.corners), part(b.cut, j, w.placed)));
+  };
+  std::size_t likely[2] = {0, 0};
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < m; ++j)
+      if (const double d = depth(a.cut.parts[i].box, w.boxes[j]); d > most) most = d, likely[0] = i, likely[1] = j;
+  double deepest = of_pair(likely[0], likely[1]);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < m; ++j)
+      if (depth(a.cut.parts[i].box, w.boxes[j]) > deepest) deepest = std::max(deepest, of_pair(i, j));
+  return deepest;
+}
+
+double least_area(const Outline& a, const Outline& b) {
+  const double size = std::min(a.radius, b.radius);
+  return k_no_area * size * size;
+}
+
+void put_convex(const Ring& ring, CellWorkspace& w, Region& out) {
+  if (w.polygons.empty()) w.polygons.emplace_back();
+  out.push_back(std::move(w.polygons.back()));
+  w.polygons.pop_back();
+  out.back().outer.assign(ring.begin(), ring.end());
+}
+
+void intersect_convex(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w, Region& out) {
+  const Ring &ring_a = a.polygon.outer, &ring_b = b.polygon.outer;
+  place(ring_b, pose, w.placed);
+  if (ring_a.size() * ring_b.size() < k_many_corners) {
+    clip_convex(ring_a, w);
+  } else {
+    clip({ring_a.data(), nullptr, ring_a.size()}, {w.placed.data(), nullptr, w.placed.size()}, w.cells.clip);
+    w.front.clear();
+    for (const Corner& c : w.cells.clip.ring) w.front.push_back(c.at);
   }
-  return widest;
+  if (w.front.size() >= 3 && signed_area(w.front) > least_area(a, b)) put_convex(w.front, w.cells, out);
 }
 
 } // namespace
@@ -87,42 +130,31 @@ Outline make_outline(Polygon polygon) {
   out.centre = 0.5 * (low + high);
   for (const Vec2& p : out.polygon.outer)
     out.radius = std::max(out.radius, (p - out.centre).norm());
-  if (out.convex)
-    out.parts.push_back(out.polygon.outer);
-  else
-    out.parts = triangulated(out.polygon);
+  out.cut = out.convex ? uncut(out.polygon.outer) : cut_into_convex(out.polygon);
   return out;
 }
 
 void intersect(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w,
                Region& out) {
-  const double size = std::min(a.radius, b.radius);
-  const double least_area = k_no_area * size * size;
-  if (circles_apart(a, b, pose)) {
-    empty_keeping_storage(out, w);
-  } else if (a.convex && b.convex) {
-    place(b.polygon.outer, pose, w.placed);
-    clip_convex(a.polygon.outer, w);
-    empty_keeping_storage(out, w);
-    if (w.front.size() < 3 || signed_area(w.front) <= least_area) return;
-    out.push_back(std::move(w.spare));
-    out.front().outer.assign(w.front.begin(), w.front.end());
-    out.front().holes.clear();
-  } else {
-    out = exact_intersection(a.polygon, b.polygon, pose);
-    std::erase_if(out, [&](const Polygon& p) { return area(p) <= least_area; });
-  }
+  empty_keeping_storage(out, w.cells);
+  if (circles_apart(a, b, pose)) return;
+  if (a.convex && b.convex) return intersect_convex(a, b, pose, w, out);
+  place(b.cut.corners, pose, w.cells.placed);
+  const double reach = a.centre.norm() + a.radius + b.centre.norm() + b.radius;
+  join_cells(a.cut, b.cut, k_rounding * reach, least_area(a, b), w.cells, out);
+}
+
+void intersect_exactly(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w,
+                       Region& out) {
+  if (circles_apart(a, b, pose) || (a.convex && b.convex)) return intersect(a, b, pose, w, out);
+  out = exact_intersection(a.polygon, b.polygon, pose);
+  std::erase_if(out, [&](const Polygon& p) { return area(p) <= least_area(a, b); });
 }
 
 double penetration(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w) {
-  double deepest = -std::numeric_limits<double>::infinity();
-  for (const Ring& part_b : b.parts) {
-    place(part_b, pose, w.placed);
-    for (const Ring& part_a : a.parts)
-      deepest =
-          std::max(deepest, -std::max(widest_gap(part_a, w.placed), widest_gap(w.placed, part_a)));
-  }
-  return deepest;
+  place(b.cut.corners, pose, w.cells.placed);
+  if (a.convex && b.convex) return depth(part(a.cut, 0, a.cut.corners), part(b.cut, 0, w.cells.placed));
+  return depth_of_parts(a, b, w.cells);
 }
 
 } // namespace steplap

@@ -1,10 +1,12 @@
 // The friction area of one interface: the intersection of a sheet fixed in body a and a sheet
 // fixed in body b at their present relative pose (Fig. 2 of the paper).
 //
-// Convex pairs are clipped edge by edge in double precision, without allocating; everything else
-// goes through exact arithmetic (exact_polygon.h). Vertices are good to a few roundings of the
-// sheets' size either way. An area below k_no_area of the smaller sheet's size squared is taken as
-// none: coordinates do not resolve it.
+// Convex pairs are clipped edge by edge in double precision, without allocating. Other sheets are
+// cut into convex parts once, their parts are clipped pair by pair, and the cuts taken out again
+// (joined_cells.h), so that an overlap's polygons are those of the sheets. intersect_exactly() gives
+// the same from exact arithmetic, some hundred times slower. Vertices are good to a few roundings of
+// the sheets' size either way. An area below k_no_area of the smaller sheet's size squared is taken
+// as none: coordinates do not resolve it.
 //
 // As two sheets part the area can vanish quadratically, so its zero is a poor thing to locate.
 // penetration() is positive while they overlap, negative when apart, and crosses zero
@@ -12,6 +14,7 @@
 #pragma once
 
 #include "elements/patch/exact_polygon.h"
+#include "elements/patch/joined_cells.h"
 
 namespace steplap {
 
@@ -23,7 +26,7 @@ struct Outline {
   bool convex = false;     ///< a convex ring without holes
   Vec2 centre{0, 0};       ///< of a circle that contains it
   double radius = 0;       ///< of that circle [m]
-  std::vector<Ring> parts; ///< convex, counter-clockwise, together the polygon
+  ConvexCut cut;           ///< convex parts, together the polygon; one if it is convex
 };
 
 /// Repairs and prepares a polygon. Throws PolygonError as repaired() does.
@@ -32,18 +35,23 @@ struct Outline {
 /// Storage that repeated calls reuse; one per thread.
 struct OverlapWorkspace {
   Ring placed, front, back;
-  Polygon spare;
+  CellWorkspace cells;
 };
 
-/// out := a ∩ (b at b_in_a), in a's axes; empty when there is no area. Does not allocate for
-/// convex pairs once workspace and `out` have grown. Throws PolygonError only if the exact kernel
-/// refuses outlines that make_outline accepted.
+/// out := a ∩ (b at b_in_a), in a's axes; empty when there is no area. Does not allocate once
+/// workspace and `out` have grown.
 void intersect(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace,
                Region& out);
 
+/// The same for convex pairs; others in exact arithmetic, for what is done once. Throws PolygonError
+/// only if the exact kernel refuses outlines that make_outline accepted.
+void intersect_exactly(const Outline& a, const Outline& b, const Pose& b_in_a,
+                       OverlapWorkspace& workspace, Region& out);
+
 /// How far the two must move to part [m]: for convex pairs the least overlap over all edge normals
 /// of both (negative: a gap that one of the normals sees, at most the distance); otherwise the
-/// largest over all pairs of convex parts. Continuous in the pose; its sign is that of "overlaps".
+/// largest over all pairs of convex parts, along a's axes, too. Continuous in the pose; its sign is
+/// that of "overlaps".
 [[nodiscard]] double penetration(const Outline& a, const Outline& b, const Pose& b_in_a,
                                  OverlapWorkspace& workspace);
 

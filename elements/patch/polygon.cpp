@@ -45,6 +45,7 @@ void add_sums(RingSums& sums, const Polygon& polygon, const Vec2& origin) {
 
 /// A ring whose vertices remember their place in the input, for messages.
 struct TracedRing {
+  std::string name;
   Ring ring;
   std::vector<std::size_t> from;
 };
@@ -65,8 +66,14 @@ bool is_idle(const Vec2& a, const Vec2& b, const Vec2& c, double size) {
          std::abs(cross(b - a, c - b)) <= k_collinear * size * longest;
 }
 
+std::string vertex_name(const TracedRing& r, std::size_t i) {
+  return "vertex " + std::to_string(r.from[i]) + " (" + std::to_string(r.ring[i].x()) + ", " +
+         std::to_string(r.ring[i].y()) + ")";
+}
+
 TracedRing without_idle_vertices(const Ring& input, const std::string& name) {
   TracedRing out;
+  out.name = name;
   for (std::size_t i = 0; i < input.size(); ++i) {
     if (!input[i].allFinite())
       throw PolygonError(name + ": vertex " + std::to_string(i) + " is not a finite number");
@@ -88,7 +95,9 @@ TracedRing without_idle_vertices(const Ring& input, const std::string& name) {
     }
   }
   if (out.ring.size() < 3)
-    throw PolygonError(name + ": has no area; it needs three vertices that are not on one line");
+    throw PolygonError(name + ": has no area" +
+                       (input.empty() ? "" : ", with " + vertex_name({name, input, {0}}, 0)) +
+                       "; it needs three vertices that are not on one line");
   return out;
 }
 
@@ -101,15 +110,7 @@ void orient(TracedRing& traced, bool ccw) {
 
 std::string edge_name(const TracedRing& r, std::size_t edge) {
   const std::size_t next = edge + 1 == r.ring.size() ? 0 : edge + 1;
-  const auto vertex = [&](std::size_t i) {
-    return std::to_string(r.from[i]) + " (" + std::to_string(r.ring[i].x()) + ", " +
-           std::to_string(r.ring[i].y()) + ")";
-  };
-  return "the edge from vertex " + vertex(edge) + " to vertex " + vertex(next);
-}
-
-std::string ring_name(std::size_t i) {
-  return i == 0 ? std::string("outer ring") : "hole " + std::to_string(i - 1);
+  return "the edge from " + vertex_name(r, edge) + " to " + vertex_name(r, next);
 }
 
 void require_simple(const std::vector<TracedRing>& rings) {
@@ -119,17 +120,17 @@ void require_simple(const std::vector<TracedRing>& rings) {
   if (const auto clash = find_clash(plain)) {
     const auto [a, b, ea, eb] = *clash;
     throw PolygonError(
-        ring_name(a) + ": " + edge_name(rings[a], ea) + " meets " +
-        (a == b ? std::string() : ring_name(b) + "'s ") + edge_name(rings[b], eb) +
+        rings[a].name + ": " + edge_name(rings[a], ea) + " meets " +
+        (a == b ? std::string() : rings[b].name + "'s ") + edge_name(rings[b], eb) +
         (a == b ? "; a ring must not cross or touch itself" : "; rings must not cross or touch"));
   }
   for (std::size_t i = 1; i < rings.size(); ++i)
     if (!is_inside(plain[i].front(), plain[0]))
-      throw PolygonError(ring_name(i) + ": lies outside the outer ring");
+      throw PolygonError(rings[i].name + ": lies outside the outer ring, with " + vertex_name(rings[i], 0));
   for (std::size_t i = 1; i < rings.size(); ++i)
     for (std::size_t j = 1; j < rings.size(); ++j)
       if (i != j && is_inside(plain[i].front(), plain[j]))
-        throw PolygonError(ring_name(i) + ": lies inside " + ring_name(j));
+        throw PolygonError(rings[i].name + ": lies inside " + rings[j].name + ", with " + vertex_name(rings[i], 0));
 }
 
 } // namespace
@@ -184,12 +185,13 @@ bool is_convex(const Ring& ring) {
   return n >= 3 && flips <= 2;
 }
 
-Polygon repaired(Polygon polygon) {
+Polygon repaired(Polygon polygon, const std::vector<std::string>& hole_names) {
   std::vector<TracedRing> rings;
-  rings.push_back(without_idle_vertices(polygon.outer, ring_name(0)));
+  rings.push_back(without_idle_vertices(polygon.outer, "outer ring"));
   orient(rings[0], true);
   for (std::size_t i = 0; i < polygon.holes.size(); ++i) {
-    rings.push_back(without_idle_vertices(polygon.holes[i], ring_name(i + 1)));
+    const std::string name = i < hole_names.size() ? hole_names[i] : "hole " + std::to_string(i);
+    rings.push_back(without_idle_vertices(polygon.holes[i], name));
     orient(rings.back(), false);
   }
   require_simple(rings);

@@ -9,6 +9,7 @@
 #include "mbd/types.h"
 
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace steplap {
@@ -48,7 +49,8 @@ public:
 /// The polygon in the convention above: rings of the wrong sense reversed; repeated vertices,
 /// vertices within rounding of the line through their neighbours and zero-width spikes dropped.
 /// Throws PolygonError for what has no unambiguous repair: a coordinate that is not finite, a ring
-/// without area, a ring that crosses or touches itself or another ring, a hole outside.
-[[nodiscard]] Polygon repaired(Polygon polygon);
+/// without area, a ring that crosses or touches itself or another ring, a hole outside. Messages
+/// call the holes by `hole_names`, or "hole 0" and so on without.
+[[nodiscard]] Polygon repaired(Polygon polygon, const std::vector<std::string>& hole_names = {});
 
 } // namespace steplap

@@ -37,6 +37,12 @@ struct ValueText {
       text += (text.empty() ? "" : ", ") + item_text(item);
     return "[" + text + "]";
   }
+  std::string operator()(const std::vector<std::vector<Vec2>>& rings) const {
+    std::string text;
+    for (const std::vector<Vec2>& ring : rings)
+      text += (text.empty() ? "" : ", ") + (*this)(ring);
+    return "[" + text + "]";
+  }
 };
 
 template <class T> std::shared_ptr<const void> made() {
@@ -99,6 +105,8 @@ std::string type_text(const Field& field) {
     return "list of numbers";
   case FieldType::points:
     return "list of [x, y]";
+  case FieldType::rings:
+    return "list of lists of [x, y]";
   case FieldType::body:
     return "body";
   case FieldType::marker:

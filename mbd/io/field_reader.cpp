@@ -54,6 +54,8 @@ public:
       return numbers(node);
     case FieldType::points:
       return points(node);
+    case FieldType::rings:
+      return rings(node);
     case FieldType::elements:
     case FieldType::texts:
       return texts(node);
@@ -138,6 +140,14 @@ private:
     return result;
   }
 
+  std::vector<std::vector<Vec2>> rings(const Node& node) const {
+    if (node.type != Node::Type::array) unexpected(node);
+    std::vector<std::vector<Vec2>> result;
+    for (const Node& item : node.children)
+      result.push_back(points(item));
+    return result;
+  }
+
   std::vector<std::string> texts(const Node& node) const {
     if (node.type != Node::Type::array) unexpected(node);
     std::vector<std::string> result;
@@ -210,6 +220,8 @@ std::string expected_text(const Field& field) {
     return "a list of numbers" + dimension_note(field.unit);
   case FieldType::points:
     return "a list of points [x, y]";
+  case FieldType::rings:
+    return "a list of rings, each a list of points [x, y]";
   case FieldType::body:
     return "the name of a body";
   case FieldType::marker:

@@ -58,6 +58,8 @@ Json value_schema(const Field& field) {
     return list_of(quantity(field, field.unit));
   case FieldType::points:
     return list_of(point(field));
+  case FieldType::rings:
+    return list_of(list_of(point(field)));
   case FieldType::elements:
   case FieldType::texts:
     return list_of(text());

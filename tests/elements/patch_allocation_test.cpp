@@ -34,7 +34,14 @@ TEST_CASE("patch: nothing allocates inside a step") {
   Region overlap;
   Patch patch;
   double sink = 0;
+  const Outline ring = make_outline({{{-1, -1}, {2, -1}, {2, 2}, {1, 2}, {0.5, 0.75}, {0, 2}, {-1, 2}},
+                                     {{{0.25, 0.25}, {0.75, 0.25}, {0.5, 0.5}}, {{1, 0}, {1.5, 0}, {1.5, 0.25}}}});
+  const Outline ell = make_outline({{{0, 0}, {2, 0}, {2, 0.5}, {0.5, 0.5}, {0.5, 2}, {0, 2}}, {}});
   const auto step = [&](double x) {
+    intersect(ring, ell, {x, 0.2, 2 * x}, workspace, overlap);
+    sink += penetration(ring, ell, {x, 0.2, 2 * x}, workspace) + area(overlap);
+    intersect(ring, ring, {x, 0.2, x}, workspace, overlap);
+    sink += area(overlap);
     intersect(unit, skew, {x, 0.2, 0.3 * x}, workspace, overlap);
     sink += penetration(unit, skew, {x, 0.2, 0.3 * x}, workspace);
     patch.clear({0.5, 0.5});

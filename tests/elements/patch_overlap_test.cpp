@@ -166,7 +166,8 @@ TEST_CASE("overlap: the parts of an outline make it up") {
   for (int i = 0; i < cases(2000); ++i) {
     const Outline a = make_outline(concave_polygon(draw));
     double sum = 0;
-    for (const Ring& part : a.parts) {
+    for (const ConvexPart& p : a.cut.parts) {
+      const Ring part(a.cut.corners.begin() + long(p.first), a.cut.corners.begin() + long(p.first + p.count));
       CHECK(is_convex(part));
       CHECK(signed_area(part) > 0);
       sum += signed_area(part);

@@ -208,6 +208,75 @@ TEST_CASE("holes count") {
   CHECK(r.last("joint.area") == doctest::Approx(1.0 - 2.0 * M_PI * 0.01).epsilon(1e-13));
 }
 
+TEST_CASE("cutouts of any shape count, in either sense, and move with their sheet") {
+  // A square of side 0.5 in the yoke, a triangle in the limb that stays on the yoke; after 0.1 s the limb has moved by
+  // 0.1 m less what friction takes.
+  const Run r = run_text(header("end = 0.1\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) +
+                         body("slider", 1.0, 1.0, {0, 0}, {1.0, 0.0}) + joint("slider", "ground") +
+                         interface(rectangle(-2, -2, 2, 2), rectangle(-0.5, -0.5, 0.5, 0.5), 1.0, 0.5,
+                                   "yoke_cutouts = [[[0.25, -0.25], [0.75, -0.25], [0.75, 0.25], [0.25, 0.25]], "
+                                   "[[1.5, 1.5], [1.5, 1.6], [1.6, 1.5]]]\n"
+                                   "limb_cutouts = [[[-0.4, 0.3], [-0.3, 0.3], [-0.3, 0.4]]]"));
+  const double triangle = 0.005, moved = r.last("slider.x");
+  CHECK(r.series("joint.area").front() == doctest::Approx(1.0 - 0.125 - triangle).epsilon(1e-13));
+  CHECK(moved > 0.09);
+  CHECK(r.series("slider.theta").back() != 0.0); // what is left is not symmetrical
+  // The limb's edge has passed over more of the hole; it has hardly turned.
+  CHECK(r.last("joint.area") == doctest::Approx(1.0 - 0.5 * (0.25 + moved) - triangle).epsilon(1e-4));
+  CHECK(r.relative_energy_residual() < 1e-9);
+}
+
+TEST_CASE("a cross with a square hole slides as far as its area lets it") {
+  // All of it stays on the yoke and its centre is the body's, so that it does not turn: friction is μ p A.
+  const double v = 1.0, mass = 2.0, pressure = 100.0, mu = 0.25, area = 5 * 0.04 - 0.01;
+  const std::vector<steplap::Vec2> cross{{0.1, -0.3}, {0.1, -0.1}, {0.3, -0.1}, {0.3, 0.1},   {0.1, 0.1},   {0.1, 0.3},
+                                         {-0.1, 0.3}, {-0.1, 0.1}, {-0.3, 0.1}, {-0.3, -0.1}, {-0.1, -0.1}, {-0.1, -0.3}};
+  const double deceleration = mu * pressure * area / mass;
+  const Run r = run_text(header("end = 0.6\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) +
+                         body("slider", mass, 1.0, {0, 0}, {0.6 * v, 0.8 * v}) + joint("slider", "ground") +
+                         interface(rectangle(-3, -3, 3, 3), cross, pressure, mu,
+                                   "limb_cutouts = [" + points(rectangle(-0.05, -0.05, 0.05, 0.05)) + "]"));
+  CHECK(r.last("joint.area") == doctest::Approx(area).epsilon(1e-13));
+  const double distance = v * v / (2.0 * deceleration); // at rest from 0.42 s on
+  CHECK(std::hypot(r.last("slider.x"), r.last("slider.y")) == doctest::Approx(distance).epsilon(1e-9));
+  CHECK(std::abs(r.last("slider.theta")) < 1e-9);
+}
+
+TEST_CASE("cutouts that cannot be meant are named with their place in the file") {
+  const auto message = [](const std::string& rings) -> std::string {
+    try {
+      static_cast<void>(run_text(header("end = 0.1\nintegrator = \"tsit5\"\ntolerance = 1e-9", 0.1) +
+                                 body("slider", 1.0, 1.0, {7, 0}) + joint("slider", "ground") +
+                                 interface(rectangle(5, -2, 9, 2), rectangle(6, -1, 8, 1), 1.0, 0.1,
+                                           "limb_holes = [[7.5, 0.5]]\nhole_diameter = 0.2\nlimb_cutouts = " + rings)));
+    } catch (const steplap::ModelError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string good = "[[6.25, -0.5], [6.5, -0.5], [6.5, -0.25]]";
+  CHECK(message("[" + good + "]") == "accepted");
+  CHECK(message("[" + good + ", [[6.75, -0.5], [7.0, -0.5], [7.0, -0.25]]]") == "accepted");
+  const auto refuses = [&](const std::string& rings, const std::string& ring, const std::string& what, const std::string& place) {
+    const std::string text = message(rings);
+    CAPTURE(text);
+    CHECK(text.find("'limb': " + ring) != std::string::npos);
+    CHECK(text.find(what) != std::string::npos);
+    CHECK(text.find(place) != std::string::npos);
+  };
+  refuses("[" + good + ", [[8.25, 0], [8.5, 0], [8.5, 0.25]]]", "'limb_cutouts[1]'", "lies outside the outer ring", "(8.5");
+  refuses("[[[5, -2], [9, -2], [9, 2], [5, 2]]]", "'limb_cutouts[0]'", "lies outside the outer ring", "(5.0");
+  refuses("[[[7.75, 0], [8.5, 0], [8.5, 0.25]]]", "outer ring", "meets 'limb_cutouts[0]''s", "(7.75");
+  refuses("[[[7.75, 0], [8, 0], [7.75, 0.25]]]", "outer ring", "must not cross or touch", "(8.0");
+  refuses("[[[6.25, 0], [6.5, 0.25], [6.5, 0], [6.25, 0.25]]]", "'limb_cutouts[0]'", "must not cross or touch itself", "(6.25");
+  refuses("[[[6.25, 0], [6.5, 0.25], [6.75, 0.5]]]", "'limb_cutouts[0]'", "has no area", "(6.25");
+  refuses("[[[6.25, 0], [6.5, 0.25]]]", "'limb_cutouts[0]'", "has no area", "(6.25");
+  refuses("[[]]", "'limb_cutouts[0]'", "has no area", "three vertices");
+  refuses("[[[7.4, 0.5], [7.6, 0.55], [7.5, 0.9]]]", "'limb_holes[0]'", "meets 'limb_cutouts[0]''s", "(7.5");
+  refuses("[[[6.3, -0.45], [6.25, -0.5], [6.5, -0.5], [6.5, -0.25]], [[6.45, -0.45], [6.475, -0.45], [6.475, -0.4]]]", "'limb_cutouts[1]'",
+          "lies inside 'limb_cutouts[0]'", "(6.475");
+}
+
 TEST_CASE("models that cannot be meant are refused with the place and the reason") {
   const auto message = [](const std::string& text) -> std::string {
     try {

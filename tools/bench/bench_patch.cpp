@@ -1,11 +1,14 @@
 // How long the friction of a step-lap joint takes: closed form against adaptive quadrature of the
-// same accuracy, required pressure cold and warm, the certified bound, overlap fast and exact.
+// same accuracy, required pressure cold and warm, the certified bound, overlap fast and exact, sheets
+// that are not convex against convex ones.
 #include "elements/patch/overlap.h"
 #include "elements/patch/required_pressure.h"
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -235,6 +238,102 @@ void sliding_joint(benchmark::State& state) {
   }
 }
 BENCHMARK(sliding_joint);
+
+// --- sheets that are not convex, against convex ones of as many corners ---------------------------------
+
+/// Regular, of radius 1; with every other corner at `inner` a star.
+Ring regular(int corners, double inner = 1, double scale = 1) {
+  Ring ring;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / corners, r = scale * (i % 2 == 0 ? 1 : inner);
+    ring.emplace_back(r * std::cos(angle), r * std::sin(angle));
+  }
+  return ring;
+}
+
+Polygon ell() { return {{{-1, -1}, {1, -1}, {1, -0.3}, {-0.3, -0.3}, {-0.3, 1}, {-1, 1}}, {}}; }
+Polygon u_shape() {
+  return {{{-1, -1}, {1, -1}, {1, 1}, {0.5, 1}, {0.5, -0.4}, {-0.5, -0.4}, {-0.5, 1}, {-1, 1}}, {}};
+}
+Polygon comb(int teeth) {
+  Polygon polygon{{{-1, -1}, {1, -1}}, {}};
+  const double width = 2.0 / (2 * teeth - 1);
+  for (int i = teeth - 1; i >= 0; --i) {
+    const double x = -1 + 2 * i * width;
+    polygon.outer.insert(polygon.outer.end(), {{x + width, 1}, {x, 1}});
+    if (i > 0) polygon.outer.insert(polygon.outer.end(), {{x, -0.5}, {x - width, -0.5}});
+  }
+  return polygon;
+}
+Polygon star(int tips) { return {regular(2 * tips, 0.6), {}}; }
+Polygon plate(int hole_corners) { return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, {regular(hole_corners, 1, 0.6)}}; }
+Polygon polygon_with(int corners) { return {regular(corners), {}}; }
+
+/// Seconds that f(pose) takes, the least of some tries: shifts up to a fifth of the sheets, turns up to 1 rad.
+double seconds(const auto& f) {
+  double best = 1;
+  for (int trial = 0; trial < 7; ++trial) {
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < 128; ++i) f(Pose{0.003 * i, -0.002 * i + 0.1, 0.0078 * i + 0.01});
+    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 128);
+  }
+  return best;
+}
+
+struct SheetTimes {
+  double overlap, way_apart, evaluation;
+  explicit SheetTimes(const Outline& sheet) {
+    OverlapWorkspace workspace;
+    Region region;
+    Patch patch;
+    overlap = seconds([&](const Pose& at) { intersect(sheet, sheet, at, workspace, region); });
+    way_apart = seconds([&](const Pose& at) { benchmark::DoNotOptimize(penetration(sheet, sheet, at, workspace)); });
+    evaluation = seconds([&](const Pose& at) {
+      intersect(sheet, sheet, at, workspace, region);
+      patch.clear(Vec2(at.x, at.y));
+      patch.add(region, 1.0);
+      benchmark::DoNotOptimize(evaluate_gradient(patch, {0.02, 0.1, 0.1}));
+      benchmark::DoNotOptimize(penetration(sheet, sheet, at, workspace));
+    });
+  }
+};
+
+/// A sheet on itself, shifted and turned: overlap alone (µs, and over a regular polygon's of as many corners), the depth
+/// that tells when the two part, and all that a sliding joint does anew at an evaluation.
+void concave_to_convex(benchmark::State& state, const Polygon& polygon) {
+  const Outline sheet = make_outline(polygon);
+  std::size_t corners = polygon.outer.size();
+  for (const Ring& hole : polygon.holes) corners += hole.size();
+  const Outline convex = make_outline(polygon_with(static_cast<int>(corners)));
+  OverlapWorkspace workspace;
+  Region region;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    intersect(sheet, sheet, {0.003 * static_cast<double>(i % 128), 0.1, 0.01 + 0.0078 * static_cast<double>(i % 128)}, workspace, region);
+    benchmark::DoNotOptimize(region.data());
+    ++i;
+  }
+  const SheetTimes own(sheet), reference(convex);
+  state.counters["corners"] = static_cast<double>(corners);
+  state.counters["overlap_us"] = 1e6 * own.overlap;
+  state.counters["overlap_ratio"] = own.overlap / reference.overlap;
+  state.counters["apart_ratio"] = own.way_apart / reference.way_apart;
+  state.counters["all_us"] = 1e6 * own.evaluation;
+  state.counters["all_ratio"] = own.evaluation / reference.evaluation;
+}
+BENCHMARK_CAPTURE(concave_to_convex, ell, ell());
+BENCHMARK_CAPTURE(concave_to_convex, u_shape, u_shape());
+BENCHMARK_CAPTURE(concave_to_convex, comb_5_teeth, comb(5));
+BENCHMARK_CAPTURE(concave_to_convex, comb_25_teeth, comb(25));
+BENCHMARK_CAPTURE(concave_to_convex, star_5_tips, star(5));
+BENCHMARK_CAPTURE(concave_to_convex, star_50_tips, star(50));
+BENCHMARK_CAPTURE(concave_to_convex, plate_with_square_hole, plate(4));
+BENCHMARK_CAPTURE(concave_to_convex, plate_with_round_hole_24, plate(24));
+BENCHMARK_CAPTURE(concave_to_convex, plate_with_round_hole_360, plate(360));
+BENCHMARK_CAPTURE(concave_to_convex, convex_4, polygon_with(4));
+BENCHMARK_CAPTURE(concave_to_convex, convex_24, polygon_with(24));
+BENCHMARK_CAPTURE(concave_to_convex, convex_100, polygon_with(100));
+BENCHMARK_CAPTURE(concave_to_convex, convex_400, polygon_with(400));
 
 } // namespace
 
