@@ -74,13 +74,17 @@ std::string error_text(const OneDigit& d, const std::string& unit) {
   };
   static constexpr std::array<Step, 6> k_steps{{{6, "M"}, {3, "k"}, {0, ""}, {-3, "m"}, {-6, "µ"}, {-9, "n"}}};
   if (!takes_prefix(unit)) return digit_text(d);
+  const bool is_length = unit == "m" || unit == "rad"; // nanometres are read; millinewtons are not
   for (const Step& step : k_steps)
-    if (d.exponent >= step.exponent && d.exponent < step.exponent + 3)
+    if (d.exponent >= step.exponent && d.exponent < step.exponent + 3 && (is_length || step.exponent >= 0))
       return digit_text({d.digit, d.exponent - step.exponent}) + " " + step.text + unit;
   return digit_text(d) + " " + unit;
 }
 
+bool is_zero(const std::string& number) { return number.find_first_not_of("0.") == std::string::npos; }
+
 std::string with_unit(const std::string& number, const UnitPrefix& prefix, const std::string& unit) {
+  if (is_zero(number)) return unit.empty() ? "0" : "0 " + unit;
   return unit.empty() ? number : number + " " + prefix.text + unit;
 }
 
