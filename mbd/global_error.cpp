@@ -238,7 +238,7 @@ double predicted_cost(const System& system, const SimulationOptions& options, co
 GlobalErrorEstimate estimate_global_error(const System& system, const State& initial, const SimulationOptions& options,
                                           const RunResult& run, const EventFilter& is_counted) {
   GlobalErrorEstimate estimate;
-  estimate.channels.resize(run.ranges.size());
+  estimate.channels.resize(system.channels.size());
   estimate.event_times.resize(run.events.size());
   estimate.finer = finer_options(system, options);
   bool has_storm = run.statistics.storms > 0;

@@ -160,6 +160,7 @@ void print_judgement(std::ostream& out, const FinishedRun& finished) {
     if (!c.doubt.empty()) out << "  '" << c.name << "', " << c.text << ": " << c.doubt << "\n";
   const bool is_in_doubt = std::any_of(judgement.criteria.begin(), judgement.criteria.end(),
                                        [](const CriterionResult& c) { return !c.doubt.empty(); });
+  if (!finished.summary.global_error) out << "  judged without the errors of the numbers: " << finished.summary.no_estimate << "\n";
   if (is_in_doubt) out << "  A smaller tolerance or step decides.\n";
 }
 
