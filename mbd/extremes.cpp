@@ -178,7 +178,10 @@ void ExtremeFinder::begin(double t, const Snapshot& snapshot) {
 }
 
 void ExtremeFinder::finish(const Snapshot& snapshot) {
-  for (ChannelRange& range : ranges_) range.final = range.channel->value(snapshot);
+  for (std::size_t c = 0; c < count_; ++c) {
+    ranges_[c].final = ranges_[c].channel->value(snapshot);
+    ranges_[c].resolution = tolerance(c);
+  }
 }
 
 // --- along the steps --------------------------------------------------------------------------------------------

@@ -32,6 +32,7 @@ struct ChannelRange {
   Extreme low, high;  ///< not-a-number where the channel had no value, or has no extremes (Channel::has_extremes)
   double first = 0.0; ///< at the start
   double final = 0.0; ///< at the end
+  double resolution = 0.0;   ///< extremes are located to within this; smaller ones were not looked for
   bool had_no_value = false;             ///< it was not-a-number at some time
   std::optional<double> first_above_one; ///< s; of channels without a unit: the first time they passed 1
 

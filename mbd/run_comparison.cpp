@@ -1,11 +1,12 @@
 #include "mbd/run_comparison.h"
 
+#include "mbd/event_match.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <set>
-#include <utility>
 
 namespace steplap {
 
@@ -47,7 +48,25 @@ double arm_of(const Channel& channel, double size) {
   return channel.unit == "N m" ? 1.0 / size : 1.0;
 }
 
-std::vector<Compared> compared_channels(const System& system, const Trajectory& reference) {
+// Of the whole run where that is known, whatever the samples fell on.
+void set_range(Compared& c, const System& system, const RunResult& run) {
+  const Trajectory& reference = *run.trajectory;
+  c.low = c.high = reference.value(0, c.column);
+  const auto take = [&c](double value) {
+    c.low = std::min(c.low, value);
+    c.high = std::max(c.high, value);
+    c.size = std::max(c.size, std::abs(value));
+  };
+  for (std::size_t row = 0; row < reference.size(); ++row)
+    take(reference.value(row, c.column));
+  if (run.ranges.empty()) return;
+  const ChannelRange& whole = run.ranges[static_cast<std::size_t>(c.channel - system.channels.data())];
+  for (const double value : {whole.low.value, whole.high.value})
+    if (std::isfinite(value)) take(value);
+}
+
+std::vector<Compared> compared_channels(const System& system, const RunResult& run) {
+  const Trajectory& reference = *run.trajectory;
   std::set<std::string> bodies;
   for (const BodyData& body : system.bodies)
     bodies.insert(body.name);
@@ -61,13 +80,7 @@ std::vector<Compared> compared_channels(const System& system, const Trajectory& 
     if (!kind || reference.size() == 0) continue;
     c.kind = *kind;
     c.arm = arm_of(*c.channel, size);
-    c.low = c.high = reference.value(0, column);
-    for (std::size_t row = 0; row < reference.size(); ++row) {
-      const double value = reference.value(row, column);
-      c.low = std::min(c.low, value);
-      c.high = std::max(c.high, value);
-      c.size = std::max(c.size, std::abs(value));
-    }
+    set_range(c, system, run);
     list.push_back(c);
   }
   return list;
@@ -91,73 +104,6 @@ Scales scales_of(const std::vector<Compared>& channels) {
 
 void keep_worst(WorstError& worst, double value, const std::string& where, double t) {
   if (!(value <= worst.value)) worst = {value, where, t}; // NaN is worse than anything
-}
-
-// --- events -------------------------------------------------------------------------------------
-
-struct EventPair {
-  double mine = 0.0, reference = 0.0;
-  const Event* event = nullptr;
-};
-
-using EventTimes = std::map<std::pair<std::string, std::string>, std::vector<const Event*>>;
-
-EventTimes by_name(const std::vector<Event>& events) {
-  EventTimes times;
-  for (const Event& event : events)
-    times[{event.element, event.what}].push_back(&event);
-  return times;
-}
-
-// The shorter list against the run of consecutive events of the longer one that it fits best; the
-// rest has no partner.
-int match(const std::vector<const Event*>& mine, const std::vector<const Event*>& reference,
-          std::vector<EventPair>& pairs) {
-  const std::size_t shorter = std::min(mine.size(), reference.size());
-  const std::size_t surplus = std::max(mine.size(), reference.size()) - shorter;
-  const auto shift = [&](const std::vector<const Event*>& list, std::size_t by) {
-    return list.size() > shorter ? by : 0;
-  };
-  std::size_t best = 0;
-  double least = INFINITY;
-  for (std::size_t by = 0; by <= surplus; ++by) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < shorter; ++i)
-      sum += std::abs(mine[i + shift(mine, by)]->t - reference[i + shift(reference, by)]->t);
-    if (sum < least) {
-      least = sum;
-      best = by;
-    }
-  }
-  for (std::size_t i = 0; i < shorter; ++i) {
-    const Event* partner = reference[i + shift(reference, best)];
-    pairs.push_back({mine[i + shift(mine, best)]->t, partner->t, partner});
-  }
-  return static_cast<int>(surplus);
-}
-
-std::vector<EventPair> event_pairs(const RunResult& run, const RunResult& reference,
-                                   const EventFilter& is_counted, int& unmatched) {
-  EventTimes mine = by_name(run.events), theirs = by_name(reference.events);
-  for (const auto& [key, list] : theirs)
-    mine.try_emplace(key);
-  std::vector<EventPair> pairs;
-  for (const auto& [key, list] : mine) {
-    const int surplus = match(list, theirs[key], pairs);
-    if (!is_counted || is_counted({0.0, key.first, key.second})) unmatched += surplus;
-  }
-  return pairs;
-}
-
-// Is t between an event and its partner, or as good as at it?
-bool is_at_jump(const std::vector<EventPair>& pairs, double t) {
-  for (const EventPair& pair : pairs) {
-    const double slack = 1e-12 * std::max(1.0, t);
-    if (t >= std::min(pair.mine, pair.reference) - slack &&
-        t <= std::max(pair.mine, pair.reference) + slack)
-      return true;
-  }
-  return false;
 }
 
 double difference(double a, double b) {
@@ -195,11 +141,16 @@ RunDifference compare_runs(const System& system, const RunResult& run, const Run
   const Trajectory& theirs = *reference.trajectory;
   const std::size_t rows = std::min(mine.size(), theirs.size());
   if (rows > 0) d.compared_until = theirs.times()[rows - 1];
-  const std::vector<EventPair> pairs = event_pairs(run, reference, is_counted, d.unmatched_events);
+  const EventMatch match = match_events(run.events, reference.events);
+  const auto counted = [&](const std::vector<std::size_t>& places, const std::vector<Event>& events) {
+    return std::count_if(places.begin(), places.end(), [&](std::size_t i) { return !is_counted || is_counted(events[i]); });
+  };
+  d.unmatched_events = static_cast<int>(counted(match.only_mine, run.events) + counted(match.only_reference, reference.events));
+  const BetweenEvents between(match, run.events, reference.events);
   std::vector<char> is_jump(rows);
   for (std::size_t row = 0; row < rows; ++row)
-    is_jump[row] = is_at_jump(pairs, theirs.times()[row]);
-  const std::vector<Compared> channels = compared_channels(system, theirs);
+    is_jump[row] = between.holds(theirs.times()[row]);
+  const std::vector<Compared> channels = compared_channels(system, reference);
   const Scales scales = scales_of(channels);
   for (const Compared& c : channels) {
     const double scale = std::max(c.range(), k_least_range * scales.at(c.kind) / c.arm);
@@ -211,11 +162,12 @@ RunDifference compare_runs(const System& system, const RunResult& run, const Run
     }
   }
   const double duration = theirs.size() > 0 ? theirs.times().back() - theirs.times().front() : 0.0;
-  for (const EventPair& pair : pairs) {
-    if (is_counted && !is_counted(*pair.event)) continue;
+  for (const EventPair& pair : match.pairs) {
+    const Event &mine_event = run.events[pair.mine], &event = reference.events[pair.reference];
+    if (is_counted && !is_counted(event)) continue;
     keep_worst(d.worst[static_cast<std::size_t>(ErrorKind::event_time)],
-               std::abs(pair.mine - pair.reference) / (duration > 0.0 ? duration : 1.0),
-               "'" + pair.event->element + "' " + pair.event->what, pair.reference);
+               std::abs(mine_event.t - event.t) / (duration > 0.0 ? duration : 1.0),
+               "'" + event.element + "' " + event.what, event.t);
   }
   return d;
 }

@@ -1,7 +1,7 @@
 // How far two runs of one system lie apart: positions, velocities, reactions, event times.
 //
 // A channel's error is its largest difference over the samples, divided by its range in the
-// reference; a channel that hardly moves is divided by a thousandth of the largest range of its
+// reference: over the whole run where its extremes were looked for, over the samples else; a channel that hardly moves is divided by a thousandth of the largest range of its
 // kind instead, so that rounding in it does not pass for an error; for this, angles count as
 // lengths and couples as forces at the largest radius of gyration. Where nothing of a kind moves,
 // as at rest, the size of the largest value takes the place of the range. Event times are divided

@@ -13,8 +13,7 @@ namespace {
 // limit means that modes chase each other without the motion getting anywhere.
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
-constexpr double k_storm_step = 1e-5;      // s, of time stepping through a storm
-constexpr int k_storm_steps = 200;         // of one interval
+constexpr double k_storm_interval = 2e-3;  // s, that time stepping goes over
 constexpr long k_steps_between_looks = 1L << 16;
 constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
 
@@ -194,13 +193,14 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
 void Simulation::step_through_storm(const std::string& element) {
   if (!stepping_) stepping_ = std::make_unique<TimeStepping>(system_);
   is_between_events_ = false;
+  ++statistics_.storms;
   const double begin = state_.t;
-  const double end = std::min(next_limit(), begin + k_storm_steps * k_storm_step);
+  const double end = std::min(next_limit(), begin + k_storm_interval);
   events_.push_back({begin, element, "changes " + std::to_string(EventStorm::k_limit) +
                                          " times within 1 ms: time stepping for " +
                                          std::to_string(1e3 * (end - begin)) + " ms"});
   while (state_.t < end) {
-    double t1 = std::min(end, state_.t + k_storm_step);
+    double t1 = std::min(end, state_.t + options_.storm_step);
     const double due = static_cast<double>(sample_) * options_.output_step;
     const bool is_sample = options_.output_step > 0.0 && due > state_.t && due <= t1;
     if (is_sample) t1 = due;

@@ -25,6 +25,7 @@ struct SimulationOptions {
   double output_step = 0.0;                ///< s; 0: no samples
   std::vector<std::string> channels;       ///< patterns of those sampled; empty: all
   bool has_extremes = false;               ///< look for the extremes of all channels, sampled or not
+  double storm_step = 1e-5;                ///< s, of time stepping through a storm of events
   long max_events = 100000;
   std::function<void(double t)> progress;  ///< called now and then, if given
 };
@@ -34,6 +35,7 @@ struct SimulationOptions {
 
 struct RunStatistics {
   long steps = 0, rejections = 0, evaluations = 0, events = 0;
+  long storms = 0;                     ///< stretches that time stepping went over
   double max_position_residual = 0.0;  ///< before projection, m or rad
   double max_velocity_residual = 0.0;
   double energy_residual = 0.0;        ///< largest |E + dissipated − work − E₀| met, J

@@ -12,7 +12,6 @@ namespace steplap {
 namespace {
 
 constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_touching = 1e-9; // m: a clearance of zero is not closed by rounding
 
 const ChannelRange* find_range(const RunResult& result, const std::string& name) {
   for (const ChannelRange& range : result.ranges)

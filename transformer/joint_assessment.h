@@ -12,6 +12,7 @@
 namespace steplap {
 
 struct JointAssessment {
+  static constexpr double k_touching = 1e-9; ///< m: a clearance of zero is not closed by rounding
   std::string joint;
   bool has_slipped = false;
   std::optional<double> first_slip;        ///< s; also for a monitored joint that would have slipped

@@ -82,7 +82,8 @@ CriterionResult judge_channel(const Criterion& c, const std::vector<ChannelRange
   if (!worst) return result;
   const double value = worst->extreme.value;
   result.text = limits_text(c, worst->channel->unit);
-  result.where = worst->channel->name;
+  result.where = result.channel = worst->channel->name;
+  result.reserve = -excess(c, value);
   result.unit = worst->channel->unit;
   result.value = value;
   result.limit = limit_for(c, value);
@@ -128,6 +129,8 @@ CriterionResult judge_holding(const JointAssessment& joint) {
   if (std::isfinite(joint.smallest_margin)) {
     result.value = joint.smallest_margin;
     result.limit = joint.least_margin;
+    result.channel = joint.joint + ".margin";
+    result.reserve = joint.smallest_margin - joint.least_margin;
     result.t = joint.time_of_smallest;
   }
   if (joint.first_slip) result.t = joint.first_slip;
@@ -146,6 +149,8 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
   slid.value = joint.slid_share.value;
   slid.limit = joint.most_slide;
   slid.t = joint.slid_share.t;
+  slid.channel = joint.joint + ".slid_share";
+  slid.reserve = joint.most_slide - joint.slid_share.value;
   if (joint.has_slid_too_far()) slid.outcome = Verdict::reject;
   criteria.push_back(slid);
   if (joint.has_parted()) {
@@ -154,6 +159,8 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
     parted.value = joint.overlap_left.value;
     parted.limit = 0.0;
     parted.t = joint.overlap_left.t;
+    parted.channel = joint.joint + ".overlap_left";
+    parted.reserve = joint.overlap_left.value;
     criteria.push_back(parted);
   }
   if (std::isnan(joint.clearance_left.value)) return;
@@ -164,6 +171,8 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
   closed.limit = 0.0;
   closed.unit = "m";
   closed.t = joint.clearance_left.t;
+  closed.channel = joint.joint + ".clearance_left";
+  closed.reserve = joint.clearance_left.value + JointAssessment::k_touching;
   criteria.push_back(closed);
 }
 

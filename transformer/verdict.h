@@ -28,6 +28,11 @@ struct CriterionResult {
   std::optional<double> value, limit; ///< the value nearest to or furthest beyond its limit, SI
   std::optional<double> t;            ///< s, of that value or event
   std::string unit;
+  std::string channel;                ///< whose extreme the value is
+  std::optional<double> reserve;      ///< how far inside its limit the value is; negative: beyond
+  // Filled in by weigh_errors (verdict_error.h):
+  std::optional<double> error, t_error; ///< of value and t; not-a-number: unknown
+  std::string doubt;                  ///< "met, but the error reaches the limit"; empty: none
 };
 
 struct Judgement {

@@ -34,6 +34,8 @@ class CsvText {
 public:
   explicit CsvText(std::span<const std::string> names);
   void add_row(std::span<const double> values);
+  /// A line that readers skip; begins with #.
+  void add_comment(const std::string& line) { text_ += line + "\n"; }
   [[nodiscard]] const std::string& text() const { return text_; }
 
 private:

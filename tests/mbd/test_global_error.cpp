@@ -1,6 +1,7 @@
 // Global error estimates against problems whose solution is known: an estimate has to be neither
 // smaller than the error nor much larger.
 #include "mbd/accuracy_study.h"
+#include "mbd/event_match.h"
 #include "mbd/global_error.h"
 #include "tests/physics/scene.h"
 
@@ -223,4 +224,81 @@ force_x = "nudge"
   SimulationOptions base = options({"dop853", 1e-8, 20.0, 0.01});
   CHECK_THROWS_AS((void)study_accuracy(*system, system->initial_state(), base, study_options),
                   NumericalFailure);
+}
+
+TEST_CASE("events pair so that their times differ least; what is left over has no partner") {
+  const auto at = [](std::vector<double> times) {
+    std::vector<Event> events;
+    for (const double t : times) events.push_back({t, "foot", "opens"});
+    return events;
+  };
+  // One in the middle that the other run has not: those before and after it keep theirs.
+  const std::vector<Event> mine = at({1.0, 2.0, 2.5, 3.0}), theirs = at({1.001, 2.001, 3.001});
+  const EventMatch match = match_events(mine, theirs);
+  REQUIRE(match.pairs.size() == 3);
+  CHECK(match.pairs[2].mine == 3);
+  CHECK(match.pairs[2].reference == 2);
+  CHECK(match.only_mine == std::vector<std::size_t>{2});
+  CHECK(match.only_reference.empty());
+  const EventMatch turned = match_events(theirs, mine);
+  CHECK(turned.only_reference == std::vector<std::size_t>{2});
+  CHECK(match_events(mine, {}).only_mine.size() == 4);
+  const BetweenEvents between(match, mine, theirs);
+  CHECK(between.holds(1.0005));
+  CHECK(between.holds(3.0));
+  CHECK_FALSE(between.holds(2.5));
+  CHECK_FALSE(between.holds(0.5));
+}
+
+// The belt at a tolerance so large that it slips and sticks where it should not (tsit5 at 1e-4 has two events too many).
+TEST_CASE("an event that a finer run has not has an unknown time, not a small error") {
+  const auto system = compile(scene(k_belt));
+  const State initial = system->initial_state();
+  SimulationOptions coarse = options({"tsit5", 1e-4, 10.0, 0.05});
+  coarse.has_extremes = true;
+  const RunResult run = simulate(*system, initial, coarse);
+  const GlobalErrorEstimate estimate = estimate_global_error(*system, initial, coarse, run);
+  REQUIRE(estimate.event_times.size() == run.events.size());
+  const EventMatch match = match_events(run.events, estimate.finest.events);
+  for (const std::size_t alone : match.only_mine) CHECK(std::isnan(estimate.event_times[alone]));
+  for (const EventPair& pair : match.pairs) CHECK(estimate.event_times[pair.mine] < 1e-3);
+  CHECK(estimate.error.unmatched_events == static_cast<int>(match.only_mine.size() + match.only_reference.size()));
+  if (estimate.error.unmatched_events > 0) CHECK(std::isnan(estimate.error.of(ErrorKind::event_time).value));
+}
+
+// x = 0.1 cos 10 t sampled once a period: every sample is 0.1 m, and their range is the error itself.
+TEST_CASE("an error is measured against the range of the whole run, not of samples that fall on one phase") {
+  const auto system = compile(scene(k_oscillator));
+  const State initial = system->initial_state();
+  SimulationOptions once = options({"tsit5", 1e-5, 2.0 * M_PI, 2.0 * M_PI / 10.0});
+  once.has_extremes = true;
+  const RunResult run = simulate(*system, initial, once);
+  const GlobalErrorEstimate estimate = estimate_global_error(*system, initial, once, run);
+  double error = 0.0;
+  for (const double x : run.trajectory->series("mass.x")) error = std::max(error, std::abs(x - 0.1));
+  // 10 periods of 1e-5 a step and of some 20 steps each: at most 2e-3. Against the samples' range it would be above 1.
+  CHECK(estimate.error.of(ErrorKind::position).value < 2e-3);
+  CHECK(estimate.error.of(ErrorKind::position).value * 0.2 >= 0.9 * error);
+  // Extremes: those of a conservative oscillator are 0.1 m and 1 m/s for ever.
+  for (const char* name : {"mass.x", "mass.vx"})
+    for (std::size_t c = 0; c < run.ranges.size(); ++c) {
+      if (run.ranges[c].channel->name != name) continue;
+      const double exact = name == std::string("mass.x") ? 0.1 : 1.0;
+      CHECK(std::abs(run.ranges[c].high.value - exact) <= estimate.channels[c].high);
+      CHECK(std::abs(run.ranges[c].low.value + exact) <= estimate.channels[c].low);
+      CHECK(estimate.channels[c].high < 1e-3 * exact);
+    }
+}
+
+TEST_CASE("dissipated energy has an error") {
+  const auto system = compile(scene(k_belt));
+  const State initial = system->initial_state();
+  SimulationOptions coarse = options({"tsit5", 1e-5, 3.0, 0.05}), exact = options({"dop853", 1e-12, 3.0, 0.05});
+  coarse.has_extremes = exact.has_extremes = true;
+  const RunResult run = simulate(*system, initial, coarse), truth = simulate(*system, initial, exact);
+  const GlobalErrorEstimate estimate = estimate_global_error(*system, initial, coarse, run);
+  const double error = std::abs(run.statistics.dissipated - truth.statistics.dissipated);
+  CHECK(error > 0.0);
+  CHECK(error <= estimate.dissipated);
+  CHECK(estimate.dissipated <= 10.0 * error + 1e-6 * run.statistics.energy_scale); // not out of all proportion
 }

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <sstream>
 
 using namespace steplap::testing;
 
@@ -65,13 +66,88 @@ TEST_CASE("simulate --estimate-error tells the global error, on the screen and i
       steplap_does({"simulate", model, "-o", bench.at("out"), "--estimate-error", "--integrator",
                     "tsit5", "--tolerance", "1e-7"});
   CHECK(adaptive.code == 0);
-  CHECK(has(adaptive.out, "estimated from a second run (tsit5, tolerance 1e-09)"));
+  CHECK(has(adaptive.out, "estimated from a finer run (tsit5, tolerance 1e-09)"));
   CHECK(has(text_of(bench.at("out/a/summary.json")), "\"global_error\""));
   const Outcome fixed = steplap_does(
       {"simulate", model, "-o", bench.at("fixed"), "--estimate-error", "--integrator", "rk4", "--step",
        "1e-3"});
-  CHECK(has(fixed.out, "estimated from a second run (rk4, step 5e-04 s)"));
-  const Outcome plain = steplap_does({"simulate", model, "-o", bench.at("plain")});
+  CHECK(has(fixed.out, "estimated from finer runs (rk4, step 5e-04 s and 0.00025 s)"));
+  const Outcome plain = steplap_does({"simulate", model, "-o", bench.at("plain"), "--no-estimate"});
   CHECK_FALSE(has(plain.out, "Global error"));
-  CHECK_FALSE(has(text_of(bench.at("plain/a/summary.json")), "global_error"));
+  CHECK_FALSE(has(plain.out, "±"));
+  CHECK(has(plain.out, "error not estimated: left out with --no-estimate"));
+  CHECK_FALSE(has(text_of(bench.at("plain/a/summary.json")), "\"global_error\""));
+  CHECK(steplap_does({"simulate", model, "-o", bench.at("x"), "--no-estimate", "--estimate-error"}).code == 2);
+}
+
+TEST_CASE("by default every number of a run stands with its error") {
+  const Workbench bench;
+  const std::string model = bench.write("a.toml", k_bouncer);
+  const Outcome outcome = steplap_does({"simulate", model, "-o", bench.at("out"), "--report"});
+  CHECK(outcome.code == 0);
+  std::istringstream lines(outcome.out);
+  for (std::string line; std::getline(lines, line);) // events and extremes
+    if (has(line, "floor  ") || has(line, "floor.force  ") || has(line, "energy dissipated")) CHECK_MESSAGE(has(line, " ± "), line);
+  const std::string csv = text_of(bench.at("out/a/trajectory.csv"));
+  CHECK(csv.rfind("t [s],ball.x [m]", 0) == 0); // names stay the first row
+  CHECK(csv.find("\n# error estimate,") == csv.find('\n'));
+  CHECK(text_of(bench.at("out/a/events.csv")).rfind("t [s],element,event,error of t [s]\n0.14", 0) == 0);
+  const std::string summary = text_of(bench.at("out/a/summary.json"));
+  for (const char* key : {"error_min", "error_t_max", "error_final", "error_dissipated", "\"errors\""}) CHECK_MESSAGE(has(summary, key), key);
+  CHECK(has(text_of(bench.at("out/a/report.html")), "\"text_max\":"));
+
+  // Motion and events do not hang on it.
+  CHECK(steplap_does({"simulate", model, "-o", bench.at("plain"), "--no-estimate"}).code == 0);
+  std::string bare = csv;
+  const std::size_t begin = bare.find('\n') + 1;
+  bare.erase(begin, bare.find('\n', begin) + 1 - begin);
+  CHECK(text_of(bench.at("plain/a/trajectory.csv")) == bare);
+}
+
+TEST_CASE("what is met within its error only is open, and says so") {
+  const Workbench bench;
+  // Dropped from 0.1 m it lands at v² = 2 g h; undamped the spring takes v √(k m) + m g and a little: 452.8 N or so. Then
+  // the limit is the run's own value and half a millionth of it, where extremes are located to one: met, but not known to be.
+  const std::string model = bench.write("a.toml", std::string(k_bouncer) + R"([[acceptance]]
+name = "floor"
+channel = "floor.force"
+at_most = 1e4
+)");
+  const std::vector<std::string> run{"simulate", model, "--integrator", "dop853", "--tolerance", "1e-8", "--end", "0.3", "-o"};
+  const auto with = [&](const std::string& folder, std::vector<std::string> more) {
+    std::vector<std::string> arguments = run;
+    arguments.push_back(bench.at(folder));
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return steplap_does(arguments);
+  };
+  const Outcome far = with("far", {"--require-hold"});
+  CHECK(far.code == 0);
+  CHECK(has(far.out, "Verdict by the criteria of the model: hold"));
+  const std::string summary = text_of(bench.at("far/a/summary.json"));
+  const std::size_t entry = summary.find("\"floor.force\": {"), at = summary.find("\"max\": ", entry) + 7;
+  const double largest = std::stod(summary.substr(at));
+  CHECK(largest > 400.0);
+  std::ostringstream limit;
+  limit.precision(17);
+  limit << "acceptance.floor.at_most=" << largest * (1.0 + 5e-7);
+  const Outcome near = with("near", {"--require-hold", "--set", limit.str()});
+  CHECK(near.code == 5);
+  CHECK(has(near.out, "Verdict by the criteria of the model: open"));
+  CHECK(has(near.out, "met, but the error reaches the limit"));
+  CHECK(has(text_of(bench.at("near/a/summary.json")), "\"doubt\": \"met, but the error reaches the limit\""));
+  // Without an estimate nothing is known of it: the verdict is the number's, and the screen says what it is worth.
+  const Outcome plain = with("plain", {"--no-estimate", "--set", limit.str()});
+  CHECK(has(plain.out, "Verdict by the criteria of the model: hold"));
+  CHECK(has(plain.out, "judged without the errors of the numbers"));
+}
+
+TEST_CASE("an estimate that costs more than about a second is left out, and it is said what it would take") {
+  const Workbench bench;
+  // 1.2 million steps of rk4: six times as many for the estimate.
+  const std::string model = bench.write("a.toml", k_oscillator);
+  const Outcome slow = steplap_does({"simulate", model, "-o", bench.at("out"), "--integrator", "rk4", "--step", "1e-6", "--end", "1.2"});
+  CHECK(slow.code == 0);
+  CHECK(has(slow.out, "error not estimated: would take about "));
+  CHECK(has(slow.out, "ask with --estimate-error"));
+  CHECK(has(text_of(bench.at("out/a/summary.json")), "\"error_not_estimated\": \"would take long; ask with --estimate-error\""));
 }

@@ -41,8 +41,8 @@ TEST_CASE("a run leaves its five files and one screen") {
   CHECK(bench.content("out/a") == k_files);
   const std::string csv = text_of(bench.at("out/a/trajectory.csv"));
   CHECK(csv.rfind("t [s],ball.x [m],ball.y [m],ball.theta [rad],ball.vx [m/s]", 0) == 0);
-  CHECK(count_lines(csv) == 22); // header, t = 0 … 2 s
-  CHECK(text_of(bench.at("out/a/events.csv")).rfind("t [s],element,event\n0.14", 0) == 0);
+  CHECK(count_lines(csv) == 23); // header, errors, t = 0 … 2 s
+  CHECK(text_of(bench.at("out/a/events.csv")).rfind("t [s],element,event,error of t [s]\n0.14", 0) == 0);
   const std::string summary = text_of(bench.at("out/a/summary.json"));
   CHECK(has(summary, "\"completed\": true"));
   CHECK(has(summary, "\"file\": \"" + bench.at("a.toml") + "\""));
@@ -82,7 +82,7 @@ TEST_CASE("nothing is said when quiet, no progress without a terminal") {
   CHECK(quiet.out.empty());
   CHECK(quiet.err.empty());
   // Long enough that a terminal would see some progress.
-  const std::vector<std::string> slow{"simulate", model, "--step", "1e-6", "--end", "0.06"};
+  const std::vector<std::string> slow{"simulate", model, "--step", "1e-6", "--end", "0.06", "--no-estimate"};
   auto piped = slow, shown = slow;
   piped.insert(piped.end(), {"-o", bench.at("b")});
   shown.insert(shown.end(), {"-o", bench.at("c")});
@@ -105,7 +105,7 @@ TEST_CASE("earlier results are kept unless they may be overwritten") {
   CHECK(text_of(bench.at("out/a/trajectory.csv")) == before);
   bench.write("out/a/notes.txt", "mine");
   CHECK(steplap_does({"simulate", model, "-o", out, "--end", "0.05", "--force"}).code == 0);
-  CHECK(count_lines(text_of(bench.at("out/a/trajectory.csv"))) == 7);
+  CHECK(count_lines(text_of(bench.at("out/a/trajectory.csv"))) == 8);
   CHECK(text_of(bench.at("out/a/notes.txt")) == "mine");
   auto expected = k_files;
   expected.insert("notes.txt");

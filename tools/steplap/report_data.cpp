@@ -2,6 +2,7 @@
 
 #include "mbd/trajectory.h"
 #include "tools/steplap/command.h"
+#include "tools/steplap/measured_text.h"
 #include "tools/steplap/thinning.h"
 #include "tools/steplap/version.h"
 
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 
@@ -124,9 +126,41 @@ Json channel_json(const ResultChannel& channel, const std::vector<double>& times
 
 Json events_json(const Results& run) {
   Json json = Json::array();
-  for (std::size_t i = 0; i < std::min(run.events.size(), k_most_events); ++i)
-    json.push_back({run.events[i].t, run.events[i].element, run.events[i].what});
+  for (std::size_t i = 0; i < std::min(run.events.size(), k_most_events); ++i) {
+    const ResultEvent& event = run.events[i];
+    json.push_back({event.t, event.element, event.what, measured_time_text(event.t, event.error)});
+  }
   return json;
+}
+
+// Beside a number of summary.json and its error their text, as the screen has it; without an error the page writes the
+// number its own way.
+void add_text(Json& entry, const std::string& value, const std::string& error, const std::string& unit) {
+  if (!entry.contains(error) || !entry.contains(value) || !entry[value].is_number()) return;
+  const double known_to = entry[error].is_number() ? entry[error].get<double>() : std::numeric_limits<double>::quiet_NaN();
+  entry["text_" + value] = measured_text(entry[value].get<double>(), known_to, unit);
+}
+
+void add_texts(Json& summary) {
+  if (!summary.contains("global_error")) return;
+  for (Json& entry : summary["extremes"]) {
+    const std::string unit = entry["unit"].get<std::string>();
+    for (const char* key : {"min", "max", "final"}) add_text(entry, key, std::string("error_") + key, unit);
+    for (const char* key : {"t_min", "t_max"}) add_text(entry, key, std::string("error_") + key, "s");
+  }
+  if (summary.contains("joints"))
+    for (Json& entry : summary["joints"]) {
+      const std::pair<const char*, const char*> figures[] = {
+          {"first_slip", "s"}, {"smallest_margin", ""}, {"largest_required_pressure", "Pa"}, {"slid_x", "m"},
+          {"slid_y", "m"},     {"slid_angle", "rad"},   {"area_lost", "m^2"}};
+      for (const auto& [key, unit] : figures) add_text(entry, key, std::string("error_") + key, unit);
+    }
+  if (summary.contains("judgement"))
+    for (Json& entry : summary["judgement"]["criteria"]) {
+      add_text(entry, "value", "error", entry["unit"].get<std::string>());
+      add_text(entry, "t", "error_t", "s");
+    }
+  for (const char* key : {"dissipated", "work"}) add_text(summary["accuracy"], key, std::string("error_") + key, "J");
 }
 
 // Extremes of channels that the page does not hold would outweigh everything else in large models.
@@ -146,6 +180,7 @@ std::string shortened(const std::string& model) {
 Json run_json(const Results& run, Json drawing, const std::vector<std::size_t>& kept, std::size_t stretches) {
   Json summary = parsed(run, run.summary, "summary.json");
   keep_extremes(summary, run, kept);
+  add_texts(summary);
   if (drawing["bodies"].size() > k_most_bodies) {
     drawing["bodies"].erase(drawing["bodies"].begin() + k_most_bodies, drawing["bodies"].end());
     drawing["elements"] = Json::array();

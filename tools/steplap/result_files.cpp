@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 
@@ -106,11 +107,31 @@ void move_into(const fs::path& staging, const fs::path& folder,
 
 } // namespace
 
-std::string trajectory_csv(const Trajectory& trajectory) {
+namespace {
+
+std::string error_field(double error) { return std::isnan(error) ? "unknown" : number_text(error); }
+
+std::vector<double> column_errors(const Run& run, const RunSummary& summary) {
+  std::vector<double> errors;
+  if (!summary.global_error) return errors;
+  const Channel* first = run.loaded->system->channels.data();
+  for (const Channel* channel : run.result.trajectory->channels())
+    errors.push_back(summary.global_error->channels[static_cast<std::size_t>(channel - first)].curve);
+  return errors;
+}
+
+} // namespace
+
+std::string trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors) {
   std::vector<std::string> header{"t [s]"};
   for (const Channel* channel : trajectory.channels())
     header.push_back(channel->name + (channel->unit.empty() ? "" : " [" + channel->unit + "]"));
   CsvText csv(header);
+  if (!errors.empty()) {
+    std::string comment = "# error estimate";
+    for (const double error : errors) comment += "," + error_field(error);
+    csv.add_comment(comment);
+  }
   std::vector<double> values(header.size());
   for (std::size_t row = 0; row < trajectory.size(); ++row) {
     values[0] = trajectory.times()[row];
@@ -121,11 +142,14 @@ std::string trajectory_csv(const Trajectory& trajectory) {
   return csv.text();
 }
 
-std::string events_csv(const std::vector<Event>& events) {
-  std::string text = "t [s],element,event\n";
-  for (const Event& event : events)
-    text += number_text(event.t) + "," + csv_field(event.element) + "," + csv_field(event.what) +
-            "\n";
+std::string events_csv(const std::vector<Event>& events, const std::vector<double>* errors) {
+  std::string text = errors ? "t [s],element,event,error of t [s]\n" : "t [s],element,event\n";
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Event& event = events[i];
+    text += number_text(event.t) + "," + csv_field(event.element) + "," + csv_field(event.what);
+    if (errors) text += "," + error_field((*errors)[i]);
+    text += "\n";
+  }
   return text;
 }
 
@@ -133,8 +157,8 @@ std::vector<ResultFile> result_files(const Run& run, const RunSummary& summary) 
   const std::string prefix = run.failure.empty() ? "" : k_partial;
   const std::string head = "# Effective model of '" + run.loaded->path + "', written by steplap " +
                            k_version + ".\n\n";
-  return {{prefix + "trajectory.csv", trajectory_csv(*run.result.trajectory)},
-          {prefix + "events.csv", events_csv(run.result.events)},
+  return {{prefix + "trajectory.csv", trajectory_csv(*run.result.trajectory, column_errors(run, summary))},
+          {prefix + "events.csv", events_csv(run.result.events, summary.global_error ? &summary.global_error->event_times : nullptr)},
           {prefix + "model.toml", head + run.loaded->text},
           {prefix + "drawing.json", drawing_json(run.loaded->model)},
           {prefix + "summary.json", summary_json(run, summary)}};

@@ -1,11 +1,13 @@
 // The files of a run, and the folder they stand in: all there or none.
 //
-//   trajectory.csv  time histories, units in the header row: "t [s],active part.x [m]"
-//   events.csv      what happened when: "t [s],element,event"
+//   trajectory.csv  time histories, units in the header row: "t [s],active part.x [m]"; where errors are estimated, below
+//                   it a comment: "# error estimate," and the error of each column ("unknown" where it is)
+//   events.csv      what happened when: "t [s],element,event", and ",error of t [s]" where errors are estimated
 //   summary.json    settings, statistics, extremes of every channel, final state
 //   model.toml      the effective model, extended files and overrides merged
 //   drawing.json    what the machine looks like (drawing.h)
-// Nothing in them depends on the clock or the machine: two runs of a model give the same bytes. A run
+// Nothing in them depends on the clock or the machine: two runs of a model give the same bytes; but whether errors are
+// estimated hangs on the computing time, unless the user says. A run
 // that did not reach its end is saved as partial_trajectory.csv and so on.
 #pragma once
 
@@ -21,8 +23,9 @@ struct ResultFile {
   std::string content;
 };
 
-[[nodiscard]] std::string trajectory_csv(const Trajectory& trajectory);
-[[nodiscard]] std::string events_csv(const std::vector<Event>& events);
+/// `errors`: of the columns, none if they were not estimated; not-a-number is unknown.
+[[nodiscard]] std::string trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors = {});
+[[nodiscard]] std::string events_csv(const std::vector<Event>& events, const std::vector<double>* errors = nullptr);
 [[nodiscard]] std::string summary_json(const Run& run, const RunSummary& summary);
 [[nodiscard]] std::vector<ResultFile> result_files(const Run& run, const RunSummary& summary);
 

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 namespace steplap {
@@ -69,6 +70,7 @@ void read_trajectory(const fs::path& file, Results& results) {
   for (std::size_t i = 1; i < heads.size(); ++i)
     results.channels.push_back(channel_of(heads[i]));
   for (std::size_t number = 2; std::getline(lines, line); ++number) {
+    if (line.starts_with('#')) continue;
     const char *at = line.data(), *end = at + line.size();
     results.times.push_back(number_of(at, end, file, number));
     for (ResultChannel& channel : results.channels) {
@@ -84,11 +86,17 @@ void read_events(const fs::path& file, Results& results) {
   std::istringstream lines(read_text(file.string()));
   std::string line;
   std::getline(lines, line);
+  const std::size_t columns = cells_of(line).size() > 3 ? 4 : 3; // the fourth: errors of the times
   for (std::size_t number = 2; std::getline(lines, line); ++number) {
     const std::vector<std::string> cells = cells_of(line);
-    if (cells.size() != 3) damaged(file, number, "an event has a time, an element and what happened");
-    const char* at = cells[0].data();
-    results.events.push_back({number_of(at, at + cells[0].size(), file, number), cells[1], cells[2]});
+    if (cells.size() != columns) damaged(file, number, "an event has a time, an element and what happened");
+    const auto value = [&](const std::string& cell) {
+      const char* at = cell.data();
+      return number_of(at, at + cell.size(), file, number);
+    };
+    ResultEvent event{value(cells[0]), cells[1], cells[2]};
+    if (columns > 3) event.error = cells[3] == "unknown" ? std::numeric_limits<double>::quiet_NaN() : value(cells[3]);
+    results.events.push_back(std::move(event));
   }
 }
 

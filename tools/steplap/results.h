@@ -1,6 +1,7 @@
 // The folder of a run read back: what reports and plots are made from, nothing else.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct ResultChannel {
 struct ResultEvent {
   double t = 0.0;
   std::string element, what;
+  std::optional<double> error = {}; ///< s, of t, if it was estimated; not-a-number: unknown
 };
 
 struct Results {

@@ -3,6 +3,7 @@
 #include "mbd/math/portable_math.h"
 #include "mbd/number_text.h"
 #include "mbd/validate.h"
+#include "tools/steplap/measured_text.h"
 #include "tools/steplap/text_table.h"
 #include "transformer/joint_assessment.h"
 
@@ -19,6 +20,20 @@ using Align = TextTable::Align;
 
 constexpr std::size_t k_most_events_shown = 30;
 
+// "0.6", "12"
+std::string rough_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, value < 10.0 ? "%.1g" : "%.0f", value);
+  return text;
+}
+
+void print_no_estimate(std::ostream& out, const RunSummary& summary) {
+  if (summary.global_error) return;
+  out << "  error not estimated: ";
+  if (!summary.estimate_cost) out << summary.no_estimate << "\n";
+  else out << "would take about " << rough_text(*summary.estimate_cost) << " s; ask with --estimate-error\n";
+}
+
 void print_heading(std::ostream& out, const FinishedRun& finished) {
   const LoadedModel& loaded = *finished.run.loaded;
   const SimulationSettings& s = loaded.model.simulation;
@@ -30,6 +45,7 @@ void print_heading(std::ostream& out, const FinishedRun& finished) {
   out << ", t = 0 to " << number_text(finished.run.result.final_state.t) << " s\n";
   if (!finished.run.failure.empty())
     out << "  STOPPED before the end: " << finished.run.failure << "\n";
+  print_no_estimate(out, finished.summary);
 }
 
 void print_events(std::ostream& out, const FinishedRun& finished) {
@@ -41,10 +57,11 @@ void print_events(std::ostream& out, const FinishedRun& finished) {
   out << "\n";
   TextTable table({Align::right, Align::left, Align::left});
   std::size_t shown = 0;
-  for (const Event& event : events) {
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Event& event = events[i];
     if (!is_main_event(event)) continue;
     if (shown++ < k_most_events_shown)
-      table.add_row({time_text(event.t) + " s", event.element, event.what});
+      table.add_row({measured_time_text(event.t, finished.summary.event_error(i)), event.element, event.what});
   }
   out << table;
   if (shown > k_most_events_shown)
@@ -56,16 +73,24 @@ bool is_shown(const ChannelRange& range) {
   return is_reaction(*range.channel) && !std::isnan(range.low.value) && range.largest().value != 0.0;
 }
 
-std::string value_text(const ChannelRange& range, const Extreme& extreme) {
-  return quantity_text(extreme.value, range.channel->unit, range.largest().value);
+// What is rounding beside the channel's largest value is zero; an error says so itself.
+std::string value_text(const RunSummary& summary, const ChannelRange& range, const Extreme& extreme) {
+  const std::string& unit = range.channel->unit;
+  const auto error = summary.error_of(range, &extreme == &range.low ? &ChannelError::low : &ChannelError::high);
+  return error ? measured_text(extreme.value, error, unit) : quantity_text(extreme.value, unit, range.largest().value);
 }
 
-std::string sample_time_text(double t) {
-  return quantity_text(t, "s");
+std::string extreme_time_text(double t, std::optional<double> error) {
+  return error ? measured_time_text(t, error) : quantity_text(t, "s");
 }
 
-std::string small_margin_text(double margin) {
+std::string time_of_text(const RunSummary& summary, const ChannelRange& range, const Extreme& extreme) {
+  return extreme_time_text(extreme.t, summary.error_of(range, &extreme == &range.low ? &ChannelError::t_low : &ChannelError::t_high));
+}
+
+std::string small_margin_text(double margin, std::optional<double> error) {
   if (!std::isfinite(margin)) return "–";
+  if (error) return measured_text(margin, error, "");
   char text[32];
   std::snprintf(text, sizeof text, "%.3f", margin);
   return text;
@@ -78,8 +103,8 @@ void print_reactions(std::ostream& out, const RunSummary& summary) {
   for (const ChannelRange& range : summary.ranges) {
     if (!is_shown(range)) continue;
     is_any = true;
-    table.add_row({range.channel->name, value_text(range, range.low), sample_time_text(range.low.t),
-                   value_text(range, range.high), sample_time_text(range.high.t)});
+    table.add_row({range.channel->name, value_text(summary, range, range.low), time_of_text(summary, range, range.low),
+                   value_text(summary, range, range.high), time_of_text(summary, range, range.high)});
   }
   if (is_any) out << "\nReactions and required pressures, extremes of the whole run\n" << table;
 }
@@ -88,8 +113,8 @@ void print_slides(std::ostream& out, const RunSummary& summary) {
   TextTable table({Align::left, Align::right, Align::right});
   for (const ChannelRange& range : summary.ranges)
     if (is_slide(*range.channel))
-      table.add_row({range.channel->name, quantity_text(range.largest().value, range.channel->unit),
-                     "at " + sample_time_text(range.largest().t)});
+      table.add_row({range.channel->name, value_text(summary, range, range.largest()),
+                     "at " + time_of_text(summary, range, range.largest())});
   if (!table.is_empty()) out << "\nLargest slides\n" << table;
 }
 
@@ -98,18 +123,26 @@ void print_joints(std::ostream& out, const FinishedRun& finished) {
   TextTable table({Align::left, Align::left, Align::right, Align::right, Align::right, Align::right,
                    Align::right, Align::right});
   table.add_row({"", "verdict", "first slip", "largest p_req", "at", "margin", "slid", "area lost"});
-  for (const JointAssessment& a : joints)
-    table.add_row({a.joint, a.verdict, a.first_slip ? time_text(*a.first_slip) + " s" : "–",
-                   quantity_text(a.largest_required_pressure, "Pa"),
-                   sample_time_text(a.time_of_largest), small_margin_text(a.smallest_margin),
-                   quantity_text(portable::hypot(a.slid_x, a.slid_y), "m", 1e-3),
-                   quantity_text(a.area_lost, "m^2", 1.0)});
+  for (const JointAssessment& a : joints) {
+    std::optional<JointErrors> e;
+    if (const auto& estimate = finished.summary.global_error)
+      e = joint_errors(a, *finished.run.loaded->system, finished.run.result, *estimate);
+    const auto error = [&e](double JointErrors::*which) { return e ? std::optional((*e).*which) : std::nullopt; };
+    const double slid = portable::hypot(a.slid_x, a.slid_y);
+    const auto slid_error = e ? std::optional(portable::hypot(e->slid_x, e->slid_y)) : std::nullopt;
+    table.add_row({a.joint, a.verdict, a.first_slip ? measured_time_text(*a.first_slip, error(&JointErrors::first_slip)) : "–",
+                   measured_text(a.largest_required_pressure, error(&JointErrors::largest_required_pressure), "Pa"),
+                   extreme_time_text(a.time_of_largest, error(&JointErrors::time_of_largest)),
+                   small_margin_text(a.smallest_margin, error(&JointErrors::smallest_margin)),
+                   e ? measured_text(slid, slid_error, "m") : quantity_text(slid, "m", 1e-3),
+                   e ? measured_text(a.area_lost, e->area_lost, "m^2") : quantity_text(a.area_lost, "m^2", 1.0)});
+  }
   if (!joints.empty()) out << "\nStep-lap joints\n" << table;
 }
 
 std::string value_beside_limit(const CriterionResult& c) {
   if (!c.value || !c.limit) return "";
-  return quantity_text(*c.value, c.unit) + " (limit " + quantity_text(*c.limit, c.unit) + ")";
+  return measured_text(*c.value, c.error, c.unit) + " (limit " + quantity_text(*c.limit, c.unit) + ")";
 }
 
 void print_judgement(std::ostream& out, const FinishedRun& finished) {
@@ -122,34 +155,45 @@ void print_judgement(std::ostream& out, const FinishedRun& finished) {
   TextTable table({Align::left, Align::left, Align::left, Align::right, Align::right});
   for (const CriterionResult& c : judgement.criteria)
     table.add_row({c.name, c.text, c.outcome == Verdict::hold ? "met" : name_of(c.outcome), value_beside_limit(c),
-                   c.t ? "at " + sample_time_text(*c.t) : ""});
+                   c.t ? "at " + extreme_time_text(*c.t, c.t_error) : ""});
   out << table;
+  for (const CriterionResult& c : judgement.criteria)
+    if (!c.doubt.empty()) out << "  '" << c.name << "', " << c.text << ": " << c.doubt << "\n";
+  const bool is_in_doubt = std::any_of(judgement.criteria.begin(), judgement.criteria.end(),
+                                       [](const CriterionResult& c) { return !c.doubt.empty(); });
+  if (!finished.summary.global_error) out << "  judged without the errors of the numbers: " << finished.summary.no_estimate << "\n";
+  if (is_in_doubt) out << "  A smaller tolerance or step decides.\n";
 }
 
-std::string finer_text(const SimulationOptions& finer, const SimulationSettings& run) {
-  const bool is_step = run.step && finer.settings.step != *run.step;
-  return finer.integrator + (is_step ? ", step " + number_text(finer.settings.step) + " s"
-                                     : ", tolerance " + number_text(finer.settings.tolerance));
+// "rk4, step 5e-05 s and 2.5e-05 s"
+std::string finer_text(const std::vector<SimulationOptions>& finer, const SimulationOptions& asked) {
+  std::string text = finer.back().integrator, before = ", step ";
+  if (finer.back().settings.step == asked.settings.step) return text + ", tolerance " + number_text(finer.back().settings.tolerance);
+  for (const SimulationOptions& options : finer) {
+    text += before + number_text(options.settings.step) + " s";
+    before = " and ";
+  }
+  return text;
 }
 
 void print_global_error(std::ostream& out, const FinishedRun& finished) {
   if (!finished.summary.global_error) return;
   const GlobalErrorEstimate& estimate = *finished.summary.global_error;
-  out << "\nGlobal error, estimated from a second run (" << finer_text(estimate.finer, finished.run.loaded->model.simulation)
-      << "); of each channel's range\n";
+  const SimulationOptions asked = options_of(finished.run.loaded->model);
+  out << "\nGlobal error, estimated from " << (estimate.finer.size() > 1 ? "finer runs (" : "a finer run (")
+      << finer_text(estimate.finer, asked) << "); of each channel's range\n";
   TextTable table({Align::left, Align::right, Align::left});
   for (std::size_t k = 0; k < k_error_kinds; ++k) {
     const WorstError& worst = estimate.error.worst[k];
-    table.add_row({name_of(static_cast<ErrorKind>(k)), small_text(worst.value),
-                   worst.where.empty() ? "" : worst.where + " at " + sample_time_text(worst.t)});
+    table.add_row({name_of(static_cast<ErrorKind>(k)), std::isnan(worst.value) ? "unknown" : small_text(worst.value),
+                   worst.where.empty() ? "" : worst.where + " at " + quantity_text(worst.t, "s")});
   }
   out << table;
-  const SimulationOptions asked = options_of(finished.run.loaded->model);
   const double times_tolerance = estimate.error.largest() / asked.settings.tolerance;
-  if (estimate.finer.settings.step == asked.settings.step && times_tolerance > 1.0)
+  if (estimate.finer.back().settings.step == asked.settings.step && times_tolerance > 1.0)
     out << "  the largest is " << small_text(times_tolerance) << " times the tolerance, which is meant for each step\n";
   if (estimate.error.unmatched_events > 0)
-    out << "  " << estimate.error.unmatched_events << " events are in one of the two runs only: the run is not converged there\n";
+    out << "  " << estimate.error.unmatched_events << " events are in one of the runs only: the run is not converged there\n";
 }
 
 // Rows of the last table: name and how a run's value reads.
@@ -162,12 +206,20 @@ const RunStatistics& statistics(const FinishedRun& f) {
   return f.run.result.statistics;
 }
 
+// Of kinetic energy, work or dissipation, the balance of which is known to the residual.
+std::optional<double> exchanged_error(const FinishedRun& f) {
+  if (!f.summary.global_error) return {};
+  return larger_error(larger_error(*f.summary.dissipated_error(), *f.summary.work_error()), statistics(f).energy_residual);
+}
+
 const std::vector<Figure>& accuracy_and_cost() {
   static const std::vector<Figure> figures{
       {"energy residual",
        [](const FinishedRun& f) { return small_text(statistics(f).energy_residual) + " J"; }},
       {"energy exchanged",
-       [](const FinishedRun& f) { return quantity_text(statistics(f).energy_exchanged, "J"); }},
+       [](const FinishedRun& f) { return measured_text(statistics(f).energy_exchanged, exchanged_error(f), "J"); }},
+      {"energy dissipated",
+       [](const FinishedRun& f) { return measured_text(statistics(f).dissipated, f.summary.dissipated_error(), "J"); }},
       {"energy residual, relative",
        [](const FinishedRun& f) { return small_text(f.summary.relative_energy_residual); }},
       {"constraint residual, m or rad",
@@ -216,8 +268,8 @@ void add_range_row(TextTable& table, const std::vector<FinishedRun>& runs, const
   std::vector<std::string> row{name};
   for (const FinishedRun& run : runs) {
     const ChannelRange* range = run.summary.find(name);
-    row.push_back(range ? value_text(*range, range->low) : "–");
-    row.push_back(range ? value_text(*range, range->high) : "–");
+    row.push_back(range ? value_text(run.summary, *range, range->low) : "–");
+    row.push_back(range ? value_text(run.summary, *range, range->high) : "–");
   }
   table.add_row(row);
 }
@@ -274,7 +326,7 @@ void print_comparison(std::ostream& out, const std::vector<FinishedRun>& runs) {
        channel_names(runs, [](const ChannelRange& r) { return is_slide(*r.channel); }))
     table.add_row(cells(name + ", largest", runs, [&](const FinishedRun& run) -> std::string {
       const ChannelRange* range = run.summary.find(name);
-      return range ? quantity_text(range->largest().value, range->channel->unit) : "–";
+      return range ? value_text(run.summary, *range, range->largest()) : "–";
     }));
   for (const Figure& figure : accuracy_and_cost())
     table.add_row(cells(figure.name, runs, figure.text));

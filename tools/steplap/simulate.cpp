@@ -25,7 +25,7 @@ struct SimulateOptions {
   std::vector<std::string> overrides;
   std::string output = "out";
   std::optional<std::string> end, step, integrator, tolerance;
-  bool is_overwriting = false, is_error_estimated = false, is_reported = false,
+  bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false,
        is_hold_required = false;
 
   /// --set and its short forms.
@@ -66,18 +66,42 @@ void check_folders(const SimulateOptions& options, const Models& models) {
                      "overwrite it with --force");
 }
 
-// A second, finer run; where it fails the first stands, without an estimate.
-void estimate_error(FinishedRun& finished) {
+// From finer runs; where one fails the run stands, but nothing of it can be called known.
+void make_estimate(FinishedRun& finished) {
   const LoadedModel& loaded = *finished.run.loaded;
-  if (!finished.run.failure.empty()) return;
+  const RunResult& result = finished.run.result;
   try {
-    finished.summary.global_error =
-        estimate_global_error(*loaded.system, initial_state_of(loaded), options_of(loaded.model),
-                              finished.run.result, is_main_event);
+    finished.summary.global_error = estimate_global_error(*loaded.system, initial_state_of(loaded), options_of(loaded.model),
+                                                          result, is_main_event);
+    weigh_errors(finished.summary.judgement, loaded.model, *loaded.system, result, *finished.summary.global_error);
   } catch (const NumericalFailure& failure) {
-    log_warning("'" + loaded.path +
-                "': the global error is not known: the finer run failed: " + failure.what());
+    finished.summary.no_estimate = std::string("the finer run failed: ") + failure.what();
+    leave_open(finished.summary.judgement, "the finer run failed");
+    log_warning("'" + loaded.path + "': the error is not known: " + finished.summary.no_estimate);
   }
+}
+
+// By default only where it costs little. What decides is the time that the run took to compute: no number of it depends
+// on the outcome, but for whether errors stand beside them.
+void estimate_error(const SimulateOptions& options, FinishedRun& finished) {
+  constexpr double k_little = 1.0; // s
+  const LoadedModel& loaded = *finished.run.loaded;
+  std::string& why_not = finished.summary.no_estimate;
+  if (!finished.run.failure.empty()) {
+    why_not = "the run broke off";
+    return;
+  }
+  if (options.is_estimate_left_out) {
+    why_not = "left out with --no-estimate";
+    return;
+  }
+  const double cost = predicted_cost(*loaded.system, options_of(loaded.model), finished.run.result.statistics);
+  if (cost < k_little || options.is_error_estimated) {
+    make_estimate(finished);
+    return;
+  }
+  finished.summary.estimate_cost = cost;
+  why_not = "would take long; ask with --estimate-error";
 }
 
 // Poses given to the digits of a file need no mention, nor do velocities that a drive or a joint sets.
@@ -105,7 +129,7 @@ FinishedRun run_one(const SimulateOptions& options,
     finished.run = run_model(loaded, std::ref(progress));
   }
   finished.summary = summarise(finished.run);
-  if (options.is_error_estimated) estimate_error(finished);
+  estimate_error(options, finished);
   finished.folder = options.folder_of(*loaded);
   for (const Event& event : finished.run.result.events)
     log_detail("t = " + std::to_string(event.t) + " s: '" + event.element + "' " + event.what);
@@ -127,6 +151,8 @@ void check_step(const SimulateOptions& options, const Models& models) {
 }
 
 ExitCode simulate(const SimulateOptions& options, Console& console) {
+  if (options.is_error_estimated && options.is_estimate_left_out)
+    throw UsageError("--estimate-error and --no-estimate exclude each other");
   const Models models = load_models(options.models, options.all_overrides());
   check_step(options, models);
   check_folders(options, models);
@@ -177,7 +203,8 @@ Command simulate_command() {
   steplap simulate my.toml --end "2 s" --integrator dop853 --tolerance 1e-9
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --set body.tank.mass="48 t"
 Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv,
-summary.json and model.toml. If the computation fails, what there is is saved as partial_* and the
+summary.json and model.toml. All numbers stand with their estimated error, where that takes less than about
+a second of computing; else it is said what it would take. If the computation fails, what there is is saved as partial_* and the
 exit code is 4.
 )";
   command.options = {
@@ -189,10 +216,12 @@ exit code is 4.
       {"--integrator", &o->integrator, "NAME",
        "integration method; see steplap elements simulation"},
       {"--tolerance", &o->tolerance, "TOL",
-       "relative tolerance of an adaptive integrator, for each step; --estimate-error tells what "
+       "relative tolerance of an adaptive integrator, for each step; the estimated error tells what "
        "it comes to"},
       {"--estimate-error", &o->is_error_estimated, "",
-       "tell the global error, from a second run at a finer tolerance or step"},
+       "estimate the error of all numbers, from runs at a finer tolerance or step, however long they take; without "
+       "it, where they take less than about a second"},
+      {"--no-estimate", &o->is_estimate_left_out, "", "do not estimate the error"},
       {"--report", &o->is_reported, "", "write a page of the runs, too; see steplap report"},
       {"--require-hold", &o->is_hold_required, "",
        "exit code 5 unless the verdict on every run is hold; see steplap elements acceptance"},

@@ -19,6 +19,24 @@ const ChannelRange* RunSummary::find(const std::string& channel) const {
   return nullptr;
 }
 
+// Ranges are of all channels, in their order.
+std::optional<double> RunSummary::error_of(const ChannelRange& range, double ChannelError::*which) const {
+  if (!global_error) return {};
+  return global_error->channels[static_cast<std::size_t>(&range - ranges.data())].*which;
+}
+
+std::optional<double> RunSummary::event_error(std::size_t i) const {
+  return global_error ? std::optional(global_error->event_times[i]) : std::nullopt;
+}
+
+std::optional<double> RunSummary::dissipated_error() const {
+  return global_error ? std::optional(global_error->dissipated) : std::nullopt;
+}
+
+std::optional<double> RunSummary::work_error() const {
+  return global_error ? std::optional(global_error->work) : std::nullopt;
+}
+
 RunSummary summarise(const Run& run) {
   RunSummary summary;
   summary.ranges = run.result.ranges;

@@ -4,7 +4,7 @@
 
 #include "mbd/global_error.h"
 #include "tools/steplap/run.h"
-#include "transformer/verdict.h"
+#include "transformer/verdict_error.h"
 
 #include <map>
 #include <optional>
@@ -18,11 +18,19 @@ struct RunSummary {
   std::vector<ChannelRange> ranges;          ///< of all channels of the system, written or not (mbd/extremes.h)
   std::map<std::string, long> event_counts;  ///< by what happened
   double relative_energy_residual = 0.0;     ///< of the energy exchanged
-  std::optional<GlobalErrorEstimate> global_error; ///< if it was asked for
+  std::optional<GlobalErrorEstimate> global_error; ///< unless there is none
+  std::string no_estimate;                   ///< why: "left out with --no-estimate"
+  std::optional<double> estimate_cost;       ///< s, of computing, for which it was left out
   Judgement judgement;
 
   /// nullptr if there is no such channel.
   [[nodiscard]] const ChannelRange* find(const std::string& channel) const;
+  /// Of the range, or empty without an estimate.
+  [[nodiscard]] std::optional<double> error_of(const ChannelRange& range, double ChannelError::*which) const;
+  /// Of the i-th event of the run.
+  [[nodiscard]] std::optional<double> event_error(std::size_t i) const;
+  [[nodiscard]] std::optional<double> dissipated_error() const;
+  [[nodiscard]] std::optional<double> work_error() const;
 };
 
 [[nodiscard]] RunSummary summarise(const Run& run);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <unordered_map>
 
 namespace steplap {
 
@@ -32,14 +33,25 @@ Json statistics_json(const RunStatistics& s) {
           {"events", s.events}};
 }
 
+// Numbers that do not exist (no such channel, an infinite margin, no extremes) are null.
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+// Of a number whose error is estimated; null: unknown.
+void add_error(Json& json, const char* key, std::optional<double> error) {
+  if (error) json[key] = number_json(*error);
+}
+
 Json accuracy_json(const RunStatistics& s, const RunSummary& summary) {
-  return {{"energy_residual", s.energy_residual},
-          {"energy_exchanged", s.energy_exchanged},
-          {"relative_energy_residual", summary.relative_energy_residual},
-          {"dissipated", s.dissipated},
-          {"work", s.work},
-          {"max_position_residual", s.max_position_residual},
-          {"max_velocity_residual", s.max_velocity_residual}};
+  Json json{{"energy_residual", s.energy_residual},
+            {"energy_exchanged", s.energy_exchanged},
+            {"relative_energy_residual", summary.relative_energy_residual},
+            {"dissipated", s.dissipated},
+            {"work", s.work},
+            {"max_position_residual", s.max_position_residual},
+            {"max_velocity_residual", s.max_velocity_residual}};
+  add_error(json, "error_dissipated", summary.dissipated_error());
+  add_error(json, "error_work", summary.work_error());
+  return json;
 }
 
 // Errors scaled as in mbd/run_comparison.h.
@@ -47,33 +59,53 @@ Json global_error_json(const GlobalErrorEstimate& estimate) {
   Json json;
   for (std::size_t k = 0; k < k_error_kinds; ++k) {
     const WorstError& worst = estimate.error.worst[k];
-    json[name_of(static_cast<ErrorKind>(k))] = {{"error", worst.value}, {"where", worst.where}, {"t", worst.t}};
+    json[name_of(static_cast<ErrorKind>(k))] = {{"error", number_json(worst.value)}, {"where", worst.where}, {"t", worst.t}};
   }
   json["unmatched_events"] = estimate.error.unmatched_events;
-  json["evaluations_of_second_run"] = estimate.cost.evaluations;
+  json["evaluations_of_finer_runs"] = estimate.cost.evaluations;
   return json;
 }
-
-// Numbers that do not exist (no such channel, an infinite margin, no extremes) are null.
-Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json extremes_json(const RunSummary& summary) {
   Json json = Json::object();
   const auto time = [](const Extreme& extreme) { return std::isnan(extreme.value) ? Json() : Json(extreme.t); };
-  for (const ChannelRange& range : summary.ranges)
-    json[range.channel->name] = {{"unit", range.channel->unit},
-                                 {"min", number_json(range.low.value)},
-                                 {"t_min", time(range.low)},
-                                 {"max", number_json(range.high.value)},
-                                 {"t_max", time(range.high)},
-                                 {"final", number_json(range.final)}};
+  for (const ChannelRange& range : summary.ranges) {
+    Json& entry = json[range.channel->name];
+    entry = {{"unit", range.channel->unit},
+             {"min", number_json(range.low.value)},
+             {"t_min", time(range.low)},
+             {"max", number_json(range.high.value)},
+             {"t_max", time(range.high)},
+             {"final", number_json(range.final)}};
+    const auto add = [&](const char* key, double ChannelError::*which) { add_error(entry, key, summary.error_of(range, which)); };
+    add("error_min", &ChannelError::low);
+    add("error_t_min", &ChannelError::t_low);
+    add("error_max", &ChannelError::high);
+    add("error_t_max", &ChannelError::t_high);
+    add("error_final", &ChannelError::final);
+  }
   return json;
 }
 
-Json joints_json(const Run& run) {
+void add_errors(Json& entry, const JointAssessment& a, const JointErrors& e) {
+  entry["error_first_slip"] = a.first_slip ? number_json(e.first_slip) : Json();
+  entry["error_largest_required_pressure"] = number_json(e.largest_required_pressure);
+  entry["error_t_largest_required_pressure"] = number_json(e.time_of_largest);
+  entry["error_smallest_margin"] = number_json(e.smallest_margin);
+  entry["error_slid_x"] = number_json(e.slid_x);
+  entry["error_slid_y"] = number_json(e.slid_y);
+  entry["error_slid_angle"] = number_json(e.slid_angle);
+  entry["error_area_lost"] = number_json(e.area_lost);
+  entry["error_largest_slide_share"] = number_json(e.slid_share);
+  entry["error_least_overlap_left"] = number_json(e.overlap_left);
+  entry["error_least_clearance_left"] = number_json(e.clearance_left);
+}
+
+Json joints_json(const Run& run, const RunSummary& summary) {
   Json json = Json::object();
-  for (const JointAssessment& a : assess_joints(run.loaded->model, run.result))
-    json[a.joint] = {{"verdict", a.verdict},
+  for (const JointAssessment& a : assess_joints(run.loaded->model, run.result)) {
+    Json& entry = json[a.joint];
+    entry = {{"verdict", a.verdict},
                      {"slipped", a.has_slipped},
                      {"monitored", a.is_monitored},
                      {"first_slip", a.first_slip ? Json(*a.first_slip) : Json()},
@@ -89,6 +121,9 @@ Json joints_json(const Run& run) {
                      {"most_slide_share", a.most_slide},
                      {"least_overlap_left", number_json(a.overlap_left.value)},
                      {"least_clearance_left", number_json(a.clearance_left.value)}};
+    if (summary.global_error)
+      add_errors(entry, a, joint_errors(a, *run.loaded->system, run.result, *summary.global_error));
+  }
   return json;
 }
 
@@ -105,19 +140,30 @@ Json judgement_json(const Judgement& judgement) {
                         {"value", optional(c.value)},
                         {"limit", optional(c.limit)},
                         {"unit", c.unit},
-                        {"t", optional(c.t)}});
+                        {"t", optional(c.t)},
+                        {"error", optional(c.error)},
+                        {"error_t", optional(c.t_error)},
+                        {"doubt", c.doubt}});
   return {{"verdict", name_of(judgement.verdict)}, {"so_far", name_of(judgement.so_far)}, {"distrust", judgement.distrust}, {"criteria", std::move(criteria)}};
 }
 
-Json state_json(const System& system, const State& state) {
-  Json bodies = Json::object();
+Json state_json(const System& system, const State& state, const RunSummary& summary) {
+  Json bodies = Json::object(), errors = Json::object();
+  std::unordered_map<std::string, const ChannelRange*> ranges;
+  for (const ChannelRange& range : summary.ranges) ranges.emplace(range.channel->name, &range);
   for (std::size_t i = 1; i < system.bodies.size(); ++i) {
     const double* q = &state.q[3 * i];
     const double* v = &state.v[3 * i];
     bodies[system.bodies[i].name] = {{"x", q[0]},  {"y", q[1]},  {"theta", q[2]},
                                      {"vx", v[0]}, {"vy", v[1]}, {"omega", v[2]}};
+    if (!summary.global_error) continue;
+    for (const char* part : {"x", "y", "theta", "vx", "vy", "omega"})
+      if (const auto range = ranges.find(system.bodies[i].name + "." + part); range != ranges.end())
+        add_error(errors[system.bodies[i].name], part, summary.error_of(*range->second, &ChannelError::final));
   }
-  return {{"t", state.t}, {"bodies", bodies}};
+  Json json{{"t", state.t}, {"bodies", bodies}};
+  if (summary.global_error) json["errors"] = std::move(errors);
+  return json;
 }
 
 } // namespace
@@ -137,11 +183,12 @@ std::string summary_json(const Run& run, const RunSummary& summary) {
   json["statistics"] = statistics_json(statistics);
   json["accuracy"] = accuracy_json(statistics, summary);
   if (summary.global_error) json["global_error"] = global_error_json(*summary.global_error);
+  else json["error_not_estimated"] = summary.no_estimate;
   json["events"] = {{"count", run.result.events.size()}, {"by_kind", summary.event_counts}};
-  if (Json joints = joints_json(run); !joints.empty()) json["joints"] = std::move(joints);
+  if (Json joints = joints_json(run, summary); !joints.empty()) json["joints"] = std::move(joints);
   if (summary.judgement.has_criteria) json["judgement"] = judgement_json(summary.judgement);
   json["extremes"] = extremes_json(summary);
-  json["final_state"] = state_json(*loaded.system, run.result.final_state);
+  json["final_state"] = state_json(*loaded.system, run.result.final_state, summary);
   // Names may hold bytes that are no UTF-8: replaced, not an exception at the end of a long run.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

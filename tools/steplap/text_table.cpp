@@ -23,25 +23,6 @@ std::string formatted(const char* format, double value) {
   return buffer;
 }
 
-struct Prefix {
-  double factor;
-  const char* text;
-};
-
-// Metres are read in millimetres here: steps and gaps, not lengths of machines.
-Prefix prefix_for(double value, const std::string& unit) {
-  const double size = std::abs(value);
-  if (unit == "N" || unit == "N m" || unit == "J" || unit == "Pa") {
-    if (size >= 1e6) return {1e-6, "M"};
-    if (size >= 1e3) return {1e-3, "k"};
-  }
-  if (unit == "m" || unit == "rad") {
-    if (size > 0.0 && size < 1e-6) return {1e6, "µ"};
-    if (size > 0.0 && size < 0.1) return {1e3, "m"};
-  }
-  return {1.0, ""};
-}
-
 } // namespace
 
 TextTable::TextTable(std::vector<Align> columns, int indent)
@@ -70,9 +51,28 @@ std::ostream& operator<<(std::ostream& stream, const TextTable& table) {
   return stream;
 }
 
+bool takes_prefix(const std::string& unit) {
+  return unit == "N" || unit == "N m" || unit == "J" || unit == "Pa" || unit == "m" || unit == "rad";
+}
+
+// Metres are read in millimetres here: steps and gaps, not lengths of machines.
+UnitPrefix prefix_for(double value, const std::string& unit) {
+  const double size = std::abs(value);
+  if (!takes_prefix(unit)) return {};
+  if (unit != "m" && unit != "rad") {
+    if (size >= 1e6) return {-6, "M"};
+    if (size >= 1e3) return {-3, "k"};
+    return {};
+  }
+  if (size > 0.0 && size < 1e-6) return {6, "µ"};
+  if (size > 0.0 && size < 0.1) return {3, "m"};
+  return {};
+}
+
 std::string quantity_text(double value, const std::string& unit) {
-  const Prefix prefix = prefix_for(value, unit);
-  const std::string number = formatted("%.6g", value * prefix.factor + 0.0);
+  const UnitPrefix prefix = prefix_for(value, unit);
+  const double factor = std::pow(10.0, prefix.exponent);
+  const std::string number = formatted("%.6g", value * factor + 0.0);
   return unit.empty() ? number : number + " " + prefix.text + unit;
 }
 

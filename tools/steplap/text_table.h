@@ -26,6 +26,16 @@ private:
   std::vector<std::vector<std::string>> rows_;
 };
 
+struct UnitPrefix {
+  int exponent = 0; ///< the number is to be multiplied by ten to this
+  const char* text = "";
+};
+
+/// Is the unit written with prefixes?
+[[nodiscard]] bool takes_prefix(const std::string& unit);
+/// The one that suits a value of this size.
+[[nodiscard]] UnitPrefix prefix_for(double value, const std::string& unit);
+
 /// Six digits with a prefix that suits: 259822.17 N -> "259.822 kN", 7.9e-4 m -> "0.791366 mm".
 [[nodiscard]] std::string quantity_text(double value, const std::string& unit);
 /// The same; what is rounding beside `scale` (below 1e-9 of it) is zero.

@@ -23,6 +23,10 @@ steplap.tables = (() => {
     return element;
   }
   const number = (value, unit, digits) => ({ text: quantity(value, unit, digits), value });
+  // A number of the summary with its error, in the words of the screen; without an estimate as it is.
+  const written = (text) => text.replace(/-(?=[\d.])/g, '−').replace(/ (?=[±µkMGmnNJPr])/g, '\u202f').replace(/\^2/g, '²').replace(/\^3/g, '³');
+  const known = (entry, key, unit, digits) => (entry[`text_${key}`] ? { text: written(entry[`text_${key}`]), value: entry[key] } : number(entry[key], unit, digits));
+  const instant = (entry, key) => (entry[`text_${key}`] ? written(entry[`text_${key}`]) : seconds(entry[key]));
 
   // --- trust ---------------------------------------------------------------------------------------
   function settingText(run) {
@@ -31,9 +35,10 @@ steplap.tables = (() => {
   }
   function errorText(run) {
     const e = run.summary.global_error;
-    if (!e) return 'not estimated (simulate --estimate-error)';
-    const worst = Object.entries(e).filter(([, v]) => v && typeof v === 'object').sort((a, b) => b[1].error - a[1].error)[0];
-    return worst ? `${few(worst[1].error)} of range (${worst[0]}: ${worst[1].where})` : '–';
+    if (!e) return `not estimated: ${run.summary.error_not_estimated || 'ask with simulate --estimate-error'}`;
+    const size = (v) => (v.error === null ? Infinity : v.error);
+    const worst = Object.entries(e).filter(([, v]) => v && typeof v === 'object').sort((a, b) => size(b[1]) - size(a[1]))[0];
+    return worst ? `${worst[1].error === null ? 'unknown' : `${few(worst[1].error)} of range`} (${worst[0]}: ${worst[1].where})` : '–';
   }
   function trust(runs) {
     const rows = [
@@ -42,6 +47,7 @@ steplap.tables = (() => {
       ['integrator', settingText],
       ['estimated error', errorText],
       ['energy residual', (r) => `${few(r.summary.accuracy.energy_residual)} J, ${few(r.summary.accuracy.relative_energy_residual)} of what was exchanged`],
+      ['dissipated energy', (r) => known(r.summary.accuracy, 'dissipated', 'J')],
       ['constraint residual', (r) => `${few(r.summary.accuracy.max_position_residual)} m or rad`],
       ['steps, evaluations', (r) => `${r.summary.statistics.steps}, ${r.summary.statistics.evaluations}`],
       ['events', (r) => String(r.summary.statistics.events)],
@@ -62,34 +68,34 @@ steplap.tables = (() => {
 
   function criteria(run) {
     const list = run.summary.judgement.criteria;
-    const heads = ['criterion', 'asked', '', 'value', 'limit', 'at'];
+    const heads = ['criterion', 'asked', '', 'value', 'limit', 'at', ''];
     return table(heads, list.map((c) => [
       c.reason ? make('span', { title: c.reason }, c.name) : c.name, c.criterion.replace(/<=/g, '≤').replace(/\^2/g, '²'), { text: outcome(c), class: outcome(c) },
-      number(c.value, c.unit), number(c.limit, c.unit), c.t === null ? '' : seconds(c.t)]), [3, 4, 5]);
+      known(c, 'value', c.unit), number(c.limit, c.unit), c.t === null ? '' : instant(c, 't'), c.doubt || '']), [3, 4, 5]);
   }
   function joints(run) {
     const list = Object.entries(run.summary.joints || {});
     if (!list.length) return [];
-    const rows = list.map(([name, j]) => [name, { text: j.verdict, class: j.verdict === 'holds' ? 'met' : ['came apart', 'a corner parted', 'slid too far'].includes(j.verdict) ? 'reject' : 'inspect' }, j.first_slip === null ? '–' : seconds(j.first_slip),
-      number(j.smallest_margin, ''), number(j.largest_required_pressure, 'Pa'), number(j.slid_x, 'm'), number(j.slid_y, 'm'), number(j.slid_angle, 'rad'), number(j.area_lost, 'm^2', 4)]);
+    const rows = list.map(([name, j]) => [name, { text: j.verdict, class: j.verdict === 'holds' ? 'met' : ['came apart', 'a corner parted', 'slid too far'].includes(j.verdict) ? 'reject' : 'inspect' }, j.first_slip === null ? '–' : instant(j, 'first_slip'),
+      known(j, 'smallest_margin', ''), known(j, 'largest_required_pressure', 'Pa'), known(j, 'slid_x', 'm'), known(j, 'slid_y', 'm'), known(j, 'slid_angle', 'rad'), known(j, 'area_lost', 'm^2', 4)]);
     return [make('h3', {}, 'Step-lap joints: least margin, largest pressure needed, slid distances at the end'), scroll(table(['', '', 'first slip', 'margin', 'needs', 'dx', 'dy', 'turn', 'area lost'], tidy(rows), [2, 3, 4, 5, 6, 7, 8]))];
   }
   // What is rounding beside a micrometre or a microradian is shown as zero; data-value keeps the digits.
   function tidy(rows) {
-    for (const row of rows) for (const c of row.slice(5)) if (c.value !== null && c.value !== undefined && Math.abs(c.value) < 1e-12) c.text = '0';
+    for (const row of rows) for (const c of row.slice(5)) if (c.value !== null && c.value !== undefined && Math.abs(c.value) < 1e-12 && !c.text.includes('±')) c.text = '0';
     return rows;
   }
   const scroll = (content) => make('div', { class: 'scroll' }, content);
   const extremesOf = (run, name) => run.summary.extremes[name];
-  const larger = (e) => (Math.abs(e.min) > Math.abs(e.max) ? [e.min, e.t_min] : [e.max, e.t_max]);
+  const larger = (e) => (Math.abs(e.min) > Math.abs(e.max) ? 'min' : 'max');
 
   function friction(run) {
     const list = run.drawing.elements.filter((e) => e.kind === 'coulomb_stick' && extremesOf(run, `${e.name}.slide`));
     if (!list.length) return [];
     const rows = list.map((e) => {
-      const slide = extremesOf(run, `${e.name}.slide`), [value, t] = larger(slide);
+      const slide = extremesOf(run, `${e.name}.slide`), key = larger(slide);
       const slips = run.events.filter((v) => v[1] === e.name && v[2].startsWith('slips')).length;
-      return [e.name, slips ? `slipped ${slips} time${slips > 1 ? 's' : ''}` : 'held', number(value, 'm'), seconds(t), number(slide.final, 'm')];
+      return [e.name, slips ? `slipped ${slips} time${slips > 1 ? 's' : ''}` : 'held', known(slide, key, 'm'), instant(slide, `t_${key}`), known(slide, 'final', 'm')];
     });
     return [make('h3', {}, 'Friction'), scroll(table(['', '', 'largest slide', 'at', 'left at the end'], rows, [2, 3, 4]))];
   }
@@ -99,10 +105,10 @@ steplap.tables = (() => {
     if (!list.length || list.length > 40) return [];
     const judged = (run.summary.judgement || { criteria: [] }).criteria;
     const rows = list.map((e) => {
-      const [value, t] = larger(extremesOf(run, `${e.name}.force`));
+      const force = extremesOf(run, `${e.name}.force`), key = larger(force);
       const limit = judged.find((c) => c.where === `${e.name}.force`);
       const lifts = run.events.filter((v) => v[1] === e.name && v[2] === 'opens');
-      return [e.name, number(value, 'N'), seconds(t), limit ? number(limit.limit, 'N') : '–', lifts.length ? `${lifts.length} ×, first at ${seconds(lifts[0][0])}` : e.kind === 'unilateral_contact' ? 'never' : ''];
+      return [e.name, known(force, key, 'N'), instant(force, `t_${key}`), limit ? number(limit.limit, 'N') : '–', lifts.length ? `${lifts.length} ×, first at ${written(lifts[0][3])}` : e.kind === 'unilateral_contact' ? 'never' : ''];
     });
     return [make('h3', {}, 'Springs, arresting devices, contacts'), scroll(table(['', 'largest force', 'at', 'allowed', 'lifts off'], rows, [1, 2, 3]))];
   }
@@ -126,8 +132,8 @@ steplap.tables = (() => {
   function events(runs, onTime) {
     const box = document.getElementById('events-tables');
     for (const run of runs) {
-      const rows = run.events.map(([t, element, what]) => {
-        const button = make('button', { type: 'button', class: 'event-time' }, `${t.toFixed(6)} s`);
+      const rows = run.events.map(([t, element, what, text]) => {
+        const button = make('button', { type: 'button', class: 'event-time' }, written(text));
         button.addEventListener('click', () => onTime(t));
         return [button, element, what];
       });
@@ -140,7 +146,7 @@ steplap.tables = (() => {
     const heads = ['channel', ...runs.flatMap((r) => { const of = runs.length > 1 ? ` ${r.name}` : ''; return [`least${of}`, 'at', `largest${of}`, 'at']; })];
     const rows = names.map((name) => [name, ...runs.flatMap((r) => {
       const e = extremesOf(r, name);
-      return e ? [number(e.min, e.unit), seconds(e.t_min), number(e.max, e.unit), seconds(e.t_max)] : ['–', '', '–', ''];
+      return e ? [known(e, 'min', e.unit), instant(e, 't_min'), known(e, 'max', e.unit), instant(e, 't_max')] : ['–', '', '–', ''];
     })]);
     const element = table(heads, rows, heads.map((_, i) => i).slice(1));
     document.getElementById('extremes-table').append(make('div', { class: 'tall' }, element));
