@@ -71,9 +71,10 @@ TEST_CASE("a wall with a friction of 1e6 carries half of a ladder that sinks ont
         // at the start, steps of 10 µs of the first order leave ω h = 1e-2 of the depth.
         const double depth = std::abs(r.last("top friction.slide_rear"));
         const double storm = std::string(method) == "auto" ? 1e-2 : 0.0;
-        CHECK(std::abs(depth - exact.depth) < 1.2e-3 * tolerance + (2e-5 + storm) * exact.depth);
-        // A hundredth of the energy that the sinking turns over, m g depth.
-        CHECK(r.result.statistics.energy_residual < 1e-2 * exact.depth * k_mass * 9.81);
+        const double known = 1.2e-3 * tolerance + (2e-5 + storm) * exact.depth;
+        CHECK(std::abs(depth - exact.depth) < known);
+        // The weight does so much more or less work; and a hundredth, as a run that is to be trusted.
+        CHECK(r.result.statistics.energy_residual < k_mass * 9.81 * (known + 1e-2 * exact.depth));
         CHECK(r.result.statistics.events < 5000); // 1e5 stop a run, as a contact that rattled did at 1e-3
       }
 }
