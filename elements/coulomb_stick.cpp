@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap {
 
@@ -18,6 +19,8 @@ constexpr double k_foot_dead_band = 1e-13;
 constexpr double k_end_dead_band = 1e-13;
 // |λ| may pass the bound by rounding, relative: ten times below the 1e-12 that a load can resolve.
 constexpr double k_bound_slack = 1e-13;
+// Acceleration beside which an error of friction counts, m/s²: that of the motion to which tolerances are absolute.
+constexpr double k_floor_acceleration = 3.6;
 constexpr double k_no_motion = 1e-12; // m/s or m/s²: rounding of a coordinate that a drive keeps at rest
 
 class CoulombFriction : public FrictionElement {
@@ -26,6 +29,7 @@ public:
   std::vector<RowSpec> feet; ///< rear-most, front-most; the same twice for one contact
   bool has_two_feet = false;
   double mu_static = 0.0, mu_kinetic = 0.0;
+  double damping = 0.0, mass = 0.0, lever = 0.0; ///< of the contacts; of the lighter body; from its centre
 
   [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState& state) const override {
@@ -67,6 +71,16 @@ public:
   }
   void change_place(const Evaluation&, FrictionState& state) const override {
     state.foot = state.foot == 0 ? 1 : 0;
+  }
+  // The contacts' dampers make forces of errors of velocity, and friction with μ > 1 larger ones of these: against what
+  // would accelerate the body as the motion does to which tolerances are absolute. Else the contact rattles: it would
+  // lose and regain, by errors alone, a normal force so small that the tolerance does not show it and yet enough to
+  // carry the body by its friction.
+  [[nodiscard]] SlipScale slip_scale(const Evaluation&, const FrictionState&, const double*) const override {
+    SlipScale scale;
+    scale.lever = lever;
+    if (mu_kinetic > 1.0 && damping > 0.0) scale.speed = k_floor_acceleration * mass / ((mu_kinetic - 1.0) * damping);
+    return scale;
   }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a,
                                           const double* b, bool is_kinetic) const override {
@@ -116,7 +130,7 @@ RowSpec slide_row(const ContactGeometry& g, int memory) {
 
 // All contacts must lie between the same two bodies on one line, so that one coordinate serves them.
 bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactGeometry>& geometry,
-             std::vector<ContactIndex>& contacts) {
+             std::vector<ContactIndex>& contacts, double& damping) {
   for (const std::string& name : e.contacts) {
     const ContactIndex* index = builder.contact(name);
     const ElementEntry* entry = builder.element(name);
@@ -130,6 +144,7 @@ bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactG
       return false;
     }
     geometry.push_back(contact_geometry(*contact, builder));
+    damping += static_cast<double>(contact->count) * contact->damping;
     contacts.push_back(*index);
     const ContactGeometry &first = geometry.front(), &last = geometry.back();
     if (first.a != last.a || first.b != last.b ||
@@ -217,6 +232,15 @@ void compile_rolling(const CoulombStick& e, SystemBuilder& builder) {
   finish(e, std::move(friction), true, builder);
 }
 
+double lighter_mass(const ContactGeometry& g, const SystemBuilder& builder) {
+  double mass = std::numeric_limits<double>::infinity();
+  for (const Body& body : builder.model().bodies) {
+    const int index = builder.body(body.name);
+    if ((index == g.a || index == g.b) && !body.fixed) mass = std::min(mass, body.mass);
+  }
+  return mass;
+}
+
 void compile_coulomb(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const CoulombStick&>(element);
   if (e.contacts.empty()) return builder.error("'contacts' is empty: name the contacts that carry the friction");
@@ -225,7 +249,7 @@ void compile_coulomb(const Element& element, SystemBuilder& builder) {
   if (is_any_round(e, builder)) return compile_rolling(e, builder);
   std::vector<ContactGeometry> geometry;
   auto friction = std::make_unique<CoulombFriction>();
-  if (!collect(e, builder, geometry, friction->contacts)) return;
+  if (!collect(e, builder, geometry, friction->contacts, friction->damping)) return;
 
   const int memory = builder.add_memory();
   const auto slide_of = [&](const ContactGeometry& g) {
@@ -237,6 +261,9 @@ void compile_coulomb(const Element& element, SystemBuilder& builder) {
       });
   friction->feet = {slide_row(*rear, memory), slide_row(*front, memory)};
   friction->has_two_feet = rear != front;
+  friction->mass = lighter_mass(geometry.front(), builder);
+  for (const ContactGeometry& g : geometry)
+    friction->lever = std::max({friction->lever, g.gap.point_a.norm(), g.gap.point_b.norm()});
   finish(e, std::move(friction), false, builder);
 }
 

@@ -9,11 +9,16 @@ namespace steplap {
 
 namespace {
 
-// Of scale(): what one step may make or lose, per unit of tolerance, and at least.
+// Of scale(): what one step may make or lose, per unit of tolerance, and at least. An accepted step's error, √n times the
+// tolerance in the weighted norm at most, changes the energy, to first order, by
+//   |ΔE| ≤ tol √n Σ m (|v| (v₀ + |v|) + |a| (q₀ + |Δq|)),   q₀ = 1e-3 L, v₀ = 60/s q₀ (Integrator).
+// The velocities' part is at most tol √n (3 T + T₀). The other, of a vibration of amplitude x, is a share 2 tol √n (1 +
+// q₀/x) of its energy: with √n up to 5, 1e4 tol serves amplitudes down to a millionth of the body's size, L. The least and
+// the most are no bounds of errors but of what a guard is for: below a thousandth the balance of the whole run judges.
 constexpr double k_step_share = 1e4, k_least_share = 1e-3, k_most_share = 5e-2;
 // Of scale(): what setting to rest may take at one event. Velocities of rounding are far below, a blow is far above.
 constexpr double k_settled_share = 1e-4;
-// Ten times the energy of the motion to which tolerances are absolute, 0.06 of the bodies' size a second (Integrator).
+// √10 v₀/L: ten times the energy T₀ of the motion to which tolerances are absolute, 0.06 of the bodies' size a second.
 constexpr double k_floor_rate = 0.2;
 
 struct Kinetic {

@@ -14,6 +14,7 @@ namespace {
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
 constexpr double k_storm_interval = 2e-3;  // s, that time stepping goes over
+constexpr long k_storm_parts = 10000;      // into which these are halved at most: events are the cheaper then
 constexpr long k_steps_between_looks = 1L << 16;
 constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
 
@@ -199,7 +200,8 @@ void Simulation::step_through_storm(const std::string& element) {
   events_.push_back({begin, element, "changes " + std::to_string(EventStorm::k_limit) +
                                          " times within 1 ms: time stepping for " +
                                          std::to_string(1e3 * (end - begin)) + " ms"});
-  while (state_.t < end) {
+  const long parts = stepping_->extra_parts();
+  while (state_.t < end && stepping_->extra_parts() - parts < k_storm_parts) {
     double t1 = std::min(end, state_.t + options_.storm_step);
     const double due = static_cast<double>(sample_) * options_.output_step;
     const bool is_sample = options_.output_step > 0.0 && due > state_.t && due <= t1;

@@ -176,11 +176,43 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
   criteria.push_back(closed);
 }
 
-// Energy made or lost beyond what the method's errors can be: an hundredth of what was turned over.
-std::string distrust_of(const RunStatistics& s) {
-  if (!(s.energy_residual > EnergyAccount::k_untrusted * s.energy_scale && s.energy_residual > s.energy_rounding)) return "";
-  return "the energy balance is off by " + limit_text(s.energy_residual) + " J of " + limit_text(s.energy_scale) +
-         " J turned over: try a smaller step or tolerance, or another integrator";
+// Rounding of coordinates, and what steps left joints open by, of the bodies' size: beyond it a run says nothing.
+constexpr double k_rounded_share = 1e-6, k_open_share = 1e-2;
+
+// The largest radius of gyration: what tolerances are measured by (Integrator).
+double size_of(const System& system) {
+  double size = 0.0;
+  for (const BodyData& body : system.bodies)
+    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
+  return size;
+}
+
+std::string remedy(const SimulationSettings& s) {
+  const bool has_steps = s.integrator == "rk4" || s.integrator == "moreau";
+  if (has_steps && s.step) return "try --step " + limit_text(*s.step / 10.0) + ", or --integrator auto";
+  const double tolerance = s.tolerance.value_or(1e-8);
+  return "try --tolerance " + limit_text(std::max(1e-12, tolerance * (tolerance > 1e-6 ? 1e-4 : 1e-2))) +
+         (s.integrator == "rodas5p" ? ", or --integrator dop853" : ", or --integrator rodas5p");
+}
+
+// Energy made or lost beyond what the method's errors can be, an hundredth of what was turned over; joints that a step
+// left wide open, whatever projection made of them; coordinates so large that their rounding is a motion.
+std::string distrust_of(const Model& model, const System& system, const RunResult& result) {
+  const RunStatistics& s = result.statistics;
+  const double size = size_of(system);
+  double furthest = 0.0;
+  for (std::size_t i = 0; i < result.final_state.q.size(); ++i)
+    if (i % 3 != 2) furthest = std::max(furthest, std::abs(result.final_state.q[i]));
+  const double rounding = furthest * std::numeric_limits<double>::epsilon();
+  if (rounding > k_rounded_share * size)
+    return "positions of " + limit_text(furthest) + " m are known to " + limit_text(rounding) +
+           " m only: let the scene begin and stay near the origin, and take common velocities away";
+  if (s.max_position_residual > k_open_share * size)
+    return "a step left joints open by " + limit_text(s.max_position_residual) + " m or rad: " + remedy(model.simulation);
+  if (s.energy_residual > EnergyAccount::k_untrusted * s.energy_scale && s.energy_residual > s.energy_rounding)
+    return "the energy balance is off by " + limit_text(s.energy_residual) + " J of " + limit_text(s.energy_scale) +
+           " J turned over: " + remedy(model.simulation);
+  return "";
 }
 
 } // namespace
@@ -211,7 +243,7 @@ Judgement judge(const Model& model, const System& system, const RunResult& resul
   judgement.so_far = judgement.has_criteria ? Verdict::hold : Verdict::open;
   for (const CriterionResult& c : judgement.criteria)
     judgement.so_far = std::max(judgement.so_far, c.outcome);
-  if (failure.empty()) judgement.distrust = distrust_of(result.statistics);
+  if (failure.empty()) judgement.distrust = distrust_of(model, system, result);
   judgement.verdict = failure.empty() && judgement.distrust.empty() ? judgement.so_far : Verdict::open;
   return judgement;
 }

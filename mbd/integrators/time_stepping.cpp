@@ -15,6 +15,8 @@ constexpr int k_max_force_passes =
     60; // repetitions for the normal forces of the step's end; beyond, it is halved
 constexpr int k_passes_in_full =
     12; // later ones go half the way: two that throw each other to and fro meet
+constexpr int k_passes_repeated =
+    20; // later ones take bounds as functions of the wrenches: repetition has no end
 constexpr int k_passes_static =
     6; // later ones leave an element that has slipped its kinetic coefficient
 constexpr int k_max_halvings = 20;
@@ -34,7 +36,7 @@ constexpr double k_whole = 1e-6; // of a part: what is left beyond is added to i
 
 TimeStepping::TimeStepping(const System& system) : system_(system) {
   const std::size_t n = 6 * system.bodies.size() + 2;
-  for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_})
+  for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_, &probe_})
     v->assign(n, 0.0);
 }
 
@@ -124,12 +126,14 @@ TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1,
   move(dynamics, t1, tolerance);
   double change = 0.0;
   int worst = 0;
+  is_coupled_ = false;
   for (int pass = 0; pass < k_max_force_passes && !parts_.empty(); ++pass) {
+    if (pass >= k_passes_repeated) couple_bounds(dynamics, t1, tolerance);
     before_ = wrench_;
     free_rates(dynamics, tolerance);
     if (const Trouble trouble = balance_friction(dynamics, pass >= k_passes_static); trouble.what)
       return trouble;
-    if (pass >= k_passes_in_full)
+    if (pass >= k_passes_in_full && !is_coupled_)
       for (int r = 0; r < rows_; ++r)
         wrench_[r] = 0.5 * (before_[r] + wrench_[r]);
     move(dynamics, t1, tolerance);

@@ -17,11 +17,14 @@
 // (implicit Euler). Source: J. J. Moreau, Unilateral contact and dry friction in finite freedom
 // dynamics (CISM 302, 1988); M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235.
 //
+// Friction that changes the normal force it hangs on by more than itself (a ladder whose foot jams)
+// does not settle so: there each element is solved with its bound as a function of its wrench,
+// linear at where the repetition is (Newton).
+//
 // A step is made only if it is consistent: friction and normal forces settled, contact modes those
 // that its end asks for. Where they are not (a contact's damper makes its force jump on closing:
-// within a step that is long against m/c neither mode is right; friction that changes the normal
-// force it hangs on more than itself) the step is halved, where both have an answer, down to a
-// millionth; a run in which that does not help stops.
+// within a step that is long against m/c neither mode is right) the step is halved, where both have
+// an answer, down to a millionth; a run in which that does not help stops.
 #pragma once
 
 #include "mbd/integrators/stage_system.h"
@@ -52,6 +55,7 @@ private:
         Mat3::Zero(); ///< of such a part: its own block, exact zeros along those directions
     Mat3 free = Mat3::Identity(); ///< projector along the others
     double noise = 0.0;           ///< velocity along those directions that counts as rest
+    double bound = 0.0, kinetic_share = 1.0; ///< of one dimension: what it bears at bound_at_, and sliding, of that
     FrictionBlock block;
   };
   /// Gradient of a friction row in the coordinates of the clusters of its two sides.
@@ -86,6 +90,10 @@ private:
   [[nodiscard]] Trouble balance_friction(const Dynamics& dynamics, bool keeps_kinetic);
   [[nodiscard]] double sweep(const Dynamics& dynamics, int& worst);
   [[nodiscard]] FrictionBlock solve_part(const Evaluation& e, const FrictionPart& part) const;
+  [[nodiscard]] FrictionBlock solve_coupled(const FrictionPart& part, double a, double b) const;
+  [[nodiscard]] double bound_of(const Evaluation& e, const FrictionPart& part, bool is_kinetic) const;
+  void couple_bounds(Dynamics& dynamics, double t1, double tolerance);
+  void find_slope(Dynamics& dynamics, double t1, const FrictionPart& by);
   [[nodiscard]] double change_of(const FrictionPart& part, const double* before, double size) const;
   [[nodiscard]] double size_of(const FrictionPart& part, const double* wrench) const;
   void hold_together();
@@ -102,7 +110,7 @@ private:
   long extra_parts_ = 0;
   std::vector<FrictionPart> parts_;
   int n_ = 0, rows_ = 0;
-  std::vector<double> y0_, y1_, dy_, right_, free_;
+  std::vector<double> y0_, y1_, dy_, right_, free_, probe_;
   std::vector<FrictionGradient> gradient_; ///< per friction row
   std::vector<double> response_;           ///< rows × 2n: change of state by a unit force
   std::vector<double>
@@ -110,6 +118,8 @@ private:
   std::vector<double> rate_; ///< per row: rate at the end without wrenches
   std::vector<double> wrench_, before_,
       last_;              ///< per row: now, before the last repetition, before the last sweep
+  bool is_coupled_ = false;                  ///< bounds as functions of the wrenches
+  std::vector<double> bound_at_, bound_by_; ///< per row: the wrench there; rows × rows: ∂bound/∂wrench
   std::vector<int> held_; ///< scratch of hold_together
   std::vector<double> matrix_, together_, rest_;
 };

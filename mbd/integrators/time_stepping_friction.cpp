@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap {
 
@@ -41,6 +42,10 @@ constexpr int k_proximal_steps = 4;
 // this many times the last change. On the boundary without a velocity an element sticks: many ways
 // to share a load lead there.
 constexpr double k_rest_of_others = 1e-7, k_changes_at_rest = 10.0;
+// Of what an element bears, by which its wrench is changed to see what that does to bounds; where that is too much,
+// less by this factor, so many times.
+constexpr double k_probe = 1e-2, k_shorter = 1e-2;
+constexpr int k_probes = 6;
 constexpr double k_held =
     1e-6; // what is left of the free velocities, relatively, where holding is possible
 
@@ -205,6 +210,92 @@ void TimeStepping::free_rates(const Dynamics& dynamics, double tolerance) {
   }
 }
 
+// What an element of one dimension bears at the evaluation `e`.
+double TimeStepping::bound_of(const Evaluation& e, const FrictionPart& part, bool is_kinetic) const {
+  const FrictionElement& element = *system_.frictions[part.friction].friction;
+  const FrictionState& friction = e.friction[part.friction];
+  if (!element.is_loaded(e, friction)) return 0.0;
+  const double a[9] = {}, b[3] = {-1.0}; // no wrench helps: it is the largest
+  return element.solve_block(e, friction, a, b, is_kinetic).wrench[0];
+}
+
+// Bounds as functions of the wrenches, linear at those that are now. Normal forces end at zero, and with them what
+// wrenches do to them: an element whose wrench has made its own vanish begins anew without one.
+void TimeStepping::couple_bounds(Dynamics& dynamics, double t1, double tolerance) {
+  const bool is_first = !is_coupled_;
+  is_coupled_ = true;
+  bool is_moved = false;
+  for (const FrictionPart& part : parts_) {
+    double& wrench = wrench_[part.first];
+    if (part.dimension != 1 || wrench == 0.0) continue;
+    if (!is_first && bound_of(dynamics.evaluation(), part, false) > 0.0) continue;
+    wrench = 0.0; // repetition may have thrown it anywhere
+    is_moved = true;
+  }
+  if (is_moved) move(dynamics, t1, tolerance);
+  bound_at_ = wrench_;
+  bound_by_.assign(static_cast<std::size_t>(rows_) * rows_, 0.0);
+  for (FrictionPart& part : parts_) {
+    if (part.dimension != 1) continue;
+    part.bound = bound_of(dynamics.evaluation(), part, false);
+    part.kinetic_share = part.bound > 0.0 ? bound_of(dynamics.evaluation(), part, true) / part.bound : 1.0;
+  }
+  for (const FrictionPart& part : parts_)
+    if (part.dimension == 1 && part.bound > 0.0) find_slope(dynamics, t1, part);
+  evaluate(dynamics, t1, y1_.data());
+}
+
+// What a wrench of element `by` changes of all bounds: a difference, short enough that none ends at zero.
+void TimeStepping::find_slope(Dynamics& dynamics, double t1, const FrictionPart& by) {
+  double size = k_probe * by.bound;
+  for (int attempt = 0; attempt < k_probes; ++attempt, size *= k_shorter) {
+    std::copy(y1_.begin(), y1_.end(), probe_.begin());
+    const double* const response = &response_[static_cast<std::size_t>(by.first) * 2 * n_];
+    for (int i = 0; i < 2 * n_; ++i)
+      probe_[i] += size * response[i];
+    evaluate(dynamics, t1, probe_.data());
+    bool is_short = true;
+    for (const FrictionPart& part : parts_) {
+      if (part.dimension != 1 || !(part.bound > 0.0)) continue;
+      const double bound = bound_of(dynamics.evaluation(), part, false);
+      is_short = is_short && bound > 0.0;
+      bound_by_[static_cast<std::size_t>(part.first) * rows_ + by.first] = (bound - part.bound) / size;
+    }
+    if (is_short) return;
+  }
+}
+
+// One dimension, its bound linear in its own wrench w, B(w) = bound + slope w: sticks where |w| ≤ B holds it, else
+// slides either way with w = ∓B(w) against the rate a w + b that it then has. Where more than one is possible (Painlevé's
+// paradox) it sticks.
+FrictionBlock TimeStepping::solve_coupled(const FrictionPart& part, double a, double b) const {
+  const std::size_t row = part.first;
+  const double* const by = &bound_by_[row * rows_];
+  double bound = part.bound - by[row] * bound_at_[row], slope = by[row];
+  for (int j = 0; j < rows_; ++j)
+    if (j != part.first) bound += by[j] * (wrench_[j] - bound_at_[j]);
+  FrictionBlock block;
+  const double held = a > 0.0 ? -b / a : 0.0;
+  block.is_inside = a > 0.0 && std::abs(held) <= bound + slope * held;
+  block.wrench[0] = held;
+  if (block.is_inside) return block;
+  if (part.is_kinetic) {
+    bound *= part.kinetic_share;
+    slope *= part.kinetic_share;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const double sign : {1.0, -1.0}) { // of the rate
+    const double against = 1.0 + sign * slope;
+    const double wrench = bound > 0.0 && against > 0.0 ? -sign * bound / against : 0.0;
+    const double wrong = std::max(0.0, -sign * (a * wrench + b)) + (bound > 0.0 && against <= 0.0 ? std::abs(b) : 0.0);
+    if (wrong >= least) continue;
+    least = wrong;
+    block.wrench[0] = wrench;
+    block.direction[0] = sign;
+  }
+  return block;
+}
+
 // One element for the others' wrenches as they are.
 FrictionBlock TimeStepping::solve_part(const Evaluation& e, const FrictionPart& part) const {
   const FrictionElement& element = *system_.frictions[part.friction].friction;
@@ -230,6 +321,7 @@ FrictionBlock TimeStepping::solve_part(const Evaluation& e, const FrictionPart& 
     const Vec3 moved = part.free * rate;
     if ((rate - moved).cwiseAbs().maxCoeff() <= part.noise) rate = moved;
   }
+  if (is_coupled_ && d == 1) return solve_coupled(part, part.is_driven ? 0.0 : a[0], b[0]);
   return element.solve_block(e, friction, a, b, part.is_kinetic);
 }
 
@@ -432,7 +524,7 @@ TimeStepping::Trouble TimeStepping::balance_friction(const Dynamics& dynamics, b
       if (change <= k_settled) break;
       if (i < k_joint_sweeps)
         hold_together();
-      else if (i % k_sweeps_between == 0)
+      else if (!is_coupled_ && i % k_sweeps_between == 0)
         stretch(dynamics.evaluation());
     }
     if (!(change <= k_tolerated))

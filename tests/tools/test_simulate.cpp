@@ -228,3 +228,29 @@ TEST_CASE("the program itself: exit codes, and no progress into a pipe") {
   CHECK(program_does(bench, "simulate " + model + out + " -f --set simulation.max_events=2").code == 4);
   CHECK(program_does(bench, "--help").code == 0);
 }
+
+TEST_CASE("a run that is not to be trusted says so everywhere, and holds nothing") {
+  // The mass on its spring, 3 Hz, by a method of the first order with steps of 10 ms: it loses a tenth and more.
+  Workbench bench;
+  const std::string model = bench.write("coarse.toml", std::string(k_oscillator) +
+                                                           "[[acceptance]]\nname = \"reach\"\nchannel = \"mass.x\"\nwithin = 1.0\n");
+  const std::vector<std::string> command = {"simulate", model, "-o", bench.at("out"), "--integrator", "moreau", "--step", "0.01",
+                                            "--force", "--report"};
+  const Outcome outcome = steplap_does(command);
+  CHECK(outcome.code == 0);
+  CHECK(has(outcome.out, "NOT TO BE TRUSTED: the energy balance is off by"));
+  const std::string summary = text_of(bench.at("out/coarse/summary.json"));
+  CHECK(has(summary, "\"distrust\": \"the energy balance is off by"));
+  CHECK(has(summary, "\"verdict\": \"open\""));
+  CHECK(has(summary, "\"so_far\": \"hold\""));
+  const std::string page = text_of(bench.at("out/report.html"));
+  CHECK(has(page, "the energy balance is off by"));
+  CHECK(has(page, "NOT TO BE TRUSTED"));
+
+  std::vector<std::string> strict = command;
+  strict.push_back("--require-hold");
+  CHECK(steplap_does(strict).code == 4);
+  strict[5] = "dop853";
+  strict.erase(strict.begin() + 6, strict.begin() + 8);
+  CHECK(steplap_does(strict).code == 0);
+}

@@ -233,3 +233,56 @@ TEST_CASE("criteria and plots that make no sense are errors of the model") {
   says("[[plot]]\nname = \"p\"\nchannels = [\"ball.z\"]\n", "no channel matches 'ball.z'");
   says("[[plot]]\nname = \"p\"\n", "channels");
 }
+
+namespace {
+
+// ½ m v² = 0.5 J goes to and fro, 2 Hz: implicit Euler with steps of h loses ω h = 0.126 of it in each radian at 0.01 s.
+const std::string k_swing = R"(
+gravity = [0, 0]
+[simulation]
+end = 1.0
+step = 0.01
+[output]
+step = 0.1
+[[body]]
+name = "mass"
+mass = 1
+inertia = 1
+velocity = [1, 0]
+[[element]]
+kind = "spring_damper"
+name = "spring"
+a = "mass"
+b = "ground"
+axis = [1, 0]
+stiffness = 158
+)";
+
+Judgement judged_swing(const std::string& settings, const std::string& text = k_swing) {
+  std::string all = text;
+  all.insert(all.find("end = "), settings + "\n");
+  const Model model = parse_model(all, "swing.toml", transformer_catalog());
+  const std::unique_ptr<System> system = compile(model);
+  const RunResult result = simulate(*system, system->initial_state(), options_of(model));
+  return judge(model, *system, result, "");
+}
+
+} // namespace
+
+TEST_CASE("a run whose energy does not balance is not to be trusted, and says what to try") {
+  const Judgement bad = judged_swing("integrator = \"moreau\"");
+  CHECK(bad.distrust.find("the energy balance is off by") != std::string::npos);
+  CHECK(bad.distrust.find("try --step 0.001, or --integrator auto") != std::string::npos);
+  CHECK(bad.verdict == Verdict::open);
+  for (const char* method : {"auto", "dop853", "tsit5", "rodas5p", "rk4"}) {
+    CAPTURE(method);
+    CHECK(judged_swing("integrator = \"" + std::string(method) + "\"").distrust.empty());
+  }
+  CHECK(judged_swing("integrator = \"rodas5p\"\ntolerance = 1e-3").distrust.empty());
+}
+
+TEST_CASE("coordinates whose rounding is a motion are not to be trusted, a fast train is") {
+  // After a second at 1e12 m/s positions are known to 2e-4 m, of a body of 1 m; at 1e6 m/s to 2e-10 m.
+  CHECK(judged_swing("velocity = [0, 1e12]").distrust.find("positions of 1e+12 m are known to") == 0);
+  CHECK(judged_swing("velocity = [0, 1e6]").distrust.empty());
+}

@@ -1,5 +1,7 @@
 #include "tools/steplap/text_table.h"
 
+#include "mbd/math/portable_math.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -71,7 +73,7 @@ UnitPrefix prefix_for(double value, const std::string& unit) {
 
 std::string quantity_text(double value, const std::string& unit) {
   const UnitPrefix prefix = prefix_for(value, unit);
-  const double factor = std::pow(10.0, prefix.exponent);
+  const double factor = portable::pow(10.0, prefix.exponent);
   const std::string number = formatted("%.6g", value * factor + 0.0);
   return unit.empty() ? number : number + " " + prefix.text + unit;
 }

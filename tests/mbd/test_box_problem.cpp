@@ -1,0 +1,68 @@
+// Convex quadratic problems with bounds (mbd/box_problem.h): against the conditions that make a minimum.
+#include "mbd/box_problem.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace steplap;
+
+namespace {
+
+// g against w at a bound, no g inside; `rounding` of the terms of g.
+void check_minimum(const MatX& a, const VecX& b, const VecX& c, const BoxSolution& s, double rounding) {
+  REQUIRE(s.is_solved);
+  const VecX g = a * s.w + b;
+  for (Eigen::Index i = 0; i < b.size(); ++i) {
+    CAPTURE(i);
+    const double terms = a.row(i).cwiseAbs().dot(s.w.cwiseAbs()) + std::abs(b[i]);
+    CHECK(std::abs(s.w[i]) <= c[i]);
+    CHECK(std::abs(s.g[i] - g[i]) <= rounding * terms);
+    if (std::abs(s.w[i]) < c[i]) CHECK(std::abs(g[i]) <= rounding * terms);
+    else CHECK(s.w[i] * g[i] <= rounding * terms * c[i]);
+  }
+}
+
+} // namespace
+
+TEST_CASE("bounded quadratic problems end at a minimum, of full rank or not") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  for (int trial = 0; trial < 200; ++trial) {
+    CAPTURE(trial);
+    const int n = 1 + trial % 8, rank = 1 + trial % 5;
+    MatX j(n, rank);
+    VecX b(n), c(n);
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < rank; ++k) j(i, k) = number(random);
+      b[i] = number(random);
+      c[i] = trial % 3 == 0 && i == 0 ? 0.0 : std::abs(number(random)); // one without any friction, now and then
+    }
+    const MatX a = j * j.transpose();
+    // A is known to rounding, and where rows depend on each other to 1e-11 of their length (k_dependent).
+    check_minimum(a, b, c, solve_box_problem(a, b, c, VecX::Constant(n, 1e-14)), 1e-10);
+  }
+}
+
+TEST_CASE("two feet of one body share what one bound bears, and slide beyond it") {
+  MatX a(2, 2);
+  a << 1.0, 1.0, 1.0, 1.0;
+  const VecX c = VecX::Constant(2, 3.0), rounding = VecX::Constant(2, 1e-14);
+  const BoxSolution held = solve_box_problem(a, VecX::Constant(2, -5.0), c, rounding);
+  REQUIRE(held.is_solved);
+  CHECK(held.w.sum() == doctest::Approx(5.0).epsilon(1e-12));
+  const BoxSolution slides = solve_box_problem(a, VecX::Constant(2, -7.0), c, rounding);
+  REQUIRE(slides.is_solved);
+  CHECK(slides.w.isApprox(c, 1e-15));
+  CHECK(slides.g.isApprox(VecX::Constant(2, -1.0), 1e-12));
+  CHECK_FALSE(slides.is_free[0]);
+}
+
+TEST_CASE("a coordinate that drives alone decide slides at its bound") {
+  const MatX a = MatX::Zero(1, 1);
+  const BoxSolution s = solve_box_problem(a, VecX::Constant(1, 0.5), VecX::Constant(1, 2.0), VecX::Constant(1, 1e-14));
+  REQUIRE(s.is_solved);
+  CHECK(s.w[0] == -2.0);
+  CHECK_FALSE(s.is_free[0]);
+}
