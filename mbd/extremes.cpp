@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -23,6 +24,8 @@ constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
 
 // What the second difference of three ends leaves out: a bend three times as strong is allowed for.
 constexpr double k_surprise = 3.0;
+// Of the bend of the stretches before: long steps meet an oscillation where it happens to be straight.
+constexpr double k_remembered = 0.5;
 constexpr double k_looks_per_period = 8.0; // of the quickest load
 constexpr int k_most_sections = 40;
 constexpr double k_fine = 3e-4, k_about = 1e-3; // of a stretch, near the top of a polynomial
@@ -49,6 +52,21 @@ const std::array<double, k_last + 1>& thetas() {
   return values;
 }
 
+// Of each channel of a body's motion the one that is its rate.
+std::vector<int> rates_of(const System& system) {
+  static constexpr std::array<std::pair<const char*, const char*>, 6> k_rates = {
+      {{".x", ".vx"}, {".y", ".vy"}, {".theta", ".omega"}, {".vx", ".ax"}, {".vy", ".ay"}, {".omega", ".alpha"}}};
+  std::map<std::string, int> place;
+  for (std::size_t c = 0; c < system.channels.size(); ++c) place[system.channels[c].name] = static_cast<int>(c);
+  std::vector<int> rates(system.channels.size(), -1);
+  for (const BodyData& body : system.bodies)
+    for (const auto& [value, rate] : k_rates) {
+      const auto of = place.find(body.name + value), its = place.find(body.name + rate);
+      if (of != place.end() && its != place.end()) rates[of->second] = its->second;
+    }
+  return rates;
+}
+
 // Vertex of the parabola through three points; the middle one if it has none.
 Extreme vertex(const Extreme& a, const Extreme& b, const Extreme& c) {
   const double p = (b.value - a.value) / (b.t - a.t), q = (c.value - b.value) / (c.t - b.t);
@@ -67,7 +85,7 @@ const Extreme& ChannelRange::largest() const {
 
 ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
     : system_(system), count_(system.channels.size()), ranges_(count_), kind_(count_), screened_slot_(count_, -1),
-      before_(count_, k_unknown), node_(k_nodes, std::vector<double>(count_, k_unknown)), curve_(count_),
+      before_(count_, k_unknown), node_(k_nodes, std::vector<double>(count_, k_unknown)), curve_(count_), curvature_(count_, 0.0),
       step_t_(k_longest + 1), stride_(static_cast<std::size_t>(max_dimension)), y_(stride_), dy_(stride_), scratch_(count_) {
   step_y_.resize(stride_ * (k_longest + 1));
   step_k_.resize(stride_ * (k_longest + 1));
@@ -85,6 +103,7 @@ ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
     screened_slot_[c] = static_cast<int>(bounds_.size());
     bounds_.emplace_back();
   }
+  rate_of_ = rates_of(system);
   bounds_before_ = bounds_;
   is_wanted_.assign(bounds_.size(), 1);
   kinds_.resize(units.size());
@@ -268,6 +287,17 @@ void ExtremeFinder::close(double t, Integrator& integrator, Dynamics& dynamics) 
   t_ = t;
 }
 
+// Does the cubic through a body's coordinate or velocity and its rates at both ends rise and fall?
+bool ExtremeFinder::turns_inside(std::size_t c, double h) const {
+  const int rate = rate_of_[c];
+  if (rate < 0) return false;
+  const double s0 = h * at(rate, 0), s1 = h * at(rate, k_last), rise = at(c, k_last) - at(c, 0);
+  if (!(s0 * s1 > 0.0)) return s0 != 0.0 || s1 != 0.0;
+  // Its slope s0 + 2 (3 rise − 2 s0 − s1) θ + 3 (s0 + s1 − 2 rise) θ², and the least of that against the ends' sign.
+  const double b = 3.0 * rise - 2.0 * s0 - s1, a = 3.0 * (s0 + s1 - 2.0 * rise), theta = a != 0.0 ? -b / a : -1.0;
+  return theta > 0.0 && theta < 1.0 && (s0 + b * theta) * s0 <= 0.0;
+}
+
 // The channels that may have passed an extreme of the run inside the stretch go to open_; true if there are any.
 bool ExtremeFinder::suspect(double h) {
   open_.clear();
@@ -279,9 +309,13 @@ bool ExtremeFinder::suspect(double h) {
     if (is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
     const double slope = b - a, last = h_last_ > 0.0 ? (a - before_[c]) * (h / h_last_) : k_unknown;
     if (!std::isnan(slope) && !std::isnan(last)) { // over the stretch, and over as long before
-      const double bend = k_surprise * std::abs(slope - last) / (1.0 + h_last_ / h);
-      if (std::abs(slope) > bend) continue; // it only rises, or only falls
-      const double slack = tolerance(c), gain = 0.25 * bend;
+      const double bend_now = std::abs(slope - last) / (1.0 + h_last_ / h);
+      curvature_[c] = std::max(bend_now / (h * h), k_remembered * curvature_[c]);
+      const double bend = k_surprise * curvature_[c] * h * h;
+      const bool turns = turns_inside(c, h);
+      if (std::abs(slope) > bend && !turns) continue; // it only rises, or only falls
+      const double slack = tolerance(c);
+      const double gain = 0.25 * (turns ? std::max({bend, std::abs(h * at(rate_of_[c], 0)), std::abs(h * at(rate_of_[c], k_last))}) : bend);
       const ChannelRange& r = ranges_[c];
       if (gain <= slack) continue;
       if (std::max(a, b) + gain <= r.high.value + slack && std::min(a, b) - gain >= r.low.value - slack) continue;

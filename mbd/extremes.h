@@ -4,7 +4,7 @@
 // method, as long as the curves are well resolved), up to an event or a breakpoint, whose two sides are both
 // looked at. All channels are evaluated at the stretch's ends. Where a channel may have passed its extreme so
 // far inside the stretch, which its second difference over three ends tells, all are evaluated on the dense
-// output as well: at the middle, then at the 5 and the 9 points of Chebyshev and Lobatto, until the
+// output as well (of a body's coordinates and velocities also the slopes at both ends tell): at the middle, then at the 5 and the 9 points of Chebyshev and Lobatto, until the
 // polynomial through them tells the next ones within `k_resolution` of the channel's range. The extreme is
 // the polynomial's. Where none is found (a kink) the search goes on by sections around the outermost point.
 //
@@ -81,6 +81,7 @@ private:
   void close(double t, Integrator& integrator, Dynamics& dynamics);
   void screen(const Snapshot& snapshot);
   [[nodiscard]] bool suspect(double h);
+  [[nodiscard]] bool turns_inside(std::size_t c, double h) const;
   void search(Integrator& integrator, Dynamics& dynamics);
   void refine(int level, Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] bool settle(std::size_t c, int level);
@@ -101,6 +102,7 @@ private:
   std::vector<Kind> kinds_;
   std::vector<int> kind_;            ///< per channel
   std::vector<int> screened_slot_;   ///< per channel with bounds: place in bounds_, else −1
+  std::vector<int> rate_of_;         ///< per channel: the channel that is its rate, −1 if there is none
   std::vector<std::size_t> tracked_; ///< channels that have extremes
   std::vector<std::size_t> dimensionless_;
 
@@ -109,6 +111,7 @@ private:
   std::vector<double> before_;                   ///< values at the beginning of the stretch before
   std::vector<std::vector<double>> node_;        ///< values at the nodes, 0 and 8 are the ends
   std::vector<Curve> curve_;
+  std::vector<double> curvature_;                ///< second derivative as seen lately, per s²
   std::vector<std::size_t> open_;                ///< channels still followed in this stretch
   std::vector<ValueBounds> bounds_, bounds_before_;
   std::vector<char> is_wanted_;                  ///< per screened channel: it may be beyond its extremes at the last end

@@ -243,7 +243,7 @@ TEST_CASE("a run that is not to be trusted says so everywhere, and holds nothing
   CHECK(has(summary, "\"distrust\": \"the energy balance is off by"));
   CHECK(has(summary, "\"verdict\": \"open\""));
   CHECK(has(summary, "\"so_far\": \"hold\""));
-  const std::string page = text_of(bench.at("out/report.html"));
+  const std::string page = text_of(bench.at("out/coarse/report.html"));
   CHECK(has(page, "the energy balance is off by"));
   CHECK(has(page, "NOT TO BE TRUSTED"));
 
