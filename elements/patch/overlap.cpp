@@ -111,6 +111,13 @@ void intersect_convex(const Outline& a, const Outline& b, const Pose& pose, Over
   if (w.front.size() >= 3 && signed_area(w.front) > least_area(a, b)) put_convex(w.front, w.cells, out);
 }
 
+bool trace(const Outline& a, const Outline& b, const Pose& pose, double rounding, OverlapWorkspace& w, Region& out) {
+  place(b.boundary.corners, pose, w.trace.placed);
+  build_edge_tree(b.boundary, w.trace.placed, w.trace.tree);
+  return trace_overlap({&a.boundary, &a.boundary.corners, &a.tree}, {&b.boundary, &w.trace.placed, &w.trace.tree}, rounding,
+                       least_area(a, b), w.trace, w.cells, out);
+}
+
 } // namespace
 
 Vec2 placed(const Vec2& p, const Pose& pose) {
@@ -131,6 +138,8 @@ Outline make_outline(Polygon polygon) {
   for (const Vec2& p : out.polygon.outer)
     out.radius = std::max(out.radius, (p - out.centre).norm());
   out.cut = out.convex ? uncut(out.polygon.outer) : cut_into_convex(out.polygon);
+  out.boundary = boundary_of(out.polygon);
+  build_edge_tree(out.boundary, out.boundary.corners, out.tree);
   return out;
 }
 
@@ -139,8 +148,9 @@ void intersect(const Outline& a, const Outline& b, const Pose& pose, OverlapWork
   empty_keeping_storage(out, w.cells);
   if (circles_apart(a, b, pose)) return;
   if (a.convex && b.convex) return intersect_convex(a, b, pose, w, out);
-  place(b.cut.corners, pose, w.cells.placed);
   const double reach = a.centre.norm() + a.radius + b.centre.norm() + b.radius;
+  if (trace(a, b, pose, k_rounding * reach, w, out)) return;
+  place(b.cut.corners, pose, w.cells.placed);
   join_cells(a.cut, b.cut, k_rounding * reach, least_area(a, b), w.cells, out);
 }
 

@@ -14,7 +14,7 @@
 #pragma once
 
 #include "elements/patch/exact_polygon.h"
-#include "elements/patch/joined_cells.h"
+#include "elements/patch/traced_overlap.h"
 
 namespace steplap {
 
@@ -27,6 +27,8 @@ struct Outline {
   Vec2 centre{0, 0};       ///< of a circle that contains it
   double radius = 0;       ///< of that circle [m]
   ConvexCut cut;           ///< convex parts, together the polygon; one if it is convex
+  Boundary boundary;       ///< all its edges
+  BoxTree tree;            ///< over them
 };
 
 /// Repairs and prepares a polygon. Throws PolygonError as repaired() does.
@@ -36,6 +38,7 @@ struct Outline {
 struct OverlapWorkspace {
   Ring placed, front, back;
   CellWorkspace cells;
+  TraceWorkspace trace;
 };
 
 /// out := a ∩ (b at b_in_a), in a's axes; empty when there is no area. Does not allocate once
