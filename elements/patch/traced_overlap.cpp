@@ -76,7 +76,7 @@ private:
       const Box one = edge_box(0, i);
       if (are_apart(one, b.box(q))) continue;
       for (std::size_t j = b.first(q); j < b.end(q); ++j)
-        if (!are_apart(one, edge_box(1, j))) cross_edges(i, j);
+        if (is_certain_ && !are_apart(one, edge_box(1, j))) cross_edges(i, j);
     }
   }
 
@@ -95,8 +95,10 @@ private:
     const double b0 = steplap::cross(along_a, b - a), b1 = steplap::cross(along_a, corner(1, next(1, j)) - a);
     if ((b0 > margin_a && b1 > margin_a) || (b0 < -margin_a && b1 < -margin_a)) return;
     const bool are_signs_known = std::min(std::abs(a0), std::abs(a1)) > margin_b && std::min(std::abs(b0), std::abs(b1)) > margin_a;
-    is_certain_ = are_signs_known && (a1 > 0) == (b1 < 0);
-    if (!is_certain_) return;
+    if (!are_signs_known || (a1 > 0) != (b1 < 0)) {
+      is_certain_ = false;
+      return;
+    }
     const double share = a0 / (a0 - a1);
     w_.crossings.push_back({{i, j},
                             {share, b0 / (b0 - b1)},

@@ -45,8 +45,8 @@ struct BoundaryView {
   const BoxTree* tree = nullptr;
 };
 
-/// Appends a ∩ b to `out`, as join_cells() does, its storage taken from `spare`. False, and nothing
-/// is appended, where a question was too close to call. Coordinates are good to `rounding`.
+/// Puts a ∩ b into `out`, which must be empty, as join_cells() does, its storage taken from `spare`. False, and nothing
+/// is put there, where a question was too close to call. Coordinates are good to `rounding`.
 [[nodiscard]] bool trace_overlap(const BoundaryView& a, const BoundaryView& b, double rounding, double least_area,
                                  TraceWorkspace& w, CellWorkspace& spare, Region& out);
 
