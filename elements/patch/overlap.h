@@ -29,6 +29,7 @@ struct Outline {
   ConvexCut cut;           ///< convex parts, together the polygon; one if it is convex
   Boundary boundary;       ///< all its edges
   BoxTree tree;            ///< over them
+  BoxTree parts;           ///< over the convex parts
 };
 
 /// Repairs and prepares a polygon. Throws PolygonError as repaired() does.
@@ -39,6 +40,7 @@ struct OverlapWorkspace {
   Ring placed, front, back;
   CellWorkspace cells;
   TraceWorkspace trace;
+  BoxTree parts;
 };
 
 /// out := a ∩ (b at b_in_a), in a's axes; empty when there is no area. Does not allocate once
