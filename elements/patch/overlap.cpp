@@ -114,9 +114,9 @@ private:
   void look_at(std::size_t p, std::size_t q) {
     const double of_boxes = bound(p, q);
     const RingView one = part(a_.cut, a_.parts.first(p), a_.cut.corners), two = part(b_.cut, parts_.first(q), placed_);
-    const double gap = widest_gap(one, two);
+    const double gap = widest_gap(one, two, -deepest_);
     if (!(std::min(of_boxes, -gap) > deepest_)) return;
-    deepest_ = std::max(deepest_, std::min(of_boxes, -std::max(gap, widest_gap(two, one))));
+    deepest_ = std::max(deepest_, std::min(of_boxes, -std::max(gap, widest_gap(two, one, -deepest_))));
   }
 
   const Outline &a_, &b_;

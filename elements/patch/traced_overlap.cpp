@@ -7,9 +7,15 @@ namespace steplap {
 
 namespace {
 
-// Roundings of a coordinate by which a distance must differ from nought to have a sign: those of placing a corner,
-// of three differences and two products make less than twenty.
-constexpr double k_margin = 100;
+// Where edges or corners lie on each other, sides are asked for as if the second sheet were pushed by k_push roundings in
+// a direction that edges seldom have. A distance of up to k_nought roundings is nought, and has the sign of the push; one of
+// more than twice the push has its own; in between nobody knows. So the rings are those of a pose that exists, and
+// their corners those of the true one: what the push seems to add has a width of nought.
+constexpr double k_nought = 1, k_push = 100, k_margin = 2 * k_push;
+constexpr double k_least_push = 0.1; // across an edge, of the push
+constexpr double k_film = 4;         // roundings: what is narrower the push has made
+constexpr double k_blur = 10;        // roundings in the place of a crossing
+const Vec2 k_push_direction(0.540302305868140, 0.841470984807897);
 
 using Crossing = TraceWorkspace::Crossing;
 using Order = TraceWorkspace::Order;
@@ -17,7 +23,8 @@ using Order = TraceWorkspace::Order;
 class Tracer {
 public:
   Tracer(const BoundaryView& a, const BoundaryView& b, double rounding, TraceWorkspace& w, CellWorkspace& spare)
-      : sheets_{a, b}, margin_(k_margin * rounding), w_(w), spare_(spare) {}
+      : sheets_{a, b}, rounding_(rounding), margin_(k_margin * rounding), push_(k_push * rounding * k_push_direction), w_(w),
+        spare_(spare) {}
 
   bool find_crossings() {
     w_.crossings.clear();
@@ -32,6 +39,7 @@ public:
     for (const std::size_t sheet : {0u, 1u})
       for (const Boundary::Span& ring : sheets_[sheet].boundary->rings)
         if (!is_crossed(sheet, ring)) add_whole(sheet, ring, least_area, out);
+    if (is_pushed_ && out.size() > 1 && !w_.holes.empty()) return false; // a hole may touch several
     while (!w_.holes.empty()) {
       Polygon* around = polygon_around(w_.holes.back().front(), out);
       if (!around) return false;
@@ -85,26 +93,41 @@ private:
     return {from.cwiseMin(to), from.cwiseMax(to)};
   }
 
+  /// Twice the area of the triangle that a point of one sheet makes with an edge of the other, as it is and pushed.
+  struct Side {
+    double true_one, pushed;
+    int sign; ///< 0: not known
+  };
+  Side side_of(const Vec2& along, const Vec2& from_edge, const Vec2& push) {
+    const double size = along.lpNorm<1>(), d = steplap::cross(along, from_edge), by = steplap::cross(along, push);
+    Side side{d, d + by, 0};
+    if (std::abs(d) > margin_ * size) {
+      side.sign = d > 0 ? 1 : -1;
+    } else if (std::abs(d) <= k_nought * rounding_ * size && std::abs(by) > k_least_push * k_push * rounding_ * size) {
+      side.sign = by > 0 ? 1 : -1;
+      is_pushed_ = true;
+    }
+    return side;
+  }
+
   void cross_edges(std::size_t i, std::size_t j) {
-    const Vec2 &a = corner(0, i), &b = corner(1, j);
-    const Vec2 along_a = corner(0, next(0, i)) - a, along_b = corner(1, next(1, j)) - b;
-    const double margin_a = margin_ * along_a.lpNorm<1>(), margin_b = margin_ * along_b.lpNorm<1>();
-    // of the ends of the one from the line of the other, positive to the left
-    const double a0 = steplap::cross(along_b, a - b), a1 = steplap::cross(along_b, corner(0, next(0, i)) - b);
-    if ((a0 > margin_b && a1 > margin_b) || (a0 < -margin_b && a1 < -margin_b)) return;
-    const double b0 = steplap::cross(along_a, b - a), b1 = steplap::cross(along_a, corner(1, next(1, j)) - a);
-    if ((b0 > margin_a && b1 > margin_a) || (b0 < -margin_a && b1 < -margin_a)) return;
-    const bool are_signs_known = std::min(std::abs(a0), std::abs(a1)) > margin_b && std::min(std::abs(b0), std::abs(b1)) > margin_a;
-    if (!are_signs_known || (a1 > 0) != (b1 < 0)) {
+    const Vec2 &a = corner(0, i), &b = corner(1, j), &a_end = corner(0, next(0, i)), &b_end = corner(1, next(1, j));
+    const Vec2 along_a = a_end - a, along_b = b_end - b;
+    const Side a0 = side_of(along_b, a - b, -push_), a1 = side_of(along_b, a_end - b, -push_);
+    if (a0.sign * a1.sign > 0) return;
+    const Side b0 = side_of(along_a, b - a, push_), b1 = side_of(along_a, b_end - a, push_);
+    if (b0.sign * b1.sign > 0) return;
+    if (a0.sign * a1.sign * b0.sign * b1.sign == 0 || a1.sign == b1.sign) {
       is_certain_ = false;
       return;
     }
-    const double share = a0 / (a0 - a1);
+    const double across_a = a0.true_one - a1.true_one, across_b = b0.true_one - b1.true_one;
+    const double blur = k_blur * rounding_;
     w_.crossings.push_back({{i, j},
-                            {share, b0 / (b0 - b1)},
-                            {margin_b / std::abs(a0 - a1), margin_a / std::abs(b0 - b1)},
-                            a + share * along_a,
-                            a1 > 0});
+                            {a0.pushed / across_a, b0.pushed / across_b},
+                            {blur * along_b.lpNorm<1>() / std::abs(across_a), blur * along_a.lpNorm<1>() / std::abs(across_b)},
+                            a + (a0.true_one / across_a) * along_a,
+                            a1.sign > 0});
   }
 
   /// By edge and along each; false where two are too near each other.
@@ -179,7 +202,8 @@ private:
   /// A ring that nothing crosses is wholly inside the other sheet or wholly outside, and farther from its boundary than
   /// the margin.
   void add_whole(std::size_t sheet, const Boundary::Span& span, double least_area, Region& out) {
-    if (crossings_to_the_right(1 - sheet, BoxTree::k_root, corner(sheet, span.first)) % 2 == 0) return;
+    const Vec2 p = corner(sheet, span.first) + (sheet == 1 ? push_ : -push_);
+    if (crossings_to_the_right(1 - sheet, BoxTree::k_root, p) % 2 == 0) return;
     Ring ring = spare_ring();
     for (std::size_t i = 0; i < span.count; ++i) ring.push_back(corner(sheet, span.first + i));
     put(std::move(ring), least_area, out);
@@ -203,7 +227,7 @@ private:
 
   void put(Ring ring, double least_area, Region& out) {
     const double area = signed_area(ring);
-    if (std::abs(area) <= least_area) {
+    if (std::abs(area) <= least_area || is_film(ring, area)) {
       spare_.rings.push_back(std::move(ring));
     } else if (area < 0) {
       w_.holes.push_back(std::move(ring));
@@ -211,6 +235,14 @@ private:
       out.push_back(spare_polygon());
       spare_.rings.push_back(std::exchange(out.back().outer, std::move(ring)));
     }
+  }
+
+  /// What only the push has made.
+  [[nodiscard]] bool is_film(const Ring& ring, double area) const {
+    if (!is_pushed_) return false;
+    double length = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) length += (ring[i + 1 == ring.size() ? 0 : i + 1] - ring[i]).lpNorm<1>();
+    return std::abs(area) <= k_film * rounding_ * length;
   }
 
   /// Among several outer rings about the point (an island in a hole) the smallest.
@@ -243,10 +275,11 @@ private:
   }
 
   BoundaryView sheets_[2];
-  double margin_;
+  double rounding_, margin_;
+  Vec2 push_;
   TraceWorkspace& w_;
   CellWorkspace& spare_;
-  bool is_certain_ = true;
+  bool is_certain_ = true, is_pushed_ = false;
 };
 
 } // namespace

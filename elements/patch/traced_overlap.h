@@ -1,11 +1,11 @@
 // The overlap of two sheets traced along their boundaries: from crossing to crossing, changing from the
 // one to the other, as drawn by hand (Weiler and Atherton, 1977).
 //
-// The crossings are found by trees of boxes over the edges, so that the cost goes with edges plus
-// crossings. Tracing is for poses where everything is plain: which side of a line a corner is on, in which
-// order an edge is crossed. Every such question has to be answered with a margin of many roundings; where one is not
-// (edges on edges, corners on edges) nothing is traced, and the cells of convex parts take over (joined_cells.h), which no
-// coincidence can mislead. What is traced therefore has the rings that exact arithmetic finds.
+// The crossings are found by trees of boxes over the edges, so that the cost goes with edges plus crossings.
+// Which side of a line a corner is on, and in which order an edge is crossed, has to be clear by many roundings. Where
+// corners and edges lie on each other to a few roundings, the sides are those of a pose beside it (see the .cpp).
+// What is neither clear nor on each other is not traced: the cells of convex parts take over (joined_cells.h),
+// which nothing can mislead.
 #pragma once
 
 #include "elements/patch/boundary.h"
@@ -18,7 +18,7 @@ struct TraceWorkspace {
   /// Two edges and where they cross. Index 0: the first sheet; 1: the second.
   struct Crossing {
     std::size_t edge[2] = {0, 0};
-    double share[2] = {0, 0}; ///< of the edge's length before it
+    double share[2] = {0, 0}; ///< of the edge's length before it, the second sheet pushed
     double blur[2] = {0, 0};  ///< by which that is not known
     Vec2 at{0, 0};
     bool first_enters = false; ///< the first boundary goes in at it: the second goes out
