@@ -8,22 +8,23 @@ namespace steplap {
 namespace {
 
 // Where edges or corners lie on each other, sides are asked for as if the second sheet were pushed by k_push roundings in
-// a direction that edges seldom have. A distance of up to k_nought roundings is nought, and has the sign of the push; one of
+// a direction that edges seldom have, or in another. A distance of up to k_nought roundings is nought, and has the sign of the push; one of
 // more than twice the push has its own; in between nobody knows. So the rings are those of a pose that exists, and
 // their corners those of the true one: what the push seems to add has a width of nought.
 constexpr double k_nought = 1, k_push = 100, k_margin = 2 * k_push;
 constexpr double k_least_push = 0.1; // across an edge, of the push
 constexpr double k_film = 4;         // roundings: what is narrower the push has made
 constexpr double k_blur = 10;        // roundings in the place of a crossing
-const Vec2 k_push_direction(0.540302305868140, 0.841470984807897);
+const Vec2 k_push_directions[] = {{0.540302305868140, 0.841470984807897}, {-0.588501117255346, 0.808496403819590}}; // 1, 2.2 rad
 
 using Crossing = TraceWorkspace::Crossing;
 using Order = TraceWorkspace::Order;
 
 class Tracer {
 public:
-  Tracer(const BoundaryView& a, const BoundaryView& b, double rounding, TraceWorkspace& w, CellWorkspace& spare)
-      : sheets_{a, b}, rounding_(rounding), margin_(k_margin * rounding), push_(k_push * rounding * k_push_direction), w_(w),
+  Tracer(const BoundaryView& a, const BoundaryView& b, double rounding, const Vec2& push_direction, TraceWorkspace& w,
+         CellWorkspace& spare)
+      : sheets_{a, b}, rounding_(rounding), margin_(k_margin * rounding), push_(k_push * rounding * push_direction), w_(w),
         spare_(spare) {}
 
   bool find_crossings() {
@@ -286,11 +287,13 @@ private:
 
 bool trace_overlap(const BoundaryView& a, const BoundaryView& b, double rounding, double least_area, TraceWorkspace& w,
                    CellWorkspace& spare, Region& out) {
-  Tracer tracer(a, b, rounding, w, spare);
-  const bool is_traced = tracer.find_crossings() && tracer.trace(least_area, out);
-  tracer.give_back_holes();
-  if (!is_traced) empty_keeping_storage(out, spare);
-  return is_traced;
+  for (const Vec2& push_direction : k_push_directions) {
+    Tracer tracer(a, b, rounding, push_direction, w, spare);
+    if (tracer.find_crossings() && tracer.trace(least_area, out)) return true;
+    tracer.give_back_holes();
+    empty_keeping_storage(out, spare);
+  }
+  return false;
 }
 
 } // namespace steplap

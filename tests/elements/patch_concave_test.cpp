@@ -350,6 +350,26 @@ TEST_CASE("concave overlap: what it costs goes with corners and crossings, not w
   }
 }
 
+TEST_CASE("concave overlap: along a common edge in any direction") {
+  // Sliding along an edge keeps edges on edges at every pose: none may be left to the pairs of convex parts.
+  Both both;
+  for (const double turn : {0.0, 0.3, 0.785398163397448, 1.0, 1.1, 2.2}) {
+    const Vec2 along(std::cos(turn), std::sin(turn));
+    Polygon plate = ring_shape();
+    const auto turned = [&](Ring& ring) {
+      for (Vec2& p : ring) p = Vec2(along.x() * p.x() - along.y() * p.y(), along.y() * p.x() + along.x() * p.y());
+    };
+    turned(plate.outer);
+    turned(plate.holes.front());
+    const Outline a = make_outline(plate);
+    for (int i = 0; i < cases(20); ++i) {
+      const double by = 0.25 * i + 0.01;
+      both.at(a, a, {by * along.x(), by * along.y(), 0});
+      CHECK(both.workspace.cells.cells.empty());
+    }
+  }
+}
+
 TEST_CASE("concave overlap: islands in holes, holes in islands") {
   // Frames within frames: a crossed by a bar that leaves pieces about which other pieces lie.
   const auto frame = [](double r, double s) { return Polygon{box(-r, -r, r, r).outer, {box(-s, -s, s, s).outer}}; };
