@@ -145,9 +145,9 @@ void drop_sides_without_length(std::vector<Corner>& ring) {
   ring.resize(kept);
 }
 
-double gap_of_few(const RingView& ring, const RingView& other) {
+double gap_of_few(const RingView& ring, const RingView& other, double enough) {
   double widest = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < ring.count; ++i) {
+  for (std::size_t i = 0; i < ring.count && widest < enough; ++i) {
     const Vec2 e = ring.corners[next(i, ring.count)] - ring.corners[i];
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < other.count; ++k)
@@ -157,10 +157,10 @@ double gap_of_few(const RingView& ring, const RingView& other) {
   return widest;
 }
 
-double gap_of_many(const RingView& ring, const RingView& other) {
+double gap_of_many(const RingView& ring, const RingView& other, double enough) {
   double widest = -std::numeric_limits<double>::infinity();
   std::size_t here = 0;
-  for (std::size_t i = 0; i < ring.count; ++i) {
+  for (std::size_t i = 0; i < ring.count && widest < enough; ++i) {
     const Vec2 from = ring.corners[i], e = ring.corners[next(i, ring.count)] - from;
     const auto outwards = [&](std::size_t k) { return -cross(e, other.corners[k] - from); };
     double d = outwards(here);
@@ -186,8 +186,8 @@ void clip(const RingView& a, const RingView& b, ClipWorkspace& w) {
   drop_sides_without_length(w.ring);
 }
 
-double widest_gap(const RingView& ring, const RingView& other) {
-  return ring.count * other.count < k_many_corners ? gap_of_few(ring, other) : gap_of_many(ring, other);
+double widest_gap(const RingView& ring, const RingView& other, double enough) {
+  return ring.count * other.count < k_many_corners ? gap_of_few(ring, other, enough) : gap_of_many(ring, other, enough);
 }
 
 } // namespace steplap

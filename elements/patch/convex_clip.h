@@ -8,6 +8,8 @@
 
 #include "elements/patch/convex_cut.h"
 
+#include <limits>
+
 namespace steplap {
 
 /// A corner and the side that starts there: of the first of two sheets, or of the second.
@@ -42,7 +44,8 @@ struct RingView {
 void clip(const RingView& a, const RingView& b, ClipWorkspace& w);
 
 /// Greatest signed distance of the nearest corner of `other` from an edge of `ring`, outwards
-/// positive: positive means that the edge separates them.
-[[nodiscard]] double widest_gap(const RingView& ring, const RingView& other);
+/// positive: positive means that the edge separates them. Not looked for further once it is `enough`.
+[[nodiscard]] double widest_gap(const RingView& ring, const RingView& other,
+                                double enough = std::numeric_limits<double>::infinity());
 
 } // namespace steplap

@@ -3,6 +3,7 @@
 #include "mbd/math/portable_math.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -64,26 +65,72 @@ double depth(const Box& a, const Box& b) {
   return (a.high.cwiseMin(b.high) - a.low.cwiseMax(b.low)).minCoeff();
 }
 
-/// No pair of parts is deeper than its boxes: most need not be looked at.
-double depth_of_parts(const Outline& a, const Outline& b, CellWorkspace& w) {
-  const std::size_t n = a.cut.parts.size(), m = b.cut.parts.size();
-  w.boxes.resize(m);
-  for (std::size_t j = 0; j < m; ++j)
-    w.boxes[j] = box_of(&w.placed[b.cut.parts[j].first], b.cut.parts[j].count);
-  const auto of_pair = [&](std::size_t i, std::size_t j) {
-    return std::min(depth(a.cut.parts[i].box, w.boxes[j]),
-                    depth(part(a.cut, i, a.cut.corners), part(b.cut, j, w.placed)));
-  };
-  std::size_t likely[2] = {0, 0};
-  double most = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < m; ++j)
-      if (const double d = depth(a.cut.parts[i].box, w.boxes[j]); d > most) most = d, likely[0] = i, likely[1] = j;
-  double deepest = of_pair(likely[0], likely[1]);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < m; ++j)
-      if (depth(a.cut.parts[i].box, w.boxes[j]) > deepest) deepest = std::max(deepest, of_pair(i, j));
-  return deepest;
+/// The deepest pair of convex parts. No pair is deeper than its boxes, nor than boxes around these: most need not be
+/// looked at, whatever the order.
+class DeepestPair {
+public:
+  DeepestPair(const Outline& a, const Outline& b, const Ring& placed, const BoxTree& parts)
+      : a_(a), b_(b), placed_(placed), parts_(parts) {
+    guess();
+    search(BoxTree::k_root, BoxTree::k_root);
+  }
+  [[nodiscard]] double depth() const { return deepest_; }
+
+private:
+  [[nodiscard]] double bound(std::size_t p, std::size_t q) const {
+    return steplap::depth(a_.parts.box(p), parts_.box(q));
+  }
+
+  /// The two nodes below the pair, in the tree that goes on farther up.
+  [[nodiscard]] std::array<std::array<std::size_t, 2>, 2> below(std::size_t p, std::size_t q) const {
+    if (parts_.is_leaf(q) || (!a_.parts.is_leaf(p) && p <= q)) return {{{2 * p, q}, {2 * p + 1, q}}};
+    return {{{p, 2 * q}, {p, 2 * q + 1}}};
+  }
+
+  /// A pair to start from, so that others can be left out.
+  void guess() {
+    std::size_t p = BoxTree::k_root, q = BoxTree::k_root;
+    while (!(a_.parts.is_leaf(p) && parts_.is_leaf(q))) {
+      const auto [one, two] = below(p, q);
+      const auto& better = bound(two[0], two[1]) > bound(one[0], one[1]) ? two : one;
+      p = better[0];
+      q = better[1];
+    }
+    look_at(p, q);
+  }
+
+  void search(std::size_t p, std::size_t q) {
+    if (a_.parts.is_leaf(p) && parts_.is_leaf(q)) return look_at(p, q);
+    auto [one, two] = below(p, q);
+    double d_one = bound(one[0], one[1]), d_two = bound(two[0], two[1]);
+    if (d_two > d_one) {
+      std::swap(one, two);
+      std::swap(d_one, d_two);
+    }
+    if (d_one > deepest_) search(one[0], one[1]);
+    if (d_two > deepest_) search(two[0], two[1]);
+  }
+
+  void look_at(std::size_t p, std::size_t q) {
+    const double of_boxes = bound(p, q);
+    const RingView one = part(a_.cut, a_.parts.first(p), a_.cut.corners), two = part(b_.cut, parts_.first(q), placed_);
+    const double gap = widest_gap(one, two, -deepest_);
+    if (!(std::min(of_boxes, -gap) > deepest_)) return;
+    deepest_ = std::max(deepest_, std::min(of_boxes, -std::max(gap, widest_gap(two, one, -deepest_))));
+  }
+
+  const Outline &a_, &b_;
+  const Ring& placed_;
+  const BoxTree& parts_;
+  double deepest_ = -std::numeric_limits<double>::infinity();
+};
+
+double depth_of_parts(const Outline& a, const Outline& b, OverlapWorkspace& w) {
+  const Ring& placed = w.cells.placed;
+  w.parts.build(b.cut.parts.size(), 1, [&](std::size_t j) {
+    return box_of(&placed[b.cut.parts[j].first], b.cut.parts[j].count);
+  });
+  return DeepestPair(a, b, placed, w.parts).depth();
 }
 
 double least_area(const Outline& a, const Outline& b) {
@@ -111,6 +158,13 @@ void intersect_convex(const Outline& a, const Outline& b, const Pose& pose, Over
   if (w.front.size() >= 3 && signed_area(w.front) > least_area(a, b)) put_convex(w.front, w.cells, out);
 }
 
+bool trace(const Outline& a, const Outline& b, const Pose& pose, double rounding, OverlapWorkspace& w, Region& out) {
+  place(b.boundary.corners, pose, w.trace.placed);
+  build_edge_tree(b.boundary, w.trace.placed, w.trace.tree);
+  return trace_overlap({&a.boundary, &a.boundary.corners, &a.tree}, {&b.boundary, &w.trace.placed, &w.trace.tree}, rounding,
+                       least_area(a, b), w.trace, w.cells, out);
+}
+
 } // namespace
 
 Vec2 placed(const Vec2& p, const Pose& pose) {
@@ -131,6 +185,9 @@ Outline make_outline(Polygon polygon) {
   for (const Vec2& p : out.polygon.outer)
     out.radius = std::max(out.radius, (p - out.centre).norm());
   out.cut = out.convex ? uncut(out.polygon.outer) : cut_into_convex(out.polygon);
+  out.boundary = boundary_of(out.polygon);
+  build_edge_tree(out.boundary, out.boundary.corners, out.tree);
+  out.parts.build(out.cut.parts.size(), 1, [&](std::size_t i) { return out.cut.parts[i].box; });
   return out;
 }
 
@@ -139,8 +196,9 @@ void intersect(const Outline& a, const Outline& b, const Pose& pose, OverlapWork
   empty_keeping_storage(out, w.cells);
   if (circles_apart(a, b, pose)) return;
   if (a.convex && b.convex) return intersect_convex(a, b, pose, w, out);
-  place(b.cut.corners, pose, w.cells.placed);
   const double reach = a.centre.norm() + a.radius + b.centre.norm() + b.radius;
+  if (trace(a, b, pose, k_rounding * reach, w, out)) return;
+  place(b.cut.corners, pose, w.cells.placed);
   join_cells(a.cut, b.cut, k_rounding * reach, least_area(a, b), w.cells, out);
 }
 
@@ -154,7 +212,7 @@ void intersect_exactly(const Outline& a, const Outline& b, const Pose& pose, Ove
 double penetration(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w) {
   place(b.cut.corners, pose, w.cells.placed);
   if (a.convex && b.convex) return depth(part(a.cut, 0, a.cut.corners), part(b.cut, 0, w.cells.placed));
-  return depth_of_parts(a, b, w.cells);
+  return depth_of_parts(a, b, w);
 }
 
 } // namespace steplap

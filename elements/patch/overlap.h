@@ -2,11 +2,11 @@
 // fixed in body b at their present relative pose (Fig. 2 of the paper).
 //
 // Convex pairs are clipped edge by edge in double precision, without allocating. Other sheets are
-// cut into convex parts once, their parts are clipped pair by pair, and the cuts taken out again
-// (joined_cells.h), so that an overlap's polygons are those of the sheets. intersect_exactly() gives
-// the same from exact arithmetic, some hundred times slower. Vertices are good to a few roundings of
-// the sheets' size either way. An area below k_no_area of the smaller sheet's size squared is taken
-// as none: coordinates do not resolve it.
+// traced along their boundaries (traced_overlap.h) and, at the few poses where what is where cannot be told,
+// overlapped by their convex parts, cut once, pair by pair, the cuts taken out again (joined_cells.h); an overlap's
+// polygons are those of the sheets either way. intersect_exactly() gives the same from exact arithmetic, some hundred
+// times slower. Vertices are good to a few roundings of the sheets' size either way. An area below k_no_area of the
+// smaller sheet's size squared is taken as none: coordinates do not resolve it.
 //
 // As two sheets part the area can vanish quadratically, so its zero is a poor thing to locate.
 // penetration() is positive while they overlap, negative when apart, and crosses zero
@@ -14,7 +14,7 @@
 #pragma once
 
 #include "elements/patch/exact_polygon.h"
-#include "elements/patch/joined_cells.h"
+#include "elements/patch/traced_overlap.h"
 
 namespace steplap {
 
@@ -27,6 +27,9 @@ struct Outline {
   Vec2 centre{0, 0};       ///< of a circle that contains it
   double radius = 0;       ///< of that circle [m]
   ConvexCut cut;           ///< convex parts, together the polygon; one if it is convex
+  Boundary boundary;       ///< all its edges
+  BoxTree tree;            ///< over them
+  BoxTree parts;           ///< over the convex parts
 };
 
 /// Repairs and prepares a polygon. Throws PolygonError as repaired() does.
@@ -36,6 +39,8 @@ struct Outline {
 struct OverlapWorkspace {
   Ring placed, front, back;
   CellWorkspace cells;
+  TraceWorkspace trace;
+  BoxTree parts;
 };
 
 /// out := a ∩ (b at b_in_a), in a's axes; empty when there is no area. Does not allocate once

@@ -325,3 +325,72 @@ TEST_CASE("overlap: a hole that leaves the overlap, and a sheet that lies in a h
   CHECK(area_at(small, 2.25, 0.75) == 0.125);
   CHECK(penetration(plate, small, {2.25, 0.75, 0}, workspace) == 0.25);
 }
+
+TEST_CASE("concave overlap: what it costs goes with corners and crossings, not with pairs of convex parts") {
+  // Counted instead of timed: no cell of two parts is made, be the pose plain or edge on edge, and crossings are those that
+  // there are. With cells a plate with a hole of 360 corners on itself made thousands.
+  Draw draw(86);
+  Both both;
+  const Polygon plate{box(-3, -3, 3, 3).outer, {round_shape(360, 2).outer}};
+  Polygon fine_comb = comb(25);
+  for (Vec2& p : fine_comb.outer) p *= 0.2; // of the others' size
+  for (const Polygon& p : {star_shape(50), plate, window(), fine_comb}) {
+    const Outline a = make_outline(p);
+    for (int i = 0; i < cases(6); ++i) {
+      const bool is_plain = i % 2 == 0;
+      both.at(a, a, is_plain ? pose(draw, 2) : Pose{draw.within(-2, 2), 0, 0});
+      CHECK(both.workspace.cells.cells.empty());
+      both.check_friction(draw);
+      if (!is_plain) continue;
+      CHECK(both.fast.size() == both.exact.size());
+      std::size_t corners = 0;
+      each_edge(both.fast, [&](const Vec2&, const Vec2&) { ++corners; });
+      CHECK(corners <= both.workspace.trace.crossings.size() + 2 * a.boundary.corners.size());
+    }
+  }
+}
+
+TEST_CASE("concave overlap: along a common edge in any direction") {
+  // Sliding along an edge keeps edges on edges at every pose: none may be left to the pairs of convex parts.
+  Both both;
+  for (const double turn : {0.0, 0.3, 0.785398163397448, 1.0, 1.1, 2.2}) {
+    const Vec2 along(std::cos(turn), std::sin(turn));
+    Polygon plate = ring_shape();
+    const auto turned = [&](Ring& ring) {
+      for (Vec2& p : ring) p = Vec2(along.x() * p.x() - along.y() * p.y(), along.y() * p.x() + along.x() * p.y());
+    };
+    turned(plate.outer);
+    turned(plate.holes.front());
+    const Outline a = make_outline(plate);
+    for (int i = 0; i < cases(20); ++i) {
+      const double by = 0.25 * i + 0.01;
+      both.at(a, a, {by * along.x(), by * along.y(), 0});
+      CHECK(both.workspace.cells.cells.empty());
+    }
+  }
+}
+
+TEST_CASE("concave overlap: islands in holes, holes in islands") {
+  // Frames within frames: a crossed by a bar that leaves pieces about which other pieces lie.
+  const auto frame = [](double r, double s) { return Polygon{box(-r, -r, r, r).outer, {box(-s, -s, s, s).outer}}; };
+  Both both;
+  const Outline outer = make_outline(frame(5, 4)), sheet = make_outline({box(-6, -6, 6, 6).outer, {box(-4.5, -4.5, 4.5, 4.5).outer}});
+  // the two frames share a frame of 5 to 4.5, shifted: its hole belongs to it
+  for (const Pose at : {Pose{0.1, 0.2, 0.05}, Pose{0, 0, 0}, Pose{0.25, 0, 0}}) {
+    both.at(outer, sheet, at);
+    REQUIRE(both.fast.size() == 1);
+    CHECK(both.fast.front().holes.size() == 1);
+    CHECK(area(both.fast.front()) > 0);
+  }
+  // two windows of a U, each with a piece of a plate that has a hole in it
+  const Outline pair = make_outline({{{-5, 0}, {5, 0}, {5, 4}, {1, 4}, {1, 1}, {-1, 1}, {-1, 4}, {-5, 4}}, {}});
+  const Outline holed = make_outline({box(-4.5, 1.5, 4.5, 3.5).outer, {box(-3.5, 2, -2.5, 3).outer, box(2.5, 2, 3.5, 3).outer}});
+  for (const Pose at : {Pose{0, 0, 0}, Pose{0.1, -0.2, 0.01}}) {
+    both.at(pair, holed, at);
+    REQUIRE(both.fast.size() == 2);
+    for (const Polygon& piece : both.fast) {
+      REQUIRE(piece.holes.size() == 1);
+      CHECK((piece.holes.front().front().x() > 0) == (piece.outer.front().x() > 0)); // each its own
+    }
+  }
+}

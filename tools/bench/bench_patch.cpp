@@ -281,12 +281,13 @@ double seconds(const auto& f) {
 }
 
 struct SheetTimes {
-  double overlap, way_apart, evaluation;
+  double overlap, along_itself, way_apart, evaluation, pieces = 0;
   explicit SheetTimes(const Outline& sheet) {
     OverlapWorkspace workspace;
     Region region;
     Patch patch;
     overlap = seconds([&](const Pose& at) { intersect(sheet, sheet, at, workspace, region); });
+    along_itself = seconds([&](const Pose& at) { intersect(sheet, sheet, {at.x, 0, 0}, workspace, region); });
     way_apart = seconds([&](const Pose& at) { benchmark::DoNotOptimize(penetration(sheet, sheet, at, workspace)); });
     evaluation = seconds([&](const Pose& at) {
       intersect(sheet, sheet, at, workspace, region);
@@ -294,6 +295,10 @@ struct SheetTimes {
       patch.add(region, 1.0);
       benchmark::DoNotOptimize(evaluate_gradient(patch, {0.02, 0.1, 0.1}));
       benchmark::DoNotOptimize(penetration(sheet, sheet, at, workspace));
+    });
+    seconds([&](const Pose& at) {
+      intersect(sheet, sheet, at, workspace, region);
+      pieces += static_cast<double>(region.size()) / (128 * 7);
     });
   }
 };
@@ -317,6 +322,8 @@ void concave_to_convex(benchmark::State& state, const Polygon& polygon) {
   state.counters["corners"] = static_cast<double>(corners);
   state.counters["overlap_us"] = 1e6 * own.overlap;
   state.counters["overlap_ratio"] = own.overlap / reference.overlap;
+  state.counters["edge_on_edge_ratio"] = own.along_itself / reference.along_itself;
+  state.counters["pieces"] = own.pieces;
   state.counters["apart_ratio"] = own.way_apart / reference.way_apart;
   state.counters["all_us"] = 1e6 * own.evaluation;
   state.counters["all_ratio"] = own.evaluation / reference.evaluation;
