@@ -2,6 +2,7 @@
 // is blind to it the judgement says so.
 #include "tests/elements/step_lap_scene.h"
 #include "transformer/verdict.h"
+#include "transformer/verdict_error.h"
 
 #include <doctest/doctest.h>
 
@@ -16,11 +17,11 @@ namespace {
 // at their centre, so that u = t / 0.4 s, and the margin at the end of a run to 0.5 s is 0.8.
 constexpr double k_onset = 0.4;
 
-std::string pulled(const std::string& settings, const std::string& joint_fields = "") {
+std::string pulled(const std::string& settings, const std::string& joint_fields = "", const std::string& peak = "100.0") {
   const std::vector<Vec2> ring = rectangle(-0.2, -0.1, 0.2, 0.1), yoke = rectangle(-5.0, -5.0, 5.0, 5.0);
   return header("end = 0.5\n" + settings, 0.01) + body("slider", 2.0, 0.05, Vec2::Zero()) + joint("slider", "ground", joint_fields) +
          interface(yoke, ring, 5.0, 1.0) +
-         "[[signal]]\nname = \"ramp\"\nkind = \"triangle\"\npeak = 100.0\nduration = 200.0\n"
+         "[[signal]]\nname = \"ramp\"\nkind = \"triangle\"\npeak = " + peak + "\nduration = 200.0\n"
          "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"slider\"\nforce_x = \"ramp\"\n";
 }
 
@@ -119,4 +120,30 @@ TEST_CASE("a joint that is said to hold with a margin below 1 leaves the verdict
   CAPTURE(judgement.distrust);
   CHECK(judgement.distrust.find("'joint' holds with a margin of 0.8 at t = 0.5 s") == 0);
   CHECK(judgement.verdict == Verdict::open);
+}
+
+namespace {
+
+// A run to `end`, judged as if its finer run had pulled with `finer_peak` instead of the peak of 100 N.
+std::string distrust_of(const std::string& end, const std::string& peak, const std::string& finer_peak) {
+  Scene mine(pulled("", "", peak)), other(pulled("", "", finer_peak));
+  SimulationOptions options = options_of(mine.model);
+  options.end = std::stod(end);
+  const RunResult run = simulate(*mine.system, mine.system->initial_state(), options);
+  GlobalErrorEstimate estimate = estimate_global_error(*mine.system, mine.system->initial_state(), options, run);
+  estimate.finest = simulate(*other.system, other.system->initial_state(), options);
+  Judgement judgement = judge(mine.model, *mine.system, run, "");
+  weigh_errors(judgement, mine.model, *mine.system, run, estimate);
+  CHECK((judgement.verdict == Verdict::open || judgement.distrust.empty()));
+  return judgement.distrust;
+}
+
+} // namespace
+
+TEST_CASE("a slip that only the run or only its finer run has is not to be trusted where a verdict hangs on it") {
+  // With 70 N at the top instead of 100 N the force reaches 0.35 N of 0.4 N in half a second: nothing slips.
+  CHECK(distrust_of("0.5", "100.0", "100.0").empty());
+  CHECK(distrust_of("0.5", "70.0", "70.0").empty());
+  CHECK(distrust_of("0.5", "100.0", "70.0").find("'joint' slips at t = 0.4 s here but not in a finer run") != std::string::npos);
+  CHECK(distrust_of("0.5", "70.0", "100.0").find("'joint' slips at t = 0.4 s in a finer run but not here") != std::string::npos);
 }
