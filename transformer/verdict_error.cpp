@@ -97,17 +97,28 @@ std::vector<LoneSlip> lone_slips(const System& system, const RunResult& run, con
 
 double spread_of(const ChannelRange* range) { return range ? range->high.value - range->low.value : 0.0; }
 
-// Does a slid distance of the element depend on which of the runs is asked?
-bool changes_slide(const std::string& element, const System& system, const RunResult& run, const RunResult& finer) {
-  double motion = 0.0, size = 0.0;
+// The largest spread of channels in a unit.
+double largest_spread(const std::string& unit, const RunResult& run) {
+  double largest = 0.0;
   for (const ChannelRange& range : run.ranges)
-    if (range.channel->unit == "m" && std::isfinite(spread_of(&range))) motion = std::max(motion, spread_of(&range));
+    if (range.channel->unit == unit && std::isfinite(spread_of(&range))) largest = std::max(largest, spread_of(&range));
+  return largest;
+}
+
+// Does a slid distance of the element depend on which of the runs is asked? Friction of a joint's coordinate has none: its
+// rate of slip tells.
+bool changes_slide(const std::string& element, const System& system, const RunResult& run, const RunResult& finer) {
+  double size = 0.0;
   for (const BodyData& body : system.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
-  const double negligible = std::max(k_slide_share * motion, k_size_share * size);
-  for (const char* part : {".slide", ".dx", ".dy"}) {
-    const double mine = spread_of(find_range(element + part, run)), theirs = spread_of(find_range(element + part, finer));
-    if (std::abs(mine - theirs) > std::max(k_most_trusted_error * std::max(mine, theirs), negligible)) return true;
+  const bool has_slide = find_range(element + ".slide", run) || find_range(element + ".dx", run);
+  for (const char* part : {".slide", ".dx", ".dy", ".theta_acc", ".slip_rate"}) {
+    const ChannelRange *mine = find_range(element + part, run), *theirs = find_range(element + part, finer);
+    if (!mine || !theirs || (has_slide && std::string(part) == ".slip_rate")) continue;
+    const std::string& unit = mine->channel->unit;
+    const double negligible = std::max(k_slide_share * largest_spread(unit, run), k_size_share * (unit == "m" ? size : 1.0));
+    const double larger = std::max(spread_of(mine), spread_of(theirs));
+    if (std::abs(spread_of(mine) - spread_of(theirs)) > std::max(k_most_trusted_error * larger, negligible)) return true;
   }
   return false;
 }
@@ -129,8 +140,8 @@ std::string doubt_about_slips(const Judgement& judgement, const Judgement& finer
     if (!changes_verdict(slip.element, judgement, finer) && !changes_slide(slip.element, system, run, finest)) continue;
     char t[32];
     std::snprintf(t, sizeof t, "%.6g", slip.t);
-    return "'" + slip.element + "' slips at t = " + t + " s " + (slip.is_mine ? "here but not in a finer run" : "in a finer run but not here") +
-           ": try a smaller step or tolerance";
+    return "'" + slip.element + "' slips at t = " + t + " s " +
+           (slip.is_mine ? "here but not in a finer run" : "in a finer run but not here") + ": try a smaller step or tolerance";
   }
   return "";
 }
