@@ -1,5 +1,7 @@
 #include "mbd/simulation.h"
 
+#include "mbd/number_text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -16,6 +18,9 @@ constexpr int k_max_events_at_once = 60;
 constexpr double k_storm_interval = 2e-3;  // s, that time stepping goes over
 constexpr long k_storm_parts = 10000;      // into which these are halved at most: events are the cheaper then
 constexpr long k_steps_between_looks = 1L << 16;
+// By how much a joint that holds may be beyond its limit, in shares of it: the mode problem knows wrenches to 1e-9 of the
+// capacities and finds events to rounding; what is a thousand times that is neither.
+constexpr double k_held_beyond = 1e-6;
 constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
 
 } // namespace
@@ -59,6 +64,10 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
   dynamics_.unpack(state_.t, y_.data(), state_);
   for (const FrictionState& friction : state_.friction) first_phases_.push_back(friction.phase);
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const FrictionElement& friction = *system.frictions[f].friction;
+    if (friction.dimension() > 1 && !friction.never_slips()) joints_.push_back(static_cast<int>(f));
+  }
   if (options_.has_extremes)
     extremes_ = std::make_unique<ExtremeFinder>(system, 6 * system.body_count() + 2);
   restart();
@@ -84,6 +93,7 @@ void Simulation::restart() {
   approach_limit();
   dynamics_.pack(state_, y_.data());
   integrator_->restart(dynamics_, state_.t, y_.data());
+  if (!integrator_->stepped_state()) check_holding(state_.t, integrator_->watch0());
   if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
   is_between_events_ = true;
 }
@@ -102,6 +112,20 @@ void Simulation::fail_infinite(double t) const {
   if (!integrator_->is_adaptive()) message << "; try a smaller step, or rodas5p";
   if (!events_.empty()) message << ". The last event was of '" << events_.back().element << "'";
   throw NumericalFailure(message.str());
+}
+
+// A joint that is part of the motion holds as long as it can: one that holds beyond its limit is a fault of the event
+// finder or of the mode problem, and whatever it is taken to bear is wrong. Of a group that shares a load the watch is the
+// group's.
+void Simulation::check_holding(double t, const std::vector<double>& watch) const {
+  for (const int f : joints_) {
+    const double left = watch[system_.frictions[f].watch];
+    if (left >= -k_held_beyond || state_.friction[f].phase != FrictionPhase::stick) continue;
+    throw NumericalFailure("at t = " + number_text(t) + " s '" + system_.element_names[system_.frictions[f].element] +
+                           "' holds with a margin of " + number_text(1.0 / (1.0 - left)) +
+                           ": the run contradicts itself, for below 1 it has to slip. Try a smaller tolerance or step, or "
+                           "another integrator");
+  }
 }
 
 // y_ holds the state to sample.
@@ -259,6 +283,7 @@ bool Simulation::advance() {
     pass_event(t1, at_limit.data(), {});
     return true;
   }
+  check_holding(t1, integrator_->watch1());
   energy_.check_step(dynamics_, t1, integrator_->y1());
   if (t1 >= options_.end) {
     integrator_->accept();

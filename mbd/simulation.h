@@ -84,6 +84,7 @@ private:
   void sample_until(double t);
   void record_sample(double t);
   void check_finite();
+  void check_holding(double t, const std::vector<double>& watch) const;
   void pass_event(double t, const double* y, const std::vector<int>& fired);
   bool pass_stepped();
   [[nodiscard]] bool are_joints(const std::vector<int>& slots) const;
@@ -108,6 +109,7 @@ private:
   EventStorm storm_;
   std::unique_ptr<TimeStepping> stepping_; ///< made where a storm asks for it
   std::vector<double> y_, dy_;
+  std::vector<int> joints_; ///< friction elements of several dimensions that may slip
   long sample_ = 0;
   EnergyAccount energy_;
   bool is_between_events_ = false; ///< the integrator and state_ fit each other

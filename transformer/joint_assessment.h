@@ -13,6 +13,7 @@ namespace steplap {
 
 struct JointAssessment {
   static constexpr double k_touching = 1e-9; ///< m: a clearance of zero is not closed by rounding
+  static constexpr double k_held_beyond = 1e-6; ///< of the margin: what locating an onset of slip may leave
   std::string joint;
   bool has_slipped = false;
   std::optional<double> first_slip;        ///< s; also for a monitored joint that would have slipped
@@ -35,6 +36,10 @@ struct JointAssessment {
   [[nodiscard]] bool has_slid_too_far() const { return slid_share.value > most_slide; }
   /// It has closed its clearance: sheets butt, of which the model knows nothing.
   [[nodiscard]] bool has_left_range() const;
+  /// It is part of the motion, never slipped, and yet had less than it needed to hold.
+  [[nodiscard]] bool contradicts_itself() const {
+    return !is_monitored && !has_slipped && !has_come_apart && smallest_margin < 1.0 - k_held_beyond;
+  }
   [[nodiscard]] bool is_known() const { return smallest_margin == smallest_margin; }
 
   /// "came apart", "a corner parted", "slid too far", "closed its clearance", "slipped", "would slip" (a monitored

@@ -195,6 +195,21 @@ std::string remedy(const SimulationSettings& s) {
          (s.integrator == "rodas5p" ? ", or --integrator dop853" : ", or --integrator rodas5p");
 }
 
+// A joint that holds although it cannot: of a method that locates no events, or that steps over a storm of them, whether it
+// slips is not known then.
+std::string contradiction_of(const Model& model, const std::vector<JointAssessment>& joints) {
+  for (const JointAssessment& joint : joints)
+    if (joint.contradicts_itself())
+      return "'" + joint.joint + "' holds with a margin of " + limit_text(joint.smallest_margin) + " at t = " +
+             limit_text(joint.time_of_smallest) + " s, and below 1 it has to slip: " + remedy(model.simulation);
+  return "";
+}
+
+void add_distrust(Judgement& judgement, const std::string& why) {
+  if (why.empty()) return;
+  judgement.distrust += (judgement.distrust.empty() ? "" : "; ") + why;
+}
+
 // Energy made or lost beyond what the method's errors can be, an hundredth of what was turned over; joints that a step
 // left wide open, whatever projection made of them; coordinates so large that their rounding is a motion.
 std::string distrust_of(const Model& model, const System& system, const RunResult& result) {
@@ -233,7 +248,8 @@ const char* name_of(Verdict verdict) {
 
 Judgement judge(const Model& model, const System& system, const RunResult& result, const std::string& failure) {
   Judgement judgement;
-  for (const JointAssessment& joint : assess_joints(model, result)) {
+  const std::vector<JointAssessment> joints = assess_joints(model, result);
+  for (const JointAssessment& joint : joints) {
     judgement.criteria.push_back(judge_holding(joint));
     judge_overlap(joint, judgement.criteria);
   }
@@ -243,7 +259,10 @@ Judgement judge(const Model& model, const System& system, const RunResult& resul
   judgement.so_far = judgement.has_criteria ? Verdict::hold : Verdict::open;
   for (const CriterionResult& c : judgement.criteria)
     judgement.so_far = std::max(judgement.so_far, c.outcome);
-  if (failure.empty()) judgement.distrust = distrust_of(model, system, result);
+  if (failure.empty()) {
+    judgement.distrust = distrust_of(model, system, result);
+    add_distrust(judgement, contradiction_of(model, joints));
+  }
   judgement.verdict = failure.empty() && judgement.distrust.empty() ? judgement.so_far : Verdict::open;
   return judgement;
 }

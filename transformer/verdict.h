@@ -6,8 +6,8 @@
 // inspect: the core's magnetic circuit is not as it was built. One that came apart, lost a whole corner or slid
 // further than it bears means reject. A criterion that could not be evaluated is not met: it leaves the verdict
 // open. So does a run that did not reach its end, whatever came before; that is told beside it. And so does one that is
-// not to be trusted: whose energy does not balance (mbd/energy_account.h), whose steps left joints wide open, or whose
-// coordinates are so large that their rounding is a motion.
+// not to be trusted: whose energy does not balance (mbd/energy_account.h), whose steps left joints wide open, whose
+// coordinates are so large that their rounding is a motion, or in which a joint holds that cannot.
 #pragma once
 
 #include "transformer/joint_assessment.h"

@@ -1,5 +1,7 @@
 #include "transformer/verdict_error.h"
 
+#include "mbd/event_match.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,7 +10,10 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_most_trusted_error = 0.1; // of the range of positions
+constexpr double k_most_trusted_error = 0.1; // of the range of positions, and of a slid distance
+// Slid distances that tolerances leave: of the largest range of displacements, and of the bodies' size, a thousandth of
+// which errors are absolute to (Integrator).
+constexpr double k_slide_share = 1e-6, k_size_share = 1e-9;
 
 const ChannelError* find_error(const std::string& channel, const System& system, const GlobalErrorEstimate& estimate) {
   for (std::size_t c = 0; c < system.channels.size(); ++c)
@@ -55,6 +60,96 @@ std::string doubt_about(const CriterionResult& c, const CriterionResult& finer) 
   const bool is_exactly_there = *c.reserve == 0.0 && finer.value && *finer.value == *c.value;
   if (std::abs(*c.reserve) >= *c.error || is_exactly_there) return "";
   return verb + ", but the error reaches the limit";
+}
+
+// --- what slips in one of two runs only
+
+// In one run and not in the other; the earliest of its element.
+struct LoneSlip {
+  std::string element;
+  double t = 0.0;
+  bool is_mine = true;
+};
+
+bool is_slip(const Event& event) { return event.what.starts_with("slips"); }
+
+bool slides_at_start(const RunResult& run, std::size_t friction) {
+  return friction < run.first_phases.size() && run.first_phases[friction] == FrictionPhase::slip;
+}
+
+std::vector<LoneSlip> lone_slips(const System& system, const RunResult& run, const RunResult& finer) {
+  std::vector<LoneSlip> found;
+  const auto add = [&found](const LoneSlip& slip) {
+    const auto same = std::find_if(found.begin(), found.end(), [&](const LoneSlip& other) { return other.element == slip.element; });
+    if (same == found.end()) found.push_back(slip);
+    else if (slip.t < same->t) *same = slip;
+  };
+  for (std::size_t f = 0; f < system.frictions.size(); ++f)
+    if (slides_at_start(run, f) != slides_at_start(finer, f))
+      add({system.element_names[system.frictions[f].element], 0.0, slides_at_start(run, f)});
+  const EventMatch match = match_events(run.events, finer.events);
+  for (const std::size_t i : match.only_mine)
+    if (is_slip(run.events[i])) add({run.events[i].element, run.events[i].t, true});
+  for (const std::size_t i : match.only_reference)
+    if (is_slip(finer.events[i])) add({finer.events[i].element, finer.events[i].t, false});
+  return found;
+}
+
+double spread_of(const ChannelRange* range) { return range ? range->high.value - range->low.value : 0.0; }
+
+// The largest spread of channels in a unit.
+double largest_spread(const std::string& unit, const RunResult& run) {
+  double largest = 0.0;
+  for (const ChannelRange& range : run.ranges)
+    if (range.channel->unit == unit && std::isfinite(spread_of(&range))) largest = std::max(largest, spread_of(&range));
+  return largest;
+}
+
+// Does a slid distance of the element depend on which of the runs is asked? Friction of a joint's coordinate has none: its
+// rate of slip tells.
+bool changes_slide(const std::string& element, const System& system, const RunResult& run, const RunResult& finer) {
+  double size = 0.0;
+  for (const BodyData& body : system.bodies)
+    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
+  const bool has_slide = find_range(element + ".slide", run) || find_range(element + ".dx", run);
+  for (const char* part : {".slide", ".dx", ".dy", ".theta_acc", ".slip_rate"}) {
+    const ChannelRange *mine = find_range(element + part, run), *theirs = find_range(element + part, finer);
+    if (!mine || !theirs || (has_slide && std::string(part) == ".slip_rate")) continue;
+    const std::string& unit = mine->channel->unit;
+    const double negligible = std::max(k_slide_share * largest_spread(unit, run), k_size_share * (unit == "m" ? size : 1.0));
+    const double larger = std::max(spread_of(mine), spread_of(theirs));
+    if (std::abs(spread_of(mine) - spread_of(theirs)) > std::max(k_most_trusted_error * larger, negligible)) return true;
+  }
+  return false;
+}
+
+// Which of the criteria that only one of the runs meets is the element's?
+bool changes_verdict(const std::string& element, const Judgement& judgement, const Judgement& finer) {
+  for (const CriterionResult& mine : judgement.criteria)
+    for (const CriterionResult& other : finer.criteria) {
+      const bool is_same = mine.name == other.name && mine.text == other.text;
+      if (is_same && (mine.where == element || other.where == element) && mine.outcome != other.outcome) return true;
+    }
+  return false;
+}
+
+// A run and its finer run that tell different stories: which of them is right is not known.
+std::string doubt_about_slips(const Judgement& judgement, const Judgement& finer, const System& system, const RunResult& run,
+                              const RunResult& finest) {
+  for (const LoneSlip& slip : lone_slips(system, run, finest)) {
+    if (!changes_verdict(slip.element, judgement, finer) && !changes_slide(slip.element, system, run, finest)) continue;
+    char t[32];
+    std::snprintf(t, sizeof t, "%.6g", slip.t);
+    return "'" + slip.element + "' slips at t = " + t + " s " +
+           (slip.is_mine ? "here but not in a finer run" : "in a finer run but not here") + ": try a smaller step or tolerance";
+  }
+  return "";
+}
+
+void distrust(Judgement& judgement, const std::string& why) {
+  if (why.empty()) return;
+  judgement.distrust += (judgement.distrust.empty() ? "" : "; ") + why;
+  judgement.verdict = Verdict::open;
 }
 
 void take_over_open(Judgement& judgement) {
@@ -106,6 +201,7 @@ void weigh_errors(Judgement& judgement, const Model& model, const System& system
       if (c.name == mine.name && c.text == mine.text) return &c;
     return nullptr;
   };
+  const std::string of_slips = doubt_about_slips(judgement, finer, system, run, estimate.finest); // before doubts change outcomes
   for (std::size_t i = 0; i < judgement.criteria.size(); ++i) {
     CriterionResult& c = judgement.criteria[i];
     set_errors(c, system, run, estimate);
@@ -115,12 +211,11 @@ void weigh_errors(Judgement& judgement, const Model& model, const System& system
     if (!c.doubt.empty() && c.outcome == Verdict::hold) c.outcome = Verdict::open;
   }
   take_over_open(judgement);
+  distrust(judgement, of_slips);
   const WorstError& worst = estimate.error.of(ErrorKind::position);
   if (worst.value <= k_most_trusted_error) return;
-  if (!judgement.distrust.empty()) judgement.distrust += "; ";
-  judgement.distrust += "the estimated error of '" + worst.where + "' is " + share_text(worst.value) +
-                        ": try a smaller step or tolerance";
-  judgement.verdict = Verdict::open;
+  distrust(judgement, "the estimated error of '" + worst.where + "' is " + share_text(worst.value) +
+                          ": try a smaller step or tolerance");
 }
 
 void leave_open(Judgement& judgement, const std::string& why) {

@@ -23,7 +23,8 @@ struct JointErrors {
                                        const GlobalErrorEstimate& estimate);
 
 /// Gives every criterion its error, and takes back those that are met within it only. A run whose motion is known to
-/// less than a tenth of its range is not to be trusted.
+/// less than a tenth of its range is not to be trusted, nor one in which something slips that holds in the finer run, or
+/// the other way round, where a verdict or a tenth of a slid distance depends on it.
 void weigh_errors(Judgement& judgement, const Model& model, const System& system, const RunResult& run,
                   const GlobalErrorEstimate& estimate);
 /// Of a run whose error should have been estimated and could not: no criterion can be called met.

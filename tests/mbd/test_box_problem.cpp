@@ -66,3 +66,16 @@ TEST_CASE("a coordinate that drives alone decide slides at its bound") {
   CHECK(s.w[0] == -2.0);
   CHECK_FALSE(s.is_free[0]);
 }
+
+TEST_CASE("sets of bounds that repeat themselves end, and are told") {
+  // Of no convex problem (its determinant is −6), as rounding could make one: freeing the first coordinate drives it back to
+  // the bound it was taken from. No set is right, and the caller has to know, not to wait.
+  MatX a(2, 2);
+  a << 3.0, -3.0, -3.0, 1.0;
+  VecX b(2), c(2);
+  b << 0.0, 3.0;
+  c << 1.0, 1.0;
+  const BoxSolution s = solve_box_problem(a, b, c, VecX::Zero(2));
+  CHECK_FALSE(s.is_solved);
+  for (Eigen::Index i = 0; i < 2; ++i) CHECK(std::abs(s.w[i]) <= c[i]);
+}

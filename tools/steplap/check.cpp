@@ -126,6 +126,8 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
   print_assembly(out, loaded);
   for (const std::string& warning : warnings_about(loaded))
     out << "  warning: " << warning << "\n";
+  for (const std::string& note : notes_about(loaded))
+    out << "  note: " << note << "\n";
 }
 
 ExitCode check(const CheckOptions& options, Console& console) {

@@ -186,7 +186,8 @@ std::string summary_json(const Run& run, const RunSummary& summary) {
   else json["error_not_estimated"] = summary.no_estimate;
   json["events"] = {{"count", run.result.events.size()}, {"by_kind", summary.event_counts}};
   if (Json joints = joints_json(run, summary); !joints.empty()) json["joints"] = std::move(joints);
-  if (summary.judgement.has_criteria) json["judgement"] = judgement_json(summary.judgement);
+  // Without criteria there is nothing to say, unless the run itself is not to be trusted.
+  if (summary.judgement.has_criteria || !summary.judgement.distrust.empty()) json["judgement"] = judgement_json(summary.judgement);
   json["extremes"] = extremes_json(summary);
   json["final_state"] = state_json(*loaded.system, run.result.final_state, summary);
   // Names may hold bytes that are no UTF-8: replaced, not an exception at the end of a long run.

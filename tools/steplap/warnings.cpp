@@ -1,9 +1,14 @@
 #include "tools/steplap/warnings.h"
 
+#include "mbd/assembly.h"
+#include "mbd/event_handler.h"
 #include "mbd/freedom.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/validate.h"
+#include "tools/steplap/text_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -73,6 +78,45 @@ void warn_of_shared_reactions(const System& system, std::vector<std::string>& wa
                        "admissible. Reported is one of those ways, in proportion to the capacities where that will do");
 }
 
+// Does a load or a drive that changes with time act at the start, or begin to?
+bool is_driven_at_start(const Model& model, const Names& used) {
+  return std::any_of(model.signals.begin(), model.signals.end(), [&](const SignalEntry& entry) {
+    if (used.count(entry.definition->name) == 0) return false;
+    const Signal signal = entry.kind->build(*entry.definition);
+    return !signal.is_constant() && (signal.value(0.0) != 0.0 || signal.drive(0.0, DriveLevel::position).rate != 0.0);
+  });
+}
+
+struct StartingBody {
+  int body = 0;
+  double acceleration = 0.0; ///< m/s², of its centre of gravity, or of its turning at the radius of gyration
+};
+
+// The largest acceleration with which the run begins.
+StartingBody fastest_at_start(const System& system, const State& initial) {
+  Dynamics dynamics(system);
+  EventHandler handler(system, dynamics);
+  State state = initial;
+  start_drives(system, state);
+  const auto limit = std::upper_bound(system.breakpoints.begin(), system.breakpoints.end(), state.t);
+  dynamics.set_time_limit(limit == system.breakpoints.end() ? system.drives_end : *limit);
+  handler.start(state);
+  dynamics.set_state(state);
+  std::vector<double> y(6 * system.bodies.size() + 2), dy(y.size());
+  dynamics.pack(state, y.data());
+  dynamics.rates(state.t, y.data(), dy.data());
+  const Snapshot snapshot = dynamics.snapshot(dy.data());
+  StartingBody fastest;
+  for (int i = 1; i < system.body_count(); ++i) {
+    const BodyData& body = system.bodies[i];
+    const double* a = &snapshot.acceleration[3 * i];
+    const double radius = body.mass > 0.0 ? std::sqrt(body.inertia / body.mass) : 0.0;
+    const double size = std::max(portable::hypot(a[0], a[1]), radius * std::abs(a[2]));
+    if (size > fastest.acceleration) fastest = {i, size};
+  }
+  return fastest;
+}
+
 } // namespace
 
 std::vector<std::string> warnings_about(const LoadedModel& loaded) {
@@ -106,6 +150,28 @@ std::vector<std::string> warnings_about(const LoadedModel& loaded) {
   for (const std::string& name : loaded.plots_left_out)
     warnings.push_back("plot '" + name + "' is left out: not all of its channels are in 'channels' of [output]");
   return warnings;
+}
+
+// At rest, and yet about to move by itself: a pendulum that is let go, or a preload without its answer at the other end.
+std::vector<std::string> notes_about(const LoadedModel& loaded) {
+  constexpr double k_felt = 1e-3; // of gravity: from there on it is seen beside what drives do to a machine
+  constexpr double k_standard_gravity = 9.80665;
+  if (loaded.model.simulation.initial == "equilibrium" || is_driven_at_start(loaded.model, references_of(loaded.model).signals)) return {};
+  const System& system = *loaded.system;
+  const State start = assembled_start(system, loaded.assembled);
+  if (std::any_of(start.v.begin(), start.v.end(), [](double v) { return v != 0.0; })) return {};
+  StartingBody fastest;
+  try {
+    fastest = fastest_at_start(system, start);
+  } catch (const NumericalFailure&) {
+    return {}; // the run will say what is wrong
+  }
+  const double gravity = system.gravity.norm();
+  if (!(fastest.acceleration > k_felt * (gravity > 0.0 ? gravity : k_standard_gravity))) return {};
+  return {"the run begins at rest, but not in equilibrium: nothing that changes with time drives it yet, and '" +
+          system.bodies[fastest.body].name + "' starts with " + quantity_text(fastest.acceleration, "m/s^2", 1e-3) +
+          ". If it is not meant to be let go (a preload may lack its answer at the other end), see steplap equilibrium "
+          "or set initial = \"equilibrium\" in [simulation]"};
 }
 
 } // namespace steplap

@@ -6,5 +6,7 @@
 namespace steplap {
 
 [[nodiscard]] std::vector<std::string> warnings_about(const LoadedModel& loaded);
+/// What may well be meant, and is worth knowing: a run that begins at rest, but not in equilibrium.
+[[nodiscard]] std::vector<std::string> notes_about(const LoadedModel& loaded);
 
 } // namespace steplap

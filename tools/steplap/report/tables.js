@@ -119,7 +119,9 @@ steplap.tables = (() => {
       const judgement = run.summary.judgement;
       if (runs.length > 1) card.append(make('h3', {}, run.summary.model.title || run.name));
       if (judgement) {
-        card.append(make('span', { class: `badge ${judgement.verdict}` }, judgement.verdict.toUpperCase()), make('p', {}, sentences[judgement.verdict] + (run.summary.completed ? '' : ` The run broke off; what was computed until then: ${judgement.so_far}.`) + (judgement.distrust ? ` NOT TO BE TRUSTED: ${judgement.distrust}.` : '')), scroll(criteria(run)));
+        const sentence = judgement.criteria.length ? sentences[judgement.verdict] : 'The model states no criteria.';
+        card.append(make('span', { class: `badge ${judgement.verdict}` }, judgement.verdict.toUpperCase()), make('p', {}, sentence + (run.summary.completed ? '' : ` The run broke off; what was computed until then: ${judgement.so_far}.`) + (judgement.distrust ? ` NOT TO BE TRUSTED: ${judgement.distrust}.` : '')));
+        if (judgement.criteria.length) card.append(scroll(criteria(run)));
       } else card.append(make('p', {}, 'The model states no criteria: what happened is below.'));
       card.append(...joints(run));
       const parts = [friction(run), devices(run)].filter((part) => part.length).map((part) => make('div', {}, ...part));
