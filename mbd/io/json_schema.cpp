@@ -60,6 +60,7 @@ Json value_schema(const Field& field) {
     return list_of(point(field));
   case FieldType::rings:
     return list_of(list_of(point(field)));
+  case FieldType::signals:
   case FieldType::elements:
   case FieldType::texts:
     return list_of(text());
