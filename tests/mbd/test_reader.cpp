@@ -220,6 +220,18 @@ preload = 5
   CHECK(spring(model, 0).preload == 5.0);
 }
 
+TEST_CASE("the command line unsets what a file gives") {
+  const Model model =
+      parse_model(k_plain, "plain.toml", small_catalogue(),
+                  {"simulation.velocity=unset", "element.rope.damping=unset", "title=unset", "output.channels=unset"});
+  CHECK(model.simulation.velocity == Vec2(0, 0));
+  CHECK_FALSE(spring(model, 0).damping.has_value());
+  CHECK(model.header.title.empty());
+  CHECK(model.output.channels.empty());
+  CHECK(parse_model(k_plain, "plain.toml", small_catalogue(), {"title=\"unset\""}).header.title == "unset");
+  CHECK(parse_model(k_plain, "plain.toml", small_catalogue(), {"title=unset", "title=new"}).header.title == "new");
+}
+
 TEST_CASE("step and tolerance may both be given, whatever the integrator") {
   const std::string text = "[simulation]\nstep = 1e-3\ntolerance = 1e-9\n[[body]]\nname = \"a\"\n"
                            "mass = 1\ninertia = 1\n";
