@@ -31,6 +31,7 @@ enum class FieldType {
   body,        ///< name of a body, or "ground"
   marker,      ///< name of a marker or body, or an inline marker { body, at | point, ... }
   signal,      ///< name of a signal
+  signals,     ///< list of names of signals
   element,     ///< name of an element
   elements,    ///< list of names of elements
   texts,       ///< list of free texts

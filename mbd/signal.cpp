@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 namespace steplap {
@@ -55,7 +56,69 @@ void add_polynomial(const double* c, double tau, PieceJet& jet) {
       tau * tau * (c[0] / 2 + tau * (c[1] / 6 + tau * (c[2] / 12 + tau * (c[3] / 20))));
 }
 
-PieceJet evaluate(const Signal::Piece& piece, double tau) {
+// ∫₀¹ uⁿ e^{ixu} du of two neighbouring n.
+struct Moments {
+  double real[2] = {0.0, 0.0}, imaginary[2] = {0.0, 0.0};
+};
+
+// Σ (ix)^k / (k! (n+k+1)), which loses few digits while |x| ≤ max(2, n/2).
+void add_moment_series(int n, double x, double& real, double& imaginary) {
+  double term = 1.0; // x^k / k!
+  for (int k = 0; k < 80 && std::abs(term) > 1e-20; ++k) {
+    const double part = (k % 4 < 2 ? term : -term) / (n + k + 1);
+    (k % 2 == 0 ? real : imaginary) += part;
+    term *= x / (k + 1);
+  }
+}
+
+// For larger x by parts, upwards from n = 0: F_n = (e^{ix} − n F_{n−1}) / (ix).
+Moments moments(int n, double x) {
+  Moments m;
+  if (std::abs(x) <= std::max(2.0, 0.5 * n)) {
+    for (int j = 0; j < 2; ++j) add_moment_series(n + j, x, m.real[j], m.imaginary[j]);
+    return m;
+  }
+  const auto [s, c] = portable::sin_cos(x);
+  double real = s / x, imaginary = (1.0 - c) / x;
+  for (int k = 1; k <= n + 1; ++k) {
+    if (k == n + 1) m.real[0] = real, m.imaginary[0] = imaginary;
+    const double next = (s - k * imaginary) / x;
+    imaginary = (k * real - c) / x;
+    real = next;
+  }
+  m.real[1] = real;
+  m.imaginary[1] = imaginary;
+  return m;
+}
+
+double power(double x, int n) {
+  double result = 1.0;
+  for (; n > 0; --n) result *= x;
+  return result;
+}
+
+// ∫ τⁿ cos(ωτ+φ) = τⁿ⁺¹ Re e^{iφ} F_n, ∬ = ∫ (τ−s) sⁿ cos = τⁿ⁺² Re e^{iφ} (F_n − F_n+1).
+void add_modulated(const Signal::Modulated& m, double tau, bool has_integrals, PieceJet& jet) {
+  const int n = m.power;
+  const double x = m.frequency * tau;
+  const auto [s, c] = portable::sin_cos(0.5 * x);
+  const double sine = 2.0 * s * c, cosine = 1.0 - 2.0 * s * s;
+  const double wave = m.amplitude * (m.cos_phase * cosine - m.sin_phase * sine);
+  const double slope = -m.amplitude * m.frequency * (m.sin_phase * cosine + m.cos_phase * sine);
+  const double p = power(tau, n), p1 = n > 0 ? n * power(tau, n - 1) : 0.0;
+  const double p2 = n > 1 ? n * (n - 1) * power(tau, n - 2) : 0.0;
+  jet.value += p * wave;
+  jet.rate += p1 * wave + p * slope;
+  jet.second_rate += p2 * wave + 2.0 * p1 * slope - m.frequency * m.frequency * p * wave;
+  if (!has_integrals) return;
+  const Moments f = moments(n, x);
+  const double first = m.cos_phase * f.real[0] - m.sin_phase * f.imaginary[0];
+  const double second = m.cos_phase * (f.real[0] - f.real[1]) - m.sin_phase * (f.imaginary[0] - f.imaginary[1]);
+  jet.integral += m.amplitude * p * tau * first;
+  jet.double_integral += m.amplitude * p * tau * tau * second;
+}
+
+PieceJet evaluate(const Signal::Piece& piece, double tau, bool has_integrals = true) {
   const double* c = piece.c;
   PieceJet jet;
   if (piece.is_level) {
@@ -67,6 +130,8 @@ PieceJet evaluate(const Signal::Piece& piece, double tau) {
   }
   for (const Signal::Harmonic& h : piece.harmonics)
     add_harmonic(h, tau, jet);
+  for (const Signal::Modulated& m : piece.modulated)
+    add_modulated(m, tau, has_integrals, jet);
   return jet;
 }
 
@@ -77,6 +142,8 @@ double magnitude(const Signal::Piece& piece, double tau) {
     sum = sum * tau + std::abs(piece.c[i]);
   for (const Signal::Harmonic& h : piece.harmonics)
     sum += std::abs(h.amplitude);
+  for (const Signal::Modulated& m : piece.modulated)
+    sum += std::abs(m.amplitude) * power(tau, m.power);
   return sum;
 }
 
@@ -86,6 +153,8 @@ bool is_finite(const Signal::Piece& piece) {
     sum += c;
   for (const Signal::Harmonic& h : piece.harmonics)
     sum += h.amplitude + h.frequency + h.phase;
+  for (const Signal::Modulated& m : piece.modulated)
+    sum += m.amplitude + m.frequency + m.phase;
   return std::isfinite(sum);
 }
 
@@ -113,6 +182,11 @@ Signal::Signal(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
       h.integral_scale = h.amplitude / h.frequency;
       h.double_integral_scale = h.integral_scale / h.frequency;
     }
+    for (Modulated& m : piece.modulated) {
+      const portable::SinCos phase = portable::sin_cos(m.phase);
+      m.cos_phase = phase.cos;
+      m.sin_phase = phase.sin;
+    }
   }
   accumulate_integrals();
   if (!is_constant())
@@ -122,7 +196,7 @@ Signal::Signal(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
 }
 
 Signal Signal::constant(double value) {
-  return Signal({Piece{0.0, {value, 0.0, 0.0, 0.0}, {}}});
+  return Signal({Piece{0.0, {value, 0.0, 0.0, 0.0}, {}, {}}});
 }
 
 // The integrals at the starts, forwards and backwards from the piece that holds t = 0, so that
@@ -163,7 +237,7 @@ const Signal::Piece* Signal::piece_at(double t) const {
 
 double Signal::value(double t) const {
   const Piece* piece = piece_at(t);
-  return piece ? evaluate(*piece, t - piece->start).value : 0.0;
+  return piece ? evaluate(*piece, t - piece->start, false).value : 0.0;
 }
 
 SignalJet Signal::drive(double t, DriveLevel level) const {
@@ -171,7 +245,7 @@ SignalJet Signal::drive(double t, DriveLevel level) const {
   PieceJet jet;
   if (piece) {
     const double tau = t - piece->start;
-    jet = evaluate(*piece, tau);
+    jet = evaluate(*piece, tau, level != DriveLevel::position);
     jet.double_integral += piece->double_integral + piece->integral * tau;
     jet.integral += piece->integral;
   } else if (!pieces_.empty() && pieces_.front().start < 0.0) {
@@ -191,17 +265,26 @@ SignalJet Signal::drive(double t, DriveLevel level) const {
 }
 
 double Signal::fastest_at(double t) const {
+  constexpr int k_tame_power = 3; // a cubic is followed by every method
   double fastest = 0.0;
-  if (const Piece* piece = piece_at(t))
-    for (const Harmonic& harmonic : piece->harmonics)
-      if (harmonic.amplitude != 0.0) fastest = std::max(fastest, std::abs(harmonic.frequency));
+  const Piece* piece = piece_at(t);
+  if (!piece) return fastest;
+  for (const Harmonic& harmonic : piece->harmonics)
+    if (harmonic.amplitude != 0.0) fastest = std::max(fastest, std::abs(harmonic.frequency));
+  const bool is_last = piece == &pieces_.back();
+  for (const Modulated& m : piece->modulated) {
+    if (m.amplitude == 0.0) continue;
+    fastest = std::max(fastest, std::abs(m.frequency));
+    if (m.power > k_tame_power && !is_last)
+      fastest = std::max(fastest, m.power * std::numbers::pi / ((piece + 1)->start - piece->start));
+  }
   return fastest;
 }
 
 bool Signal::is_constant() const {
   if (pieces_.empty()) return true;
   const Piece& p = pieces_.front();
-  return pieces_.size() == 1 && p.start <= 0.0 && p.harmonics.empty() && p.c[1] == 0.0 &&
+  return pieces_.size() == 1 && p.start <= 0.0 && p.harmonics.empty() && p.modulated.empty() && p.c[1] == 0.0 &&
          p.c[2] == 0.0 && p.c[3] == 0.0;
 }
 
@@ -230,6 +313,10 @@ Sides values_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
 double rate_magnitude(const Signal::Piece& piece, double tau) {
   double sum = std::abs(piece.c[1]) + tau * (2.0 * std::abs(piece.c[2]) + tau * 3.0 * std::abs(piece.c[3]));
   for (const Signal::Harmonic& h : piece.harmonics) sum += std::abs(h.amplitude * h.frequency);
+  for (const Signal::Modulated& m : piece.modulated) {
+    const double slope = m.power > 0 ? m.power * power(tau, m.power - 1) : 0.0;
+    sum += std::abs(m.amplitude) * (slope + std::abs(m.frequency) * power(tau, m.power));
+  }
   return sum;
 }
 

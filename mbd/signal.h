@@ -2,7 +2,8 @@
 //
 // Every signal is a sequence of pieces between breakpoints; a piece is a cubic polynomial plus a sum of
 // harmonics, so value, derivatives and both integrals from t = 0 on are closed forms, and a body driven
-// by an acceleration has position, velocity and acceleration that agree to rounding.
+// by an acceleration has position, velocity and acceleration that agree to rounding. Products bring powers of
+// time times harmonics, whose integrals are closed forms as well (signal_algebra.h).
 // Limits: before the first breakpoint a signal is 0; integrals start at t = 0.
 #pragma once
 
@@ -38,11 +39,22 @@ public:
     double integral_scale = 0.0;        ///< amplitude/frequency (filled by Signal)
     double double_integral_scale = 0.0; ///< that over the frequency once more (filled by Signal)
   };
-  /// c0 + c1 τ + c2 τ² + c3 τ³ + Σ harmonics, for start ≤ t < start of the next piece.
+  /// amplitude · τ^power · cos(frequency τ + phase), as products have them; a frequency of 0 makes a higher
+  /// power of a polynomial.
+  struct Modulated {
+    int power = 0;
+    double amplitude = 0.0;
+    double frequency = 0.0;
+    double phase = 0.0;
+    double cos_phase = 1.0; ///< filled by Signal
+    double sin_phase = 0.0; ///< filled by Signal
+  };
+  /// c0 + c1 τ + c2 τ² + c3 τ³ + Σ harmonics + Σ modulated, for start ≤ t < start of the next piece.
   struct Piece {
     double start = 0.0;
     double c[4] = {0.0, 0.0, 0.0, 0.0};
     std::vector<Harmonic> harmonics;
+    std::vector<Modulated> modulated;
     bool is_level = true;         ///< c1 = c2 = c3 = 0 (filled by Signal)
     double integral = 0.0;        ///< ∫ from 0 to start (filled by Signal)
     double double_integral = 0.0; ///< ∬ from 0 to start (filled by Signal)
@@ -61,7 +73,9 @@ public:
   /// pieces (none for a constant).
   [[nodiscard]] const std::vector<double>& breakpoints() const { return breakpoints_; }
   [[nodiscard]] bool is_constant() const;
-  /// Angular frequency of the fastest of its harmonics in the piece that holds t, rad/s; 0 if it has none.
+  [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+  /// Angular frequency of the fastest of its harmonics in the piece that holds t, rad/s; 0 if it has none. A
+  /// power above the third counts as so many half waves over its piece.
   [[nodiscard]] double fastest_at(double t) const;
   /// True where the value itself jumps at breakpoint k by more than rounding.
   [[nodiscard]] bool jumps_at(std::size_t k) const;
@@ -90,6 +104,7 @@ struct SignalDefinition {
   Location where;
 };
 
+/// Kinds that are made of other signals name them in fields of the types signal and signals.
 struct SignalKind {
   std::string name;
   std::string doc;
@@ -97,9 +112,12 @@ struct SignalKind {
   std::shared_ptr<SignalDefinition> (*create)() = nullptr;
   /// Throws ModelError (at definition.where) for values that make no signal.
   Signal (*build)(const SignalDefinition& definition) = nullptr;
+  /// Instead of `build`, of kinds made of others: `parts` in the order of their fields.
+  Signal (*combine)(const SignalDefinition& definition, const std::vector<const Signal*>& parts) = nullptr;
 };
 
-/// constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics (mbd/io adds `record`).
+/// constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics, sum, product, scaled (mbd/io adds
+/// `record`).
 [[nodiscard]] const std::vector<const SignalKind*>& signal_kinds();
 
 } // namespace steplap

@@ -2,6 +2,8 @@
 // a deceleration is a pulse with a negative peak.
 #include "mbd/signal.h"
 
+#include "mbd/signal_composites.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -240,7 +242,8 @@ const SignalKind& harmonics_kind() {
 const std::vector<const SignalKind*>& signal_kinds() {
   static const std::vector<const SignalKind*> kinds{
       &constant_kind(),  &haversine_kind(), &half_sine_kind(), &triangle_kind(),
-      &trapezoid_kind(), &rectangle_kind(), &harmonics_kind()};
+      &trapezoid_kind(), &rectangle_kind(), &harmonics_kind(),
+      &sum_kind(),       &product_kind(),   &scaled_kind()};
   return kinds;
 }
 

@@ -88,7 +88,7 @@ const Channel* System::find_channel(const std::string& name) const {
 
 // --- SystemBuilder ------------------------------------------------------------------------------
 
-SystemBuilder::SystemBuilder(const Model& model) : model_(model), system_(new System) {
+SystemBuilder::SystemBuilder(const Model& model) : model_(model), system_(new System), signals_(model) {
   system_->title = model.header.title;
   system_->gravity = model.header.gravity;
 }
@@ -219,9 +219,8 @@ int SystemBuilder::body(const std::string& name) const {
 const Signal* SystemBuilder::signal(const std::string& name) {
   if (name.empty()) return nullptr;
   if (const auto found = signal_index_.find(name); found != signal_index_.end()) return found->second;
-  for (const SignalEntry& entry : model_.signals) {
-    if (entry.definition->name != name) continue;
-    auto signal = std::make_unique<Signal>(entry.kind->build(*entry.definition));
+  if (const Signal* built = signals_.build(name)) {
+    auto signal = std::make_unique<Signal>(*built);
     for (const double t : signal->breakpoints())
       if (t > 0.0) system_->breakpoints.push_back(t);
     signal_index_[name] = signal.get();

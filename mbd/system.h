@@ -4,6 +4,7 @@
 
 #include "mbd/model.h"
 #include "mbd/roles.h"
+#include "mbd/signal_network.h"
 
 #include <functional>
 #include <limits>
@@ -198,6 +199,7 @@ private:
   std::vector<Motion<double>> reference_;
   std::unordered_map<std::string, int> body_index_;
   std::unordered_map<std::string, CompiledMarker> marker_index_;
+  SignalNetwork signals_;
   std::unordered_map<std::string, const Signal*> signal_index_;
   std::unordered_map<std::string, std::size_t> element_index_;
   std::unordered_map<std::string, ContactIndex> contact_index_;

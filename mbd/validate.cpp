@@ -1,6 +1,7 @@
 #include "mbd/validate.h"
 
 #include "mbd/number_text.h"
+#include "mbd/signal_network.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,6 +54,7 @@ std::string reference_noun(FieldType type) {
   case FieldType::marker:
     return "marker or body";
   case FieldType::signal:
+  case FieldType::signals:
     return "signal";
   default:
     return "element";
@@ -130,6 +132,7 @@ void FieldChecker::check_field(const Field& field, const FieldValue& value,
   case FieldType::element:
     check_reference(field, std::get<std::string>(value), subject, where);
     break;
+  case FieldType::signals:
   case FieldType::elements:
     for (const std::string& name : std::get<std::vector<std::string>>(value))
       check_reference(field, name, subject, where);
@@ -181,6 +184,7 @@ bool FieldChecker::refers(FieldType type, const std::string& name) const {
   case FieldType::marker:
     return markers_.count(name) > 0 || bodies_.count(name) > 0;
   case FieldType::signal:
+  case FieldType::signals:
     return signals_.count(name) > 0;
   default:
     return elements_.count(name) > 0;
@@ -195,7 +199,7 @@ std::string FieldChecker::suggestion(FieldType type, const std::string& name) {
   };
   if (type == FieldType::marker) take(markers_);
   if (type == FieldType::marker || type == FieldType::body) take(bodies_);
-  if (type == FieldType::signal) take(signals_);
+  if (type == FieldType::signal || type == FieldType::signals) take(signals_);
   if (type == FieldType::element || type == FieldType::elements) take(elements_);
   std::sort(known.begin(), known.end()); // so that ties are decided alike everywhere
   return did_you_mean(name, known);
@@ -266,7 +270,7 @@ private:
   void check_signals();
   void check_elements();
   bool is_readable(std::size_t signal) const;
-  void check_signal_value(std::size_t index);
+  void check_signal_value(SignalNetwork& network, const std::string& name);
 
   const Model& model_;
   const FieldLocator& locate_;
@@ -344,20 +348,17 @@ bool Validation::is_readable(std::size_t signal) const {
   return true;
 }
 
-void Validation::check_signal_value(std::size_t index) {
-  const SignalEntry& entry = model_.signals[index];
+void Validation::check_signal_value(SignalNetwork& network, const std::string& name) {
   try {
-    static_cast<void>(entry.kind->build(*entry.definition));
+    static_cast<void>(network.build(name));
   } catch (const ModelError& error) {
     problems_.insert(problems_.end(), error.diagnostics().begin(), error.diagnostics().end());
-  } catch (const std::invalid_argument& error) {
-    add(entry.definition->where,
-        subject_text(entry.kind->name, entry.definition->name) + ": " + error.what());
   }
 }
 
 void Validation::check_signals() {
   Seen seen;
+  SignalNetwork network(model_);
   for (std::size_t i = 0; i < model_.signals.size(); ++i) {
     const SignalEntry& entry = model_.signals[i];
     const SignalDefinition& signal = *entry.definition;
@@ -365,8 +366,9 @@ void Validation::check_signals() {
     const std::size_t before = problems_.size();
     check_table(Section::signal, i, entry.kind->fields, &signal,
                 subject_text(entry.kind->name, signal.name), signal.where);
-    if (problems_.size() == before && is_readable(i)) check_signal_value(i);
+    if (problems_.size() != before || !is_readable(i)) network.exclude(signal.name);
   }
+  for (const SignalEntry& entry : model_.signals) check_signal_value(network, entry.definition->name);
 }
 
 void Validation::check_elements() {

@@ -113,6 +113,8 @@ std::string type_text(const Field& field) {
     return "marker";
   case FieldType::signal:
     return "signal";
+  case FieldType::signals:
+    return "list of signals";
   case FieldType::element:
     return "element";
   case FieldType::elements:

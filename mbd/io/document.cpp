@@ -71,6 +71,10 @@ private:
   }
 
   void merge_table(Node& base, Node& over, const std::string& subject) {
+    if (take_flag(over, "replace")) {
+      if (base.children.empty()) problems_.push_back({over.where(), subject + " inherits nothing to replace"});
+      base.children.clear();
+    }
     if (const Node* unset = over.find("unset")) {
       unset_keys(base, *unset, subject);
       over.erase("unset");
@@ -107,12 +111,13 @@ private:
       const std::string name = entry_name(entry);
       const auto found = name.empty() ? inherited.end() : inherited.find(name);
       const bool is_new = found == inherited.end() || !seen.insert(name).second;
-      if (takes_out(entry)) {
+      if (take_flag(entry, "remove")) {
         if (is_new)
-          report_missing(entry, over.key, inherited);
+          report_missing(entry, over.key, "removed", inherited);
         else
           removed.insert(name);
       } else if (is_new) {
+        if (take_flag(entry, "replace")) report_missing(entry, over.key, "replaced", inherited);
         Node& added = base.children.emplace_back(without_children(entry));
         merge_table(added, entry, over.key + " '" + name + "'");
       } else {
@@ -123,28 +128,26 @@ private:
       std::erase_if(base.children, [&](const Node& n) { return removed.count(entry_name(n)) > 0; });
   }
 
-  // Reads and drops the key 'remove'.
-  bool takes_out(Node& entry) {
-    const Node* remove = entry.find("remove");
-    if (!remove) return false;
-    const bool* flag = std::get_if<bool>(&remove->scalar);
-    const bool result = remove->type == Node::Type::boolean && *flag;
-    if (remove->type != Node::Type::boolean)
-      problems_.push_back({remove->where(), std::string("'remove' must be true or false, got ") +
-                                                remove->type_name()});
-    entry.erase("remove");
+  // Reads and drops the key.
+  bool take_flag(Node& entry, const std::string& key) {
+    const Node* given = entry.find(key);
+    if (!given) return false;
+    const bool* flag = std::get_if<bool>(&given->scalar);
+    const bool result = given->type == Node::Type::boolean && *flag;
+    if (given->type != Node::Type::boolean)
+      problems_.push_back({given->where(), "'" + key + "' must be true or false, got " + given->type_name()});
+    entry.erase(key);
     return result;
   }
 
-  void report_missing(const Node& entry, const std::string& array,
+  void report_missing(const Node& entry, const std::string& array, const std::string& what,
                       const std::unordered_map<std::string, std::size_t>& inherited) {
     std::vector<std::string> known;
     for (const auto& [name, index] : inherited)
       known.push_back(name);
     const std::string name = entry_name(entry);
     problems_.push_back({entry.where(), "no " + array + " '" + name +
-                                            "' is inherited that could be "
-                                            "removed" +
+                                            "' is inherited that could be " + what +
                                             did_you_mean(name, known)});
   }
 

@@ -4,8 +4,8 @@
 // chains are allowed) and lays this file over it: tables such as [simulation] merge key by key,
 // arrays of tables such as [[element]] merge by `name`: an entry of the same name replaces the keys
 // that it gives, another is appended, `remove = true` takes the inherited entry out. `unset =
-// ["key"]` in an entry or a table drops inherited keys. Every value remembers the file it stands
-// in.
+// ["key"]` in an entry or a table drops inherited keys, `replace = true` all of them: what it gives is all there
+// is, as another kind of the same name needs. Every value remembers the file it stands in.
 #pragma once
 
 #include "mbd/io/toml_text.h"

@@ -56,6 +56,7 @@ public:
       return points(node);
     case FieldType::rings:
       return rings(node);
+    case FieldType::signals:
     case FieldType::elements:
     case FieldType::texts:
       return texts(node);
@@ -228,6 +229,8 @@ std::string expected_text(const Field& field) {
     return "the name of a marker or body, or { body = ..., point = [x, y] }";
   case FieldType::signal:
     return "the name of a signal";
+  case FieldType::signals:
+    return "a list of names of signals";
   case FieldType::element:
     return "the name of an element";
   case FieldType::elements:

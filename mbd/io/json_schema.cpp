@@ -60,6 +60,7 @@ Json value_schema(const Field& field) {
     return list_of(point(field));
   case FieldType::rings:
     return list_of(list_of(point(field)));
+  case FieldType::signals:
   case FieldType::elements:
   case FieldType::texts:
     return list_of(text());
@@ -97,6 +98,13 @@ const Described& common_fields() {
   return common;
 }
 
+// What files that extend another may say of a table.
+void add_merging(Json& properties) {
+  properties["unset"] = list_of(text());
+  properties["unset"]["description"] = "inherited keys that are dropped";
+  properties["replace"] = {{"type", "boolean"}, {"description", "drops all inherited keys"}};
+}
+
 // An entry of an array of tables: what it says, its name and what merging understands.
 Json entry_schema(const Described& kind, bool has_kind) {
   Json schema = object_schema(kind);
@@ -107,7 +115,7 @@ Json entry_schema(const Described& kind, bool has_kind) {
     for (const Field& field : common_fields().fields->fields())
       properties[field.name] = field_schema(common_fields(), field);
   properties["remove"] = {{"type", "boolean"}, {"description", "takes the inherited entry out"}};
-  properties["unset"] = list_of(text());
+  add_merging(properties);
   schema["required"] = Json::array({"name"});
   return schema;
 }
@@ -133,7 +141,7 @@ std::string json_schema(const Catalogue& catalogue) {
         properties[f.name] = field_schema(kind, f);
     } else if (kind.role == "settings") {
       properties[kind.name] = object_schema(kind);
-      properties[kind.name]["properties"]["unset"] = list_of(text());
+      add_merging(properties[kind.name]["properties"]);
     } else if (kind.role == "table") {
       properties[kind.name] = list_of(entry_schema(kind, false));
       if (kind.name == "marker") definitions["inline_marker"] = inline_marker_schema(kind);

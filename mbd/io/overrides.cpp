@@ -27,7 +27,9 @@ public:
     file_ = &document.sources->emplace_back(Document::Source{"--set " + assignment, ""}).file;
     path_ = assignment.substr(0, equals);
     is_complete_ = equals != std::string::npos && !path_.empty();
-    if (is_complete_) value_ = parse_value(assignment.substr(equals + 1));
+    if (!is_complete_) return;
+    is_unset_ = assignment.substr(equals + 1) == "unset";
+    value_ = parse_value(assignment.substr(equals + 1));
   }
 
   void apply() {
@@ -113,10 +115,20 @@ private:
       return set_below(*child, take_segment(path_));
     }
     if (!child && !parent.is_table()) return complain("'" + key + "' is not an item of a list");
+    if (is_unset_) return unset(parent, key, child);
     if (!child) child = &parent.children.emplace_back();
     const std::string kept_key = parent.is_table() ? key : "";
     *child = value_;
     child->key = kept_key;
+  }
+
+  void unset(Node& parent, const std::string& key, const Node* child) {
+    if (child && !parent.is_table()) return complain("'" + key + "' is an item of a list, which cannot be unset");
+    if (child) return parent.erase(key);
+    std::vector<std::string> known;
+    for (const Node& other : parent.children)
+      if (!other.is_table() && !other.is_array_of_tables()) known.push_back(other.key);
+    complain("the model gives no '" + key + "' there to unset" + did_you_mean(key, known));
   }
 
   static Node* child_of(Node& parent, const std::string& key) {
@@ -133,7 +145,7 @@ private:
   const std::string* file_ = nullptr;
   std::string path_;
   Node value_;
-  bool is_complete_ = false;
+  bool is_complete_ = false, is_unset_ = false;
 };
 
 } // namespace

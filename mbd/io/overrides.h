@@ -4,7 +4,8 @@
 // entry
 // ("element.front block.preload"); names may hold blanks and points. Keys of inline tables and
 // items of lists follow after further points ("element.rope.a.angle", "gravity.1"). The value is
-// read as TOML ("1e-4", "[1, 2]", "true"), else as a string ("48 t").
+// read as TOML ("1e-4", "[1, 2]", "true"), else as a string ("48 t"). The bare word `unset` takes a key out that the
+// files give, so that its default holds; the text of that name is written in quotes.
 #pragma once
 
 #include "mbd/io/document.h"

@@ -401,10 +401,12 @@ std::optional<Location> Reader::place_of(const std::vector<GivenField>& fields,
                                          const std::string& name, const Location& object) const {
   for (const GivenField& given : fields) {
     if (given.field->name != name) continue;
-    const bool refers_to_unread = given.node && ((given.field->type == FieldType::signal &&
-                                                  unread_signals_.count(given.node->text()) > 0) ||
-                                                 (given.field->type == FieldType::element &&
-                                                  unread_elements_.count(given.node->text()) > 0));
+    const auto is_unread_signal = [this](const Node& node) { return unread_signals_.count(node.text()) > 0; };
+    const bool refers_to_unread =
+        given.node && ((given.field->type == FieldType::signal && is_unread_signal(*given.node)) ||
+                       (given.field->type == FieldType::signals &&
+                        std::any_of(given.node->children.begin(), given.node->children.end(), is_unread_signal)) ||
+                       (given.field->type == FieldType::element && unread_elements_.count(given.node->text()) > 0));
     if (!given.is_usable || refers_to_unread) return std::nullopt;
     return given.node->where();
   }

@@ -1,5 +1,6 @@
 // Model files that are well formed: what the model holds after reading, inheritance, overrides.
 #include "mbd/io/reader.h"
+#include "mbd/signal_network.h"
 #include "mbd/validate.h"
 #include "tests/mbd/small_catalogue.h"
 
@@ -218,6 +219,56 @@ preload = 5
   const Model model = read_model(top, small_catalogue());
   CHECK_FALSE(spring(model, 0).damping.has_value());
   CHECK(spring(model, 0).preload == 5.0);
+}
+
+TEST_CASE("an entry of another kind replaces the one that it inherits") {
+  const Folder folder;
+  folder.write("base.toml", k_plain);
+  const std::string top = folder.write("top.toml", R"(
+extends = "base.toml"
+[output]
+replace = true
+step = 0.01
+[[element]]
+name = "rope"
+kind = "pin"
+replace = true
+a = "tank"
+b = "wall"
+[[signal]]
+name = "brake"
+kind = "scaled"
+replace = true
+signal = "slow"
+factor = "0.5 gravity"
+[[signal]]
+name = "slow"
+kind = "rectangle"
+peak = 1
+duration = 0.3
+)");
+  const Model model = read_model(top, small_catalogue());
+  CHECK(model.elements.at(0).element->name == "rope"); // in its place
+  CHECK(model.elements.at(0).kind->name == "pin");
+  CHECK(model.output.channels.empty());
+  CHECK(model.output.step == 0.01);
+  CHECK(model.signals.at(0).kind->name == "scaled");
+  SignalNetwork signals(model);
+  CHECK(signals.build("brake")->value(0.1) == doctest::Approx(0.5 * 9.80665).epsilon(1e-14));
+  // What it gives can be changed as ever.
+  CHECK(read_model(top, small_catalogue(), {"element.rope.b=ground"}).elements.at(0).kind->name == "pin");
+}
+
+TEST_CASE("the command line unsets what a file gives") {
+  const Model model =
+      parse_model(k_plain, "plain.toml", small_catalogue(),
+                  {"simulation.velocity=unset", "element.rope.damping=unset", "title=unset", "output.channels=unset"});
+  CHECK(model.simulation.velocity == Vec2(0, 0));
+  CHECK_FALSE(spring(model, 0).damping.has_value());
+  CHECK(model.header.title.empty());
+  CHECK(model.output.channels.empty());
+  CHECK(parse_model(k_plain, "plain.toml", small_catalogue(), {"title=\"unset\""}).header.title == "unset");
+  CHECK(parse_model(k_plain, "plain.toml", small_catalogue(), {"title=unset", "title=new"}).header.title == "new");
 }
 
 TEST_CASE("step and tolerance may both be given, whatever the integrator") {

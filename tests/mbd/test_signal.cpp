@@ -62,8 +62,8 @@ std::vector<std::pair<std::string, Signal>> samples() {
   Values trapezoid = pulse, triangle = pulse;
   trapezoid.insert(trapezoid.end(), {{"rise", 0.02}, {"fall", 0.05}});
   triangle.push_back({"rise", 0.03});
-  Signal::Piece cubic{-0.3, {1.0, -2.0, 3.0, 4.0}, {{0.5, 7.0, 0.4}}};
-  Signal::Piece later{0.1, {0.2, 0.1, 0.0, 0.0}, {}};
+  Signal::Piece cubic{-0.3, {1.0, -2.0, 3.0, 4.0}, {{0.5, 7.0, 0.4}}, {}};
+  Signal::Piece later{0.1, {0.2, 0.1, 0.0, 0.0}, {}, {}};
   return {{"constant", make("constant", {{"value", 2.5}})},
           {"haversine", make("haversine", pulse)},
           {"half_sine", make("half_sine", pulse)},
@@ -162,7 +162,7 @@ TEST_CASE("shapes at known times") {
 TEST_CASE("small integrals keep their digits") {
   // ∫ = −p T/2π sin(2πτ/T)/... : just after its start a haversine is p (π τ/T)², so ∬ = p π² τ⁴ /
   // 12 T².
-  const Signal sine(std::vector<Signal::Piece>{{0.0, {0, 0, 0, 0}, {{1.0, 10.0, -0.5 * k_pi}}}});
+  const Signal sine(std::vector<Signal::Piece>{{0.0, {0, 0, 0, 0}, {{1.0, 10.0, -0.5 * k_pi}}, {}}});
   const double t = 1e-6;
   CHECK(sine.drive(t, DriveLevel::acceleration).rate == doctest::Approx(5.0 * t * t).epsilon(1e-9));
   CHECK(sine.drive(t, DriveLevel::acceleration).value ==
@@ -192,7 +192,7 @@ TEST_CASE("breakpoints and jumps") {
 TEST_CASE("a record of 1e5 pieces") {
   std::vector<Signal::Piece> pieces;
   for (int i = 0; i < 100000; ++i)
-    pieces.push_back({1e-3 * i, {std::sin(1e-3 * i), 0, 0, 0}, {}});
+    pieces.push_back({1e-3 * i, {std::sin(1e-3 * i), 0, 0, 0}, {}, {}});
   const Signal signal(pieces);
   CHECK(signal.value(50.0005) == std::sin(50.0));
   double sum = 0.0;
@@ -203,9 +203,9 @@ TEST_CASE("a record of 1e5 pieces") {
 
 TEST_CASE("values that make no signal") {
   using Pieces = std::vector<Signal::Piece>;
-  const Signal::Piece plain{1.0, {0, 0, 0, 0}, {}};
-  const Signal::Piece nan{0.0, {NAN, 0, 0, 0}, {}};
-  const Signal::Piece still{0.0, {0, 0, 0, 0}, {{1.0, 0.0, 0.0}}};
+  const Signal::Piece plain{1.0, {0, 0, 0, 0}, {}, {}};
+  const Signal::Piece nan{0.0, {NAN, 0, 0, 0}, {}, {}};
+  const Signal::Piece still{0.0, {0, 0, 0, 0}, {{1.0, 0.0, 0.0}}, {}};
   CHECK_THROWS_AS(Signal(Pieces{plain, plain}), std::invalid_argument);
   CHECK_THROWS_AS(Signal(Pieces{nan}), std::invalid_argument);
   CHECK_THROWS_AS(Signal(Pieces{still}), std::invalid_argument);

@@ -24,10 +24,17 @@ bool uses_any(const Block& block, const std::set<std::string>& names) {
 }
 
 void remove_unused_signals(std::vector<Block>& blocks) {
-  std::set<std::string> used;
-  for (const Block& block : blocks)
-    used.insert(block.uses.begin(), block.uses.end());
-  std::erase_if(blocks, [&](const Block& b) { return b.table == "signal" && used.count(b.name) == 0; });
+  const auto is_unused = [&blocks](const Block& b) {
+    return b.table == "signal" && std::none_of(blocks.begin(), blocks.end(), [&](const Block& other) {
+             return std::find(other.uses.begin(), other.uses.end(), b.name) != other.uses.end();
+           });
+  };
+  // What is made of others goes first, then they.
+  for (;;) {
+    const auto unused = std::find_if(blocks.begin(), blocks.end(), is_unused);
+    if (unused == blocks.end()) return;
+    blocks.erase(unused);
+  }
 }
 
 } // namespace

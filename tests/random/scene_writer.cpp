@@ -94,6 +94,33 @@ std::string SceneWriter::signal(double peak, bool is_smooth) {
     if (kind == "triangle" && r.chance(0.5)) block.fields += lines({{"rise", number(length * r.between(0.05, 0.9))}});
   }
   scene.blocks.push_back(block);
+  return composed(block.name);
+}
+
+// Now and then the same history by way of a signal that is made of others. No random number is drawn for it: scenes
+// are otherwise what they were.
+std::string SceneWriter::composed(const std::string& part) {
+  const std::uint64_t choice = (scene.seed + static_cast<std::uint64_t>(count_)) % 12;
+  Block block{"signal", "", part + "_whole", {}, {part}};
+  const std::string twice = "[" + quoted(part) + ", " + quoted(part) + "]";
+  if (choice == 0) {
+    block.kind = "sum";
+    block.fields = lines({{"signals", twice}, {"factors", "[1.5, -0.5]"}});
+  } else if (choice == 1) {
+    block.kind = "scaled";
+    block.fields = lines({{"signal", quoted(part)}, {"factor", "0.5"}});
+    scene.blocks.push_back(block);
+    block = {"signal", "scaled", part + "_double", lines({{"signal", quoted(block.name)}, {"factor", "2.0"}}), {block.name}};
+  } else if (choice == 2) {
+    const Block one{"signal", "constant", part + "_one", lines({{"value", "1.0"}}), {}};
+    scene.blocks.push_back(one);
+    block.kind = "product";
+    block.uses.push_back(one.name);
+    block.fields = lines({{"signals", "[" + quoted(part) + ", " + quoted(one.name) + "]"}});
+  } else {
+    return part;
+  }
+  scene.blocks.push_back(block);
   return block.name;
 }
 

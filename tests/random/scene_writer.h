@@ -40,6 +40,7 @@ public:
 private:
   std::string new_name(const std::string& stem);
   std::string record(double peak);
+  std::string composed(const std::string& part);
   int count_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "mbd/event_handler.h"
 #include "mbd/freedom.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/signal_network.h"
 #include "mbd/validate.h"
 #include "tools/steplap/text_table.h"
 
@@ -25,10 +26,14 @@ struct References {
 
 References references_of(const Model& model) {
   References found;
+  const auto use_signals = [&](const FieldTable& fields, const void* object) {
+    for (const std::string& name : parts_of(fields, object)) found.signals.insert(name);
+  };
+  for (const SignalEntry& entry : model.signals) use_signals(entry.kind->fields, entry.definition.get());
+  for (const ElementEntry& entry : model.elements) use_signals(entry.kind->fields, entry.element.get());
   for (const ElementEntry& entry : model.elements)
     for (const Field& field : entry.kind->fields.fields()) {
       Names* names = nullptr;
-      if (field.type == FieldType::signal) names = &found.signals;
       if (field.type == FieldType::marker) names = &found.markers;
       if (field.type == FieldType::body) names = &found.bodies;
       if (names) names->insert(std::get<std::string>(field.get(entry.element.get())));
