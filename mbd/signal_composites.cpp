@@ -85,7 +85,8 @@ const SignalKind& product_kind() {
 
 const SignalKind& scaled_kind() {
   static const SignalKind kind = [] {
-    SignalKind k = kind_of<Scaled>("scaled", "Another signal at another scale: offset + factor signal(t - delay).", build_scaled);
+    SignalKind k = kind_of<Scaled>(
+        "scaled", "Another signal at another scale: offset + factor signal(t - delay).", build_scaled);
     k.fields.add("signal", &Scaled::signal).as(FieldType::signal).required().doc("signal that is scaled");
     k.fields.add("factor", &Scaled::factor).in("*").doc("factor on its values; -1 turns the sign");
     k.fields.add("offset", &Scaled::offset).in("*").doc("added to its values, from t = 0 on");

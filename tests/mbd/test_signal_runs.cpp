@@ -75,13 +75,15 @@ TEST_CASE("a load that is the sum of two signals moves a body as two loads do") 
 // A drive at the level of acceleration takes both integrals of the product: of 40 (½ − ½ cos Ωτ) sin ωt these are
 // those of three harmonics.
 TEST_CASE("a body driven by a product keeps to its integrals") {
-  const std::string drive = "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive\"\na = \"block\"\ncoordinate = \"x\"\n"
-                            "signal = \"burst\"\nas = \"acceleration\"\n"
+  const std::string drive = "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive\"\na = \"block\"\n"
+                            "coordinate = \"x\"\nsignal = \"burst\"\nas = \"acceleration\"\n"
                             "[[signal]]\nkind = \"product\"\nname = \"burst\"\nsignals = [\"pulse\", \"late wave\"]\n"
-                            "[[signal]]\nkind = \"scaled\"\nname = \"late wave\"\nsignal = \"wave\"\nfactor = 2.0\ndelay = 0.1\n";
+                            "[[signal]]\nkind = \"scaled\"\nname = \"late wave\"\nsignal = \"wave\"\n"
+                            "factor = 2.0\ndelay = 0.1\n";
   const RunResult driven = run(k_block + drive);
   // From 0.1 s to 0.4 s: 40 (½ − ½ cos Ωτ) · 6 sin ωτ with Ω = 2π/0.3 and ω = 10π; its terms are 120 sin ωτ
-  // − 60 sin((ω+Ω)τ) − 60 sin((ω−Ω)τ), of which each has the velocity A (1 − cos wτ)/w and the way A (τ/w − sin(wτ)/w²).
+  // − 60 sin((ω+Ω)τ) − 60 sin((ω−Ω)τ), of which each has the velocity A (1 − cos wτ)/w and the way
+  // A (τ/w − sin(wτ)/w²).
   const double pi = std::acos(-1.0), big = 2.0 * pi / 0.3, w = 10.0 * pi, tau = 0.3;
   double velocity = 0.0, way = 0.0;
   for (const auto& [amplitude, f] : {std::pair(120.0, w), std::pair(-60.0, w + big), std::pair(-60.0, w - big)}) {
@@ -94,8 +96,8 @@ TEST_CASE("a body driven by a product keeps to its integrals") {
 }
 
 TEST_CASE("a drive whose velocity would jump is refused where a sum of signals makes it") {
-  const std::string drive = "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive\"\na = \"block\"\ncoordinate = \"x\"\n"
-                            "signal = \"whole\"\nas = \"velocity\"\n"
+  const std::string drive = "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive\"\na = \"block\"\n"
+                            "coordinate = \"x\"\nsignal = \"whole\"\nas = \"velocity\"\n"
                             "[[signal]]\nkind = \"sum\"\nname = \"whole\"\nsignals = [\"pulse\", \"step\"]\n";
   CHECK_THROWS_AS(static_cast<void>(run(k_block + drive)), ModelError);
 }
