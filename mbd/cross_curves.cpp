@@ -12,6 +12,8 @@ namespace steplap {
 namespace {
 
 constexpr double k_least_part = 1e-3; // of the largest range of its kind: a channel that moves less is measured by that
+// Forces that are none but for rounding and projection, in a machine with others, have directions and shares of rounding.
+constexpr double k_least_part_of_forces = 0.1;
 constexpr double k_wide_part = 0.1;
 constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // of the differences of three settings
 constexpr double k_doubtful_event = 0.02; // of the run: where an event is or is not, reactions are not compared
@@ -144,7 +146,7 @@ std::vector<ComparedChannel> compared_channels(const System& system, const std::
   for (ComparedChannel& c : list) {
     const double of_kind = (largest[c.kind] > 0.0 ? largest[c.kind] : 1.0) / c.arm;
     c.wide_scale = std::max(c.scale, k_wide_part * of_kind);
-    c.scale = std::max(c.scale, k_least_part * of_kind);
+    c.scale = std::max(c.scale, (c.kind == ErrorKind::reaction ? k_least_part_of_forces : k_least_part) * of_kind);
   }
   return list;
 }
@@ -243,10 +245,14 @@ void MethodCurves::estimate_channels() {
   std::vector<double> difference(pairs);
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     std::fill(difference.begin(), difference.end(), 0.0);
+    // Two settings may have the same reaction by chance just behind an event: the next sample counts, too.
+    const std::size_t ahead = channels_[c].kind == ErrorKind::reaction ? 1 : 0;
     for (std::size_t row = 0; row < rows_; ++row) {
+      const std::size_t at = std::min(row + ahead, rows_ - 1);
       for (std::size_t i = 0; i < pairs; ++i)
-        difference[i] = std::max(difference[i], distance_at(channels_[c], *levels_[i]->trajectory,
-                                                            *levels_[i + 1]->trajectory, row, slack_[row]));
+        for (const std::size_t k : {row, at})
+          difference[i] = std::max(difference[i], distance_at(channels_[c], *levels_[i]->trajectory,
+                                                              *levels_[i + 1]->trajectory, k, slack_[k]));
       estimate_[c][row] = extrapolated_error(difference);
     }
     if (step_ > 0.0) add_step_of_motion(c);
@@ -278,13 +284,14 @@ void MethodCurves::share_estimates() {
 }
 
 // An event lies anywhere within a fixed step, so differences of three steps may be small by chance: such a run is
-// known to what passes within a step at best.
+// known to what passes within a step, before or after, at best.
 void MethodCurves::add_step_of_motion(std::size_t c) {
   const Trajectory& t = *levels_.back()->trajectory;
   double most = 0.0;
   for (std::size_t row = 1; row < rows_; ++row) {
     const double span = t.times()[row] - t.times()[row - 1];
     most = std::max(most, std::abs(t.value(row, channels_[c].column) - t.value(row - 1, channels_[c].column)) / span);
+    estimate_[c][row - 1] = std::max(estimate_[c][row - 1], step_ * most);
     estimate_[c][row] = std::max(estimate_[c][row], step_ * most);
   }
 }
