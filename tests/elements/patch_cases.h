@@ -19,7 +19,7 @@ inline constexpr int k_thin_out = 20;
 inline constexpr int k_thin_out = 1;
 #endif
 inline constexpr int cases(int n) {
-  return n / k_thin_out;
+  return n > k_thin_out ? n / k_thin_out : 1;
 }
 
 /// Uniform and other draws straight from the generator: the library's distributions differ.
