@@ -12,8 +12,6 @@ namespace steplap {
 namespace {
 
 constexpr double k_least_part = 1e-3; // of the largest range of its kind: a channel that moves less is measured by that
-// Forces that are none but for rounding and projection, in a machine with others, have directions and shares of rounding.
-constexpr double k_least_part_of_forces = 0.1;
 constexpr double k_wide_part = 0.1;
 constexpr double k_least_ratio = 0.5, k_most_ratio = 0.9; // of the differences of three settings
 constexpr double k_doubtful_event = 0.02; // of the run: where an event is or is not, reactions are not compared
@@ -146,7 +144,7 @@ std::vector<ComparedChannel> compared_channels(const System& system, const std::
   for (ComparedChannel& c : list) {
     const double of_kind = (largest[c.kind] > 0.0 ? largest[c.kind] : 1.0) / c.arm;
     c.wide_scale = std::max(c.scale, k_wide_part * of_kind);
-    c.scale = std::max(c.scale, (c.kind == ErrorKind::reaction ? k_least_part_of_forces : k_least_part) * of_kind);
+    c.scale = std::max(c.scale, k_least_part * of_kind);
   }
   return list;
 }

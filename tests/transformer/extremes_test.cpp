@@ -5,6 +5,7 @@
 #include "mbd/simulation.h"
 #include "transformer/catalog.h"
 #include "transformer/verdict.h"
+#include "tests/transformer/swing.h"
 
 #include <doctest/doctest.h>
 
@@ -106,25 +107,7 @@ TEST_CASE("every model: the same verdict and extremes whatever is written, and h
 namespace {
 
 // A mass on a spring, x = 0.1 sin(ω t), ω = √(k/m) = 50 1/s: samples every 0.04 s are three to a period.
-const std::string k_oscillator = R"(
-gravity = [0, 0]
-[simulation]
-end = 1
-[output]
-step = 0.04
-[[body]]
-name = "mass"
-mass = 1
-inertia = 1
-velocity = [5, 0]
-[[element]]
-kind = "spring_damper"
-name = "spring"
-a = "mass"
-b = "ground"
-axis = [1, 0]
-stiffness = 2500
-)";
+const std::string k_oscillator = swing("[simulation]\nend = 1\n[output]\nstep = 0.04\n", "5", "2500");
 
 } // namespace
 

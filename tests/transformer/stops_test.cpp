@@ -2,6 +2,7 @@
 #include "mbd/io/reader.h"
 #include "mbd/simulation.h"
 #include "transformer/catalog.h"
+#include "tests/transformer/swing.h"
 
 #include <doctest/doctest.h>
 
@@ -27,25 +28,7 @@ bool says(const std::string& message, const std::string& part) {
   return message.find(part) != std::string::npos;
 }
 
-const std::string k_swing = R"(
-gravity = [0, 0]
-[simulation]
-end = 1.0
-step = 0.01
-integrator = "rk4"
-[[body]]
-name = "mass"
-mass = 1
-inertia = 1
-velocity = [1, 0]
-[[element]]
-kind = "spring_damper"
-name = "spring"
-a = "mass"
-b = "ground"
-axis = [1, 0]
-stiffness = 158
-)";
+const std::string k_swing = swing("[simulation]\nend = 1.0\nstep = 0.01\nintegrator = \"rk4\"\n", "1", "158");
 
 } // namespace
 

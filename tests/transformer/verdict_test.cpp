@@ -4,6 +4,7 @@
 #include "mbd/simulation.h"
 #include "transformer/catalog.h"
 #include "transformer/verdict.h"
+#include "tests/transformer/swing.h"
 
 #include <doctest/doctest.h>
 
@@ -237,26 +238,7 @@ TEST_CASE("criteria and plots that make no sense are errors of the model") {
 namespace {
 
 // ½ m v² = 0.5 J goes to and fro, 2 Hz: implicit Euler with steps of h loses ω h = 0.126 of it in each radian at 0.01 s.
-const std::string k_swing = R"(
-gravity = [0, 0]
-[simulation]
-end = 1.0
-step = 0.01
-[output]
-step = 0.1
-[[body]]
-name = "mass"
-mass = 1
-inertia = 1
-velocity = [1, 0]
-[[element]]
-kind = "spring_damper"
-name = "spring"
-a = "mass"
-b = "ground"
-axis = [1, 0]
-stiffness = 158
-)";
+const std::string k_swing = swing("[simulation]\nend = 1.0\nstep = 0.01\n[output]\nstep = 0.1\n", "1", "158");
 
 Judgement judged_swing(const std::string& settings, const std::string& text = k_swing) {
   std::string all = text;
