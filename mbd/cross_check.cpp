@@ -29,13 +29,17 @@ constexpr double k_closer = 0.25; // steps and samples of a closer look
 
 constexpr double k_moreau_steps = 2000, k_rk4_steps = 4000; // of the coarsest level, in a run
 
-RunResult run_within(const System& system, const State& initial, const SimulationOptions& options, double cpu_limit) {
+RunResult run_within(const System& system, const State& initial, const SimulationOptions& options, const CrossCheckOptions& limits) {
   const double start = thread_cpu_seconds();
   Simulation simulation(system, initial, options);
-  for (long steps = 0; simulation.advance(); ++steps)
-    if (steps % k_steps_between_looks == 0 && thread_cpu_seconds() - start > cpu_limit)
-      throw NumericalFailure("needs more than " + number_text(cpu_limit) + " s of CPU time; at t = " +
-                             number_text(simulation.state().t) + " s by then");
+  const auto stop = [&simulation](const std::string& what) {
+    throw NumericalFailure("needs more than " + what + "; at t = " + number_text(simulation.state().t) + " s by then");
+  };
+  for (long steps = 0; simulation.advance(); ++steps) {
+    if (steps % k_steps_between_looks != 0) continue;
+    if (thread_cpu_seconds() - start > limits.cpu_limit) stop(number_text(limits.cpu_limit) + " s of CPU time");
+    if (simulation.statistics().evaluations > limits.evaluation_limit) stop(std::to_string(limits.evaluation_limit) + " evaluations");
+  }
   return std::move(simulation).result();
 }
 
@@ -93,7 +97,7 @@ private:
     try {
       for (const MethodSetting& level : method.levels) {
         if (options_.progress) options_.progress(level.text());
-        RunResult result = run_within(system_, initial_, level.applied_to(base_), options_.cpu_limit);
+        RunResult result = run_within(system_, initial_, level.applied_to(base_), options_);
         if (&level == &method.levels.back()) made.result = std::move(result);
         else levels.coarser.push_back(std::move(result));
       }

@@ -31,6 +31,7 @@
 #include "mbd/audit.h"
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct CrossMethod {
 struct CrossCheckOptions {
   std::vector<CrossMethod> methods; ///< empty: usual_methods()
   double cpu_limit = 60.0;          ///< s, of one run
+  long evaluation_limit = std::numeric_limits<long>::max(); ///< of one run: the same on every machine
   int closer_looks = 2;             ///< at most, at fixed steps that disagree
   EventFilter is_event_counted;     ///< of those of friction elements; empty: all
   /// What the run comes to, in a word; empty: not compared.

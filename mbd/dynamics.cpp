@@ -54,17 +54,19 @@ void Dynamics::set_state(const State& state) {
   evaluation_.memory = state.memory.data();
   is_factored_ = false;
   is_merged_near_ = was_merged_near_ = false;
-  lock_time_ = std::numeric_limits<double>::quiet_NaN();
+  placed_time_ = lock_time_ = std::numeric_limits<double>::quiet_NaN();
   std::fill(watch_.begin(), watch_.end(), 1.0);
   layout_key(state, key_);
   for (const auto& layout : layouts_)
     if (layout->key == key_) {
       layout_ = layout.get();
+      place_edges();
       if (!layout_->held_rows.empty()) layout_->schur.decide_rank(layout_->is_friction_row);
       return;
     }
   layouts_.push_back(std::make_unique<Layout>(make_layout(system_, state)));
   layout_ = layouts_.back().get();
+  place_edges();
   std::vector<double> packed(dimension());
   pack(system_.initial_state(), packed.data());
   layout_->reference.assign(packed.begin(), packed.begin() + coordinate_count());
@@ -98,6 +100,7 @@ void Dynamics::aim_locks(double t) {
 
 void Dynamics::place(double t, const double* q, const double* v) {
   const Layout& layout = *layout_;
+  placed_time_ = t;
   Motion<double>* const motion = motion_.data();
   for (const int slot : layout.slots) {
     Motion<double>& m = motion[slot];
@@ -121,6 +124,18 @@ void Dynamics::place(double t, const double* q, const double* v) {
   }
   for (const int i : layout.riding) place_member(i);
   for (const ActiveLink& link : layout.links) motion[link.slot] = seen_from(motion[link.a], motion[link.b]);
+}
+
+bool Dynamics::is_placed(double t, const double* y) const {
+  if (t != placed_time_) return false;
+  const double* const v = y + coordinate_count();
+  for (std::size_t k = 0; k < layout_->slots.size(); ++k) {
+    const Motion<double>& m = motion_[layout_->slots[k]];
+    const double* const qk = y + 3 * k;
+    const double* const vk = v + 3 * k;
+    if (m.x != qk[0] || m.y != qk[1] || m.theta != qk[2] || m.vx != vk[0] || m.vy != vk[1] || m.omega != vk[2]) return false;
+  }
+  return true;
 }
 
 // A body that moves with others: from its cluster's motion.
@@ -429,65 +444,83 @@ double* Dynamics::joint_multipliers(const RigidEdge& edge) {
   return &friction_force_[system_.frictions[edge.friction].row];
 }
 
-// Newton–Euler from the leaves of each merged cluster: what an edge carries is what its subtree lacks.
-void Dynamics::merged_wrenches() {
+// The joints inside clusters in their present places (rows of friction move to another foot, or anchor).
+void Dynamics::place_edges() {
+  Layout& layout = *layout_;
+  layout.edge_geometry.resize(layout.edges.size());
+  for (std::size_t e = 0; e < layout.edges.size(); ++e) {
+    const RigidEdge& edge = layout.edges[e];
+    const RowSpec* const rows =
+        edge.block >= 0 ? &system_.rows[system_.row_blocks[edge.block].first]
+                        : system_.frictions[edge.friction].friction->rows(state_->friction[edge.friction]);
+    const auto turned = [](const Placement& p, const Vec2& local) {
+      return Pair<double>{p.c * local.x() - p.s * local.y(), p.s * local.x() + p.c * local.y()};
+    };
+    const Vec2 lever = layout.placements[edge.child].offset - layout.placements[edge.parent].offset;
+    const Placement& a = layout.placements[rows[0].a];
+    const Placement& b = layout.placements[rows[0].b];
+    EdgeGeometry& geometry = layout.edge_geometry[e];
+    geometry.lever = {lever.x(), lever.y()};
+    for (int r = 0; r < 2; ++r) geometry.axis[r] = turned(b, rows[r].direction);
+    geometry.point = turned(a, rows[0].point_a);
+    geometry.is_child_a = rows[0].a == edge.child;
+  }
+}
+
+// Newton–Euler from the leaves of each merged cluster, in its axes: what an edge carries is what its subtree lacks.
+void Dynamics::merged_wrenches(const double* dy) {
   const Layout& layout = *layout_;
+  const double* const acceleration = dy + coordinate_count();
+  const auto in_cluster = [](const Motion<double>& k, double x, double y) {
+    return Pair<double>{k.c * x + k.s * y, k.c * y - k.s * x};
+  };
   for (const RigidEdge& edge : layout.edges) {
-    const int i = edge.child;
-    if (!layout.is_carried[edge.parent]) wrench_[edge.parent] = {}; // a root's is not asked for
-    const double* a = &acceleration_[3 * i];
-    const BodyData& body = system_.bodies[i];
-    wrench_[i] = {body.mass * (a[0] - system_.gravity.x()), body.mass * (a[1] - system_.gravity.y()),
-                  body.inertia * a[2]};
-    wrench_[i].fx -= force_[i].fx;
-    wrench_[i].fy -= force_[i].fy;
-    wrench_[i].m -= force_[i].m;
+    const BodyData& body = system_.bodies[edge.child];
+    const Placement& place = layout.placements[edge.child];
+    const Motion<double>& k = motion_[layout.clusters[place.cluster].motion];
+    const double* const a = acceleration + 3 * place.cluster;
+    const BodyForce& f = force_[edge.child];
+    // m (R a_c + α ẑ×r − ω² r − g) less the forces; R the same for all.
+    const Pair<double> at_centre = in_cluster(k, body.mass * (a[0] - system_.gravity.x()) - f.fx,
+                                              body.mass * (a[1] - system_.gravity.y()) - f.fy);
+    const double turning = body.mass * a[2], centripetal = body.mass * k.omega * k.omega;
+    const double x = place.offset.x(), y = place.offset.y();
+    wrench_[edge.child] = {at_centre.x - turning * y - centripetal * x, at_centre.y + turning * x - centripetal * y,
+                           body.inertia * a[2] - f.m};
   }
   for (const int r : layout.carried_rows) {
     const RowSpec& spec = *layout.active[r].spec;
     const auto m = evaluate_row<false>(spec, motion_.data());
-    const double lambda = right_side_[r];
     const int body[2] = {spec.a, spec.b};
     for (int side = 0; side < 2; ++side) {
-      const double f = side == 0 ? -lambda : lambda;
+      if (!layout.is_carried[body[side]]) continue;
+      const double f = side == 0 ? -right_side_[r] : right_side_[r];
+      const Motion<double>& k = motion_[layout.clusters[layout.placements[body[side]].cluster].motion];
+      const Pair<double> force = in_cluster(k, f * m.direction.x, f * m.direction.y);
       BodyForce& w = wrench_[body[side]];
-      w.fx += f * m.direction.x;
-      w.fy += f * m.direction.y;
+      w.fx += force.x;
+      w.fy += force.y;
       w.m += f * (cross(side == 0 ? m.lever_a : m.lever_b, m.direction) + m.couple);
     }
   }
-  for (const RigidEdge& edge : layout.edges) {
-    const BodyForce on_child = wrench_[edge.child];
-    const auto position = [&](int i) {
-      const Placement& place = layout.placements[i];
-      const Motion<double>& k = motion_[layout.clusters[place.cluster].motion];
-      return Pair<double>{k.x, k.y} + to_ground(k, place.offset);
-    };
-    const Pair<double> lever = position(edge.child) - position(edge.parent);
+  for (std::size_t e = 0; e < layout.edges.size(); ++e) {
+    const RigidEdge& edge = layout.edges[e];
+    const EdgeGeometry& geometry = layout.edge_geometry[e];
+    const BodyForce& on_child = wrench_[edge.child];
     const Pair<double> force{on_child.fx, on_child.fy};
-    wrench_[edge.parent].fx += force.x;
-    wrench_[edge.parent].fy += force.y;
-    wrench_[edge.parent].m += on_child.m + cross(lever, force);
-
-    const RowSpec* rows = edge.block >= 0
-                              ? &system_.rows[system_.row_blocks[edge.block].first]
-                              : system_.frictions[edge.friction].friction->rows(
-                                    state_->friction[edge.friction]);
-    // Wrench on a about the joint's point, along the rows (two axes fixed in b, then the angle).
-    BodyForce on_a = on_child;
-    if (rows[0].a != edge.child)
-      on_a = {-force.x, -force.y, -(on_child.m + cross(lever, force))};
-    const Motion<double>& k = motion_[layout.clusters[layout.placements[edge.child].cluster].motion];
-    const Placement& pa = layout.placements[rows[0].a];
-    const Placement& pb = layout.placements[rows[0].b];
-    const auto turned = [&k](const Placement& p, const Vec2& local) {
-      return to_ground(k, Vec2(p.c * local.x() - p.s * local.y(), p.s * local.x() + p.c * local.y()));
-    };
-    const Pair<double> f{on_a.fx, on_a.fy};
-    double* lambda = joint_multipliers(edge);
-    lambda[0] = dot(f, turned(pb, rows[0].direction));
-    lambda[1] = dot(f, turned(pb, rows[1].direction));
-    lambda[2] = on_a.m - cross(turned(pa, rows[0].point_a), f);
+    const double at_parent = on_child.m + cross(geometry.lever, force); // its couple about the parent's centre
+    if (layout.is_carried[edge.parent]) {
+      BodyForce& w = wrench_[edge.parent];
+      w.fx += force.x;
+      w.fy += force.y;
+      w.m += at_parent;
+    }
+    // Along the rows (two axes fixed in b, then the angle): the wrench on a about the joint's point.
+    const double sign = geometry.is_child_a ? 1.0 : -1.0;
+    double* const lambda = joint_multipliers(edge);
+    lambda[0] = sign * dot(force, geometry.axis[0]);
+    lambda[1] = sign * dot(force, geometry.axis[1]);
+    lambda[2] = sign * ((geometry.is_child_a ? on_child.m : at_parent) - cross(geometry.point, force));
   }
 }
 
@@ -504,9 +537,11 @@ void Dynamics::watch_merged_if_near(const double* dy, bool always) {
 
 // Is any near its limit?
 bool Dynamics::watch_joints(const double* dy) {
-  if (layout_->sharing) take_solved_friction();
-  body_accelerations(dy);
-  merged_wrenches();
+  if (layout_->sharing) {
+    take_solved_friction();
+    body_accelerations(dy); // for the discord of groups
+  }
+  merged_wrenches(dy);
   bool is_near = watch_groups();
   for (const int f : layout_->merged) {
     if (is_shared(f)) continue;
@@ -523,7 +558,7 @@ Snapshot Dynamics::snapshot(const double* dy) {
   for (int i = 1; i < system_.body_count(); ++i) place_member(i); // also those not needed so far
   if (layout.sharing) take_solved_friction();
   body_accelerations(dy);
-  merged_wrenches();
+  merged_wrenches(dy);
   const int n = coordinate_count();
   for (std::size_t r = 0; r < layout.active.size(); ++r)
     if (layout.active[r].row >= 0) row_force_[layout.active[r].row] = right_side_[r];
@@ -547,8 +582,8 @@ Snapshot Dynamics::snapshot(const double* dy) {
 }
 
 double Dynamics::mechanical_energy(double t, const double* y) {
-  const int n = coordinate_count();
-  place(std::min(t, time_cap_), y, y + n);
+  t = std::min(t, time_cap_);
+  if (!is_placed(t, y)) place(t, y, y + coordinate_count());
   double kinetic = 0.0, potential = 0.0;
   for (const Cluster& c : layout_->clusters) {
     const Motion<double>& m = motion_[c.motion];

@@ -118,6 +118,7 @@ public:
 
 private:
   void place(double t, const double* q, const double* v);
+  [[nodiscard]] bool is_placed(double t, const double* y) const;
   void aim_locks(double t);
   void place_member(int body);
   void apply_sliding();
@@ -144,7 +145,8 @@ private:
   void factor_rows(double shift = 0.0);
   void add_response(double* change);
   void body_accelerations(const double* dy);
-  void merged_wrenches();
+  void place_edges();
+  void merged_wrenches(const double* dy);
   [[nodiscard]] double* joint_multipliers(const RigidEdge& edge);
   void find_sharing();
   [[nodiscard]] bool is_shared(int friction) const;
@@ -177,12 +179,13 @@ private:
   std::vector<double> contact_force_, watch_, watch_rate_;
   std::vector<SignalJet> lock_target_;  ///< per lock, at lock_time_
   double lock_time_ = std::numeric_limits<double>::quiet_NaN();
+  double placed_time_ = std::numeric_limits<double>::quiet_NaN(); ///< of motion_
   double lowest_pivot_ = 1.0;
   std::vector<double> placed_;          ///< state of rates_nearby
   std::vector<double> right_side_;      ///< then multipliers of active rows
   std::vector<double> row_value_, row_rate_, target_rate_;
   std::vector<double> acceleration_;    ///< 3 per body
-  std::vector<BodyForce> wrench_;       ///< scratch of merged_wrenches
+  std::vector<BodyForce> wrench_;       ///< scratch of merged_wrenches, in the clusters' axes
   std::vector<double> row_force_, friction_force_;
 };
 

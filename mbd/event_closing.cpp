@@ -13,7 +13,9 @@ namespace {
 constexpr int k_max_looks = 130;
 constexpr int k_free_looks = 60;         // halving alone from then on: the last 70 close any bracket
 constexpr int k_patience = 6;             // looks that need not halve the bracket
-constexpr double k_least_reach = 4.0;     // in spacings of t
+constexpr double k_least_reach = 4.0;     // in spacings of t;
+constexpr double k_tolerance_share = 1e-6; // … or of the tolerance, by which the motion is off anyway: in parts of the step;
+constexpr double k_most_tolerance = 1e-3; // larger ones are given to have steps of a fixed length
 constexpr double k_unexpected = 16.0;     // times the error expected
 constexpr double k_most_rounding = 1e-8;  // of the step: beyond it an error is not rounding
 constexpr double k_wider = 8.0;           // a reach that did not find the other side
@@ -23,15 +25,15 @@ constexpr double k_closed = 4.0;          // a bracket of so many times its ends
 } // namespace
 
 // What is known of the fired values so far goes into polynomials; the first of their roots is looked at next.
-// Once that is known to the spacing of t, or to the rounding of the values, a look on either side of it closes
-// the bracket.
+// Once that is known to the spacing of t, a millionth of the tolerance, or the rounding of the values, a look on either
+// side of it closes the bracket.
 void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
   const double spacing = 2.0 * std::numeric_limits<double>::epsilon() *
                          std::max(std::abs(integrator.t1()), integrator.h()) / integrator.h();
   known_[0] = low_;
   known_[1] = high_;
   known_count_ = 2;
-  const Aim at_first{.reach = k_least_reach * spacing};
+  const Aim at_first{.reach = std::max(k_least_reach * spacing, k_tolerance_share * std::min(integrator.tolerance(), k_most_tolerance))};
   aim_ = at_first;
   double halved = high_.theta - low_.theta;
   int since_halved = 0, polished = 0;
@@ -46,6 +48,7 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
     // A kink or a pole inside the bracket cannot stall the search for long.
     if (is_closed) theta = first_secant();
     else if (aim_.is_settled && looks < k_free_looks) theta = is_below ? aim_.root - aim_.reach : aim_.root + aim_.reach;
+    else if (looks == 0 && width == 1.0) theta = look_by_stages(integrator.watch_nodes());
     else if (since_halved < k_patience && looks < k_free_looks) theta = next_look(theta);
     else aim_ = at_first;
     const double edge = std::min(0.5 * width, 0.5 * spacing);
@@ -65,6 +68,16 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
     since_halved = high_.theta - low_.theta < 0.5 * halved ? 0 : since_halved + 1;
     if (since_halved == 0) halved = high_.theta - low_.theta;
   }
+}
+
+// The bracket is the whole step: its stages tell more than its ends.
+double EventFinder::look_by_stages(const WatchNodes& nodes) {
+  double theta = 1.0;
+  for (const int slot : fired_)
+    theta = std::min(theta, nodes.first_fall(slot, low_.watch[slot], high_.watch[slot]));
+  aim_.root = theta;
+  aim_.looks = 1;
+  return theta;
 }
 
 double EventFinder::first_secant() const {

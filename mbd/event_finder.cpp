@@ -26,7 +26,7 @@ EventFinder::EventFinder(const System& system, int max_dimension)
 void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look) {
   integrator.dense(dynamics, theta, y_.data());
   dynamics.rates(integrator.t0() + theta * integrator.h(), y_.data(), dy_.data());
-  dynamics.watch_merged_if_near(dy_.data(), true);
+  dynamics.watch_merged_if_near(dy_.data(), is_merged_near_);
   look.theta = theta;
   look.watch = dynamics.watch();
   look.rate = dynamics.watch_rate();
@@ -91,6 +91,17 @@ void EventFinder::set_slack(const Integrator& integrator, const Dynamics& dynami
   }
 }
 
+// Joints that are merged and certain to hold through the step need not be looked at in it.
+bool EventFinder::is_any_merged_near(const Integrator& integrator, const Dynamics& dynamics) const {
+  const std::vector<int>& merged = dynamics.layout().merged;
+  return std::any_of(merged.begin(), merged.end(), [&](int f) {
+    const int first = system_.frictions[f].watch;
+    const auto is_of_joint = [first](int slot) { return slot >= first && slot < first + k_friction_watches; };
+    return integrator.watch1()[first] < 0.0 || integrator.watch1()[first + 1] < 0.0 ||
+           std::any_of(near_.begin(), near_.end(), is_of_joint);
+  });
+}
+
 EventFinder::Bracket EventFinder::bracket_whole(const Integrator& integrator) {
   look_at_end(integrator, false, low_);
   look_at_end(integrator, true, high_);
@@ -103,6 +114,7 @@ bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::ve
   const Suspicion suspected = suspicion(integrator, fresh);
   if (suspected == Suspicion::none) return false;
   set_slack(integrator, dynamics);
+  is_merged_near_ = is_any_merged_near(integrator, dynamics);
   const Bracket bracket = suspected == Suspicion::inside ? survey(integrator, dynamics, fresh)
                                                          : bracket_whole(integrator);
   if (bracket == Bracket::none) return false;

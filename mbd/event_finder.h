@@ -67,6 +67,7 @@ private:
   // --- event_closing.cpp
   void close_in(Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] double next_look(double middle);
+  [[nodiscard]] double look_by_stages(const WatchNodes& nodes);
   [[nodiscard]] double first_secant() const;
 
   void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look);
@@ -77,6 +78,7 @@ private:
   /// step's end. What crosses zero within the slack is neither lost nor found twice.
   [[nodiscard]] bool falls(const Look& low, const Look& high);
   [[nodiscard]] Bracket bracket_of_fall();
+  [[nodiscard]] bool is_any_merged_near(const Integrator& integrator, const Dynamics& dynamics) const;
   void set_slack(const Integrator& integrator, const Dynamics& dynamics);
 
   const System& system_;
@@ -105,6 +107,7 @@ private:
   std::vector<double> slack_;
   std::vector<int> near_;        ///< slots that ends and stages do not make certain
   std::vector<Part> parts_;      ///< still to be looked through, the first one last
+  bool is_merged_near_ = false;  ///< some joint that is merged may give way in the step
   int looked_through_ = 0;       ///< parts so far
   std::vector<char> armed_, armed_before_; ///< believed when negative
   std::vector<int> fired_, fired_before_;

@@ -77,6 +77,14 @@ struct RigidEdge {
   int friction = -1; ///< friction element, or −1
 };
 
+/// Where a rigid joint lies in the axes of its cluster, which do not change while it sticks.
+struct EdgeGeometry {
+  Pair<double> lever;   ///< from the parent's centre of gravity to the child's
+  Pair<double> axis[2]; ///< of the joint's rows
+  Pair<double> point;   ///< of the joint, from the centre of gravity of the rows' body a
+  bool is_child_a = false; ///< the child is the rows' body a
+};
+
 /// Phases and places of friction, by which layouts are told apart.
 using LayoutKey = std::vector<std::uint64_t>;
 
@@ -92,6 +100,7 @@ struct Layout {
   std::vector<Lock> locks;
   std::vector<double> weight, inverse_mass; ///< per cluster coordinate: m g and W
   std::vector<RigidEdge> edges;
+  std::vector<EdgeGeometry> edge_geometry; ///< per edge, in the present phases
   std::vector<char> is_carried;      ///< per body: child of an edge, whose wrench balance is wanted
   std::vector<int> carried_rows;     ///< active rows that act on such a body
   std::vector<int> redundant_blocks; ///< rigid blocks inside one cluster that close a loop

@@ -1,7 +1,10 @@
 #include "mbd/watch_nodes.h"
 
+#include "mbd/root_estimate.h"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap {
 
@@ -9,6 +12,7 @@ namespace {
 
 // A kink between two places shows in the differences at both as half of what would bound it there; and as much again.
 constexpr double k_curvature_safety = 4.0;
+constexpr double k_first_look = 1e-6; // of the step: stages are not known better
 
 // Least of chord − ½ M s (g − s) over 0 < s < g for values a, b at its ends: positive?
 bool is_positive_between(double a, double b, double g, double m) {
@@ -28,31 +32,49 @@ void WatchNodes::add(double theta, const double* watch) {
       // Of two stages at one place, the midpoints of rk4, one is off to either side, by h² a/8: their mean is not.
       double* const known = values_.data() + static_cast<std::ptrdiff_t>(i) * slots_;
       for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + watch[k]);
+      is_range_known_ = false;
       return;
     }
   theta_[count_] = theta;
-  std::copy(watch, watch + slots_, values_.begin() + static_cast<std::ptrdiff_t>(count_) * slots_);
+  int place = count_;
+  for (; place > 0 && theta_[order_[place - 1]] > theta; --place) order_[place] = order_[place - 1];
+  order_[place] = count_;
+  double* __restrict const value = values_.data() + static_cast<std::ptrdiff_t>(count_) * slots_;
+  double* __restrict const low = low_.data();
+  double* __restrict const high = high_.data();
+  for (int i = 0; i < slots_; ++i) {
+    const double w = watch[i];
+    value[i] = w;
+    low[i] = w < low[i] ? w : low[i];
+    high[i] = w > high[i] ? w : high[i];
+  }
   ++count_;
 }
 
-void WatchNodes::close(const double* watch0, const double* watch1) {
-  for (int i = 0; i < count_; ++i) order_[i] = i;
-  std::sort(order_.begin(), order_.begin() + count_, [this](int a, int b) { return theta_[a] < theta_[b]; });
-  low_.resize(slots_);
-  high_.resize(slots_);
-  double* const low = low_.data();
-  double* const high = high_.data();
+void WatchNodes::widen(const double* watch) {
+  double* __restrict const low = low_.data();
+  double* __restrict const high = high_.data();
   for (int i = 0; i < slots_; ++i) {
-    low[i] = watch0[i] < watch1[i] ? watch0[i] : watch1[i];
-    high[i] = watch0[i] < watch1[i] ? watch1[i] : watch0[i];
+    low[i] = watch[i] < low[i] ? watch[i] : low[i];
+    high[i] = watch[i] > high[i] ? watch[i] : high[i];
   }
-  for (int k = 0; k < count_; ++k) {
-    const double* const w = values_.data() + static_cast<std::ptrdiff_t>(k) * slots_;
-    for (int i = 0; i < slots_; ++i) {
-      low[i] = w[i] < low[i] ? w[i] : low[i];
-      high[i] = w[i] > high[i] ? w[i] : high[i];
-    }
+}
+
+void WatchNodes::clear() {
+  count_ = 0;
+  is_range_known_ = true;
+  std::fill(low_.begin(), low_.end(), std::numeric_limits<double>::infinity());
+  std::fill(high_.begin(), high_.end(), -std::numeric_limits<double>::infinity());
+}
+
+void WatchNodes::close(const double* watch0, const double* watch1) {
+  if (!is_range_known_) {
+    std::copy(watch0, watch0 + slots_, low_.begin());
+    std::copy(watch0, watch0 + slots_, high_.begin());
+    for (int k = 0; k < count_; ++k) widen(values_.data() + static_cast<std::ptrdiff_t>(k) * slots_);
   }
+  widen(watch0);
+  widen(watch1);
 }
 
 bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const WatchEnd& end) const {
@@ -95,6 +117,20 @@ bool WatchNodes::crosses_once(int slot) const {
     is_negative = is_negative || w < 0.0;
   }
   return true;
+}
+
+double WatchNodes::first_fall(int slot, double watch0, double watch1) const {
+  const int last = count_ + 1;
+  const auto place = [&](int j) { return j == 0 ? 0.0 : j == last ? 1.0 : theta_[order_[j - 1]]; };
+  const auto value = [&](int j) {
+    return j == 0 ? watch0 : j == last ? watch1 : values_[static_cast<std::size_t>(order_[j - 1]) * slots_ + slot];
+  };
+  int j = 0;
+  while (j < last && !(value(j) >= 0.0 && value(j + 1) < 0.0)) ++j;
+  if (j == last) return std::numeric_limits<double>::quiet_NaN();
+  RootEstimate cubic;
+  for (int i = std::max(j - 1, 0); i <= std::min(j + 2, last); ++i) cubic.add(place(i), value(i));
+  return cubic.root(place(j), place(j + 1), k_first_look);
 }
 
 } // namespace steplap

@@ -21,13 +21,16 @@ struct WatchEnd {
 
 class WatchNodes {
 public:
-  explicit WatchNodes(int slots) : slots_(slots), values_(static_cast<std::size_t>(k_most) * slots) {}
+  explicit WatchNodes(int slots)
+      : slots_(slots), values_(static_cast<std::size_t>(k_most) * slots), low_(slots), high_(slots) {
+    clear();
+  }
 
-  void clear() { count_ = 0; }
+  void clear();
   /// Values at `theta` (0: the step's start, 1: its end); those at the ends, and beyond capacity, are not kept.
   void add(double theta, const double* watch);
 
-  /// Sorts what was added and finds the range of each value; before the two functions below.
+  /// Finds the range of each value, once, after the last add(); before the functions below.
   void close(const double* watch0, const double* watch1);
   [[nodiscard]] double low(int slot) const { return low_[slot]; }
   [[nodiscard]] double high(int slot) const { return high_[slot]; }
@@ -35,12 +38,18 @@ public:
   [[nodiscard]] bool is_surely_positive(int slot, const WatchEnd& start, const WatchEnd& end) const;
   /// Does it change its sign just once, if it is positive at the start and negative at the end?
   [[nodiscard]] bool crosses_once(int slot) const;
+  /// About where it first falls below zero, by the cubic through the places around; NaN if it does not. Stages are
+  /// approximations of the motion: this is where to look first.
+  [[nodiscard]] double first_fall(int slot, double watch0, double watch1) const;
 
 private:
+  void widen(const double* watch);
+
   static constexpr int k_most = 18;
   int slots_, count_ = 0;
+  bool is_range_known_ = true; ///< low_ and high_ are those of what was added
   std::array<double, k_most> theta_{};
-  std::array<int, k_most> order_{};
+  std::array<int, k_most> order_{}; ///< by theta
   std::vector<double> values_, low_, high_;
 };
 

@@ -70,6 +70,8 @@ public:
   /// Watch values met at the stages inside the step.
   [[nodiscard]] virtual WatchNodes& watch_nodes() { return nodes_; }
 
+  /// Relative local error asked for; 0 of methods that do not choose their steps.
+  [[nodiscard]] double tolerance() const { return is_adaptive() ? settings_.tolerance : 0.0; }
   /// How well velocities are known in the step made, m/s: its tolerance, or their rounding.
   [[nodiscard]] double rate_accuracy(const Dynamics& dynamics) const;
   [[nodiscard]] long steps() const { return steps_; }

@@ -17,8 +17,8 @@ struct SceneResult {
   [[nodiscard]] std::string text() const;
 };
 
-/// `folder`: where records are written for the reader. `cpu_limit`: s, of one run.
-[[nodiscard]] SceneResult check_scene(const Scene& scene, const std::string& folder, double cpu_limit = 2.0);
+/// `folder`: where records are written for the reader. `evaluation_limit`: of one run, some seconds of computing.
+[[nodiscard]] SceneResult check_scene(const Scene& scene, const std::string& folder, long evaluation_limit = 5'000'000);
 
 /// The smallest scene, by leaving out blocks one after the other, in which something of the same kind is wrong
 /// with one of the same methods.
