@@ -27,18 +27,18 @@ bool is_positive_between(double a, double b, double g, double m) {
 
 void WatchNodes::add(double theta, const double* watch) {
   if (count_ == k_most || !(theta > 0.0 && theta < 1.0)) return;
-  for (int i = 0; i < count_; ++i)
-    if (theta_[i] == theta) {
-      // Of two stages at one place, the midpoints of rk4, one is off to either side, by h² a/8: their mean is not.
-      double* const known = values_.data() + static_cast<std::ptrdiff_t>(i) * slots_;
-      for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + watch[k]);
-      is_range_known_ = false;
-      return;
-    }
-  theta_[count_] = theta;
   int place = count_;
-  for (; place > 0 && theta_[order_[place - 1]] > theta; --place) order_[place] = order_[place - 1];
+  while (place > 0 && theta_[order_[place - 1]] > theta) --place;
+  if (place > 0 && theta_[order_[place - 1]] == theta) {
+    // Of two stages at one place, the midpoints of rk4, one is off to either side, by h² a/8: their mean is not.
+    double* const known = values_.data() + static_cast<std::ptrdiff_t>(order_[place - 1]) * slots_;
+    for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + watch[k]);
+    is_range_known_ = false;
+    return;
+  }
+  for (int i = count_; i > place; --i) order_[i] = order_[i - 1];
   order_[place] = count_;
+  theta_[count_] = theta;
   double* __restrict const value = values_.data() + static_cast<std::ptrdiff_t>(count_) * slots_;
   double* __restrict const low = low_.data();
   double* __restrict const high = high_.data();
