@@ -52,7 +52,7 @@ const ElementKind& bushing_kind() {
     f.add("damping", &Bushing::damping).in("N s/m").doc("[along x, along y]");
     f.add("rotational_stiffness", &Bushing::rotational_stiffness).in("N m/rad").not_negative().doc("about b");
     f.add("rotational_damping", &Bushing::rotational_damping).in("N m s/rad").not_negative().doc("about b");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Bushing>()); };
+    k.holds<Bushing>();
     k.compile = compile_bushing;
     return k;
   }();

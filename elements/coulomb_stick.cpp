@@ -281,7 +281,7 @@ const ElementKind& coulomb_stick_kind() {
     f.add("contacts", &T::contacts).as(FieldType::elements).required().doc("the contacts that press: unilateral_contact elements, or one of a circle");
     f.add("static_friction", &T::static_friction).not_negative().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_coulomb;
     return k;
   }();

@@ -75,7 +75,7 @@ const ElementKind& gear_kind() {
     f.add("radius_a", &T::radius_a).in("m").positive().required().doc("pitch radius of the first gear");
     f.add("radius_b", &T::radius_b).in("m").positive().required().doc("pitch radius of the second gear");
     f.add("inside", &T::inside).doc("true: the second is a ring with the first inside");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_gear;
     return k;
   }();
@@ -93,7 +93,7 @@ const ElementKind& rack_kind() {
     f.add("b", &T::b).as(FieldType::marker).doc("marker on the rack");
     f.add("radius", &T::radius).in("m").positive().required().doc("pitch radius of the pinion");
     f.add("axis", &T::axis).doc("direction of the rack, in marker b's axes");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_rack;
     return k;
   }();

@@ -100,7 +100,7 @@ const ElementKind& joint_friction_kind() {
         "angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
     f.add("holds", &T::holds).positive().required().doc("largest couple or force that it takes sticking, N m or N");
     f.add("drags", &T::drags).not_negative().doc("couple or force while it slides; default: as holds");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_joint_friction;
     return k;
   }();

@@ -105,7 +105,7 @@ ElementKind joint_kind(const char* name, const char* doc, void (*compile)(const 
   k.doc = doc;
   k.fields.add("a", &Joint::a).as(FieldType::marker).required().doc("marker on the first body");
   k.fields.add("b", &Joint::b).as(FieldType::marker).doc("marker on the second body, whose axes count");
-  k.create = [] { return std::shared_ptr<Element>(std::make_shared<Made>()); };
+  k.holds<Made>();
   k.compile = compile;
   return k;
 }

@@ -121,7 +121,7 @@ const ElementKind& limit_kind() {
     f.add("upper", &T::upper).doc("upper stop");
     f.add("stiffness", &T::stiffness).positive().required().doc("of a stop, N m/rad or N/m");
     f.add("damping", &T::damping).not_negative().doc("of a stop, N m s/rad or N s/m");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_limit;
     return k;
   }();

@@ -104,7 +104,7 @@ const ElementKind& load_kind() {
     f.add("force_y", &Load::force_y).as(FieldType::signal).doc("signal added to the force along y");
     f.add("torque", &Load::torque).as(FieldType::signal).doc("signal added to the couple");
     f.add("frame", &Load::frame).one_of({"ground", "body"}).doc("axes of the force: ground, or the marker's");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Load>()); };
+    k.holds<Load>();
     k.compile = compile_load;
     return k;
   }();

@@ -141,7 +141,7 @@ const ElementKind& motor_kind() {
     f.add("target", &T::target).as(FieldType::signal).doc("wanted value; not given: the reference pose");
     f.add("proportional", &T::proportional).not_negative().doc("servo: N m/rad or N/m");
     f.add("derivative", &T::derivative).not_negative().doc("servo: N m s/rad or N s/m");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_motor;
     return k;
   }();

@@ -75,7 +75,7 @@ const ElementKind& prescribed_motion_kind() {
     f.add("signal", &T::signal).as(FieldType::signal).required().doc("signal that it follows");
     f.add("as", &T::as).one_of({"acceleration", "velocity", "position"}).doc(
         "what the signal is; acceleration and velocity start from the initial pose");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_prescribed;
     return k;
   }();

@@ -151,7 +151,7 @@ const ElementKind& circle_contact_kind() {
     f.add("radius_b", &T::radius_b).in("m").not_negative().doc("of the second circle; 0: a point");
     f.add("inside", &T::inside).doc("true: the first circle is inside the second, a ring");
     add_fields<T>(f);
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_circle;
     return k;
   }();
@@ -173,7 +173,7 @@ const ElementKind& segment_contact_kind() {
     f.add("to", &T::to).in("m").required().doc("the other end");
     f.add("thickness", &T::thickness).in("m").not_negative().doc("of the segment; its ends are half circles");
     add_fields<T>(f);
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_segment;
     return k;
   }();

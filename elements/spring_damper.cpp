@@ -131,7 +131,7 @@ const ElementKind& spring_damper_kind() {
     f.add("gap", &T::gap).in("m").not_negative().doc("width of a dead band around the free length");
     f.add("force_table", &T::force_table).in("m", "N").doc("[d, -f] pairs instead of stiffness, linear between");
     f.add("damping_table", &T::damping_table).in("m/s", "N").doc("[d', -f] pairs instead of damping");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_spring_damper;
     return k;
   }();
@@ -153,7 +153,7 @@ const ElementKind& rotational_spring_damper_kind() {
     f.add("count", &T::count).at_least(1).doc("equal elements side by side");
     f.add("free_angle", &T::free_angle).in("rad").doc("default: the angle of the reference pose");
     f.add("preload", &T::preload).in("N m").doc("couple on a in the reference pose, instead of free_angle");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_rotational;
     return k;
   }();

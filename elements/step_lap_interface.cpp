@@ -136,7 +136,7 @@ const ElementKind& step_lap_interface_kind() {
     f.add("clearance", &T::clearance).in("m").not_negative().doc(
         "by which the limb may move towards the yoke, across the overlap, before the sheets of a layer butt; not given: "
         "not known, and not looked at");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_interface;
     return k;
   }();

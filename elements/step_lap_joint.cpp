@@ -175,7 +175,7 @@ const ElementKind& step_lap_joint_kind() {
         "smallest margin (capacity over what is in use) that a run must leave: inspect below it");
     f.add("most_slide", &T::most_slide).positive().at_most(1.0).doc(
         "largest displacement of a corner that is borne, a share of the width of its overlap: reject beyond it");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_joint;
     return k;
   }();

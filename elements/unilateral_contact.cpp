@@ -106,7 +106,7 @@ const ElementKind& unilateral_contact_kind() {
     f.add("preload", &T::preload).in("N").not_negative().doc("force of all in the reference pose");
     f.add("interference", &T::interference).in("m").not_negative().doc("depth in the reference pose");
     f.add("gap", &T::gap).in("m").not_negative().doc("gap in the reference pose");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.compile = compile_contact;
     return k;
   }();

@@ -18,6 +18,7 @@
 namespace steplap {
 
 class SystemBuilder;
+struct Model;
 
 /// A rigid body. Its frame has the origin `position` and the angle `angle` in the reference pose (the
 /// pose the file gives); its centre of gravity lies at `cg` in that frame.
@@ -71,19 +72,41 @@ struct ElementKind {
   FieldTable fields;
   int stage = 0; ///< kinds that refer to other elements compile at stage 1
   std::shared_ptr<Element> (*create)() = nullptr;
+  std::shared_ptr<Element> (*copy)(const Element& element) = nullptr;
   /// Adds the element to the system; reports what is wrong through the builder's errors.
   void (*compile)(const Element& element, SystemBuilder& builder) = nullptr;
+
+  /// Its elements are of type T.
+  template <class T> void holds() {
+    create = make_held<Element, T>;
+    copy = copy_held<Element, T>;
+  }
 };
 
+/// An element of a kind; a copy has an element of its own.
 struct ElementEntry {
   const ElementKind* kind = nullptr;
   std::shared_ptr<Element> element;
+
+  ElementEntry(const ElementKind* kind_, std::shared_ptr<Element> element_) : kind(kind_), element(std::move(element_)) {}
+  ElementEntry(const ElementEntry& other) : kind(other.kind), element(other.kind->copy(*other.element)) {}
+  ElementEntry(ElementEntry&&) = default;
+  ElementEntry& operator=(const ElementEntry& other) { return *this = ElementEntry(other); }
+  ElementEntry& operator=(ElementEntry&&) = default;
+  ~ElementEntry() = default;
 };
 
-/// A named signal: a scalar function of time.
+/// A named signal: a scalar function of time; a copy has a definition of its own.
 struct SignalEntry {
   const SignalKind* kind = nullptr;
   std::shared_ptr<SignalDefinition> definition;
+
+  SignalEntry(const SignalKind* kind_, std::shared_ptr<SignalDefinition> definition_) : kind(kind_), definition(std::move(definition_)) {}
+  SignalEntry(const SignalEntry& other) : kind(other.kind), definition(other.kind->copy(*other.definition)) {}
+  SignalEntry(SignalEntry&&) = default;
+  SignalEntry& operator=(const SignalEntry& other) { return *this = SignalEntry(other); }
+  SignalEntry& operator=(SignalEntry&&) = default;
+  ~SignalEntry() = default;
 };
 
 /// Runs of more steps than this are not begun, or given up when they turn out to need them: days of computing.
@@ -149,6 +172,36 @@ struct ModelHeader {
   [[nodiscard]] static const FieldTable& fields();
 };
 
+/// A top-level array of tables that is not the kernel's: handed in by another room (a core's geometry,
+/// say), it reads its own fields and adds bodies, markers or elements to the model.
+struct TableKind {
+  std::string name; ///< as in [[name]]
+  std::string doc;
+  FieldTable fields;
+  std::shared_ptr<Element> (*create)() = nullptr;
+  std::shared_ptr<Element> (*copy)(const Element& table) = nullptr;
+  void (*apply)(const Element& table, Model& model) = nullptr; ///< throws ModelError
+
+  /// Its tables are of type T.
+  template <class T> void holds() {
+    create = make_held<Element, T>;
+    copy = copy_held<Element, T>;
+  }
+};
+
+/// A table of such a kind; a copy has a table of its own.
+struct TableEntry {
+  const TableKind* kind = nullptr;
+  std::shared_ptr<Element> table;
+
+  TableEntry(const TableKind* kind_, std::shared_ptr<Element> table_) : kind(kind_), table(std::move(table_)) {}
+  TableEntry(const TableEntry& other) : kind(other.kind), table(other.kind->copy(*other.table)) {}
+  TableEntry(TableEntry&&) = default;
+  TableEntry& operator=(const TableEntry& other) { return *this = TableEntry(other); }
+  TableEntry& operator=(TableEntry&&) = default;
+  ~TableEntry() = default;
+};
+
 struct Model {
   ModelHeader header;
   SimulationSettings simulation;
@@ -159,18 +212,9 @@ struct Model {
   std::vector<ElementEntry> elements;
   std::vector<Plot> plots;
   std::vector<Criterion> criteria;
+  std::vector<TableEntry> tables; ///< of other rooms, as given: complete() adds what they stand for
 
   [[nodiscard]] const Body* find_body(const std::string& name) const;
-};
-
-/// A top-level array of tables that is not the kernel's: handed in by another room (a core's geometry,
-/// say), it reads its own fields and adds bodies, markers or elements to the model.
-struct TableKind {
-  std::string name; ///< as in [[name]]
-  std::string doc;
-  FieldTable fields;
-  std::shared_ptr<Element> (*create)() = nullptr;
-  void (*apply)(const Element& table, Model& model) = nullptr; ///< throws ModelError
 };
 
 /// The kinds a model file may use: the kernel and the reader know none by name.

@@ -104,16 +104,29 @@ struct SignalDefinition {
   Location where;
 };
 
+/// For the kinds of things that a model holds by pointers to their base.
+template <class Base, class T> std::shared_ptr<Base> make_held() { return std::make_shared<T>(); }
+template <class Base, class T> std::shared_ptr<Base> copy_held(const Base& object) {
+  return std::make_shared<T>(static_cast<const T&>(object));
+}
+
 /// Kinds that are made of other signals name them in fields of the types signal and signals.
 struct SignalKind {
   std::string name;
   std::string doc;
   FieldTable fields;
   std::shared_ptr<SignalDefinition> (*create)() = nullptr;
+  std::shared_ptr<SignalDefinition> (*copy)(const SignalDefinition& definition) = nullptr;
   /// Throws ModelError (at definition.where) for values that make no signal.
   Signal (*build)(const SignalDefinition& definition) = nullptr;
   /// Instead of `build`, of kinds made of others: `parts` in the order of their fields.
   Signal (*combine)(const SignalDefinition& definition, const std::vector<const Signal*>& parts) = nullptr;
+
+  /// Its signals are described by a T.
+  template <class T> void holds() {
+    create = make_held<SignalDefinition, T>;
+    copy = copy_held<SignalDefinition, T>;
+  }
 };
 
 /// constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics, sum, product, scaled (mbd/io adds

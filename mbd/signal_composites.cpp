@@ -54,7 +54,7 @@ template <class T> SignalKind kind_of(const std::string& name, const std::string
   SignalKind kind;
   kind.name = name;
   kind.doc = doc;
-  kind.create = [] { return std::shared_ptr<SignalDefinition>(std::make_shared<T>()); };
+  kind.holds<T>();
   kind.combine = combine;
   return kind;
 }

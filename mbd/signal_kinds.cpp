@@ -33,10 +33,6 @@ FieldTable pulse_fields() {
   return f;
 }
 
-template <class T> std::shared_ptr<SignalDefinition> create() {
-  return std::make_shared<T>();
-}
-
 template <class T> const T& as(const SignalDefinition& definition) {
   return static_cast<const T&>(definition);
 }
@@ -69,7 +65,7 @@ struct Constant : SignalDefinition {
 
 const SignalKind& constant_kind() {
   static const SignalKind kind = [] {
-    SignalKind k{"constant", "The same value at all times.", {}, create<Constant>, nullptr};
+    SignalKind k{"constant", "The same value at all times.", {}, make_held<SignalDefinition, Constant>, copy_held<SignalDefinition, Constant>, nullptr};
     k.fields.add("value", &Constant::value).in("*").required().doc("the value");
     k.build = [](const SignalDefinition& d) { return Signal::constant(as<Constant>(d).value); };
     return k;
@@ -82,7 +78,7 @@ const SignalKind& haversine_kind() {
       "haversine",
       "Raised cosine, peak (1 - cos(2 pi tau / duration)) / 2; its integral is "
       "peak duration / 2.",
-      pulse_fields(), create<Pulse>, [](const SignalDefinition& d) {
+      pulse_fields(), make_held<SignalDefinition, Pulse>, copy_held<SignalDefinition, Pulse>, [](const SignalDefinition& d) {
         const Pulse& p = as<Pulse>(d);
         Piece piece = polynomial(p.start, 0.5 * p.peak);
         piece.harmonics.push_back({-0.5 * p.peak, 2.0 * k_pi / p.duration, 0.0});
@@ -96,7 +92,7 @@ const SignalKind& half_sine_kind() {
       "half_sine",
       "Half a sine wave, peak sin(pi tau / duration); its integral is 2/pi peak "
       "duration.",
-      pulse_fields(), create<Pulse>, [](const SignalDefinition& d) {
+      pulse_fields(), make_held<SignalDefinition, Pulse>, copy_held<SignalDefinition, Pulse>, [](const SignalDefinition& d) {
         const Pulse& p = as<Pulse>(d);
         Piece piece = polynomial(p.start, 0.0);
         piece.harmonics.push_back({p.peak, k_pi / p.duration, -0.5 * k_pi});
@@ -108,7 +104,7 @@ const SignalKind& half_sine_kind() {
 const SignalKind& rectangle_kind() {
   static const SignalKind kind{
       "rectangle", "The value peak for the whole duration; its integral is peak duration.",
-      pulse_fields(), create<Pulse>, [](const SignalDefinition& d) {
+      pulse_fields(), make_held<SignalDefinition, Pulse>, copy_held<SignalDefinition, Pulse>, [](const SignalDefinition& d) {
         const Pulse& p = as<Pulse>(d);
         return Signal({polynomial(p.start, p.peak), polynomial(p.start + p.duration, 0.0)});
       }};
@@ -133,7 +129,7 @@ const SignalKind& triangle_kind() {
   static const SignalKind kind = [] {
     SignalKind k{"triangle",
                  "Linear up to the peak and down again; its integral is peak duration / 2.",
-                 pulse_fields(), create<Triangle>, build_triangle};
+                 pulse_fields(), make_held<SignalDefinition, Triangle>, copy_held<SignalDefinition, Triangle>, build_triangle};
     k.fields.add("rise", &Triangle::rise)
         .in("s")
         .not_negative()
@@ -167,7 +163,7 @@ const SignalKind& trapezoid_kind() {
     SignalKind k{"trapezoid",
                  "Linear rise, constant peak, linear fall; its integral is peak "
                  "(duration - rise / 2 - fall / 2).",
-                 pulse_fields(), create<Trapezoid>, build_trapezoid};
+                 pulse_fields(), make_held<SignalDefinition, Trapezoid>, copy_held<SignalDefinition, Trapezoid>, build_trapezoid};
     k.fields.add("rise", &Trapezoid::rise)
         .in("s")
         .not_negative()
@@ -216,7 +212,7 @@ const SignalKind& harmonics_kind() {
                  "offset + sum of amplitude cos(2 pi frequency (t - start) + phase), zero before "
                  "start; a phase of -90 deg makes a sine.",
                  {},
-                 create<Harmonics>,
+                 make_held<SignalDefinition, Harmonics>, copy_held<SignalDefinition, Harmonics>,
                  build_harmonics};
     k.fields.add("offset", &Harmonics::offset).in("*").doc("constant added to the harmonics");
     k.fields.add("amplitudes", &Harmonics::amplitudes).in("*").required().doc("one per harmonic");

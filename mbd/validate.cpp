@@ -67,7 +67,54 @@ bool is_absent(const FieldValue& value) {
   return text && text->empty();
 }
 
+std::string number_problem(const Field& field, double value) {
+  std::string need;
+  if (!std::isfinite(value))
+    need = "finite";
+  else if (field.is_minimum_excluded && !(value > field.minimum))
+    need = "greater than " + with_unit(field.minimum, field.unit);
+  else if (value < field.minimum)
+    need = "at least " + with_unit(field.minimum, field.unit);
+  else if (value > field.maximum)
+    need = "at most " + with_unit(field.maximum, field.unit);
+  return need.empty() ? "" : "must be " + need + ", got " + number_text(value);
+}
+
+std::string choice_problem(const Field& field, const std::string& value) {
+  std::string list;
+  for (const std::string& choice : field.choices) {
+    if (choice == value) return "";
+    list += (list.empty() ? "'" : ", '") + choice + "'";
+  }
+  return "must be one of " + list + ", got '" + value + "'" + did_you_mean(value, field.choices);
+}
+
+// The first problem of numbers, points or rings.
+std::string first_problem(const Field& field, double value) { return number_problem(field, value); }
+std::string first_problem(const Field& field, const Vec2& p) {
+  const std::string of_x = number_problem(field, p.x());
+  return of_x.empty() ? number_problem(field, p.y()) : of_x;
+}
+template <class T> std::string first_problem(const Field& field, const std::vector<T>& list) {
+  for (const T& item : list)
+    if (std::string problem = first_problem(field, item); !problem.empty()) return problem;
+  return "";
+}
+
 } // namespace
+
+std::string range_problem(const Field& field, const FieldValue& value) {
+  switch (field.type) {
+  case FieldType::number: return number_problem(field, std::get<double>(value));
+  case FieldType::integer: return number_problem(field, static_cast<double>(std::get<long>(value)));
+  case FieldType::vec2: return first_problem(field, std::get<Vec2>(value));
+  case FieldType::numbers: return first_problem(field, std::get<std::vector<double>>(value));
+  case FieldType::points: return first_problem(field, std::get<std::vector<Vec2>>(value));
+  case FieldType::rings: return first_problem(field, std::get<std::vector<std::vector<Vec2>>>(value));
+  case FieldType::choice: return choice_problem(field, std::get<std::string>(value));
+  default: return "";
+  }
+}
 
 FieldChecker::FieldChecker(const Model& model, std::vector<Diagnostic>& problems)
     : problems_(problems) {
@@ -96,36 +143,9 @@ void FieldChecker::check_field(const Field& field, const FieldValue& value,
       problems_.push_back({where, missing_field_message(field, subject)});
     return;
   }
-  const auto is_fine = [&](double x) { return check_number(field, x, subject, where); };
+  if (const std::string problem = range_problem(field, value); !problem.empty())
+    problems_.push_back({where, of(field, subject) + " " + problem});
   switch (field.type) {
-  case FieldType::number:
-    is_fine(std::get<double>(value));
-    break;
-  case FieldType::integer:
-    is_fine(static_cast<double>(std::get<long>(value)));
-    break;
-  case FieldType::vec2: {
-    const Vec2& p = std::get<Vec2>(value);
-    static_cast<void>(is_fine(p.x()) && is_fine(p.y()));
-    break;
-  }
-  case FieldType::numbers: {
-    const auto& list = std::get<std::vector<double>>(value);
-    static_cast<void>(std::all_of(list.begin(), list.end(), is_fine));
-    break;
-  }
-  case FieldType::points:
-    for (const Vec2& p : std::get<std::vector<Vec2>>(value))
-      if (!is_fine(p.x()) || !is_fine(p.y())) break;
-    break;
-  case FieldType::rings:
-    for (const std::vector<Vec2>& ring : std::get<std::vector<std::vector<Vec2>>>(value))
-      for (const Vec2& p : ring)
-        if (!is_fine(p.x()) || !is_fine(p.y())) return;
-    break;
-  case FieldType::choice:
-    check_choice(field, std::get<std::string>(value), subject, where);
-    break;
   case FieldType::body:
   case FieldType::marker:
   case FieldType::signal:
@@ -140,34 +160,6 @@ void FieldChecker::check_field(const Field& field, const FieldValue& value,
   default:
     break;
   }
-}
-
-bool FieldChecker::check_number(const Field& field, double value, const std::string& subject,
-                                const Location& where) {
-  std::string need;
-  if (!std::isfinite(value))
-    need = "finite";
-  else if (field.is_minimum_excluded && !(value > field.minimum))
-    need = "greater than " + with_unit(field.minimum, field.unit);
-  else if (value < field.minimum)
-    need = "at least " + with_unit(field.minimum, field.unit);
-  else if (value > field.maximum)
-    need = "at most " + with_unit(field.maximum, field.unit);
-  if (need.empty()) return true;
-  problems_.push_back(
-      {where, of(field, subject) + " must be " + need + ", got " + number_text(value)});
-  return false;
-}
-
-void FieldChecker::check_choice(const Field& field, const std::string& value,
-                                const std::string& subject, const Location& where) {
-  std::string list;
-  for (const std::string& choice : field.choices) {
-    if (choice == value) return;
-    list += (list.empty() ? "'" : ", '") + choice + "'";
-  }
-  problems_.push_back({where, of(field, subject) + " must be one of " + list + ", got '" + value +
-                                  "'" + did_you_mean(value, field.choices)});
 }
 
 void FieldChecker::check_reference(const Field& field, const std::string& name,

@@ -40,10 +40,6 @@ private:
 
   void check_field(const Field& field, const FieldValue& value, const std::string& subject,
                    const Location& where);
-  bool check_number(const Field& field, double value, const std::string& subject,
-                    const Location& where);
-  void check_choice(const Field& field, const std::string& value, const std::string& subject,
-                    const Location& where);
   void check_reference(const Field& field, const std::string& name, const std::string& subject,
                        const Location& where);
   [[nodiscard]] bool refers(FieldType type, const std::string& name) const;
@@ -53,6 +49,10 @@ private:
   Names bodies_, markers_, signals_, elements_; // bodies_ holds "ground"
   int suggestions_left_ = 20;                   // each looks at all names
 };
+
+/// "must be at least 0 kg, got -1" of a number, or of numbers in the value, that the field does not allow, or "must be
+/// one of ...": "" if all is well, and for values that are neither.
+[[nodiscard]] std::string range_problem(const Field& field, const FieldValue& value);
 
 /// What a reader adds to "needs" and what an unset required field is reported as.
 [[nodiscard]] std::string missing_field_message(const Field& field, const std::string& subject);

@@ -445,7 +445,7 @@ const TableKind& core_kind() {
     add_dimensions(k.fields);
     add_stack(k.fields);
     add_friction(k.fields);
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Core>()); };
+    k.holds<Core>();
     k.apply = [](const Element& table, Model& model) {
       CoreBuilder(static_cast<const Core&>(table), model).build();
     };

@@ -217,7 +217,7 @@ const TableKind& plot_kind() {
     k.fields.add("title", &Plot::title).doc("what the figure shows");
     k.fields.add("channels", &Plot::channels).required().doc("channels drawn, patterns with * and ?");
     k.fields.add("bounds", &Plot::bounds).doc("channels drawn dashed at plus and minus their value");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Plot>()); };
+    k.holds<Plot>();
     k.apply = [](const Element& table, Model& model) { add_named("plot", static_cast<const Plot&>(table), model.plots); };
     return k;
   }();
@@ -240,7 +240,7 @@ const TableKind& acceptance_kind() {
     f.add("element", &T::element).doc("elements whose event is meant, a pattern; all if not given");
     f.add("consequence", &T::consequence).one_of({"inspect", "reject"}).doc("if the criterion is not met");
     f.add("reason", &T::reason).doc("why, or by which document");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<T>()); };
+    k.holds<T>();
     k.apply = [](const Element& table, Model& model) {
       T criterion = static_cast<const T&>(table);
       check_criterion(criterion);

@@ -1,9 +1,8 @@
 #include "mbd/io/reader.h"
 
 #include "mbd/io/field_reader.h"
+#include "mbd/completion.h"
 #include "mbd/io/toml_writer.h"
-#include "mbd/placement.h"
-#include "mbd/validate.h"
 
 #include <algorithm>
 #include <map>
@@ -38,10 +37,8 @@ const Kind* find_kind(const std::vector<const Kind*>& kinds, const std::string& 
   return nullptr;
 }
 
-// An entry of an array that another room reads: kept until everything else is known.
-struct TableEntry {
-  const TableKind* kind = nullptr;
-  std::shared_ptr<Element> object;
+// What is known of an entry of Model::tables.
+struct TableSource {
   std::vector<GivenField> given;
   bool is_usable = true;
 };
@@ -51,7 +48,8 @@ public:
   Reader(Document document, const Catalogue& catalogue)
       : document_(std::move(document)), catalogue_(catalogue), names_(top_level_names(catalogue)) {}
 
-  Model read(const std::vector<std::string>& overrides) {
+  /// The model as it is given, and completed.
+  std::pair<Model, Model> read(const std::vector<std::string>& overrides) {
     for (const std::string& text : overrides)
       apply_override(document_, text, names_);
     problems_ = std::move(document_.problems);
@@ -64,12 +62,10 @@ public:
     read_signals();
     read_elements();
     read_tables();
-    add_body_markers();
-    place_markers();
-    place_bodies_by_joints();
-    apply_tables();
+    Model as_given = model_;
+    complete_model();
     finish();
-    return std::move(model_);
+    return {std::move(as_given), std::move(model_)};
   }
 
 private:
@@ -97,10 +93,7 @@ private:
                         const std::vector<const Kind*>& kinds);
   TableReading reading(std::string subject, std::string owner = "");
   std::string add_inline_marker(const Node& table, const Field& field, const std::string& owner);
-  void add_body_markers();
-  void place_markers();
-  void place_bodies_by_joints();
-  void apply_tables();
+  void complete_model();
   std::optional<Location> locate(Section section, std::size_t index, const std::string& field);
   std::optional<Location> place_of(const std::vector<GivenField>& fields, const std::string& name,
                                    const Location& object) const;
@@ -113,7 +106,7 @@ private:
   Model model_;
   std::vector<Diagnostic> problems_;
   std::vector<std::vector<GivenField>> given_[7]; // by section and index
-  std::vector<TableEntry> tables_;
+  std::vector<TableSource> tables_; // of model_.tables
   // Entries of unknown kind: said once, references to them are not errors of their own.
   std::unordered_set<std::string> unread_signals_, unread_elements_;
 };
@@ -309,91 +302,40 @@ void Reader::read_tables() {
     const Node* array = array_named(kind->name);
     if (!array) continue;
     for (const Node& entry : array->children) {
-      TableEntry table{kind, kind->create(), {}, true};
+      TableSource& source = tables_.emplace_back();
+      const std::shared_ptr<Element> table = kind->create();
       const std::size_t before = problems_.size();
-      table.object->name = read_name(entry, kind->name, table.given);
-      table.object->where = entry.where();
-      TableReading r = reading(subject_text(kind->name, table.object->name), table.object->name);
+      table->name = read_name(entry, kind->name, source.given);
+      table->where = entry.where();
+      TableReading r = reading(subject_text(kind->name, table->name), table->name);
       r.known_keys = {"name"};
-      const auto read = read_fields(entry, kind->fields, table.object.get(), r, problems_);
-      table.given.insert(table.given.end(), read.begin(), read.end());
-      table.is_usable = problems_.size() == before;
-      if (auto* object = dynamic_cast<TableObject*>(table.object.get()))
-        for (const GivenField& field : table.given)
+      const auto read = read_fields(entry, kind->fields, table.get(), r, problems_);
+      source.given.insert(source.given.end(), read.begin(), read.end());
+      source.is_usable = problems_.size() == before;
+      if (auto* object = dynamic_cast<TableObject*>(table.get()))
+        for (const GivenField& field : source.given)
           if (field.node) object->places[field.field->name] = field.node->where();
-      tables_.push_back(std::move(table));
+      model_.tables.emplace_back(kind, table);
     }
   }
 }
 
-// Markers that stand for bodies' centres of gravity, where an element names a body as a marker.
-void Reader::add_body_markers() {
-  std::unordered_map<std::string, const Body*> bodies{{"ground", nullptr}};
-  for (const Body& body : model_.bodies)
-    bodies.emplace(body.name, &body);
-  std::unordered_set<std::string> known;
-  for (const Marker& marker : model_.markers)
-    known.insert(marker.name);
-  const auto add_for = [&](const FieldTable& table, const void* object) {
-    for (const Field& field : table.fields()) {
-      if (field.type != FieldType::marker) continue;
-      const std::string name = std::get<std::string>(field.get(object));
-      const auto body = bodies.find(name);
-      if (body == bodies.end() || !known.insert(name).second) continue;
-      Marker& marker = model_.markers.emplace_back();
-      marker.name = marker.body = name;
-      if (body->second) marker.where = body->second->where;
-    }
-  };
-  for (const ElementEntry& entry : model_.elements)
-    add_for(entry.kind->fields, entry.element.get());
-  for (const TableEntry& entry : tables_)
-    add_for(entry.kind->fields, entry.object.get());
-}
-
-// Markers without a place go to their body's centre of gravity.
-void Reader::place_markers() {
-  std::unordered_map<std::string, const Body*> bodies;
-  for (const Body& body : model_.bodies)
-    bodies.emplace(body.name, &body);
-  for (Marker& marker : model_.markers) {
-    if (marker.point || marker.at) continue;
-    const auto body = bodies.find(marker.body);
-    marker.point = body == bodies.end() ? Vec2(Vec2::Zero()) : body->second->cg;
-  }
-}
-
-void Reader::place_bodies_by_joints() {
-  const auto given_field = [this](std::size_t body, const std::string& name) -> std::optional<Location> {
+void Reader::complete_model() {
+  ModelPlaces places;
+  places.given = [this](std::size_t body, const std::string& name) -> std::optional<Location> {
     if (body >= given(Section::body).size()) return std::nullopt;
     for (const GivenField& field : given(Section::body)[body])
       if (field.field->name == name && field.node) return field.node->where();
     return std::nullopt;
   };
-  const auto locate_field = [this](Section section, std::size_t index, const std::string& field) {
+  places.locate = [this](Section section, std::size_t index, const std::string& field) {
     return locate(section, index, field);
   };
-  place_by_joints(model_, given_field, locate_field, problems_);
-}
-
-void Reader::apply_tables() {
-  for (const TableEntry& entry : tables_) {
-    const std::string subject = subject_text(entry.kind->name, entry.object->name);
-    const std::size_t before = problems_.size();
-    FieldChecker(model_, problems_)
-        .check(entry.kind->fields, entry.object.get(), subject, [&](const std::string& field) {
-          return place_of(entry.given, field, entry.object->where);
-        });
-    if (!entry.is_usable || problems_.size() != before) {
-      excuse_empty_scene();
-      continue;
-    }
-    try {
-      entry.kind->apply(*entry.object, model_);
-    } catch (const ModelError& error) {
-      problems_.insert(problems_.end(), error.diagnostics().begin(), error.diagnostics().end());
-    }
-  }
+  places.locate_in_table = [this](std::size_t table, const std::string& field) {
+    return place_of(tables_[table].given, field, model_.tables[table].table->where);
+  };
+  places.is_table_usable = [this](std::size_t table) { return tables_[table].is_usable; };
+  if (!complete(model_, places, problems_)) excuse_empty_scene();
 }
 
 // The place of a field; of the whole object, if the file does not give the field.
@@ -471,7 +413,11 @@ void Reader::finish() {
 
 Model read_model(const std::string& path, const Catalogue& catalogue,
                  const std::vector<std::string>& overrides) {
-  return Reader(load_document(path), catalogue).read(overrides);
+  return Reader(load_document(path), catalogue).read(overrides).second;
+}
+
+Model read_given_model(const std::string& path, const Catalogue& catalogue, const std::vector<std::string>& overrides) {
+  return Reader(load_document(path), catalogue).read(overrides).first;
 }
 
 std::string effective_model_text(const std::string& path, const Catalogue& catalogue,
@@ -486,7 +432,12 @@ std::string effective_model_text(const std::string& path, const Catalogue& catal
 
 Model parse_model(std::string text, const std::string& file_name, const Catalogue& catalogue,
                   const std::vector<std::string>& overrides) {
-  return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides);
+  return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides).second;
+}
+
+Model parse_given_model(std::string text, const std::string& file_name, const Catalogue& catalogue,
+                        const std::vector<std::string>& overrides) {
+  return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides).first;
 }
 
 } // namespace steplap

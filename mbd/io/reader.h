@@ -29,4 +29,11 @@ namespace steplap {
                                 const Catalogue& catalogue,
                                 const std::vector<std::string>& overrides = {});
 
+/// Models as given, for whoever sets values in them (mbd/model_path.h) and completes them (mbd/completion.h). They are
+/// read, completed and checked as above, so that what is wrong is said with its place. Throw ModelError.
+[[nodiscard]] Model read_given_model(const std::string& path, const Catalogue& catalogue,
+                                     const std::vector<std::string>& overrides = {});
+[[nodiscard]] Model parse_given_model(std::string text, const std::string& file_name, const Catalogue& catalogue,
+                                      const std::vector<std::string>& overrides = {});
+
 } // namespace steplap

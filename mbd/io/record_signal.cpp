@@ -69,7 +69,8 @@ const SignalKind& record_signal_kind() {
                  "A measured history from a CSV file, linear between its rows, 0 before "
                  "the first; it may be shorter than the run.",
                  {},
-                 [] { return std::shared_ptr<SignalDefinition>(std::make_shared<Record>()); },
+                 make_held<SignalDefinition, Record>,
+                 copy_held<SignalDefinition, Record>,
                  build_record};
     k.fields.add("file", &Record::file)
         .as(FieldType::file)

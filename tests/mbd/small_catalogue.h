@@ -43,7 +43,7 @@ inline const ElementKind& spring_kind() {
     ElementKind k;
     k.name = "spring";
     k.doc = "A spring between two markers; pulls when stretched.";
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Spring>()); };
+    k.holds<Spring>();
     k.fields.add("a", &Spring::a).as(FieldType::marker).required().doc("first end");
     k.fields.add("b", &Spring::b).as(FieldType::marker).required().doc("second end");
     k.fields.add("stiffness", &Spring::stiffness).in("N/m").positive().required().doc("stiffness");
@@ -66,7 +66,7 @@ inline const ElementKind& pin_kind() {
     ElementKind k;
     k.name = "pin";
     k.doc = "Joins two markers.";
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Pin>()); };
+    k.holds<Pin>();
     k.fields.add("a", &Pin::a).as(FieldType::marker).required().doc("first marker");
     k.fields.add("b", &Pin::b).as(FieldType::marker).doc("second marker");
     k.fields.add("angle", &Pin::angle).in("rad").doc("of a against b in the reference pose");
@@ -81,7 +81,7 @@ inline const ElementKind& pusher_kind() {
     ElementKind k;
     k.name = "pusher";
     k.doc = "Pushes a body.";
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Pusher>()); };
+    k.holds<Pusher>();
     k.fields.add("body", &Pusher::body).as(FieldType::body).required().doc("what it pushes");
     k.fields.add("signal", &Pusher::signal).as(FieldType::signal).required().doc("force, N");
     k.fields.add("against", &Pusher::against)
@@ -99,7 +99,7 @@ inline const TableKind& pair_kind() {
     TableKind k;
     k.name = "pair";
     k.doc = "Two equal bodies side by side.";
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Pair>()); };
+    k.holds<Pair>();
     k.fields.add("spacing", &Pair::spacing).in("m").positive().doc("distance of the two");
     k.fields.add("carrier", &Pair::carrier).as(FieldType::body).doc("what carries them");
     k.apply = [](const Element& table, Model& model) {

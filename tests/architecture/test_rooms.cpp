@@ -1,0 +1,127 @@
+// The rooms of the source tree: each includes what stands before it, never what stands behind; no header leads back to
+// itself; headers that cost seconds of compiling are each included by one file of the product.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// In the order of the data: a model is read, compiled, moved, asked.
+const std::vector<std::string> k_rooms = {
+    "mbd/base",   "mbd/math",       "mbd/model",    "mbd/system", "mbd/dynamics",   "mbd/friction", "mbd/integrators",
+    "mbd/events", "mbd/simulation", "mbd/analysis", "mbd/io",     "elements/patch", "elements",     "transformer",
+    "tools"};
+
+// Headers of libraries, of which one file of the product knows.
+const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/", "openssl/"};
+
+struct Source {
+  std::string path;
+  std::vector<std::string> own, foreign; ///< what it includes
+};
+
+// What follows #include in quotes or in angle brackets.
+Source source_of(const fs::path& root, const fs::path& file) {
+  Source source{fs::relative(file, root).generic_string(), {}, {}};
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("#include ")) continue;
+    const char end = line[9] == '<' ? '>' : '"';
+    const std::string name = line.substr(10, line.find(end, 10) - 10);
+    (end == '>' ? source.foreign : source.own).push_back(name);
+  }
+  return source;
+}
+
+std::vector<Source> all_sources() {
+  const fs::path root = STEPLAP_SOURCE;
+  std::vector<Source> sources;
+  for (const char* top : {"mbd", "elements", "transformer", "tools"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / top))
+      if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h") sources.push_back(source_of(root, entry.path()));
+  return sources;
+}
+
+// The longest room that the path lies in; −1: none.
+int room_of(const std::string& path) {
+  int best = -1;
+  for (std::size_t i = 0; i < k_rooms.size(); ++i) {
+    const bool is_inside = path.starts_with(k_rooms[i] + "/");
+    if (is_inside && (best < 0 || k_rooms[i].size() > k_rooms[static_cast<std::size_t>(best)].size())) best = static_cast<int>(i);
+  }
+  return best;
+}
+
+// A way from `path` back to a header that is being followed, "" if there is none.
+std::string circle_from(const std::string& path, const std::map<std::string, std::vector<std::string>>& includes, std::vector<std::string>& way,
+                        std::set<std::string>& done) {
+  if (const auto met = std::find(way.begin(), way.end(), path); met != way.end()) {
+    std::string text;
+    for (auto step = met; step != way.end(); ++step) text += *step + " -> ";
+    return text + path;
+  }
+  if (!done.insert(path).second) return "";
+  way.push_back(path);
+  if (const auto found = includes.find(path); found != includes.end())
+    for (const std::string& next : found->second)
+      if (std::string circle = circle_from(next, includes, way, done); !circle.empty()) return circle;
+  way.pop_back();
+  return "";
+}
+
+} // namespace
+
+TEST_CASE("every source stands in a room and includes only what stands before it") {
+  int arrows = 0;
+  for (const Source& source : all_sources()) {
+    const int room = room_of(source.path);
+    CHECK_MESSAGE(room >= 0, source.path << " stands in no room");
+    for (const std::string& name : source.own) {
+      const int other = room_of(name);
+      CHECK_MESSAGE(other >= 0, source.path << " includes " << name << ", which is in no room");
+      CHECK_MESSAGE(other <= room, source.path << " includes " << name << ", which stands behind it");
+      arrows += other < room;
+    }
+  }
+  CHECK(arrows > 200); // it has looked at the tree
+}
+
+TEST_CASE("no header leads back to itself") {
+  std::map<std::string, std::vector<std::string>> includes;
+  for (const Source& source : all_sources())
+    if (source.path.ends_with(".h")) includes[source.path] = source.own;
+  std::set<std::string> done;
+  for (const auto& [path, own] : includes) {
+    std::vector<std::string> way;
+    CHECK_MESSAGE(circle_from(path, includes, way, done) == "", "headers in a circle");
+  }
+}
+
+TEST_CASE("the circle of headers is found where there is one") {
+  const std::map<std::string, std::vector<std::string>> includes{{"a", {"b"}}, {"b", {"c"}}, {"c", {"b"}}};
+  std::set<std::string> done;
+  std::vector<std::string> way;
+  CHECK(circle_from("a", includes, way, done) == "b -> c -> b");
+}
+
+TEST_CASE("a heavy header is known to one file") {
+  for (const std::string& heavy : k_heavy) {
+    std::vector<std::string> users;
+    for (const Source& source : all_sources())
+      if (std::any_of(source.foreign.begin(), source.foreign.end(), [&](const std::string& name) { return name.starts_with(heavy); }))
+        users.push_back(source.path);
+    CAPTURE(heavy);
+    CHECK(users.size() == 1);
+    CHECK(users.front().ends_with(".cpp"));
+  }
+  for (const Source& source : all_sources()) // CGAL has many headers
+    for (const std::string& name : source.foreign) CHECK_MESSAGE((!name.starts_with("CGAL/") || source.path == "elements/patch/exact_polygon.cpp"), source.path);
+}

@@ -1,0 +1,258 @@
+// Models as values: copies of their own, fields by paths, completed as from a file, and systems of one model with many
+// values, side by side.
+#include "mbd/assembly.h"
+#include "mbd/completion.h"
+#include "mbd/instance.h"
+#include "mbd/io/reader.h"
+#include "mbd/model_path.h"
+#include "mbd/simulation.h"
+#include "transformer/catalog.h"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <thread>
+
+using namespace steplap;
+
+namespace {
+
+const std::string k_paper = std::string(STEPLAP_MODELS) + "/paper/no_interference.toml";
+
+// A pendulum on a slanted marker, placed by its joint's angle, with a spring to a body's centre, a table and a core's
+// worth of kinds of fields.
+const char* k_scene = R"(
+title = "values"
+gravity = [0.0, -9.81]
+[simulation]
+end = 0.05
+tolerance = 1e-9
+integrator = "dop853"
+[output]
+step = 1e-2
+[[body]]
+name = "arm 1.5"
+mass = 2.0
+inertia = 0.4
+cg = [0.0, -1.0]
+[[body]]
+name = "arm"
+mass = 1.0
+inertia = 0.1
+position = [3.0, 0.0]
+[[signal]]
+name = "push"
+kind = "harmonics"
+amplitudes = [3.0, 1.0]
+frequencies = [1.0, 7.0]
+[[element]]
+kind = "revolute"
+name = "pin"
+a = { body = "arm 1.5", point = [0.0, 0.0] }
+b = { body = "ground", at = [0.0, 0.0], angle = 0.1 }
+angle = 0.3
+[[element]]
+kind = "spring_damper"
+name = "tie"
+a = "arm"
+b = "arm 1.5"
+force_table = [[-1.0, -100.0], [0.0, 0.0], [2.0, 300.0]]
+[[element]]
+kind = "load"
+name = "wind"
+at = "arm"
+force = [1.0, 0.0]
+force_x = "push"
+)";
+
+RunResult run_of(const System& system, const Model& model) {
+  SimulationOptions options = options_of(model);
+  return simulate(system, assembled_start(system, assemble(model, system)), options);
+}
+
+bool are_same_bytes(const RunResult& a, const RunResult& b) {
+  if (a.trajectory->size() != b.trajectory->size() || a.trajectory->channels().size() != b.trajectory->channels().size()) return false;
+  for (std::size_t i = 0; i < a.trajectory->size(); ++i)
+    for (std::size_t k = 0; k < a.trajectory->channels().size(); ++k) {
+      const double x = a.trajectory->value(i, k), y = b.trajectory->value(i, k);
+      if (std::memcmp(&x, &y, sizeof x) != 0) return false;
+    }
+  return true;
+}
+
+// The message of the ModelError that `f` throws, "" if it throws none.
+template <class F> std::string message_of(const F& f) {
+  try {
+    f();
+  } catch (const ModelError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// The path of the pressure of the model's core.
+std::string core_pressure(const Model& model) {
+  for (const TableEntry& entry : model.tables)
+    if (entry.kind->name == "core") return "core." + entry.table->name + ".pressure";
+  return "";
+}
+
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+} // namespace
+
+TEST_CASE("a copy of a model has elements, signals and tables of its own") {
+  const Model model = read_given_model(std::string(STEPLAP_MODELS) + "/layouts/three_limb.toml", transformer_catalog());
+  REQUIRE_FALSE(model.tables.empty());
+  Model copy = model;
+  for (std::size_t i = 0; i < model.elements.size(); ++i) CHECK(copy.elements[i].element != model.elements[i].element);
+  for (std::size_t i = 0; i < model.signals.size(); ++i) CHECK(copy.signals[i].definition != model.signals[i].definition);
+  for (std::size_t i = 0; i < model.tables.size(); ++i) CHECK(copy.tables[i].table != model.tables[i].table);
+  const std::string pressure = core_pressure(model);
+  const double before = number_of(model, pressure);
+  set_value(copy, pressure, 0.5 * before);
+  CHECK(number_of(copy, pressure) == 0.5 * before);
+  CHECK(number_of(model, pressure) == before);
+  copy = model;
+  CHECK(number_of(copy, pressure) == before);
+}
+
+TEST_CASE("a value set by its path runs as one that --set gives, byte for byte") {
+  const std::vector<std::pair<std::string, double>> values = {
+      {"gravity.1", -3.0},          {"body.arm 1.5.mass", 7.0},       {"body.arm.position.0", 3.5},  {"element.pin.angle", -0.2},
+      {"signal.push.amplitudes.1", 9.0}, {"element.tie.force_table.2.1", 500.0}, {"body.arm 1.5.cg.1", -0.7}, {"simulation.end", 0.03},
+      {"element.wind.force.0", 2.5}};
+  const Model given = parse_given_model(k_scene, "scene.toml", transformer_catalog());
+  const Model plain = parse_model(k_scene, "scene.toml", transformer_catalog());
+  const auto usual = run_of(*compile(plain), plain);
+  for (const auto& [path, value] : values) {
+    CAPTURE(path);
+    Model changed = given;
+    set_value(changed, path, value);
+    const Model one = completed(changed);
+    char text[64];
+    std::snprintf(text, sizeof text, "=%.17g", value);
+    const Model other = parse_model(k_scene, "scene.toml", transformer_catalog(), {path + text});
+    const auto system = compile(one);
+    const RunResult run = run_of(*system, one);
+    CHECK(are_same_bytes(run, run_of(*compile(other), other)));
+    CHECK_FALSE(are_same_bytes(run, usual)); // the value matters
+    CHECK(number_of(changed, path) == value);
+    if (path != "simulation.end") CHECK(are_same_bytes(run_of(*instantiate(given, {{path, value}}), plain), run));
+  }
+}
+
+TEST_CASE("a core's dimensions are set in the model as given") {
+  const std::string path = std::string(STEPLAP_MODELS) + "/layouts/three_limb.toml";
+  const Model given = read_given_model(path, transformer_catalog());
+  const std::string field = core_pressure(given);
+  Model changed = given;
+  set_value(changed, field, 0.7 * number_of(given, field));
+  set_value(changed, "simulation.end", 0.02);
+  const Model one = completed(changed);
+  char text[64];
+  std::snprintf(text, sizeof text, "=%.17g", number_of(changed, field));
+  const Model other = read_model(path, transformer_catalog(), {field + text, "simulation.end=0.02"});
+  CHECK(are_same_bytes(run_of(*compile(one), one), run_of(*compile(other), other)));
+}
+
+TEST_CASE("what is wrong with a path or a value is said") {
+  Model model = parse_given_model(k_scene, "scene.toml", transformer_catalog());
+  const auto set = [&](const std::string& path, const FieldValue& value) {
+    return message_of([&] { set_value(model, path, value); });
+  };
+  CHECK(says(set("body.arm.mas", 1.0), "did you mean 'mass'?"));
+  CHECK(says(set("body.amr.mass", 1.0), "did you mean 'arm'?"));
+  CHECK(says(set("bodi.arm.mass", 1.0), "a model has no 'bodi'"));
+  CHECK(says(set("body.arm.mass", -1.0), "must be greater than 0 kg, got -1"));
+  CHECK(says(set("body.arm.mass", std::nan("")), "must be finite"));
+  CHECK(says(set("body.arm.mass", std::string("2 kg")), "does not take a text"));
+  CHECK(says(set("body.arm.position.2", 1.0), "has no such item"));
+  CHECK(says(set("body.arm.position.x", 1.0), "'x' is not an item"));
+  CHECK(says(set("element.tie.count", 1.5), "expected an integer"));
+  CHECK(says(set("simulation.integrator", std::string("dop835")), "did you mean 'dop853'?"));
+  CHECK(says(set("simulation", 1.0), "name a key of 'simulation'"));
+  CHECK(set("element.tie.count", 2.0).empty());
+  CHECK(number_of(model, "element.tie.count") == 2.0);
+  CHECK(says(message_of([&] { (void)number_of(model, "title"); }), "not a number"));
+  // What needs the whole model is said when it is completed.
+  set_value(model, "element.wind.force_x", std::string("pull"));
+  CHECK(says(message_of([&] { (void)completed(model); }), "there is no signal 'pull'"));
+}
+
+TEST_CASE("a model made in code is completed as one from a file") {
+  const Model from_file = parse_model(k_scene, "scene.toml", transformer_catalog());
+  const Catalogue& catalogue = transformer_catalog();
+  Model model;
+  model.simulation.end = 0.05;
+  model.simulation.tolerance = 1e-9;
+  model.simulation.integrator = "dop853";
+  model.output.step = 1e-2;
+  Body arm;
+  arm.name = "arm 1.5";
+  arm.mass = 2.0;
+  arm.inertia = 0.4;
+  arm.cg = {0.0, -1.0};
+  Body other;
+  other.name = "arm";
+  other.mass = 1.0;
+  other.inertia = 0.1;
+  other.position = {3.0, 0.0};
+  model.bodies = {arm, other};
+  Marker on_arm, on_ground;
+  on_arm.name = "pin.a";
+  on_arm.body = "arm 1.5";
+  on_arm.point = Vec2(0.0, 0.0);
+  on_ground.name = "pin.b";
+  on_ground.at = Vec2(0.0, 0.0);
+  on_ground.angle = 0.1;
+  model.markers = {on_arm, on_ground};
+  for (const SignalKind* kind : catalogue.signals)
+    if (kind->name == "harmonics") model.signals.emplace_back(kind, kind->create());
+  model.signals.front().definition->name = "push";
+  for (const auto& [kind, name] : {std::pair("revolute", "pin"), {"spring_damper", "tie"}, {"load", "wind"}}) {
+    const ElementKind* const k = catalogue.find_element(kind);
+    model.elements.emplace_back(k, k->create()).element->name = name;
+  }
+  using Numbers = std::vector<double>;
+  for (const auto& [path, value] : std::vector<std::pair<std::string, FieldValue>>{
+           {"signal.push.amplitudes", Numbers{3.0, 1.0}}, {"signal.push.frequencies", Numbers{1.0, 7.0}},
+           {"element.pin.a", std::string("pin.a")}, {"element.pin.b", std::string("pin.b")}, {"element.pin.angle", 0.3},
+           {"element.tie.a", std::string("arm")}, {"element.tie.b", std::string("arm 1.5")},
+           {"element.tie.force_table", std::vector<Vec2>{{-1.0, -100.0}, {0.0, 0.0}, {2.0, 300.0}}},
+           {"element.wind.at", std::string("arm")}, {"element.wind.force", Vec2(1.0, 0.0)}, {"element.wind.force_x", std::string("push")}}) {
+    CAPTURE(path);
+    set_value(model, path, value);
+  }
+  const Model whole = completed(model);
+  CHECK(are_same_bytes(run_of(*compile(whole), whole), run_of(*compile(from_file), from_file)));
+  CHECK(model.markers.size() == 2); // what was given stays
+}
+
+TEST_CASE("systems of one model with different values run side by side as one after the other") {
+  Model given = read_given_model(k_paper, transformer_catalog());
+  set_value(given, "simulation.end", 0.1);
+  set_value(given, "simulation.integrator", std::string("dop853"));
+  const Model model = completed(given);
+  constexpr int k_threads = 4, k_each = 3;
+  const auto run = [&](int i) {
+    const auto system = instantiate(given, {{"element.tank bottom.static_friction", 0.2 + 0.01 * i}, {"body.active part.mass", 46e3 + 100.0 * i}});
+    RunResult result = run_of(*system, model);
+    std::vector<double> last;
+    for (std::size_t k = 0; k < result.trajectory->channels().size(); ++k) last.push_back(result.trajectory->value(result.trajectory->size() - 1, k));
+    return last;
+  };
+  std::vector<std::vector<double>> together(k_threads * k_each), alone;
+  std::vector<std::thread> threads;
+  for (int t = 0; t < k_threads; ++t)
+    threads.emplace_back([&, t] {
+      for (int i = t; i < k_threads * k_each; i += k_threads) together[static_cast<std::size_t>(i)] = run(i);
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (int i = 0; i < k_threads * k_each; ++i) alone.push_back(run(i));
+  const auto same = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+  };
+  for (std::size_t i = 0; i < alone.size(); ++i) CHECK(same(together[i], alone[i]));
+  CHECK_FALSE(same(alone[0], alone[1]));
+}
