@@ -2,7 +2,7 @@
 // together (physics.md §2). Forces on a: −k δ − c δ̇ for each of the three, in the frame of b.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

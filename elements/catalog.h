@@ -1,7 +1,7 @@
 // All kinds of elements and signals: the one list that a new kind is added to.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

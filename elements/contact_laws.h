@@ -1,7 +1,7 @@
 // Normal laws of unilateral contacts for LawGroup. Modes: open, pressed, released (closed, force zero).
 #pragma once
 
-#include "mbd/law_group.h"
+#include "mbd/system/law_group.h"
 #include "mbd/math/portable_math.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "elements/round_contacts.h"
 #include "elements/round_measures.h"
 #include "elements/unilateral_contact.h"
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 // contact point is the rear-most foot while θ_A ≥ θ_B, the front-most otherwise.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

@@ -1,6 +1,6 @@
 #include "elements/gears.h"
 
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 #include <cmath>
 

@@ -7,7 +7,7 @@
 // along the line of centres is the bearings' affair). One row each: exact, without backlash.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

@@ -1,6 +1,6 @@
 #include "elements/joint_friction.h"
 
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 #include <algorithm>
 #include <cmath>

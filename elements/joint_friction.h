@@ -7,7 +7,7 @@
 // friction on a contact, whose normal force is a function of the state: coulomb_stick.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

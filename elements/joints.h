@@ -8,10 +8,10 @@
 // Each gives its multipliers as channels: the force on a along the direction held.
 //
 // A revolute, prismatic or weld joint that gives its coordinate places one body against the other in the
-// reference pose (mbd/placement.h).
+// reference pose (mbd/model/placement.h).
 #pragma once
 
-#include "mbd/placement.h"
+#include "mbd/model/placement.h"
 
 namespace steplap {
 

@@ -1,7 +1,7 @@
 #include "elements/limit.h"
 
 #include "elements/contact_laws.h"
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 #include <limits>
 

@@ -5,7 +5,7 @@
 // at the lower stop, negative at the upper one.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

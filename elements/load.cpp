@@ -1,6 +1,6 @@
 #include "elements/load.h"
 
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 namespace steplap {
 

@@ -1,7 +1,7 @@
 // Force and couple at a marker, constant or following signals, in ground or body axes.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

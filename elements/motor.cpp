@@ -1,7 +1,7 @@
 #include "elements/motor.h"
 
-#include "mbd/law_group.h"
-#include "mbd/system.h"
+#include "mbd/system/law_group.h"
+#include "mbd/system/system.h"
 
 namespace steplap {
 

@@ -7,7 +7,7 @@
 // All of f's power is booked as work.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

@@ -1,7 +1,7 @@
 #include "elements/prescribed_motion.h"
 
-#include "mbd/number_text.h"
-#include "mbd/system.h"
+#include "mbd/base/number_text.h"
+#include "mbd/system/system.h"
 
 namespace steplap {
 

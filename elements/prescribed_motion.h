@@ -5,7 +5,7 @@
 // The multiplier is the force or couple on a that it takes (the brake force, say).
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

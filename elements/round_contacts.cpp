@@ -2,7 +2,7 @@
 
 #include "elements/contact_laws.h"
 #include "elements/round_measures.h"
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 namespace steplap {
 

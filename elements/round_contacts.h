@@ -10,8 +10,8 @@
 #pragma once
 
 #include "elements/round_measures.h"
-#include "mbd/model.h"
-#include "mbd/row.h"
+#include "mbd/model/model.h"
+#include "mbd/system/row.h"
 
 namespace steplap {
 

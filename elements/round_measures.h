@@ -5,7 +5,7 @@
 // by the whole radius.
 #pragma once
 
-#include "mbd/measure.h"
+#include "mbd/system/measure.h"
 
 namespace steplap {
 

@@ -1,7 +1,7 @@
 #include "elements/spring_damper.h"
 
 #include "elements/spring_laws.h"
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 namespace steplap {
 

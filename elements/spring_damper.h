@@ -5,7 +5,7 @@
 // tabulated characteristics, whose kinks are events. Source: physics.md §2, Eqs. (2), (4).
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

@@ -1,7 +1,7 @@
 // Laws of springs and dampers for LawGroup: linear, with a dead band, and from tables.
 #pragma once
 
-#include "mbd/law_group.h"
+#include "mbd/system/law_group.h"
 
 #include <algorithm>
 #include <utility>

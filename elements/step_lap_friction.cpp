@@ -1,7 +1,7 @@
 #include "elements/step_lap_friction.h"
 
 #include "elements/patch/admissible_projection.h"
-#include "mbd/diagnostics.h"
+#include "mbd/base/diagnostics.h"
 #include "mbd/math/portable_math.h"
 
 #include <algorithm>

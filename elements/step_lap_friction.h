@@ -26,7 +26,7 @@
 #include "elements/patch/required_pressure.h"
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_loss.h"
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 namespace steplap {
 

@@ -2,7 +2,7 @@
 
 #include "elements/step_lap_joint.h"
 #include "mbd/math/portable_math.h"
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 #include <cmath>
 #include <numbers>

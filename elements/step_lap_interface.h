@@ -7,7 +7,7 @@
 #pragma once
 
 #include "elements/patch/overlap.h"
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

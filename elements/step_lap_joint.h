@@ -8,7 +8,7 @@
 // sheets of one layer, and motion in the plane of the sheets only. Source: physics.md §4.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

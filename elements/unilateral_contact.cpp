@@ -2,7 +2,7 @@
 
 #include "elements/contact_laws.h"
 #include "mbd/math/portable_math.h"
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 namespace steplap {
 

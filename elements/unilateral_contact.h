@@ -7,8 +7,8 @@
 // f = −kδ − cδ̇, which may pull; Hunt–Crossley f = k|δ|ⁿ(1 − α δ̇). Source: physics.md §2.
 #pragma once
 
-#include "mbd/measure.h"
-#include "mbd/model.h"
+#include "mbd/system/measure.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

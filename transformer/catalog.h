@@ -1,7 +1,7 @@
 // All that a model of a power transformer may contain: the elements' kinds and the tables of this room.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

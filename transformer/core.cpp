@@ -3,7 +3,7 @@
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
 #include "mbd/math/portable_math.h"
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 #include "transformer/book.h"
 #include "transformer/corner.h"
 

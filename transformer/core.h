@@ -11,7 +11,7 @@
 // tables that name the same joints), pressure uniform over a corner. Source and assumptions: docs/core.md.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

@@ -11,7 +11,7 @@
 // each from a corner of the window to the limb's centre line.
 #pragma once
 
-#include "mbd/types.h"
+#include "mbd/base/types.h"
 
 #include <optional>
 #include <vector>

@@ -1,9 +1,9 @@
 // What a run did to each step-lap joint: the figures and the verdict that the receiver asks for. All figures are of
-// the extremes of the run (mbd/extremes.h), whatever was written.
+// the extremes of the run (mbd/simulation/extremes.h), whatever was written.
 #pragma once
 
-#include "mbd/model.h"
-#include "mbd/simulation.h"
+#include "mbd/model/model.h"
+#include "mbd/simulation/simulation.h"
 
 #include <optional>
 #include <string>

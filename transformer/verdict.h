@@ -1,12 +1,12 @@
 // Hold, inspect or reject: a run judged by the criteria of its model ([[acceptance]]) and by the criteria
 // that every step-lap joint is held to.
 //
-// Channels are judged by their extremes over the whole run (mbd/extremes.h), whatever is written of them. A joint that
+// Channels are judged by their extremes over the whole run (mbd/simulation/extremes.h), whatever is written of them. A joint that
 // slipped, or would have where it is only monitored, or that has less margin than the model asks for, means
 // inspect: the core's magnetic circuit is not as it was built. One that came apart, lost a whole corner or slid
 // further than it bears means reject. A criterion that could not be evaluated is not met: it leaves the verdict
 // open. So does a run that did not reach its end, whatever came before; that is told beside it. And so does one that is
-// not to be trusted: whose energy does not balance (mbd/energy_account.h), whose steps left joints wide open, whose
+// not to be trusted: whose energy does not balance (mbd/simulation/energy_account.h), whose steps left joints wide open, whose
 // coordinates are so large that their rounding is a motion, or in which a joint holds that cannot.
 #pragma once
 

@@ -1,6 +1,6 @@
 #include "transformer/verdict_error.h"
 
-#include "mbd/event_match.h"
+#include "mbd/analysis/event_match.h"
 
 #include <algorithm>
 #include <cmath>

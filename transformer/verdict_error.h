@@ -1,4 +1,4 @@
-// A judgement weighed by the errors of its numbers (mbd/global_error.h): what a criterion is worth whose value is known
+// A judgement weighed by the errors of its numbers (mbd/analysis/global_error.h): what a criterion is worth whose value is known
 // to so many digits only.
 //
 // A criterion that is met, but whose error reaches the limit, is not: nor is it one to inspect the machine for, since
@@ -7,7 +7,7 @@
 // even where the error reaches back to the limit: that is said beside it.
 #pragma once
 
-#include "mbd/global_error.h"
+#include "mbd/analysis/global_error.h"
 #include "transformer/verdict.h"
 
 namespace steplap {

@@ -6,7 +6,7 @@
 // Coordinates are metres in the axes of whichever body the polygon is fixed to.
 #pragma once
 
-#include "mbd/types.h"
+#include "mbd/base/types.h"
 
 #include <stdexcept>
 #include <string>

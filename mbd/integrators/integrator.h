@@ -6,8 +6,8 @@
 // anywhere (after an event, in a new layout).
 #pragma once
 
-#include "mbd/dynamics.h"
-#include "mbd/watch_nodes.h"
+#include "mbd/dynamics/dynamics.h"
+#include "mbd/integrators/watch_nodes.h"
 
 #include <algorithm>
 #include <limits>

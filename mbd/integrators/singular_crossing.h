@@ -8,7 +8,7 @@
 // an explicit method. (Hairer, Nørsett, Wanner, Solving ODEs I, II.7.)
 #pragma once
 
-#include "mbd/dynamics.h"
+#include "mbd/dynamics/dynamics.h"
 
 #include <array>
 #include <functional>

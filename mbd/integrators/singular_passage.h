@@ -5,7 +5,7 @@
 // its stages; and no step ends closer than a hundredth of a radian if it need not.
 #pragma once
 
-#include "mbd/dynamics.h"
+#include "mbd/dynamics/dynamics.h"
 
 namespace steplap {
 

@@ -9,7 +9,7 @@
 // have their length nothing is allocated.
 #pragma once
 
-#include "mbd/types.h"
+#include "mbd/base/types.h"
 
 #include <vector>
 

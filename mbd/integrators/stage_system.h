@@ -17,7 +17,7 @@
 #pragma once
 
 #include "mbd/integrators/sparse_lu.h"
-#include "mbd/linearization.h"
+#include "mbd/dynamics/linearization.h"
 
 #include <Eigen/LU>
 

@@ -1,6 +1,6 @@
 #include "mbd/integrators/time_stepping.h"
 
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 
 #include <algorithm>
 #include <cmath>

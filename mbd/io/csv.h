@@ -6,7 +6,7 @@
 // without quotes, a unit in brackets after the name is not part of it: "time [s]").
 #pragma once
 
-#include "mbd/diagnostics.h"
+#include "mbd/base/diagnostics.h"
 
 #include <span>
 #include <string>

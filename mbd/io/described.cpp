@@ -1,6 +1,6 @@
 #include "mbd/io/described.h"
 
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 
 namespace steplap {
 

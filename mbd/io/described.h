@@ -2,7 +2,7 @@
 // and the schema are generated from.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

@@ -1,8 +1,8 @@
 #include "mbd/io/field_reader.h"
 
 #include "mbd/io/units.h"
-#include "mbd/number_text.h"
-#include "mbd/validate.h"
+#include "mbd/base/number_text.h"
+#include "mbd/model/validate.h"
 
 #include <algorithm>
 #include <cmath>

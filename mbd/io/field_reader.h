@@ -2,7 +2,7 @@
 // missing keys. Ranges and references are left to validate().
 #pragma once
 
-#include "mbd/fields.h"
+#include "mbd/model/fields.h"
 #include "mbd/io/toml_text.h"
 
 #include <functional>

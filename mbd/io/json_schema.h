@@ -1,7 +1,7 @@
 // JSON Schema (draft 2020-12) of model files, for editors that complete and check TOML.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

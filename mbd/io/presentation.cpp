@@ -1,8 +1,8 @@
 #include "mbd/io/presentation.h"
 
 #include "mbd/io/units.h"
-#include "mbd/number_text.h"
-#include "mbd/trajectory.h"
+#include "mbd/base/number_text.h"
+#include "mbd/simulation/trajectory.h"
 
 #include <algorithm>
 #include <charconv>

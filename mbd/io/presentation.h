@@ -5,7 +5,7 @@
 // number with a unit means is decided by the channel.
 #pragma once
 
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 
 namespace steplap {
 

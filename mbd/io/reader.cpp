@@ -1,7 +1,7 @@
 #include "mbd/io/reader.h"
 
 #include "mbd/io/field_reader.h"
-#include "mbd/completion.h"
+#include "mbd/model/completion.h"
 #include "mbd/io/toml_writer.h"
 
 #include <algorithm>

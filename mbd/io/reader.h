@@ -11,7 +11,7 @@
 #pragma once
 
 #include "mbd/io/overrides.h"
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 
@@ -29,7 +29,7 @@ namespace steplap {
                                 const Catalogue& catalogue,
                                 const std::vector<std::string>& overrides = {});
 
-/// Models as given, for whoever sets values in them (mbd/model_path.h) and completes them (mbd/completion.h). They are
+/// Models as given, for whoever sets values in them (mbd/model/model_path.h) and completes them (mbd/model/completion.h). They are
 /// read, completed and checked as above, so that what is wrong is said with its place. Throw ModelError.
 [[nodiscard]] Model read_given_model(const std::string& path, const Catalogue& catalogue,
                                      const std::vector<std::string>& overrides = {});

@@ -2,7 +2,7 @@
 
 #include "mbd/io/csv.h"
 #include "mbd/io/units.h"
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 
 namespace steplap {
 

@@ -5,7 +5,7 @@
 // scale · column, in the unit that `unit` names (SI if none).
 #pragma once
 
-#include "mbd/signal.h"
+#include "mbd/model/signal.h"
 
 namespace steplap {
 

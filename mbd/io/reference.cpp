@@ -1,7 +1,7 @@
 #include "mbd/io/reference.h"
 
 #include "mbd/io/described.h"
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // What a model file may say, as text: generated from the field tables, so it is never out of date.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

@@ -2,7 +2,7 @@
 // library is known to one file only.
 #pragma once
 
-#include "mbd/diagnostics.h"
+#include "mbd/base/diagnostics.h"
 
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
 #include "mbd/io/toml_writer.h"
 
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 
 #include <cctype>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "mbd/io/units.h"
 
-#include "mbd/diagnostics.h"
+#include "mbd/base/diagnostics.h"
 
 #include <udunits2.h>
 

@@ -16,7 +16,7 @@ namespace {
 
 // In the order of the data: a model is read, compiled, moved, asked.
 const std::vector<std::string> k_rooms = {
-    "mbd/base",   "mbd/math",       "mbd/model",    "mbd/system", "mbd/dynamics",   "mbd/friction", "mbd/integrators",
+    "mbd/math",   "mbd/base",       "mbd/model",    "mbd/system", "mbd/dynamics",   "mbd/friction", "mbd/integrators",
     "mbd/events", "mbd/simulation", "mbd/analysis", "mbd/io",     "elements/patch", "elements",     "transformer",
     "tools"};
 
@@ -85,6 +85,7 @@ TEST_CASE("every source stands in a room and includes only what stands before it
     const int room = room_of(source.path);
     CHECK_MESSAGE(room >= 0, source.path << " stands in no room");
     for (const std::string& name : source.own) {
+      if (name.find('/') == std::string::npos) continue; // its neighbour
       const int other = room_of(name);
       CHECK_MESSAGE(other >= 0, source.path << " includes " << name << ", which is in no room");
       CHECK_MESSAGE(other <= room, source.path << " includes " << name << ", which stands behind it");

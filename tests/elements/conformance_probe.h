@@ -4,7 +4,7 @@
 
 #include "elements/catalog.h"
 #include "mbd/io/reader.h"
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 #include "tests/elements/conformance_scenes.h"
 
 #include <limits>

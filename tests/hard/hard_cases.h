@@ -6,7 +6,7 @@
 // right at all. Tests hold it against the case's bound; tools/hard_cases prints it beside the cost.
 #pragma once
 
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 
 #include <functional>
 #include <memory>

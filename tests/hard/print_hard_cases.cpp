@@ -1,5 +1,5 @@
 // Prints the hard cases as a table: case × integrator, error and cost; or how two of them converge.
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 #include "tests/hard/hard_cases.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Problems that have no solution, or none in a lifetime: a clear stop, with what there is saved,
 // never a hang.
-#include "mbd/accuracy_study.h"
+#include "mbd/analysis/accuracy_study.h"
 #include "mbd/io/reader.h"
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 #include "tests/tools/workbench.h"
 #include "transformer/catalog.h"
 

@@ -1,10 +1,10 @@
 #include "tests/honest/honesty.h"
 
-#include "mbd/assembly.h"
-#include "mbd/equilibrium.h"
-#include "mbd/event_match.h"
+#include "mbd/analysis/assembly.h"
+#include "mbd/analysis/equilibrium.h"
+#include "mbd/analysis/event_match.h"
 #include "mbd/io/reader.h"
-#include "mbd/validate.h"
+#include "mbd/model/validate.h"
 #include "transformer/catalog.h"
 
 #include <algorithm>

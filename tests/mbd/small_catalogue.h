@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mbd/io/record_signal.h"
-#include "mbd/placement.h"
+#include "mbd/model/placement.h"
 
 namespace steplap::testing {
 

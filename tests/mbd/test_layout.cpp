@@ -1,5 +1,5 @@
 // What a layout makes of a scene: bodies merged, coordinates locked, rows that remain.
-#include "mbd/layout.h"
+#include "mbd/dynamics/layout.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

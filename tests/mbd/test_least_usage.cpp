@@ -1,5 +1,5 @@
 // The least overloaded sharing against closed forms, duality and brute force over the vertices of small problems.
-#include "mbd/least_usage.h"
+#include "mbd/dynamics/least_usage.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The linearised equations of motion against central differences of Dynamics::rates.
-#include "mbd/linearization.h"
+#include "mbd/dynamics/linearization.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

@@ -1,11 +1,11 @@
 // Models as values: copies of their own, fields by paths, completed as from a file, and systems of one model with many
 // values, side by side.
-#include "mbd/assembly.h"
-#include "mbd/completion.h"
-#include "mbd/instance.h"
+#include "mbd/analysis/assembly.h"
+#include "mbd/model/completion.h"
+#include "mbd/system/instance.h"
 #include "mbd/io/reader.h"
-#include "mbd/model_path.h"
-#include "mbd/simulation.h"
+#include "mbd/model/model_path.h"
+#include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
 
 #include <doctest/doctest.h>

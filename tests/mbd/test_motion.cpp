@@ -1,5 +1,5 @@
 // Angles by series and links: the frames in which all elements work.
-#include "mbd/link.h"
+#include "mbd/system/link.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // Model files that are well formed: what the model holds after reading, inheritance, overrides.
 #include "mbd/io/reader.h"
-#include "mbd/signal_network.h"
-#include "mbd/validate.h"
+#include "mbd/model/signal_network.h"
+#include "mbd/model/validate.h"
 #include "tests/mbd/small_catalogue.h"
 
 #include <doctest/doctest.h>

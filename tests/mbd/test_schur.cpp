@@ -1,7 +1,7 @@
 // The solver of the constraint equations against dense algebra: random rows between random bodies, rows
 // that depend on others, locked coordinates, loops.
-#include "mbd/schur.h"
-#include "mbd/types.h"
+#include "mbd/dynamics/schur.h"
+#include "mbd/base/types.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -1,6 +1,6 @@
 // Signals: closed forms, integrals against quadrature, derivatives against differences, and the
 // velocity changes that pulses bring.
-#include "mbd/signal.h"
+#include "mbd/model/signal.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // Sums, products, scaled and delayed signals: against what they are made of, value by value, against quadrature for
 // their integrals, and against closed forms where a product has some.
-#include "mbd/signal_algebra.h"
-#include "mbd/signal_network.h"
+#include "mbd/model/signal_algebra.h"
+#include "mbd/model/signal_network.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // Signals that are made of others, in runs: as loads and as drives.
 #include "elements/catalog.h"
 #include "mbd/io/reader.h"
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 
 #include "transformer/catalog.h"
 #include "mbd/io/reader.h"
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 
 #include <memory>
 #include <string>

@@ -2,7 +2,7 @@
 //
 //   random_scenes run FIRST LAST [--shrink DIR] [--all] [--friction]   seeds FIRST to LAST
 //   random_scenes write SEED FILE                                      the scene as a model file
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 #include "tests/random/random_scene.h"
 #include "tests/random/scene_check.h"
 

@@ -1,7 +1,7 @@
 // A scene as a list of blocks of a model file, so that it can be written, run, and made smaller block by block.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 #include <map>
 #include <set>

@@ -1,7 +1,7 @@
 #include "tests/random/scene_check.h"
 
-#include "mbd/assembly.h"
-#include "mbd/number_text.h"
+#include "mbd/analysis/assembly.h"
+#include "mbd/base/number_text.h"
 
 #include <algorithm>
 #include <cmath>

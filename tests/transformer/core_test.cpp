@@ -6,7 +6,7 @@
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
 #include "mbd/io/reader.h"
-#include "mbd/system.h"
+#include "mbd/system/system.h"
 #include "transformer/book.h"
 #include "transformer/catalog.h"
 

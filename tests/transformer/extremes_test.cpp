@@ -2,7 +2,7 @@
 // motions that are known.
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
 #include "transformer/verdict.h"
 #include "tests/transformer/swing.h"

@@ -1,7 +1,7 @@
 // The verdict on a run: criteria of the model, and the step-lap joints' own.
 #include "mbd/io/reader.h"
 #include "mbd/io/presentation.h"
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
 #include "transformer/verdict.h"
 #include "tests/transformer/swing.h"

@@ -4,7 +4,7 @@
 // Names are scene/what/…, so that lines of two scenes can be divided by each other.
 #include "transformer/catalog.h"
 #include "mbd/io/reader.h"
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 
 #include <benchmark/benchmark.h>
 

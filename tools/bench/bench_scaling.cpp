@@ -4,7 +4,7 @@
 //   bench_scaling [largest number of bodies, default 100000]
 #include "elements/catalog.h"
 #include "mbd/io/reader.h"
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 
 #include <malloc.h>
 

@@ -7,7 +7,7 @@
 // thread, least of repeats, and evaluations; both interpolated between tolerances at the errors wanted.
 #include "transformer/catalog.h"
 #include "mbd/io/reader.h"
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 // B0, B3 and B4: the worst of the state; B5: the worst height over samples each 10 ms against the
 // own tightest run. Reading and compiling a model are not in the time.
 #include "mbd/io/reader.h"
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 #include "tools/bench/peers/ladder.h"
 #include "tools/bench/peers/mechanisms.h"
 #include "transformer/catalog.h"

@@ -3,7 +3,7 @@
 //   profile_evaluation MODEL TIME COUNT
 #include "transformer/catalog.h"
 #include "mbd/io/reader.h"
-#include "mbd/simulation.h"
+#include "mbd/simulation/simulation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "tools/steplap/accuracy.h"
 
-#include "mbd/accuracy_study.h"
-#include "mbd/global_error.h"
+#include "mbd/analysis/accuracy_study.h"
+#include "mbd/analysis/global_error.h"
 #include "mbd/io/atomic_file.h"
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 #include "tools/steplap/accuracy_report.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/run.h"

@@ -2,7 +2,7 @@
 
 #include "mbd/io/csv.h"
 #include "mbd/math/portable_math.h"
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Everything a model file may use: the elements and signals of all rooms below the command line.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 namespace steplap {
 

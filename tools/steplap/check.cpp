@@ -1,9 +1,9 @@
 #include "tools/steplap/check.h"
 
-#include "mbd/assembly.h"
-#include "mbd/freedom.h"
-#include "mbd/number_text.h"
-#include "mbd/validate.h"
+#include "mbd/analysis/assembly.h"
+#include "mbd/analysis/freedom.h"
+#include "mbd/base/number_text.h"
+#include "mbd/model/validate.h"
 #include "tools/steplap/cross.h"
 #include "tools/steplap/run.h"
 #include "tools/steplap/text_table.h"

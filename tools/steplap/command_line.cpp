@@ -1,6 +1,6 @@
 #include "tools/steplap/command_line.h"
 
-#include "mbd/diagnostics.h"
+#include "mbd/base/diagnostics.h"
 #include "mbd/io/atomic_file.h"
 #include "tools/steplap/commands.h"
 #include "tools/steplap/log.h"

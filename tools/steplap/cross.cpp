@@ -1,7 +1,7 @@
 #include "tools/steplap/cross.h"
 
-#include "mbd/cross_check.h"
-#include "mbd/number_text.h"
+#include "mbd/analysis/cross_check.h"
+#include "mbd/base/number_text.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/summary.h"
 #include "tools/steplap/text_table.h"

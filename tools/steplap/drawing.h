@@ -2,7 +2,7 @@
 // they act at, the sheets of step-lap joints, the figures that the model asks for.
 #pragma once
 
-#include "mbd/model.h"
+#include "mbd/model/model.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include "tools/steplap/elements.h"
 
-#include "mbd/diagnostics.h"
+#include "mbd/base/diagnostics.h"
 #include "mbd/io/reference.h"
 #include "tools/steplap/catalogue.h"
 

@@ -1,6 +1,6 @@
 #include "tools/steplap/figure.h"
 
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 #include "tools/steplap/thinning.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "elements/step_lap_friction.h"
 #include "elements/step_lap_joint.h"
 #include "mbd/io/units.h"
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 #include "tools/steplap/run.h"
 #include "tools/steplap/text_table.h"
 

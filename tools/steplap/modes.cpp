@@ -2,7 +2,7 @@
 
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/csv.h"
-#include "mbd/modes.h"
+#include "mbd/analysis/modes.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/run.h"
 #include "tools/steplap/text_table.h"

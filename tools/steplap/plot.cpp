@@ -1,6 +1,6 @@
 #include "tools/steplap/plot.h"
 
-#include "mbd/diagnostics.h"
+#include "mbd/base/diagnostics.h"
 #include "mbd/io/atomic_file.h"
 #include "tools/steplap/figure.h"
 

@@ -1,6 +1,6 @@
 #include "tools/steplap/report_data.h"
 
-#include "mbd/trajectory.h"
+#include "mbd/simulation/trajectory.h"
 #include "tools/steplap/command.h"
 #include "tools/steplap/measured_text.h"
 #include "tools/steplap/thinning.h"

@@ -2,7 +2,7 @@
 
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/csv.h"
-#include "mbd/number_text.h"
+#include "mbd/base/number_text.h"
 #include "tools/steplap/command.h"
 #include "tools/steplap/drawing.h"
 #include "tools/steplap/version.h"

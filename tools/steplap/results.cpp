@@ -1,6 +1,6 @@
 #include "tools/steplap/results.h"
 
-#include "mbd/trajectory.h"
+#include "mbd/simulation/trajectory.h"
 #include "tools/steplap/command.h"
 
 #include <sys/stat.h>

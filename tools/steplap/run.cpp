@@ -1,6 +1,6 @@
 #include "tools/steplap/run.h"
 
-#include "mbd/assembly.h"
+#include "mbd/analysis/assembly.h"
 #include "mbd/io/reader.h"
 #include "mbd/io/presentation.h"
 #include "tools/steplap/catalogue.h"

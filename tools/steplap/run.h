@@ -1,8 +1,8 @@
 // A model from its file to the end of its run.
 #pragma once
 
-#include "mbd/equilibrium.h"
-#include "mbd/simulation.h"
+#include "mbd/analysis/equilibrium.h"
+#include "mbd/simulation/simulation.h"
 
 #include <memory>
 #include <string>

@@ -1,8 +1,8 @@
 #include "tools/steplap/run_screen.h"
 
 #include "mbd/math/portable_math.h"
-#include "mbd/number_text.h"
-#include "mbd/validate.h"
+#include "mbd/base/number_text.h"
+#include "mbd/model/validate.h"
 #include "tools/steplap/measured_text.h"
 #include "tools/steplap/text_table.h"
 #include "transformer/joint_assessment.h"

@@ -1,7 +1,7 @@
 #include "tools/steplap/simulate.h"
 
-#include "mbd/assembly.h"
-#include "mbd/validate.h"
+#include "mbd/analysis/assembly.h"
+#include "mbd/model/validate.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/progress.h"
 #include "tools/steplap/report.h"

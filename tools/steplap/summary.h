@@ -2,7 +2,7 @@
 // for whoever reads a run in code.
 #pragma once
 
-#include "mbd/global_error.h"
+#include "mbd/analysis/global_error.h"
 #include "tools/steplap/run.h"
 #include "transformer/verdict_error.h"
 
@@ -15,7 +15,7 @@ namespace steplap {
 
 /// Pointers lead into the run's compiled system: valid as long as the run.
 struct RunSummary {
-  std::vector<ChannelRange> ranges;          ///< of all channels of the system, written or not (mbd/extremes.h)
+  std::vector<ChannelRange> ranges;          ///< of all channels of the system, written or not (mbd/simulation/extremes.h)
   std::map<std::string, long> event_counts;  ///< by what happened
   double relative_energy_residual = 0.0;     ///< of the energy exchanged
   std::optional<GlobalErrorEstimate> global_error; ///< unless there is none

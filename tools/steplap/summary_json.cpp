@@ -54,7 +54,7 @@ Json accuracy_json(const RunStatistics& s, const RunSummary& summary) {
   return json;
 }
 
-// Errors scaled as in mbd/run_comparison.h.
+// Errors scaled as in mbd/analysis/run_comparison.h.
 Json global_error_json(const GlobalErrorEstimate& estimate) {
   Json json;
   for (std::size_t k = 0; k < k_error_kinds; ++k) {

@@ -1,11 +1,11 @@
 #include "tools/steplap/warnings.h"
 
-#include "mbd/assembly.h"
-#include "mbd/event_handler.h"
-#include "mbd/freedom.h"
+#include "mbd/analysis/assembly.h"
+#include "mbd/events/event_handler.h"
+#include "mbd/analysis/freedom.h"
 #include "mbd/math/portable_math.h"
-#include "mbd/signal_network.h"
-#include "mbd/validate.h"
+#include "mbd/model/signal_network.h"
+#include "mbd/model/validate.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>

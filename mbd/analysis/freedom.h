@@ -1,0 +1,37 @@
+// Counts degrees of freedom of a compiled system in its reference pose: coordinates, independent
+// constraint rows, and what friction takes away while it sticks.
+//
+// Rows are normalised; a row counts as dependent if what is left of it beyond the others is below
+// 1e-9. A mechanism in a singular pose has more freedom there than elsewhere: the count is that of
+// the pose.
+#pragma once
+
+#include "mbd/system/system.h"
+
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// Of an element, the rows whose multipliers are not unique; what they hold, by RowSpec::quantity.
+struct SharedReaction {
+  int element = 0;
+  std::vector<std::string> quantities; ///< of joints and drives; empty for friction
+};
+
+struct Freedom {
+  int coordinates = 0;             ///< three for each body that moves
+  int rows = 0;                    ///< constraint rows of joints and drives
+  int rank = 0;                    ///< independent ones among them
+  int rank_sticking = 0;           ///< the same with every friction joint sticking
+  std::vector<int> dependent_rows; ///< rows that others imply: which of a set is arbitrary
+  /// Reactions that are not unique: of joints and drives alone, and with all friction sticking.
+  std::vector<SharedReaction> shared, shared_sticking;
+
+  [[nodiscard]] int degrees() const { return coordinates - rank; }
+  [[nodiscard]] int degrees_sticking() const { return coordinates - rank_sticking; }
+};
+
+[[nodiscard]] Freedom count_freedom(const System& system);
+
+} // namespace steplap

@@ -1,0 +1,260 @@
+#include "mbd/analysis/global_error.h"
+
+#include "mbd/analysis/event_match.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <initializer_list>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_finer_tolerance = 0.01;
+constexpr double k_least_tolerance = 1e-14; // below it rounding makes the steps
+constexpr double k_finer_step = 0.5;
+constexpr double k_finer_cost = 3.0;     // of a hundredth of the tolerance: order 5 takes 2.5 times the steps
+constexpr double k_rounding = 1e-14;     // of a channel's largest value, and of times
+constexpr double k_first_order = 0.5;    // what half the step leaves
+constexpr double k_safety = 1.5;
+constexpr double k_stepping_safety = 3.0; // where nothing is located
+
+bool locates_events(const SimulationOptions& options) { return options.integrator != "moreau"; }
+
+// Error over difference.
+double factor_for(const SimulationOptions& coarse, const SimulationOptions& fine, bool has_storm) {
+  if (fine.settings.step != coarse.settings.step)
+    return (locates_events(coarse) ? 1.0 : k_stepping_safety) / (1.0 - fine.settings.step / coarse.settings.step);
+  const double part = has_storm ? k_first_order : fine.settings.tolerance / coarse.settings.tolerance;
+  return k_safety / (1.0 - std::min(k_first_order, part));
+}
+
+double difference(double a, double b) {
+  if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0; // also equal infinities
+  const double d = std::abs(a - b);
+  return std::isfinite(d) ? d : k_unknown_error;
+}
+
+double difference(const std::optional<double>& a, const std::optional<double>& b) {
+  if (a.has_value() != b.has_value()) return k_unknown_error;
+  return a ? difference(*a, *b) : 0.0;
+}
+
+void keep_larger(double& error, double other) { error = larger_error(error, other); }
+
+// Do values of the unit jump at events? Places do not; velocities do where contacts are blows.
+bool may_jump(const Channel& channel) { return channel.unit != "m" && channel.unit != "rad"; }
+
+// One finer run against the run whose error is wanted.
+class Comparison {
+public:
+  Comparison(const System& system, const RunResult& run, const RunResult& fine, double factor)
+      : system_(system), run_(run), fine_(fine), match_(match_events(run.events, fine.events)), factor_(factor) {}
+
+  void add_to(GlobalErrorEstimate& estimate) const {
+    for (std::size_t c = 0; c < run_.ranges.size(); ++c) add_range(c, estimate.channels[c]);
+    add_curves(estimate.channels);
+    add_events(estimate.event_times);
+    keep_larger(estimate.dissipated, factor_ * difference(run_.statistics.dissipated, fine_.statistics.dissipated));
+    keep_larger(estimate.work, factor_ * difference(run_.statistics.work, fine_.statistics.work));
+  }
+
+private:
+  void add_range(std::size_t c, ChannelError& error) const {
+    const ChannelRange &mine = run_.ranges[c], &fine = fine_.ranges[c];
+    keep_larger(error.low, factor_ * difference(mine.low.value, fine.low.value));
+    keep_larger(error.high, factor_ * difference(mine.high.value, fine.high.value));
+    keep_larger(error.final, factor_ * difference(mine.final, fine.final));
+    keep_larger(error.t_low, factor_ * difference(mine.low.t, fine.low.t));
+    keep_larger(error.t_high, factor_ * difference(mine.high.t, fine.high.t));
+    keep_larger(error.first_above_one, factor_ * difference(mine.first_above_one, fine.first_above_one));
+    if (mine.had_no_value != fine.had_no_value) error.low = error.high = k_unknown_error;
+  }
+
+  void add_curves(std::vector<ChannelError>& errors) const {
+    const Trajectory &mine = *run_.trajectory, &fine = *fine_.trajectory;
+    const std::size_t rows = std::min(mine.size(), fine.size());
+    const BetweenEvents between(match_, run_.events, fine_.events);
+    std::vector<char> is_jump(rows);
+    for (std::size_t row = 0; row < rows; ++row) is_jump[row] = between.holds(mine.times()[row]);
+    for (std::size_t column = 0; column < mine.channels().size(); ++column) {
+      const Channel* channel = mine.channels()[column];
+      const bool jumps = may_jump(*channel);
+      double worst = 0.0;
+      for (std::size_t row = 0; row < rows; ++row)
+        if (!jumps || !is_jump[row]) worst = larger_error(worst, difference(mine.value(row, column), fine.value(row, column)));
+      ChannelError& error = errors[static_cast<std::size_t>(channel - system_.channels.data())];
+      keep_larger(error.curve, factor_ * worst);
+      error.is_sampled = true;
+    }
+  }
+
+  void add_events(std::vector<double>& times) const {
+    for (const EventPair& pair : match_.pairs)
+      keep_larger(times[pair.mine], factor_ * difference(run_.events[pair.mine].t, fine_.events[pair.reference].t));
+    for (const std::size_t alone : match_.only_mine) times[alone] = k_unknown_error;
+  }
+
+  const System& system_;
+  const RunResult &run_, &fine_;
+  EventMatch match_;
+  double factor_;
+};
+
+double spread_of(const ChannelRange& range) { return range.high.value - range.low.value; }
+
+// Of channels in the same unit.
+struct Kind {
+  double range = 0.0, largest = 0.0; ///< the largest range, the largest value
+  double typical_error = 0.0;        ///< of extremes, of their ranges: half of the channels have less
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::map<std::string, Kind> kinds_of(const std::vector<ChannelRange>& ranges, const std::vector<ChannelError>& errors) {
+  std::map<std::string, Kind> kinds;
+  std::map<std::string, std::vector<double>> relative;
+  for (std::size_t c = 0; c < ranges.size(); ++c) {
+    const double spread = spread_of(ranges[c]), error = std::max(errors[c].low, errors[c].high);
+    if (!std::isfinite(spread)) continue;
+    Kind& kind = kinds[ranges[c].channel->unit];
+    kind.range = std::max(kind.range, spread);
+    kind.largest = std::max({kind.largest, std::abs(ranges[c].low.value), std::abs(ranges[c].high.value)});
+    if (spread > 0.0 && std::isfinite(error)) relative[ranges[c].channel->unit].push_back(error / spread);
+  }
+  for (auto& [unit, kind] : kinds) kind.typical_error = median(std::move(relative[unit]));
+  return kinds;
+}
+
+bool is_exact(const ChannelRange& a, const ChannelRange& b) {
+  return a.low.value == a.high.value && b.low.value == a.low.value && b.high.value == a.high.value;
+}
+
+// What the finest run does not know itself.
+void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate& estimate) {
+  const SimulationOptions& options = estimate.finer.back();
+  const IntegratorSettings& settings = options.settings;
+  const bool has_located_events = locates_events(options);
+  const double tolerance = is_adaptive(system, options.integrator) ? settings.tolerance : settings.projection_tolerance;
+  const double end = run.final_state.t;
+  const double time = (tolerance + k_rounding) * end + (has_located_events ? 0.0 : settings.step);
+  std::map<std::string, Kind> kinds = kinds_of(run.ranges, estimate.channels);
+  for (std::size_t c = 0; c < run.ranges.size(); ++c) {
+    const ChannelRange& range = run.ranges[c];
+    if (is_exact(range, estimate.finest.ranges[c])) continue;
+    ChannelError& error = estimate.channels[c];
+    const Kind& kind = kinds[range.channel->unit];
+    const double floor = tolerance * kind.range + k_rounding * kind.largest;
+    const double spread = spread_of(range);
+    // Where blows fall in a step is chance, and so is what one extreme shows of it.
+    const double least = !has_located_events && std::isfinite(spread) ? kind.typical_error * spread : 0.0;
+    error.low = larger_error(error.low, least) + floor + range.resolution;
+    error.high = larger_error(error.high, least) + floor + range.resolution;
+    error.final += floor;
+    error.curve += floor;
+    error.t_low += time;
+    error.t_high += time;
+    error.first_above_one += time;
+  }
+  for (double& event : estimate.event_times) event += time;
+  const RunStatistics& s = run.statistics;
+  if (s.dissipated != 0.0) estimate.dissipated += tolerance * s.energy_scale + k_rounding * std::abs(s.dissipated);
+  if (s.work != 0.0) estimate.work += tolerance * s.energy_scale + k_rounding * std::abs(s.work);
+}
+
+// An event without partner has no time that could be called known.
+void note_unmatched(GlobalErrorEstimate& estimate, const RunResult& run, const EventFilter& is_counted) {
+  if (estimate.error.unmatched_events == 0) return;
+  WorstError& worst = estimate.error.worst[static_cast<std::size_t>(ErrorKind::event_time)];
+  worst = {k_unknown_error, "", 0.0};
+  for (std::size_t i = run.events.size(); i-- > 0;)
+    if (std::isnan(estimate.event_times[i]) && (!is_counted || is_counted(run.events[i])))
+      worst = {k_unknown_error, "'" + run.events[i].element + "' " + run.events[i].what, run.events[i].t};
+}
+
+void keep_worst(RunDifference& worst, const RunDifference& other, double factor) {
+  for (std::size_t k = 0; k < k_error_kinds; ++k) {
+    const double value = factor * other.worst[k].value;
+    if (std::isnan(worst.worst[k].value) || value <= worst.worst[k].value) continue;
+    worst.worst[k] = other.worst[k];
+    worst.worst[k].value = value;
+  }
+  worst.unmatched_events = std::max(worst.unmatched_events, other.unmatched_events);
+  worst.compared_until = other.compared_until;
+}
+
+void add_cost(RunStatistics& sum, const RunStatistics& run) {
+  sum.steps += run.steps;
+  sum.evaluations += run.evaluations;
+  sum.cpu_seconds += run.cpu_seconds;
+}
+
+} // namespace
+
+double larger_error(double a, double b) {
+  return std::isnan(a) || std::isnan(b) ? k_unknown_error : std::max(a, b);
+}
+
+double ChannelError::largest() const {
+  double worst = 0.0;
+  for (const double error : {low, high, final, curve}) worst = larger_error(worst, error);
+  return worst;
+}
+
+bool is_adaptive(const System& system, const std::string& integrator) {
+  const Dynamics dynamics(system);
+  IntegratorSettings settings;
+  settings.step = 1e-3; // any: it makes no step
+  return make_integrator(integrator, dynamics, settings)->is_adaptive();
+}
+
+std::vector<SimulationOptions> finer_options(const System& system, const SimulationOptions& options) {
+  SimulationOptions finer = options;
+  finer.progress = {};
+  finer.storm_step = k_finer_step * options.storm_step;
+  if (is_adaptive(system, options.integrator)) {
+    finer.settings.tolerance = std::max(k_least_tolerance, k_finer_tolerance * options.settings.tolerance);
+    return {finer};
+  }
+  finer.settings.step = k_finer_step * options.settings.step;
+  SimulationOptions finest = finer;
+  finest.settings.step *= k_finer_step;
+  return {finer, finest};
+}
+
+double predicted_cost(const System& system, const SimulationOptions& options, const RunStatistics& run) {
+  if (is_adaptive(system, options.integrator)) return k_finer_cost * run.cpu_seconds;
+  double times = 0.0;
+  for (const SimulationOptions& finer : finer_options(system, options)) times += options.settings.step / finer.settings.step;
+  return times * run.cpu_seconds;
+}
+
+GlobalErrorEstimate estimate_global_error(const System& system, const State& initial, const SimulationOptions& options,
+                                          const RunResult& run, const EventFilter& is_counted) {
+  GlobalErrorEstimate estimate;
+  estimate.channels.resize(system.channels.size());
+  estimate.event_times.resize(run.events.size());
+  estimate.finer = finer_options(system, options);
+  bool has_storm = run.statistics.storms > 0;
+  for (const SimulationOptions& finer : estimate.finer) {
+    RunResult fine = simulate(system, initial, finer);
+    has_storm = has_storm || fine.statistics.storms > 0;
+    const double factor = factor_for(options, finer, has_storm);
+    Comparison(system, run, fine, factor).add_to(estimate);
+    keep_worst(estimate.error, compare_runs(system, run, fine, is_counted), factor);
+    add_cost(estimate.cost, fine.statistics);
+    estimate.finest = std::move(fine);
+  }
+  add_floors(system, run, estimate);
+  note_unmatched(estimate, run, is_counted);
+  estimate.finest.trajectory.reset();
+  return estimate;
+}
+
+} // namespace steplap

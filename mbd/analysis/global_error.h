@@ -1,0 +1,69 @@
+// The global error of a run, estimated from finer ones: of every number that comes out of it.
+//
+// An adaptive method is run again at a hundredth of its tolerance, a fixed-step method with half its step and with a
+// quarter. A finer run's own error is a small part of the first's (a hundredth where errors follow the tolerance; of
+// fixed steps a half and a quarter, as of a method of order 1: an event lies anywhere in a step, and across events no
+// method of higher order keeps its 2⁻ᵖ), so what they differ by is the error of the first up to that part, which is
+// added: difference / (1 − part). Half as much again is added to that, for no error follows its rule exactly; not for
+// rk4, which order 1 does enough wrong. Of several differences the largest counts, for one may be small by chance.
+// Stretches that time stepping goes over in storms of events are halved, too, and count as of order 1.
+//
+// To this comes what the finer runs themselves do not know: their tolerance, of the largest range of channels in the
+// same unit; rounding; the resolution of located extremes (mbd/simulation/extremes.h); the step, of times that a method without
+// located events tells. What is the same throughout both runs, and in both, is exact.
+//
+// The time of an extreme is *a* time at which it was reached: where another peak comes within the error, it may be that.
+//
+// A number that only one of the runs has (an event without partner, a channel that had no value in one of them) has an
+// unknown error: not-a-number, never a small one. Not seen: an error that all runs share.
+#pragma once
+
+#include "mbd/analysis/run_comparison.h"
+
+#include <limits>
+
+namespace steplap {
+
+inline constexpr double k_unknown_error = std::numeric_limits<double>::quiet_NaN();
+
+/// Errors of what a run tells of a channel (ChannelRange), in its unit. Not-a-number: unknown.
+struct ChannelError {
+  double low = 0.0, high = 0.0, final = 0.0;
+  double t_low = 0.0, t_high = 0.0;   ///< s
+  double first_above_one = 0.0;       ///< s
+  double curve = 0.0; ///< of the samples written; of what jumps, not of those between an event and its partner
+  bool is_sampled = false;
+
+  /// Of extremes, end and samples.
+  [[nodiscard]] double largest() const;
+};
+
+struct GlobalErrorEstimate {
+  RunDifference error;                ///< by kind, scaled as in run_comparison.h
+  std::vector<ChannelError> channels; ///< of every channel of the system, in its order
+  std::vector<double> event_times;    ///< s, of every event of the run
+  double dissipated = 0.0, work = 0.0; ///< J
+  std::vector<SimulationOptions> finer; ///< how the finer runs were made, the finest last
+  RunResult finest;                   ///< without its samples
+  RunStatistics cost;                 ///< of the finer runs together
+};
+
+/// The options of the finer runs.
+[[nodiscard]] std::vector<SimulationOptions> finer_options(const System& system, const SimulationOptions& options);
+
+/// CPU time that the finer runs will take, from what the first one took, s.
+[[nodiscard]] double predicted_cost(const System& system, const SimulationOptions& options, const RunStatistics& run);
+
+/// `run` was made from `initial` with `options`, which ask for samples and extremes. Throws NumericalFailure if a finer
+/// run cannot be finished.
+[[nodiscard]] GlobalErrorEstimate estimate_global_error(const System& system, const State& initial,
+                                                        const SimulationOptions& options, const RunResult& run,
+                                                        const EventFilter& is_counted = {});
+
+/// Does the method choose its steps by the tolerance? False for fixed steps.
+[[nodiscard]] bool is_adaptive(const System& system, const std::string& integrator);
+
+/// The larger; unknown if one of them is.
+[[nodiscard]] double larger_error(double a, double b);
+
+} // namespace steplap

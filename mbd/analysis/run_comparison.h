@@ -1,0 +1,55 @@
+// How far two runs of one system lie apart: positions, velocities, reactions, event times.
+//
+// A channel's error is its largest difference over the samples, divided by its range in the
+// reference: over the whole run where its extremes were looked for, over the samples else; a channel that hardly moves is divided by a thousandth of the largest range of its
+// kind instead, so that rounding in it does not pass for an error; for this, angles count as
+// lengths and couples as forces at the largest radius of gyration. Where nothing of a kind moves,
+// as at rest, the size of the largest value takes the place of the range. Event times are divided
+// by the duration.
+//
+// Reactions jump at events. A sample that lies between an event and the same event of the other run
+// shows the jump, not an error of the reaction: such samples are left out there, the time of the
+// event tells the same.
+#pragma once
+
+#include "mbd/simulation/simulation.h"
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+enum class ErrorKind { position, velocity, reaction, event_time };
+inline constexpr std::size_t k_error_kinds = 4;
+/// "positions", "velocities", "reactions", "event times".
+[[nodiscard]] const char* name_of(ErrorKind kind);
+
+struct WorstError {
+  double value = 0.0; ///< scaled, see above
+  std::string where;  ///< channel, or element and event
+  double t = 0.0;     ///< s
+};
+
+struct RunDifference {
+  std::array<WorstError, k_error_kinds> worst;
+  int unmatched_events = 0;    ///< those that one run has and the other has not
+  double compared_until = 0.0; ///< s: the last sample both have
+
+  [[nodiscard]] const WorstError& of(ErrorKind kind) const {
+    return worst[static_cast<std::size_t>(kind)];
+  }
+  /// Of all kinds, event times included.
+  [[nodiscard]] double largest() const;
+};
+
+/// Which events count as such in event times and their number; empty: all.
+using EventFilter = std::function<bool(const Event& event)>;
+
+/// Both runs are of `system`, with the same channels, sampled at the same times.
+[[nodiscard]] RunDifference compare_runs(const System& system, const RunResult& run,
+                                         const RunResult& reference,
+                                         const EventFilter& is_counted = {});
+
+} // namespace steplap

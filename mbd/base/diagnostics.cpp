@@ -1,0 +1,63 @@
+#include "mbd/base/diagnostics.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace steplap {
+
+std::string Diagnostic::text() const {
+  std::string place;
+  if (!where.file.empty()) {
+    place = where.file + ":";
+    if (where.line > 0) place += std::to_string(where.line) + ":" + std::to_string(where.column) + ":";
+    place += " ";
+  }
+  return place + "error: " + message;
+}
+
+ModelError::ModelError(std::vector<Diagnostic> diagnostics) : diagnostics_(std::move(diagnostics)) {
+  for (const Diagnostic& d : diagnostics_) text_ += (text_.empty() ? "" : "\n") + d.text();
+}
+
+ModelError::ModelError(const Location& where, std::string message)
+    : ModelError(std::vector<Diagnostic>{{where, std::move(message)}}) {}
+
+namespace {
+
+// Levenshtein distance: insertions, deletions, substitutions.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, diagonal + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+} // namespace
+
+std::string nearest_name(const std::string& word, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+  const std::string near = nearest_name(word, known);
+  return near.empty() ? "" : " (did you mean '" + near + "'?)";
+}
+
+} // namespace steplap

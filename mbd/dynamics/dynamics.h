@@ -1,0 +1,192 @@
+// Equations of motion of a compiled system in its present modes.
+//
+//   M a = Q(q, v, t) + Jᵀλ,  J a = γ            (27), (29)–(31) with the corrections of physics.md §1
+// in the coordinates of a layout's clusters. The packed vector y holds the clusters' (x, y, θ), their
+// rates, and two integrals of power: energy dissipated and work done by loads and drives.
+//
+// One object per thread: it owns all scratch memory; rates() and project() allocate nothing.
+#pragma once
+
+#include "mbd/dynamics/layout.h"
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace steplap {
+
+/// Largest constraint residuals, m or rad (position) and m/s or rad/s (velocity).
+struct Residual {
+  double position = 0.0;
+  double velocity = 0.0;
+};
+
+/// A constraint that projection cannot meet.
+struct ConstraintFailure : NumericalFailure {
+  ConstraintFailure(const std::string& message, int element_, double residual_, bool is_angle_)
+      : NumericalFailure(message), element(element_), residual(residual_), is_angle(is_angle_) {}
+  int element;     ///< the one that is off most
+  double residual; ///< m, or rad
+  bool is_angle;
+};
+
+class Dynamics {
+public:
+  explicit Dynamics(const System& system);
+
+  /// Takes over modes, friction phases and anchors. `state` must outlive the use of this object or be
+  /// set anew; poses are read only where a new layout has to be made.
+  void set_state(const State& state);
+  /// Forgets layouts whose merged bodies may have moved against each other.
+  void forget_layouts() { layouts_.clear(); }
+  /// Relative rates along the rows of friction element f, and what they change by in a second, at the last rates().
+  void slip_motion(int f, const double* dy, double* rate, double* acceleration, double* rounding);
+
+  /// Signals are read on the left side of `limit`, a breakpoint that no step passes: a jump there does
+  /// not reach into the step that ends at it.
+  void set_time_limit(double limit);
+
+  /// As last set.
+  [[nodiscard]] const State& state() const { return *state_; }
+  [[nodiscard]] const Layout& layout() const { return *layout_; }
+  [[nodiscard]] int dimension() const { return 6 * layout_->cluster_count() + 2; }
+  [[nodiscard]] int coordinate_count() const { return 3 * layout_->cluster_count(); }
+  void pack(const State& state, double* y) const;
+  void unpack(double t, const double* y, State& state) const;
+
+  /// dy/dt. Also leaves watch values, multipliers and forces for the functions below.
+  void rates(double t, const double* y, double* dy);
+  /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
+  /// residuals found before. Stops at `tolerance`, 0: where rounding sets an end to it; throws ConstraintFailure
+  /// if that cannot be reached.
+  Residual project(double t, double* y, double tolerance);
+  /// Velocities onto the constraints as closely as rounding allows: what has come to rest does not creep.
+  void close_velocities(double t, double* y);
+  /// Takes from a small change of y what the constraints at the last evaluation do not allow, if that was
+  /// near a singular position; else leaves it. There accelerations across the constraints are as uncertain
+  /// as rounding over the distance from the singularity, but projection takes that part away.
+  void remove_held(double* change);
+  /// Takes from a small change of coordinates or of velocities what the constraints at the last evaluation do
+  /// not allow: what is left is its (mass-weighted) nearest one along them.
+  void keep_allowed(double* change);
+  /// How near to a singular position evaluations have come since forget_pivots(): the smallest pivot of the
+  /// constraint matrix against its diagonal, about the square of the distance in radians.
+  [[nodiscard]] double lowest_pivot() const { return lowest_pivot_; }
+  void forget_pivots() { lowest_pivot_ = 1.0; }
+  /// Was the last evaluation that near?
+  [[nodiscard]] bool is_near_singular() const;
+  /// Residuals at y without moving it.
+  [[nodiscard]] Residual residual(double t, const double* y);
+
+  // --- by-products of the last rates() ----------------------------------------------------------
+  [[nodiscard]] const std::vector<double>& watch() const { return watch_; }
+  [[nodiscard]] const std::vector<double>& watch_rate() const { return watch_rate_; }
+  [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
+  [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
+  /// Multipliers of the layout's active rows.
+  [[nodiscard]] const std::vector<double>& multipliers() const { return right_side_; }
+  /// The loads that sticking elements share in more than one way, as last solved by watch_merged(); null where
+  /// every wrench is its element's own.
+  [[nodiscard]] const LoadSharing* sharing() const;
+  /// Per rate of a cluster (3 each) what velocity errors must be small against for the slip laws' sake, infinite
+  /// where none asks for it; false if that is everywhere.
+  [[nodiscard]] bool slip_scales(double* scale) const;
+  /// The fastest decay that a slip law gives to changes of velocity, 1/s (an upper bound).
+  [[nodiscard]] double slip_decay_rate() const;
+  /// Adds the watch values of joints that are merged, and of groups of sticking elements that share a load: costs
+  /// a pass over the merged bodies.
+  void watch_merged(const double* dy);
+  /// The same at a stage inside a step, where only values near their limit are worth the pass, unless `always`.
+  void watch_merged_if_near(const double* dy, bool always = false);
+  /// Accelerations of all bodies and all reactions; fills a snapshot valid until the next rates().
+  [[nodiscard]] Snapshot snapshot(const double* dy);
+  /// Power residual-free pieces of the energy balance: kinetic + potential at the last rates().
+  [[nodiscard]] double mechanical_energy(double t, const double* y);
+
+  /// Response to unit wrenches along rows: columns of J_c P J_cᵀ and J_c a − γ_c for rows that are not
+  /// active (candidates of the mode problem), P the constrained inverse mass. Uses the last rates().
+  struct Candidates {
+    std::vector<const RowSpec*> rows;
+    std::vector<double> compliance;   ///< n × n, row-major
+    std::vector<double> acceleration; ///< n: relative acceleration without their wrenches
+    std::vector<double> rounding;     ///< n: of it
+  };
+  void respond(Candidates& candidates, const double* dy);
+
+  [[nodiscard]] long evaluations() const { return evaluations_; }
+  [[nodiscard]] const System& system() const { return system_; }
+
+private:
+  void place(double t, const double* q, const double* v);
+  [[nodiscard]] bool is_placed(double t, const double* y) const;
+  void aim_locks(double t);
+  void place_member(int body);
+  void apply_sliding();
+  void sliding_rates(std::size_t i, double* rate) const;
+  void apply_forces();
+  template <bool WithBias> MeasureValue<double> load_row(std::size_t r);
+  double pull(std::size_t r, const double* a);
+  void evaluate_rows();
+  MeasureValue<double> load_candidate(const RowSpec& spec, SchurRow& row) const;
+  void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
+  [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
+  void solve_constraints(double* a);
+  [[nodiscard]] double lock_reaction(const Lock& lock, const double* a) const;
+  void finish_power(const double* a);
+  void finish_watches();
+  Residual constraint_values(double t, const double* y);
+  void rates_at(double t, const double* y, double* dy);
+  void rates_nearby(double t, const double* y, double* dy);
+  [[nodiscard]] bool reach_positions(double t, double* y, double tolerance, Residual& now);
+  void reach_velocities(double t, double* y, Residual now, double tolerance);
+  void move_by(const std::vector<double>& residual, double* target);
+  [[noreturn]] void fail_projection(double t) const;
+  [[noreturn]] void fail_velocities(double t) const;
+  void factor_rows(double shift = 0.0);
+  void add_response(double* change);
+  void body_accelerations(const double* dy);
+  void place_edges();
+  void merged_wrenches(const double* dy);
+  [[nodiscard]] double* joint_multipliers(const RigidEdge& edge);
+  void find_sharing();
+  [[nodiscard]] bool is_shared(int friction) const;
+  void take_solved_friction();
+  [[nodiscard]] bool watch_groups();
+  [[nodiscard]] bool watch_joints(const double* dy);
+  void settle_loads();
+
+  /// A merged joint with more of its capacity left than this at a step's ends is not looked at in between: what
+  /// rises and falls by so much within a step is not resolved anyway.
+  static constexpr double k_near_limit = 0.5;
+  static constexpr double k_bound_slack = 1e-13; ///< as in coulomb_stick.cpp
+
+  const System& system_;
+  const State* state_ = nullptr;
+  std::vector<std::unique_ptr<Layout>> layouts_;
+  LayoutKey key_; ///< of the present one
+  Layout* layout_ = nullptr;
+  bool is_factored_ = false;
+  bool is_merged_near_ = false; ///< some merged joint or group was near its limit when last watched
+  bool was_merged_near_ = false; ///< or the time before: the other end of a step
+  double time_cap_ = std::numeric_limits<double>::infinity();
+  long evaluations_ = 0;
+
+  Evaluation evaluation_;
+  std::vector<std::unique_ptr<FrictionScratch>> scratch_;
+  std::vector<FrictionScratch*> scratch_pointers_;
+  std::vector<Motion<double>> motion_;  ///< bodies, links, clusters of several bodies
+  std::vector<BodyForce> force_;        ///< the same; of a body that is its cluster's only one, the cluster's
+  std::vector<double> contact_force_, watch_, watch_rate_;
+  std::vector<SignalJet> lock_target_;  ///< per lock, at lock_time_
+  double lock_time_ = std::numeric_limits<double>::quiet_NaN();
+  double placed_time_ = std::numeric_limits<double>::quiet_NaN(); ///< of motion_
+  double lowest_pivot_ = 1.0;
+  std::vector<double> placed_;          ///< state of rates_nearby
+  std::vector<double> right_side_;      ///< then multipliers of active rows
+  std::vector<double> row_value_, row_rate_, target_rate_;
+  std::vector<double> acceleration_;    ///< 3 per body
+  std::vector<BodyForce> wrench_;       ///< scratch of merged_wrenches, in the clusters' axes
+  std::vector<double> row_force_, friction_force_;
+};
+
+} // namespace steplap

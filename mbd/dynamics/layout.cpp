@@ -1,0 +1,296 @@
+#include "mbd/dynamics/layout.h"
+
+#include "mbd/math/portable_math.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace steplap {
+
+namespace {
+
+// Centres of gravity closer than this coincide, m: rounding of sums of metres.
+constexpr double k_same_place = 1e-14;
+
+// A rigid joint that may merge its two bodies.
+struct RigidJoint {
+  int a, b, block, friction;
+};
+
+bool is_stuck(const State& state, int f) { return state.friction[f].phase == FrictionPhase::stick; }
+
+std::vector<RigidJoint> rigid_joints(const System& system, const State& state) {
+  std::vector<RigidJoint> joints;
+  for (int i = 0; i < static_cast<int>(system.row_blocks.size()); ++i) {
+    const RowBlock& block = system.row_blocks[i];
+    const RowSpec& row = system.rows[block.first];
+    if (block.is_rigid) joints.push_back({row.a, row.b, i, -1});
+  }
+  for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
+    const FrictionElement& friction = *system.frictions[f].friction;
+    if (!is_stuck(state, f) || !friction.is_rigid()) continue;
+    const RowSpec* rows = friction.rows(state.friction[f]);
+    joints.push_back({rows[0].a, rows[0].b, -1, f});
+  }
+  return joints;
+}
+
+int find_root(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+// Joints that merge (a spanning forest, the ground excluded) come back; the others stay rows.
+std::vector<char> merge(const System& system, const std::vector<RigidJoint>& joints,
+                        std::vector<int>& parent) {
+  parent.resize(system.bodies.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<char> is_merged(joints.size(), 0);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].a == k_ground || joints[i].b == k_ground) continue;
+    const int ra = find_root(parent, joints[i].a), rb = find_root(parent, joints[i].b);
+    if (ra == rb) continue;
+    parent[std::max(ra, rb)] = std::min(ra, rb);
+    is_merged[i] = 1;
+  }
+  return is_merged;
+}
+
+void make_clusters(const System& system, const State& state, std::vector<int>& parent, Layout& layout) {
+  const int n = system.body_count();
+  layout.placements.assign(n, {});
+  std::vector<int> cluster_of(n, -1);
+  std::vector<int> size;
+  for (int i = 1; i < n; ++i) {
+    const int root = find_root(parent, i);
+    if (root == i) {
+      cluster_of[i] = layout.cluster_count();
+      layout.clusters.push_back({});
+      layout.clusters.back().root = i;
+      size.push_back(0);
+    }
+    const int k = cluster_of[root];
+    cluster_of[i] = k;
+    layout.placements[i].cluster = k;
+    layout.clusters[k].mass += system.bodies[i].mass;
+    ++size[k];
+  }
+  std::vector<Vec2> centre(layout.clusters.size(), Vec2::Zero());
+  for (int i = 1; i < n; ++i) {
+    const int k = cluster_of[i];
+    const Vec2 p(state.q[3 * i], state.q[3 * i + 1]);
+    if (size[k] == 1) centre[k] = p;
+    else centre[k] += system.bodies[i].mass / layout.clusters[k].mass * p;
+  }
+  for (int i = 1; i < n; ++i) {
+    Cluster& cluster = layout.clusters[cluster_of[i]];
+    Placement& place = layout.placements[i];
+    place.is_alone = place.is_trivial = size[cluster_of[i]] == 1;
+    cluster.inertia += system.bodies[i].inertia;
+    if (place.is_alone) continue;
+    const double root_angle = state.q[3 * cluster.root + 2];
+    const Vec2 lever = Vec2(state.q[3 * i], state.q[3 * i + 1]) - centre[cluster_of[i]];
+    place.offset = rotated(lever, -root_angle);
+    place.angle = state.q[3 * i + 2] - root_angle;
+    const portable::SinCos turn = portable::sin_cos(place.angle);
+    place.c = turn.cos;
+    place.s = turn.sin;
+    cluster.inertia += system.bodies[i].mass * lever.squaredNorm();
+  }
+  int extra = system.links.slot_count();
+  for (int k = 0; k < layout.cluster_count(); ++k) {
+    Cluster& cluster = layout.clusters[k];
+    // The body that carries the angle often lies at the common centre (limbs on both sides of a core).
+    Placement& root = layout.placements[cluster.root];
+    if (root.offset.norm() < k_same_place) root.is_trivial = true;
+    cluster.motion = root.is_trivial ? cluster.root : extra++;
+    cluster.w[0] = cluster.w[1] = 1.0 / cluster.mass;
+    cluster.w[2] = 1.0 / cluster.inertia;
+    layout.slots.push_back(cluster.motion);
+  }
+  layout.slot_count = extra;
+}
+
+// Edges of each cluster's spanning tree, leaves first (reverse breadth-first from the roots).
+void order_edges(const std::vector<RigidJoint>& joints, const std::vector<char>& is_merged,
+                 int body_count, Layout& layout) {
+  std::vector<std::vector<std::size_t>> at_body(body_count);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (is_merged[i]) {
+      at_body[joints[i].a].push_back(i);
+      at_body[joints[i].b].push_back(i);
+    }
+  std::vector<char> is_seen(body_count, 0);
+  for (const Cluster& cluster : layout.clusters) {
+    std::vector<int> queue{cluster.root};
+    is_seen[cluster.root] = 1;
+    for (std::size_t next = 0; next < queue.size(); ++next)
+      for (const std::size_t i : at_body[queue[next]]) {
+        const int other = joints[i].a == queue[next] ? joints[i].b : joints[i].a;
+        if (is_seen[other]) continue;
+        is_seen[other] = 1;
+        layout.edges.push_back({queue[next], other, joints[i].block, joints[i].friction});
+        layout.is_carried[other] = 1;
+        queue.push_back(other);
+      }
+  }
+  std::reverse(layout.edges.begin(), layout.edges.end());
+}
+
+RowPullKind pull_kind(const ActiveRow& row, const SchurRow& schur) {
+  if (schur.body[0] < 0) return RowPullKind::other;
+  if (row.spec->kind == MeasureKind::angle) return RowPullKind::angle;
+  if (!row.is_simple) return RowPullKind::other;
+  if (row.spec->kind == MeasureKind::axis) return RowPullKind::axis;
+  if (row.spec->kind == MeasureKind::slide && row.spec->is_axis_in_a) return RowPullKind::slide;
+  return RowPullKind::other;
+}
+
+void add_active(Layout& layout, const ActiveRow& row) {
+  SchurRow schur;
+  schur.body[0] = layout.placements[row.spec->a].cluster;
+  schur.body[1] = layout.placements[row.spec->b].cluster;
+  layout.active.push_back(row);
+  for (const int body : {row.spec->a, row.spec->b}) {
+    const Placement& place = layout.placements[body];
+    if (place.cluster >= 0 && !place.is_trivial) layout.active.back().is_simple = false;
+  }
+  layout.schur_rows.push_back(schur);
+  layout.active.back().pull = pull_kind(layout.active.back(), schur);
+  if (row.spec->drive) layout.driven_rows.push_back(static_cast<int>(layout.active.size()) - 1);
+}
+
+// Bilateral rows: locks where a drive prescribes one coordinate of a body that is alone, else rows.
+void add_bilateral(const System& system, const std::vector<char>& is_block_merged, Layout& layout) {
+  for (int i = 0; i < static_cast<int>(system.row_blocks.size()); ++i) {
+    const RowBlock& block = system.row_blocks[i];
+    if (is_block_merged[i]) continue;
+    const RowSpec& first = system.rows[block.first];
+    const Placement& place = layout.placements[first.a];
+    if (place.cluster >= 0 && place.cluster == layout.placements[first.b].cluster) {
+      layout.redundant_blocks.push_back(i);
+      continue;
+    }
+    const bool is_free = block.coordinate >= 0 && place.is_alone &&
+                         layout.clusters[place.cluster].w[block.coordinate] > 0.0;
+    if (is_free) {
+      layout.clusters[place.cluster].w[block.coordinate] = 0.0;
+      layout.locks.push_back({place.cluster, block.coordinate, block.first, block.coordinate < 2 ? first.point_b[block.coordinate] : 0.0, {}});
+      continue;
+    }
+    for (int r = block.first; r < block.first + block.count; ++r)
+      add_active(layout, {&system.rows[r], r, -1, 0});
+  }
+}
+
+void add_frictions(const System& system, const State& state,
+                   const std::vector<char>& is_friction_merged, Layout& layout) {
+  for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
+    if (is_friction_merged[f]) {
+      layout.merged.push_back(f);
+      if (!system.frictions[f].friction->never_slips()) layout.is_merged_watched = true;
+    } else if (is_stuck(state, f)) {
+      layout.holding.push_back(f);
+      const FrictionElement& friction = *system.frictions[f].friction;
+      for (int r = 0; r < friction.dimension(); ++r) {
+        layout.held_rows.push_back({static_cast<int>(layout.active.size()), system.frictions[f].row + r});
+        add_active(layout, {friction.rows(state.friction[f]) + r, -1, f, r});
+      }
+    } else if (state.friction[f].phase == FrictionPhase::slip) {
+      layout.sliding.push_back(f);
+    }
+  }
+}
+
+// Links of force elements are needed always, those of rows while they hold.
+void find_links(const System& system, const State& state, Layout& layout) {
+  std::vector<char> is_needed(system.links.slot_count(), 0);
+  for (int i = 0; i < system.force_link_count; ++i) is_needed[system.links.slot(i)] = 1;
+  for (ActiveRow& row : layout.active) {
+    row.link = system.links.slot_of(row.spec->a, row.spec->b);
+    is_needed[row.link] = 1;
+  }
+  for (const int f : layout.sliding) {
+    const RowSpec& row = *system.frictions[f].friction->rows(state.friction[f]);
+    layout.sliding_link.push_back(system.links.slot_of(row.a, row.b));
+    is_needed[layout.sliding_link.back()] = 1;
+  }
+  for (int i = 0; i < system.links.size(); ++i)
+    if (is_needed[system.links.slot(i)])
+      layout.links.push_back({system.links.slot(i), system.links[i].a, system.links[i].b});
+}
+
+void find_riding(const System& system, const State& state, Layout& layout) {
+  std::vector<char> is_needed = system.is_body_used;
+  for (const ActiveRow& row : layout.active) is_needed[row.spec->a] = is_needed[row.spec->b] = 1;
+  for (const int f : layout.sliding) {
+    const RowSpec* rows = system.frictions[f].friction->rows(state.friction[f]);
+    is_needed[rows[0].a] = is_needed[rows[0].b] = 1;
+  }
+  for (int i = 1; i < system.body_count(); ++i)
+    if (is_needed[i] && !layout.placements[i].is_trivial) layout.riding.push_back(i);
+}
+
+} // namespace
+
+void layout_key(const State& state, LayoutKey& key) {
+  key.resize(state.friction.size());
+  for (std::size_t i = 0; i < key.size(); ++i)
+    key[i] = static_cast<std::uint64_t>(state.friction[i].phase) << 32 | state.friction[i].foot;
+}
+
+Layout make_layout(const System& system, const State& state) {
+  Layout layout;
+  layout_key(state, layout.key);
+  const std::vector<RigidJoint> joints = rigid_joints(system, state);
+  std::vector<int> parent;
+  const std::vector<char> is_merged = merge(system, joints, parent);
+  make_clusters(system, state, parent, layout);
+  layout.is_carried.assign(system.bodies.size(), 0);
+  if (std::find(is_merged.begin(), is_merged.end(), 1) != is_merged.end())
+    order_edges(joints, is_merged, system.body_count(), layout);
+  std::vector<char> is_block_merged(system.row_blocks.size(), 0);
+  std::vector<char> is_friction_merged(system.frictions.size(), 0);
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (is_merged[i]) {
+      if (joints[i].block >= 0) is_block_merged[joints[i].block] = 1;
+      if (joints[i].friction >= 0) is_friction_merged[joints[i].friction] = 1;
+    }
+  add_bilateral(system, is_block_merged, layout);
+  add_frictions(system, state, is_friction_merged, layout);
+  find_riding(system, state, layout);
+  find_links(system, state, layout);
+  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+    const RowSpec& spec = *layout.active[r].spec;
+    if (layout.is_carried[spec.a] || layout.is_carried[spec.b])
+      layout.carried_rows.push_back(static_cast<int>(r));
+  }
+  for (const Cluster& cluster : layout.clusters) {
+    layout.weight.insert(layout.weight.end(),
+                         {cluster.mass * system.gravity.x(), cluster.mass * system.gravity.y(), 0.0});
+    layout.inverse_mass.insert(layout.inverse_mass.end(), cluster.w, cluster.w + 3);
+  }
+  for (Lock& lock : layout.locks)
+    for (int r = 0; r < static_cast<int>(layout.active.size()); ++r)
+      for (int side = 0; side < 2; ++side)
+        if (layout.schur_rows[r].body[side] == lock.cluster) lock.terms.push_back({r, side});
+  // A row between two bodies that move as one moves nothing: without inverse masses it drops out as dependent.
+  for (SchurRow& row : layout.schur_rows)
+    for (int side = 0; side < 2; ++side)
+      if (row.body[side] >= 0 && row.body[0] != row.body[1]) std::copy_n(layout.clusters[row.body[side]].w, 3, row.w[side]);
+  // An angle's gradient is the same in every pose: Dynamics leaves it as it is here.
+  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+    if (layout.active[r].spec->kind != MeasureKind::angle) continue;
+    SchurRow& row = layout.schur_rows[r];
+    row.is_constant = true;
+    row.j[0][2] = 1.0;
+    row.j[1][2] = -1.0;
+    for (int side = 0; side < 2; ++side) row.wj[side][2] = row.w[side][2] * row.j[side][2];
+  }
+  for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0);
+  layout.schur.analyze(layout.schur_rows);
+  return layout;
+}
+
+} // namespace steplap

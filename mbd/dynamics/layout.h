@@ -1,0 +1,129 @@
+// The layout of a mode: which bodies move as one, which coordinates are driven, which rows hold.
+//
+// Bodies held rigidly together (welds, sticking step-lap joints) are merged into *clusters* that are
+// integrated as one body about their common centre of gravity; a coordinate that a drive prescribes is
+// locked (infinite mass); what remains are rows. A layout is found once for a set of modes.
+#pragma once
+
+#include "mbd/dynamics/load_sharing.h"
+#include "mbd/dynamics/schur.h"
+#include "mbd/system/system.h"
+
+#include <memory>
+#include <vector>
+
+namespace steplap {
+
+/// Several bodies moving as one; coordinates are those of its centre of gravity.
+struct Cluster {
+  double mass = 0.0, inertia = 0.0;
+  double w[3] = {0, 0, 0}; ///< 1/m, 1/m, 1/J; 0 where locked
+  int root = 0;            ///< the body whose angle it carries
+  int motion = 0;          ///< slot of its motion: the body's own if it is alone, else an extra one
+};
+
+/// Place of a body in its cluster.
+struct Placement {
+  int cluster = -1;        ///< −1: the ground
+  bool is_alone = true;    ///< the only body of its cluster
+  bool is_trivial = true;  ///< it moves as its cluster does: alone, or placed at its centre of gravity
+  Vec2 offset = Vec2::Zero(); ///< centre of gravity in the cluster's axes
+  double angle = 0.0, c = 1.0, s = 0.0; ///< against the cluster's
+};
+
+/// Rows of a cluster against another or the ground that have a way of their own in Dynamics: with bodies alone
+/// in their clusters, or for angles.
+enum class RowPullKind : unsigned char { other, angle, axis, slide };
+
+/// Where the row comes from.
+struct ActiveRow {
+  const RowSpec* spec = nullptr;
+  int row = -1;        ///< bilateral row, or −1
+  int friction = -1;   ///< friction element and which of its rows, or −1
+  int friction_row = 0;
+  int link = 0;          ///< slot of the row's bodies
+  bool is_simple = true; ///< both bodies are clusters of their own, or the ground
+  RowPullKind pull = RowPullKind::other;
+};
+
+/// Row `row` acts with its side `side` on a locked coordinate.
+struct LockedTerm {
+  int row = 0, side = 0;
+};
+
+/// A driven coordinate of a cluster that consists of one body.
+struct Lock {
+  int cluster = 0, coordinate = 0;
+  int row = 0; ///< the bilateral row it stands for
+  double offset = 0.0; ///< m: of the coordinate against what the row measures, which is seen from a point of the ground
+  std::vector<LockedTerm> terms; ///< active rows that act on its cluster
+};
+
+/// A link between two bodies that an evaluation needs.
+struct ActiveLink {
+  int slot = 0, a = 0, b = 0;
+};
+
+/// The multiplier of an active row is the force of a friction element.
+struct HeldRow {
+  int row = 0;
+  int friction_row = 0; ///< slot in Snapshot::friction_force
+};
+
+/// A rigid joint inside a cluster: `child` hangs on `parent`; leaves first.
+struct RigidEdge {
+  int parent = 0, child = 0;
+  int block = -1;    ///< row block, or −1
+  int friction = -1; ///< friction element, or −1
+};
+
+/// Where a rigid joint lies in the axes of its cluster, which do not change while it sticks.
+struct EdgeGeometry {
+  Pair<double> lever;   ///< from the parent's centre of gravity to the child's
+  Pair<double> axis[2]; ///< of the joint's rows
+  Pair<double> point;   ///< of the joint, from the centre of gravity of the rows' body a
+  bool is_child_a = false; ///< the child is the rows' body a
+};
+
+/// Phases and places of friction, by which layouts are told apart.
+using LayoutKey = std::vector<std::uint64_t>;
+
+struct Layout {
+  LayoutKey key;
+  std::vector<Cluster> clusters;
+  std::vector<Placement> placements; ///< per body
+  std::vector<int> riding;           ///< bodies that elements act on, whose motion is not their cluster's
+  std::vector<int> slots;            ///< of the clusters' motions and forces
+  int slot_count = 0;                ///< those in use: bodies, links, clusters of several bodies
+
+  std::vector<ActiveRow> active;
+  std::vector<Lock> locks;
+  std::vector<double> weight, inverse_mass; ///< per cluster coordinate: m g and W
+  std::vector<RigidEdge> edges;
+  std::vector<EdgeGeometry> edge_geometry; ///< per edge, in the present phases
+  std::vector<char> is_carried;      ///< per body: child of an edge, whose wrench balance is wanted
+  std::vector<int> carried_rows;     ///< active rows that act on such a body
+  std::vector<int> redundant_blocks; ///< rigid blocks inside one cluster that close a loop
+  std::vector<ActiveLink> links;
+  std::vector<int> sliding;          ///< friction elements in phase slip
+  std::vector<int> sliding_link;     ///< slot of each of those
+  std::vector<int> holding;          ///< friction elements in phase stick that are not merged
+  std::vector<int> merged;           ///< friction elements in phase stick that are merged
+  bool is_merged_watched = false;    ///< some of those can slip, or sticking elements share a load
+  std::unique_ptr<LoadSharing> sharing; ///< null until rows have been met that depend on each other
+  std::vector<double> reference;     ///< clusters' coordinates in the reference pose, for error scales
+  std::vector<HeldRow> held_rows;    ///< of the elements in `holding`
+  std::vector<char> is_friction_row; ///< per active row: it holds friction
+  std::vector<int> driven_rows;      ///< active rows that move with time
+  SchurSolver schur;
+  std::vector<SchurRow> schur_rows;  ///< bodies filled in, numbers are scratch
+
+  [[nodiscard]] int cluster_count() const { return static_cast<int>(clusters.size()); }
+};
+
+void layout_key(const State& state, LayoutKey& key);
+
+/// The layout for the friction phases and the poses in `state`.
+[[nodiscard]] Layout make_layout(const System& system, const State& state);
+
+} // namespace steplap

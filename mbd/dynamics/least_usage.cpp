@@ -1,0 +1,205 @@
+#include "mbd/dynamics/least_usage.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+// Bounds from both sides closer than this: rounding of sums of a few shares.
+constexpr double k_gap = 4e-15;
+// Cutting planes of curved sets gain a constant factor each; intervals need a few for each unknown.
+constexpr int k_max_pivots_per_unknown = 60, k_max_pivots = 200;
+// A capacity of nothing counts as this share of the largest.
+constexpr double k_least_capacity = 1e-13;
+constexpr double k_tiny = 1e-30;
+// Weights of normals below this are none: the basis is degenerate there.
+constexpr double k_no_weight = 1e-12;
+
+} // namespace
+
+LeastUsage::LeastUsage(std::vector<int> dimension, MatX basis, std::vector<int> pivots, std::vector<double> length)
+    : dimension_(std::move(dimension)), pivots_(std::move(pivots)), length_(std::move(length)),
+      basis_(std::move(basis)) {
+  int first = 0;
+  for (const int d : dimension_) {
+    first_.push_back(first);
+    first += d;
+  }
+  const Eigen::Index rows = basis_.rows(), k = basis_.cols();
+  capacity_.setZero(rows);
+  best_.setZero(rows);
+  rates_.setZero(rows);
+  trial_.setZero(rows);
+  z_.setZero(k);
+  settled_.setZero(k);
+  columns_.setZero(k + 1, k + 1);
+  normals_.resize(k + 1);
+}
+
+double LeastUsage::gauge(const Gauges& gauges, const VecX& wrench, Normal& normal) const {
+  const int row = first_[normal.part];
+  if (dimension_[normal.part] > 1) return gauges.gauge(normal.part, wrench.data() + row, normal.n);
+  const double inverse = length_[row] / capacity_[row];
+  normal.n[0] = std::copysign(inverse, wrench[row]);
+  return inverse * std::abs(wrench[row]);
+}
+
+// Of the part's rates.
+double LeastUsage::support(const Gauges& gauges, std::size_t part) const {
+  const int row = first_[part];
+  if (dimension_[part] > 1) return gauges.support(static_cast<int>(part), rates_.data() + row);
+  return capacity_[row] / length_[row] * std::abs(rates_[row]);
+}
+
+// The largest gauge, and its normal.
+double LeastUsage::largest(const Gauges& gauges, const VecX& wrench, Normal& normal) const {
+  double worst = -1.0;
+  for (std::size_t p = 0; p < dimension_.size(); ++p) {
+    Normal own;
+    own.part = static_cast<int>(p);
+    const double g = gauge(gauges, wrench, own);
+    if (g <= worst) continue;
+    worst = g;
+    normal = own;
+  }
+  return worst;
+}
+
+// min Σ λ_r²/(c_r l_r) over z. Its gradient in λ is a mechanism: where all parts move as one rigid piece, the
+// one that limits it.
+void LeastUsage::share_by_capacity(const Gauges& gauges, const VecX& wrench) {
+  for (std::size_t p = 0; p < dimension_.size(); ++p)
+    for (int r = 0; r < dimension_[p]; ++r) {
+      double rate[3] = {0, 0, 0};
+      rate[r] = 1.0;
+      capacity_[first_[p] + r] = gauges.support(static_cast<int>(p), rate);
+    }
+  scale_ = std::max(capacity_.maxCoeff(), k_tiny);
+  for (Eigen::Index r = 0; r < capacity_.size(); ++r)
+    capacity_[r] = length_[r] * std::max(capacity_[r], k_least_capacity * scale_);
+  weighted_ = capacity_.cwiseInverse().asDiagonal() * basis_;
+  normal_matrix_ = basis_.transpose() * weighted_;
+  settled_ = normal_matrix_.ldlt().solve(-(weighted_.transpose() * wrench));
+  trial_ = wrench + basis_ * settled_;
+}
+
+// Kinematic bound: what the load does on the mechanism, over what friction can take from it.
+double LeastUsage::bound_of_mechanism(const Gauges& gauges, const VecX& wrench) {
+  rates_ = trial_.cwiseQuotient(capacity_);
+  VecX taken(static_cast<Eigen::Index>(dimension_.size()));
+  for (std::size_t p = 0; p < dimension_.size(); ++p) taken[static_cast<Eigen::Index>(p)] = support(gauges, p);
+  const double all = taken.sum();
+  for (std::size_t p = 0; p < dimension_.size(); ++p)
+    if (taken[static_cast<Eigen::Index>(p)] < k_no_weight * all) rates_.segment(first_[p], dimension_[p]).setZero();
+  rates_ /= all;
+  return rates_.dot(wrench);
+}
+
+void LeastUsage::put_column(const Normal& normal, double* column) const {
+  const Eigen::Index k = basis_.cols();
+  for (Eigen::Index j = 0; j < k; ++j) column[j] = 0.0;
+  for (int r = 0; r < dimension_[normal.part]; ++r)
+    for (Eigen::Index j = 0; j < k; ++j) column[j] += scale_ * normal.n[r] * basis_(first_[normal.part] + r, j);
+  column[k] = 1.0;
+}
+
+// Two opposite normals of the first pivot row, one of each other: feasible, with all weight on the first two.
+void LeastUsage::start_basis(const VecX& wrench) {
+  const auto k = static_cast<std::size_t>(basis_.cols());
+  for (std::size_t i = 0; i <= k; ++i) {
+    const int row = pivots_[i < k ? i : 0];
+    const auto after = std::upper_bound(first_.begin(), first_.end(), row);
+    Normal& normal = normals_[i];
+    normal = {};
+    normal.part = static_cast<int>(after - first_.begin()) - 1;
+    const double side = (wrench[row] < 0.0) == (i < k) ? -1.0 : 1.0;
+    normal.n[row - first_[normal.part]] = side * length_[row] / capacity_[row];
+    put_column(normal, columns_.col(static_cast<Eigen::Index>(i)).data());
+  }
+}
+
+void LeastUsage::set_rates(const VecX& weight) {
+  rates_.setZero();
+  for (std::size_t i = 0; i < normals_.size(); ++i) {
+    const double y = weight[static_cast<Eigen::Index>(i)];
+    if (y < k_no_weight) continue;
+    for (int r = 0; r < dimension_[normals_[i].part]; ++r) rates_[first_[normals_[i].part] + r] += y * normals_[i].n[r];
+  }
+}
+
+void LeastUsage::improve(const Gauges& gauges, const VecX& wrench) {
+  const Eigen::Index k = basis_.cols();
+  const int most = k_max_pivots + k_max_pivots_per_unknown * static_cast<int>(k);
+  VecX cost(k + 1), right = VecX::Zero(k + 1), weight, step, entering(k + 1);
+  right[k] = 1.0;
+  for (int pivot = 0; pivot < most; ++pivot) {
+    const Eigen::PartialPivLU<MatX> lu(columns_);
+    weight = lu.solve(right);
+    for (Eigen::Index i = 0; i <= k; ++i) {
+      const Normal& normal = normals_[static_cast<std::size_t>(i)];
+      cost[i] = 0.0;
+      for (int r = 0; r < dimension_[normal.part]; ++r) cost[i] += normal.n[r] * wrench[first_[normal.part] + r];
+    }
+    const VecX dual = lu.transpose().solve(cost);
+    const double value = dual[k];
+    if (!dual.allFinite()) return;
+    if (value > lower_) {
+      lower_ = value;
+      set_rates(weight);
+    }
+    const VecX z = -scale_ * dual.head(k);
+    trial_ = wrench + basis_ * z;
+    Normal next;
+    const double worst = largest(gauges, trial_, next);
+    if (worst < usage_) {
+      usage_ = worst;
+      best_ = trial_;
+      z_ = z;
+    }
+    if (worst - value <= k_gap * worst || usage_ - lower_ <= k_gap * usage_) return;
+    put_column(next, entering.data());
+    step = lu.solve(entering);
+    Eigen::Index leaving = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (Eigen::Index i = 0; i <= k; ++i) {
+      if (!(step[i] > k_no_weight)) continue;
+      const double ratio = std::max(weight[i], 0.0) / step[i];
+      if (ratio < least) {
+        least = ratio;
+        leaving = i;
+      }
+    }
+    if (leaving < 0) return;
+    normals_[static_cast<std::size_t>(leaving)] = next;
+    columns_.col(leaving) = entering;
+  }
+}
+
+void LeastUsage::solve(const Gauges& gauges, const VecX& wrench) {
+  share_by_capacity(gauges, wrench);
+  Normal unused;
+  const double shared = largest(gauges, trial_, unused);
+  usage_ = shared;
+  best_ = trial_;
+  z_ = settled_;
+  lower_ = 0.0;
+  rates_.setZero();
+  if (usage_ <= k_surely_holds) return;
+  lower_ = bound_of_mechanism(gauges, wrench);
+  if (usage_ - lower_ <= k_gap * usage_) return;
+  start_basis(trial_);
+  improve(gauges, wrench);
+  if (shared <= 1.0) return;
+  // Gauges are convex: so far along the way the larger of the two shares has come down to 1.
+  const double excess = shared - usage_, wanted = shared - 1.0;
+  const double part = excess > wanted ? wanted / excess : 1.0;
+  settled_ += part * (z_ - settled_);
+}
+
+} // namespace steplap

@@ -1,0 +1,349 @@
+#include "mbd/dynamics/linearization.h"
+
+#include "mbd/math/dual.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+using D12 = Dual<12>;
+
+// Steps of the slip law's central differences: cube root of rounding, relative to what is moved.
+constexpr double k_relative_step = 6e-6;
+constexpr double k_pose_step = 1e-7;  // m, rad: sheets are metres long
+constexpr double k_least_rate = 1e-9; // m/s, rad/s
+
+// Motion of a cluster with its pose at derivative indices first…first+2, velocity at 6+first….
+Motion<D12> seeded(const Motion<double>& m, int first) {
+  Motion<D12> s;
+  s.x = D12::variable(m.x, first);
+  s.y = D12::variable(m.y, first + 1);
+  s.theta = D12::variable(m.theta, first + 2);
+  s.c = D12(m.c);
+  s.c.d[first + 2] = -m.s;
+  s.s = D12(m.s);
+  s.s.d[first + 2] = m.c;
+  s.vx = D12::variable(m.vx, 6 + first);
+  s.vy = D12::variable(m.vy, 6 + first + 1);
+  s.omega = D12::variable(m.omega, 6 + first + 2);
+  return s;
+}
+
+// A member of that cluster.
+Motion<D12> placed(const Motion<D12>& k, const Placement& place) {
+  if (place.is_trivial) return k;
+  Motion<D12> m;
+  const Pair<D12> lever = to_ground(k, place.offset);
+  m.x = k.x + lever.x;
+  m.y = k.y + lever.y;
+  m.theta = k.theta + D12(place.angle);
+  m.c = k.c * D12(place.c) - k.s * D12(place.s);
+  m.s = k.s * D12(place.c) + k.c * D12(place.s);
+  m.vx = k.vx - k.omega * lever.y;
+  m.vy = k.vy + k.omega * lever.x;
+  m.omega = k.omega;
+  return m;
+}
+
+template <bool WithBias>
+MeasureValue<D12> measured(const RowSpec& row, const Motion<D12>& a, const Motion<D12>& b) {
+  switch (row.kind) {
+  case MeasureKind::axis:
+    return AxisMeasure{row.point_a, row.point_b, row.direction}.at<WithBias>(a, b);
+  case MeasureKind::distance:
+    return DistanceMeasure{row.point_a, row.point_b}.at<WithBias>(a, b);
+  case MeasureKind::angle:
+    return AngleMeasure{}.at<WithBias>(a, b);
+  case MeasureKind::roll_line:
+    return RollLineMeasure{row.point_a, row.point_b, row.direction, row.radius_a}.at<WithBias>(a, b);
+  case MeasureKind::roll_round:
+    return RollRoundMeasure{row.point_a, row.point_b, row.direction, row.radius_a, row.radius_b}.at<WithBias>(a, b);
+  case MeasureKind::slide:
+    break;
+  }
+  return SlideMeasure{row.point_a, row.point_b, row.direction, row.contact_axis, row.is_axis_in_a}
+      .at<WithBias>(a, b);
+}
+
+// A row as a function of the poses (indices 0–5) and velocities (6–11) of the clusters on either side.
+struct DualRow {
+  int cluster[2];
+  D12 rate, bias;
+  D12 j[6]; ///< gradient by the coordinates of either side
+};
+
+template <bool WithBias>
+DualRow differentiate(const RowSpec& spec, const Layout& layout, const std::vector<Motion<double>>& motion) {
+  const int body[2] = {spec.a, spec.b};
+  DualRow row;
+  Motion<D12> cluster[2], member[2];
+  for (int side = 0; side < 2; ++side) {
+    const Placement& place = layout.placements[body[side]];
+    row.cluster[side] = place.cluster;
+    if (place.cluster < 0) continue; // the ground rests at the origin
+    cluster[side] = seeded(motion[layout.clusters[place.cluster].motion], 3 * side);
+    member[side] = placed(cluster[side], place);
+  }
+  const MeasureValue<D12> m = measured<WithBias>(spec, member[0], member[1]);
+  row.rate = m.rate;
+  row.bias = m.bias;
+  for (int side = 0; side < 2; ++side) {
+    if (row.cluster[side] < 0) continue;
+    const D12 sign(side == 0 ? 1.0 : -1.0);
+    const Pair<D12> off{member[side].x - cluster[side].x, member[side].y - cluster[side].y};
+    row.j[3 * side] = sign * m.direction.x;
+    row.j[3 * side + 1] = sign * m.direction.y;
+    row.j[3 * side + 2] = sign * (cross((side == 0 ? m.lever_a : m.lever_b) + off, m.direction) + m.couple);
+    if constexpr (WithBias) // a body off its cluster's centre has −ω² lever
+      row.bias -= sign * (cluster[side].omega * cluster[side].omega * dot(m.direction, off));
+  }
+  return row;
+}
+
+} // namespace
+
+void Linearization::put(std::vector<Triplet>& entries, int row, int column, double value) {
+  if ((*inverse_mass_)[column] > 0.0) entries.emplace_back(row, column, value);
+}
+
+void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
+  dynamics_ = &dynamics;
+  layout_ = &dynamics.layout();
+  n_ = dynamics.coordinate_count();
+  m_ = static_cast<int>(layout_->active.size());
+  inverse_mass_ = &layout_->inverse_mass;
+  dy_.resize(dynamics.dimension());
+  dynamics.rates(t, y, dy_.data());
+  acceleration_ = dy_.data() + n_;
+  for (auto* entries : {&stiffness_, &damping_, &gradient_, &bias_q_, &bias_v_}) entries->clear();
+  parts_.clear();
+  for (const auto& group : dynamics.system().groups) group->add_jacobian(dynamics.evaluation(), parts_);
+  for (const PairJacobian& part : parts_) add_forces(part);
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) add_row(r);
+  for (const int f : layout_->sliding) add_sliding(f);
+  add_transport();
+}
+
+// ∂(force on a body)/∂(motion of a body), both moved to their clusters' coordinates.
+void Linearization::add_body_block(int row_body, int column_body, const Mat3& by_pose, const Mat3& by_velocity) {
+  const Placement& row = layout_->placements[row_body];
+  const Placement& column = layout_->placements[column_body];
+  if (row.cluster < 0 || column.cluster < 0) return;
+  Mat3 k = by_pose, d = by_velocity;
+  const std::vector<Motion<double>>& motion = dynamics_->motion();
+  if (!column.is_trivial) {
+    const Motion<double>& centre = motion[layout_->clusters[column.cluster].motion];
+    const double x = motion[column_body].x - centre.x, y = motion[column_body].y - centre.y;
+    // v_body = v + ω ẑ×lever, and the lever turns with θ.
+    k.col(2) += -y * by_pose.col(0) + x * by_pose.col(1) -
+                centre.omega * (x * by_velocity.col(0) + y * by_velocity.col(1));
+    d.col(2) += -y * by_velocity.col(0) + x * by_velocity.col(1);
+  }
+  if (!row.is_trivial) {
+    const Motion<double>& centre = motion[layout_->clusters[row.cluster].motion];
+    const double x = motion[row_body].x - centre.x, y = motion[row_body].y - centre.y;
+    k.row(2) += x * k.row(1) - y * k.row(0);
+    d.row(2) += x * d.row(1) - y * d.row(0);
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      put(stiffness_, 3 * row.cluster + i, 3 * column.cluster + j, k(i, j));
+      put(damping_, 3 * row.cluster + i, 3 * column.cluster + j, d(i, j));
+    }
+}
+
+void Linearization::add_forces(const PairJacobian& part) {
+  const int body[2] = {part.a, part.b};
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      add_body_block(body[i], body[j], part.stiffness.block<3, 3>(3 * i, 3 * j),
+                     part.damping.block<3, 3>(3 * i, 3 * j));
+}
+
+// The lever of a force on a body off its cluster's centre turns with the cluster: ∂(l × F)/∂θ = −l·F.
+void Linearization::add_transport() {
+  const std::vector<Motion<double>>& motion = dynamics_->motion();
+  for (const int i : layout_->riding) {
+    const Placement& place = layout_->placements[i];
+    const Motion<double>& centre = motion[layout_->clusters[place.cluster].motion];
+    const BodyForce& f = dynamics_->evaluation().force[i];
+    // Sliding wrenches are in `force` too: add_sliding takes their part out again.
+    const int k = 3 * place.cluster + 2;
+    put(stiffness_, k, k, -((motion[i].x - centre.x) * f.fx + (motion[i].y - centre.y) * f.fy));
+  }
+}
+
+void Linearization::add_row(std::size_t r) {
+  const DualRow row = differentiate<true>(*layout_->active[r].spec, *layout_, dynamics_->motion());
+  const double lambda = dynamics_->multipliers()[r];
+  const int i = static_cast<int>(r);
+  D12 slack = -row.bias; // γ − J a, but for the drive, which the state does not change
+  for (int k = 0; k < 6; ++k)
+    if (const int c = row.cluster[k / 3]; c >= 0) slack -= row.j[k] * D12(acceleration_[3 * c + k % 3]);
+  for (int k = 0; k < 6; ++k) {
+    if (row.cluster[k / 3] < 0) continue;
+    const int at = 3 * row.cluster[k / 3] + k % 3;
+    gradient_.emplace_back(i, at, row.j[k].v);
+    for (int l = 0; l < 6; ++l) {
+      if (row.cluster[l / 3] < 0) continue;
+      put(stiffness_, at, 3 * row.cluster[l / 3] + l % 3, lambda * row.j[k].d[l]);
+    }
+  }
+  for (int l = 0; l < 6; ++l) {
+    if (row.cluster[l / 3] < 0) continue;
+    const int at = 3 * row.cluster[l / 3] + l % 3;
+    put(bias_q_, i, at, slack.d[l]);
+    put(bias_v_, i, at, slack.d[6 + l]);
+  }
+}
+
+MatX Linearization::dense(const std::vector<Triplet>& entries, int rows) const {
+  MatX result = MatX::Zero(rows, n_);
+  for (const Triplet& e : entries) result(e.row(), e.col()) += e.value();
+  return result;
+}
+
+void Linearization::acceleration_by_state(MatX& by_pose, MatX& by_velocity) const {
+  const VecX w = VecX::Map(inverse_mass_->data(), n_);
+  by_pose = w.asDiagonal() * dense(stiffness_, n_);
+  by_velocity = w.asDiagonal() * dense(damping_, n_);
+  if (m_ == 0) return;
+  const MatX j = dense(gradient_, m_), wj = w.asDiagonal() * j.transpose();
+  const Eigen::FullPivLU<MatX> schur(j * wj); // rank-revealing: redundant rows
+  by_pose += wj * schur.solve(dense(bias_q_, m_) - j * by_pose);
+  by_velocity += wj * schur.solve(dense(bias_v_, m_) - j * by_velocity);
+}
+
+// Forces w_r J_rᵀ with w = w(relative velocity, relative pose, normal forces).
+void Linearization::add_sliding(int f) {
+  const FrictionUnit& unit = dynamics_->system().frictions[f];
+  const FrictionElement& friction = *unit.friction;
+  const FrictionState& state = dynamics_->evaluation().friction[f];
+  const RowSpec* specs = friction.rows(state);
+  const int count = friction.dimension();
+  DualRow rows[3];
+  double rate[3] = {0, 0, 0}, wrench[3] = {0, 0, 0};
+  for (int r = 0; r < count; ++r) {
+    rows[r] = differentiate<false>(specs[r], *layout_, dynamics_->motion());
+    rate[r] = rows[r].rate.v;
+  }
+  friction.slip_wrench(dynamics_->evaluation(), state, rate, wrench);
+
+  Evaluation moved = dynamics_->evaluation();
+  const auto difference = [&](double& x, double step, double* slope) {
+    const double before = x;
+    double ahead[3], behind[3];
+    x = before + step;
+    friction.slip_wrench(moved, state, rate, ahead);
+    x = before - step;
+    friction.slip_wrench(moved, state, rate, behind);
+    x = before;
+    for (int r = 0; r < count; ++r) slope[r] = (ahead[r] - behind[r]) / (2.0 * step);
+  };
+
+  // Derivatives of the wrench by the clusters' coordinates: 12 columns as in DualRow.
+  double by_state[3][12] = {};
+  double size = k_least_rate;
+  for (int r = 0; r < count; ++r) size = std::max(size, std::abs(rate[r]));
+  for (int c = 0; c < count; ++c) {
+    double slope[3];
+    difference(rate[c], k_relative_step * size, slope);
+    for (int r = 0; r < count; ++r)
+      for (int l = 0; l < 12; ++l) by_state[r][l] += slope[r] * rows[c].rate.d[l];
+  }
+  if (count == 3) { // rows of a rigid hold: their values are the relative pose, their gradients exact
+    motion_.assign(dynamics_->motion().begin(), dynamics_->motion().end());
+    moved.motion = motion_.data();
+    Motion<double>& a = motion_[specs[0].a];
+    const Motion<double>& b = motion_[specs[0].b];
+    for (int c = 0; c < 3; ++c) {
+      // Row values (x, y along b's axes, then the angle) changed one at a time by moving a.
+      const Motion<double> start = a;
+      double ends[2][3];
+      for (int end = 0; end < 2; ++end) {
+        const double step = end == 0 ? k_pose_step : -k_pose_step;
+        a = start;
+        if (c == 2) {
+          set_angle(a, start.theta + step);
+          const Pair<double> before = to_ground(start, specs[0].point_a), after = to_ground(a, specs[0].point_a);
+          a.x += before.x - after.x;
+          a.y += before.y - after.y;
+        } else {
+          const Pair<double> e = to_ground(b, specs[c].direction);
+          a.x += step * e.x;
+          a.y += step * e.y;
+        }
+        friction.slip_wrench(moved, state, rate, ends[end]);
+      }
+      a = start;
+      for (int r = 0; r < 3; ++r)
+        for (int k = 0; k < 6; ++k)
+          by_state[r][k] += (ends[0][r] - ends[1][r]) / (2.0 * k_pose_step) * rows[c].j[k].v;
+    }
+    moved.motion = dynamics_->evaluation().motion;
+  }
+
+  // The rows' own turning, and what the wrench does along them.
+  const auto scatter = [&](int k, int cluster, int coordinate, double by_pose, double by_velocity) {
+    if (rows[0].cluster[k / 3] < 0 || cluster < 0) return;
+    const int row = 3 * rows[0].cluster[k / 3] + k % 3, column = 3 * cluster + coordinate;
+    put(stiffness_, row, column, by_pose);
+    put(damping_, row, column, by_velocity);
+  };
+  for (int k = 0; k < 6; ++k)
+    for (int l = 0; l < 6; ++l) {
+      double by_pose = 0.0, by_velocity = 0.0;
+      for (int r = 0; r < count; ++r) {
+        by_pose += wrench[r] * rows[r].j[k].d[l] + rows[r].j[k].v * by_state[r][l];
+        by_velocity += rows[r].j[k].v * by_state[r][6 + l];
+      }
+      scatter(k, rows[0].cluster[l / 3], l % 3, by_pose, by_velocity);
+    }
+  // add_transport has counted the wrench's force on bodies off their clusters' centres; the rows'
+  // gradients above hold the whole of it.
+  for (int side = 0; side < 2; ++side) {
+    const int body = side == 0 ? specs[0].a : specs[0].b;
+    const Placement& place = layout_->placements[body];
+    if (place.cluster < 0 || place.is_trivial) continue;
+    const Motion<double>&m = dynamics_->motion()[body],
+                       &centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
+    double along_lever = 0.0;
+    for (int r = 0; r < count; ++r)
+      along_lever += wrench[r] * ((m.x - centre.x) * rows[r].j[3 * side].v + (m.y - centre.y) * rows[r].j[3 * side + 1].v);
+    put(stiffness_, 3 * place.cluster + 2, 3 * place.cluster + 2, along_lever);
+  }
+  // Normal forces, through the contacts that feel the motion.
+  normal_.assign(moved.contact_force, moved.contact_force + dynamics_->system().contact_count);
+  moved.contact_force = normal_.data();
+  for (const PairJacobian& part : parts_) {
+    if (part.contact < 0) continue;
+    double slope[3];
+    difference(normal_[part.contact], k_relative_step * (1.0 + normal_[part.contact]), slope);
+    for (int k = 0; k < 6; ++k) {
+      double along = 0.0;
+      for (int r = 0; r < count; ++r) along += rows[r].j[k].v * slope[r];
+      if (along == 0.0) continue;
+      // To body coordinates of the contact, then to its clusters'.
+      for (int side = 0; side < 2; ++side) {
+        const int body = side == 0 ? part.a : part.b;
+        const Placement& place = layout_->placements[body];
+        if (place.cluster < 0) continue;
+        Vec3 by_q = part.normal.segment<3>(3 * side), by_v = part.normal.segment<3>(6 + 3 * side);
+        if (!place.is_trivial) {
+          const Motion<double>& centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
+          const double x = dynamics_->motion()[body].x - centre.x, y = dynamics_->motion()[body].y - centre.y;
+          by_q[2] += -y * by_q[0] + x * by_q[1] - centre.omega * (x * by_v[0] + y * by_v[1]);
+          by_v[2] += -y * by_v[0] + x * by_v[1];
+        }
+        for (int c = 0; c < 3; ++c) scatter(k, place.cluster, c, along * by_q[c], along * by_v[c]);
+      }
+    }
+  }
+}
+
+} // namespace steplap

@@ -1,0 +1,68 @@
+// The equations of motion linearised at a state, in the coordinates of the present layout's clusters.
+//
+// With the generalised forces Q(q, v, t), the multipliers λ of the layout's active rows and J their
+// gradients, M a = Q + Jᵀλ, J a = γ (27), a small change of state changes the accelerations by
+//   M δa − Jᵀ δλ = K δq + D δv,   K = ∂(Q + Jᵀλ)/∂q at constant λ,  D = ∂Q/∂v,
+//   J δa         = G_q δq + G_v δv,   G = ∂(γ − J a)/∂(q, v) at constant a.
+// K and D have the sign of the force: a spring's K is negative. They are exact: elements and rows are
+// differentiated by dual numbers (dual.h). The one exception is the slip law of friction, whose wrench
+// along its rows is differenced by the relative velocity, the relative pose and the normal forces of its
+// own pair of bodies, one at a time; all that follows from geometry is exact there too. (Coulomb's law
+// depends on the normal forces alone, linearly: exact up to rounding.)
+//
+// Locked coordinates (drives) do not follow the state: their columns are left out, their rows have zero
+// inverse mass. Modes are those of the state; the linearisation holds while no watch value crosses zero.
+#pragma once
+
+#include "mbd/dynamics/dynamics.h"
+
+#include <Eigen/SparseCore>
+
+namespace steplap {
+
+class Linearization {
+public:
+  using Triplet = Eigen::Triplet<double, int>;
+
+  /// At (t, y) packed; evaluates the rates there. The modes are those last given to `dynamics`. Entries
+  /// come in the same order for every state of one layout, so that a sparse pattern can be kept.
+  void evaluate(Dynamics& dynamics, double t, const double* y);
+
+  [[nodiscard]] int coordinates() const { return n_; } ///< of the clusters: x, y, θ of each
+  [[nodiscard]] int rows() const { return m_; }        ///< active constraint rows
+  /// Inverse masses and inertias, 1/kg and 1/(kg m²); zero where locked. n entries.
+  [[nodiscard]] const std::vector<double>& inverse_mass() const { return *inverse_mass_; }
+
+  // Sparse: duplicates add up. SI units, rad.
+  [[nodiscard]] const std::vector<Triplet>& stiffness() const { return stiffness_; } ///< K, n × n
+  [[nodiscard]] const std::vector<Triplet>& damping() const { return damping_; }     ///< D, n × n
+  [[nodiscard]] const std::vector<Triplet>& gradient() const { return gradient_; }   ///< J, m × n
+  [[nodiscard]] const std::vector<Triplet>& bias_by_pose() const { return bias_q_; } ///< G_q, m × n
+  [[nodiscard]] const std::vector<Triplet>& bias_by_velocity() const { return bias_v_; } ///< G_v, m × n
+
+  /// Any of them as a dense matrix of `rows` rows.
+  [[nodiscard]] MatX dense(const std::vector<Triplet>& entries, int rows) const;
+  /// ∂a/∂q and ∂a/∂v (n × n each) of free coordinates, constraints eliminated: for small scenes.
+  void acceleration_by_state(MatX& by_pose, MatX& by_velocity) const;
+
+private:
+  void add_forces(const PairJacobian& part);
+  void add_transport();
+  void add_row(std::size_t r);
+  void add_sliding(int friction);
+  void add_body_block(int row_body, int column_body, const Mat3& by_pose, const Mat3& by_velocity);
+  void put(std::vector<Triplet>& entries, int row, int column, double value);
+
+  Dynamics* dynamics_ = nullptr;
+  const Layout* layout_ = nullptr;
+  int n_ = 0, m_ = 0;
+  const double* acceleration_ = nullptr; ///< n
+  const std::vector<double>* inverse_mass_ = nullptr;
+  std::vector<double> dy_;
+  std::vector<PairJacobian> parts_;
+  std::vector<Triplet> stiffness_, damping_, gradient_, bias_q_, bias_v_;
+  std::vector<Motion<double>> motion_;   ///< scratch of the slip law's differences
+  std::vector<double> normal_;
+};
+
+} // namespace steplap

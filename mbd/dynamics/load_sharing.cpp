@@ -1,0 +1,389 @@
+#include "mbd/dynamics/load_sharing.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace steplap {
+
+namespace {
+
+// What a row is beyond the others, of its length: a box that has turned by a microradian. The pivots of the constraint
+// equations are squares of it and leave rows out below 3e-7: whatever they leave out is found here.
+constexpr double k_dependent = 1e-6;
+// Rows of a group move against each other: absolute, m/s and m/s², and of the terms that make up their motion; or are held
+// at places that are apart, m: less than what projection is content with (IntegratorSettings).
+constexpr double k_least_rate = 1e-12, k_least_acceleration = 1e-10, k_least_gap = 3e-13;
+constexpr double k_place_rounding = 8.0 * std::numeric_limits<double>::epsilon(); // of coordinates
+constexpr double k_discord = 1e-9;
+constexpr double k_open = 1e-6; // of a capacity: bounds of a usage that differ by more have not met
+// Parts of a null vector below this are rounding.
+constexpr double k_no_part = 1e-11;
+// Dense algebra: joints of larger parts than this without friction keep what the solver of the equations gives them.
+constexpr int k_most_bodies = 200;
+
+// Gradient of a row in the coordinates of its two bodies.
+struct RowGradient {
+  double side[2][3];
+};
+
+RowGradient gradient_at(const MeasureValue<double>& m) {
+  const Pair<double>& d = m.direction;
+  return {{{d.x, d.y, cross(m.lever_a, d) + m.couple}, {-d.x, -d.y, -cross(m.lever_b, d) - m.couple}}};
+}
+
+RowGradient gradient_of(const RowSpec& row, const std::vector<Motion<double>>& motion) {
+  return gradient_at(evaluate_row<false>(row, motion.data()));
+}
+
+// Null vectors of a matrix, each with the only entry of one of its columns ("pivot"); entries of rounding are zero.
+struct NullSpace {
+  MatX vectors;
+  std::vector<int> pivots;
+};
+
+using Factor = Eigen::ColPivHouseholderQR<MatX>;
+
+// Eigen's own does not take matrices without rows or columns.
+struct RankFactor {
+  explicit RankFactor(const MatX& matrix) : rows(matrix.rows()), cols(matrix.cols()), qr(std::max<Eigen::Index>(rows, 1), std::max<Eigen::Index>(cols, 1)) {
+    if (rows == 0 || cols == 0) return;
+    qr.setThreshold(k_dependent);
+    qr.compute(matrix);
+    rank = qr.rank();
+  }
+  // What no column reaches: orthonormal.
+  [[nodiscard]] MatX complement() const {
+    if (rank == 0) return MatX::Identity(rows, rows);
+    const MatX q = qr.householderQ() * MatX::Identity(rows, rows);
+    return q.rightCols(rows - rank);
+  }
+  [[nodiscard]] NullSpace null_space() const {
+    const Eigen::Index k = cols - rank;
+    NullSpace found;
+    MatX vectors = MatX::Zero(cols, k);
+    vectors.bottomRows(k).setIdentity();
+    if (rank == 0) {
+      for (Eigen::Index j = 0; j < k; ++j) found.pivots.push_back(static_cast<int>(j));
+      found.vectors = vectors;
+      return found;
+    }
+    if (k == 0) { // nothing is left open
+      found.vectors = vectors;
+      return found;
+    }
+    vectors.topRows(rank) = -qr.matrixR().topLeftCorner(rank, rank).template triangularView<Eigen::Upper>().solve(
+        qr.matrixR().topRightCorner(rank, k));
+    vectors = (vectors.array().abs() < k_no_part).select(0.0, vectors);
+    found.vectors = qr.colsPermutation() * vectors;
+    for (Eigen::Index j = 0; j < k; ++j) found.pivots.push_back(qr.colsPermutation().indices()[rank + j]);
+    return found;
+  }
+
+  Eigen::Index rows, cols, rank = 0;
+  Factor qr;
+};
+
+int find_root(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+} // namespace
+
+// Bounded rows last.
+std::vector<LoadSharing::HeldRow> LoadSharing::held_rows(const State& state) const {
+  std::vector<HeldRow> rows, bounded;
+  for (int r = 0; r < static_cast<int>(system_.rows.size()); ++r) rows.push_back({&system_.rows[r], -1, r});
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    if (state.friction[f].phase != FrictionPhase::stick) continue;
+    const FrictionUnit& unit = system_.frictions[f];
+    const RowSpec* specs = unit.friction->rows(state.friction[f]);
+    const bool is_bounded = !unit.friction->never_slips();
+    for (int r = 0; r < unit.friction->dimension(); ++r)
+      (is_bounded ? bounded : rows).push_back({specs + r, f, unit.row + r, is_bounded});
+  }
+  rows.insert(rows.end(), bounded.begin(), bounded.end());
+  return rows;
+}
+
+LoadSharing::LoadSharing(const System& system, const State& state, const std::vector<Motion<double>>& motion)
+    : system_(system), group_of_(system.frictions.size(), -1) {
+  // Parts: bodies connected by rows; the ground connects nothing.
+  const std::vector<HeldRow> rows = held_rows(state);
+  std::vector<int> parent(system.bodies.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  for (const HeldRow& row : rows)
+    if (row.spec->a != k_ground && row.spec->b != k_ground)
+      parent[find_root(parent, row.spec->a)] = find_root(parent, row.spec->b);
+  std::vector<int> part_of(system.bodies.size(), -1), size(system.bodies.size(), 0);
+  for (int i = 1; i < system.body_count(); ++i) ++size[find_root(parent, i)];
+  std::vector<Part> parts;
+  for (const HeldRow& row : rows) {
+    const int root = find_root(parent, row.spec->a != k_ground ? row.spec->a : row.spec->b);
+    if (root == k_ground) continue;
+    if (part_of[root] < 0) {
+      part_of[root] = static_cast<int>(parts.size());
+      parts.emplace_back();
+    }
+    parts[part_of[root]].rows.push_back(row);
+  }
+  std::vector<int> body_index(system.bodies.size());
+  for (Part& part : parts) {
+    const bool has_friction = part.rows.back().is_bounded;
+    has_friction_ = has_friction_ || has_friction;
+    const RowSpec& first = *part.rows.front().spec;
+    const int bodies = size[find_root(parent, first.a != k_ground ? first.a : first.b)];
+    if (!has_friction && bodies > k_most_bodies) continue;
+    analyze(part, motion, body_index);
+    if (part.null.cols() > 0) parts_.push_back(std::move(part));
+  }
+}
+
+void LoadSharing::analyze(Part& part, const std::vector<Motion<double>>& motion, std::vector<int>& body_index) {
+  std::fill(body_index.begin(), body_index.end(), -1);
+  int bodies = 0;
+  for (const HeldRow& row : part.rows)
+    for (const int body : {row.spec->a, row.spec->b})
+      if (body != k_ground && body_index[body] < 0) body_index[body] = bodies++;
+  const auto count = static_cast<Eigen::Index>(part.rows.size());
+  MatX gradient = MatX::Zero(3 * bodies, count);
+  VecX inverse_norm = VecX::Zero(count), mobility = VecX::Zero(count);
+  for (Eigen::Index r = 0; r < count; ++r) {
+    const RowSpec& spec = *part.rows[r].spec;
+    const RowGradient g = gradient_of(spec, motion);
+    for (const int side : {0, 1}) {
+      const int body = side == 0 ? spec.a : spec.b;
+      if (body == k_ground) continue;
+      const BodyData& data = system_.bodies[body];
+      for (int c = 0; c < 3; ++c) {
+        gradient(3 * body_index[body] + c, r) += g.side[side][c];
+        mobility[r] += g.side[side][c] * g.side[side][c] / (c < 2 ? data.mass : data.inertia);
+      }
+    }
+    const double norm = gradient.col(r).norm();
+    inverse_norm[r] = norm > 0.0 ? 1.0 / norm : 0.0;
+    if (!part.rows[r].is_bounded) part.free_count = static_cast<int>(r) + 1;
+  }
+  gradient = gradient * inverse_norm.asDiagonal();
+  const Eigen::Index free = part.free_count, bounded = count - free;
+
+  // Joints alone; then what motions they leave, and which sticking wrenches do nothing on those.
+  const RankFactor joints(gradient.leftCols(free));
+  const NullSpace idle = joints.null_space();
+  NullSpace shared;
+  if (bounded > 0) {
+    MatX held = joints.complement().transpose() * gradient.rightCols(bounded);
+    held = (held.array().abs() < k_dependent).select(0.0, held);
+    shared = RankFactor(held).null_space();
+  }
+  const Eigen::Index k = shared.vectors.cols();
+  part.shared_count = static_cast<int>(k);
+  part.null.setZero(count, k + idle.vectors.cols());
+  part.null.topRightCorner(free, idle.vectors.cols()) = idle.vectors;
+  if (k > 0) {
+    part.null.bottomLeftCorner(bounded, k) = shared.vectors;
+    if (joints.rank > 0) part.null.topLeftCorner(free, k) = joints.qr.solve(-gradient.rightCols(bounded) * shared.vectors);
+  }
+  part.null = inverse_norm.asDiagonal() * part.null;
+  const auto vectors = part.null.topRightCorner(free, idle.vectors.cols());
+  const MatX weighted = vectors.transpose() * mobility.head(free).asDiagonal();
+  if (vectors.cols() > 0) part.settle = -(weighted * vectors).ldlt().solve(weighted);
+  if (k > 0) make_groups(part, shared.pivots, shared.vectors);
+}
+
+// Elements that a vector loads belong together.
+void LoadSharing::make_groups(Part& part, const std::vector<int>& pivots, const MatX& basis) {
+  const auto element_of = [&](Eigen::Index row) { return part.rows[part.free_count + row].friction; };
+  std::vector<int> parent(system_.frictions.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  for (Eigen::Index j = 0; j < basis.cols(); ++j)
+    for (Eigen::Index r = 0; r < basis.rows(); ++r)
+      if (basis(r, j) != 0.0) parent[find_root(parent, element_of(r))] = find_root(parent, element_of(pivots[j]));
+  std::vector<int> roots;
+  for (Eigen::Index j = 0; j < basis.cols(); ++j) roots.push_back(find_root(parent, element_of(pivots[j])));
+  std::vector<int> distinct = roots;
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  for (const int root : distinct) {
+    std::vector<int> rows, frictions, slots, dimension, columns, own_pivots;
+    std::vector<double> length;
+    double gyration = 0.0;
+    for (Eigen::Index r = 0; r < basis.rows(); ++r) {
+      const HeldRow& row = part.rows[part.free_count + r];
+      if (find_root(parent, row.friction) != root) continue;
+      if (frictions.empty() || frictions.back() != row.friction) {
+        frictions.push_back(row.friction);
+        dimension.push_back(0);
+        group_of_[row.friction] = static_cast<int>(groups_.size());
+      }
+      ++dimension.back();
+      rows.push_back(static_cast<int>(r));
+      slots.push_back(row.slot);
+      for (const int body : {row.spec->a, row.spec->b})
+        if (body != k_ground)
+          gyration = std::max(gyration, std::sqrt(system_.bodies[body].inertia / system_.bodies[body].mass));
+    }
+    for (const int r : rows)
+      length.push_back(part.rows[part.free_count + r].spec->kind == MeasureKind::angle ? gyration : 1.0);
+    for (std::size_t j = 0; j < roots.size(); ++j)
+      if (roots[j] == root) {
+        columns.push_back(static_cast<int>(j));
+        own_pivots.push_back(static_cast<int>(std::find(rows.begin(), rows.end(), pivots[j]) - rows.begin()));
+      }
+    MatX own(rows.size(), columns.size());
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      for (std::size_t j = 0; j < columns.size(); ++j)
+        own(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(j)) = part.null(part.free_count + rows[r], columns[j]);
+    part.groups.push_back(static_cast<int>(groups_.size()));
+    part.columns.push_back(std::move(columns));
+    groups_.push_back({std::move(frictions), std::move(slots),
+                       LeastUsage(std::move(dimension), std::move(own), std::move(own_pivots), std::move(length))});
+  }
+}
+
+bool LoadSharing::holds_at(const std::vector<Motion<double>>& motion) const {
+  for (const Part& part : parts_) {
+    const Eigen::Index vectors = part.null.cols();
+    MatX sum = MatX::Zero(3 * static_cast<Eigen::Index>(system_.bodies.size()), vectors);
+    VecX size = VecX::Zero(vectors);
+    for (std::size_t r = 0; r < part.rows.size(); ++r) {
+      const RowSpec& spec = *part.rows[r].spec;
+      const RowGradient g = gradient_of(spec, motion);
+      const auto row = part.null.row(static_cast<Eigen::Index>(r));
+      for (const int side : {0, 1}) {
+        const int body = side == 0 ? spec.a : spec.b;
+        if (body == k_ground) continue;
+        for (int c = 0; c < 3; ++c) {
+          sum.row(3 * body + c) += g.side[side][c] * row;
+          size += std::abs(g.side[side][c]) * row.cwiseAbs().transpose();
+        }
+      }
+    }
+    for (Eigen::Index j = 0; j < vectors; ++j)
+      if (sum.col(j).lpNorm<Eigen::Infinity>() > k_dependent * size[j]) return false;
+  }
+  return true;
+}
+
+namespace {
+
+class FrictionGauges final : public Gauges {
+public:
+  FrictionGauges(const System& system, const Evaluation& evaluation, const std::vector<int>& frictions)
+      : system_(system), evaluation_(evaluation), frictions_(frictions) {}
+  [[nodiscard]] double support(int part, const double* rate) const override {
+    const int f = frictions_[part];
+    return system_.frictions[f].friction->support(evaluation_, evaluation_.friction[f], rate);
+  }
+  double gauge(int part, const double* wrench, double* normal) const override {
+    const int f = frictions_[part];
+    return system_.frictions[f].friction->gauge(evaluation_, evaluation_.friction[f], wrench, normal);
+  }
+
+private:
+  const System& system_;
+  const Evaluation& evaluation_;
+  const std::vector<int>& frictions_;
+};
+
+} // namespace
+
+double LoadSharing::discord(int group, const Evaluation& e, const double* acceleration) const {
+  double worst = 0.0;
+  for (const Part& part : parts_)
+    for (std::size_t g = 0; g < part.groups.size(); ++g) {
+      if (part.groups[g] != group) continue;
+      for (const int column : part.columns[g]) {
+        double gap = 0.0, farthest = 0.0, rate = 0.0, rate_terms = 0.0, second = 0.0, second_terms = 0.0, length = 0.0;
+        for (std::size_t r = 0; r < part.rows.size(); ++r) {
+          const double n = part.null(static_cast<Eigen::Index>(r), column);
+          if (n == 0.0) continue;
+          const RowSpec& spec = *part.rows[r].spec;
+          const auto m = evaluate_row<true>(spec, e.motion);
+          const SignalJet target = row_target(spec, e.memory, e.t);
+          double along = m.bias - target.acceleration, terms = std::abs(m.bias) + std::abs(target.acceleration);
+          double rate_sum = std::abs(m.rate) + std::abs(target.rate);
+          const RowGradient j = gradient_at(m);
+          for (const int side : {0, 1}) {
+            const int body = side == 0 ? spec.a : spec.b;
+            if (body == k_ground) continue;
+            farthest = std::max({farthest, std::abs(e.motion[body].x), std::abs(e.motion[body].y)});
+            const double v[3] = {e.motion[body].vx, e.motion[body].vy, e.motion[body].omega};
+            for (int c = 0; c < 3; ++c) {
+              const double term = j.side[side][c] * acceleration[3 * body + c];
+              along += term;
+              terms += std::abs(term);
+              rate_sum += std::abs(j.side[side][c] * v[c]);
+            }
+          }
+          gap += n * off_target(spec, m.value, target.value);
+          rate += n * (m.rate - target.rate);
+          rate_terms += std::abs(n) * rate_sum;
+          second += n * along;
+          second_terms += std::abs(n) * terms;
+          length += std::abs(n);
+        }
+        worst = std::max({worst, std::abs(gap) / ((k_least_gap + k_place_rounding * farthest) * length), std::abs(rate) / (k_discord * rate_terms + k_least_rate * length),
+                          std::abs(second) / (k_discord * second_terms + k_least_acceleration * length)});
+      }
+    }
+  return worst;
+}
+
+void LoadSharing::solve(const Evaluation& evaluation, const double* friction_force) {
+  for (SharingGroup& group : groups_) {
+    VecX wrench(group.slot.size());
+    for (std::size_t r = 0; r < group.slot.size(); ++r) wrench[static_cast<Eigen::Index>(r)] = friction_force[group.slot[r]];
+    group.least.solve(FrictionGauges(system_, evaluation, group.frictions), wrench);
+    // Pivots that run out leave bounds from both sides: only between them is it open whether the group holds.
+    if (group.least.usage() > 1.0 && group.least.lower() < 1.0 - k_open)
+      throw NumericalFailure("whether '" + system_.element_names[system_.frictions[group.frictions.front()].element] +
+                             "' and what shares its load hold cannot be told at t = " + std::to_string(evaluation.t) + " s: between " +
+                             std::to_string(group.least.lower()) + " and " + std::to_string(group.least.usage()) +
+                             " of the capacity are needed. Give feet of one pair of bodies a common coulomb_stick");
+  }
+}
+
+std::vector<Release> LoadSharing::releases(int index) const {
+  const SharingGroup& group = groups_[index];
+  std::vector<Release> found;
+  Eigen::Index row = 0;
+  for (const int f : group.frictions) {
+    Release release;
+    release.friction = f;
+    bool moves = false;
+    for (int r = 0; r < system_.frictions[f].friction->dimension(); ++r, ++row) {
+      release.wrench[r] = group.least.wrench()[row];
+      moves = moves || group.least.rates()[row] != 0.0;
+    }
+    if (moves) found.push_back(release);
+  }
+  return found;
+}
+
+void LoadSharing::settle(double* row_force, double* friction_force) const {
+  for (const Part& part : parts_) {
+    const auto slot = [&](Eigen::Index r) -> double& {
+      const HeldRow& row = part.rows[r];
+      return row.friction < 0 ? row_force[row.slot] : friction_force[row.slot];
+    };
+    VecX z = VecX::Zero(part.null.cols());
+    for (std::size_t g = 0; g < part.groups.size(); ++g) {
+      const VecX& own = groups_[part.groups[g]].least.settled();
+      for (std::size_t j = 0; j < part.columns[g].size(); ++j) z[part.columns[g][j]] = own[static_cast<Eigen::Index>(j)];
+    }
+    VecX force(part.null.rows());
+    for (Eigen::Index r = 0; r < force.size(); ++r) force[r] = slot(r);
+    force += part.null.leftCols(part.shared_count) * z.head(part.shared_count);
+    if (part.settle.rows() > 0)
+      force += part.null.rightCols(part.settle.rows()) * (part.settle * force.head(part.free_count));
+    for (Eigen::Index r = 0; r < force.size(); ++r) slot(r) = force[r];
+  }
+}
+
+} // namespace steplap

@@ -1,0 +1,221 @@
+// Dynamics onto its constraints: projection of states, rates near singular positions, and what an error
+// estimate there may leave out.
+#include "mbd/dynamics/dynamics.h"
+#include "mbd/base/number_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_max_projection_iterations = 60;
+constexpr int k_iterations_per_factorization = 3;
+// Damping of a projection near a singular position, at most this fraction of the diagonal.
+constexpr double k_largest_damping = 1e-3;
+// Below this smallest pivot an error estimate is freed from what projection will take away: without it
+// tight tolerances are not met beside a flat position, where accelerations across it are mostly rounding.
+constexpr double k_removal_pivot = 1e-2;
+// A factorisation serves once more if the residual has fallen to this share.
+constexpr double k_chord_worth = 0.1;
+// Below this one no factorisation serves twice in a projection, and steps are damped.
+constexpr double k_chord_pivot = 1e-2;
+// What rounding leaves of a residual: a position is a sum of a few terms as large as the scene.
+constexpr double k_rounded_terms = 32.0;
+// Of the fastest rate (or 1 m/s): more than this left of a velocity residual is no rounding.
+constexpr double k_rate_left = 1e-6;
+double position_rounding(const double* q, int n) {
+  double size = 0.0;
+  for (int i = 0; i < n; ++i) size = std::max(size, std::abs(q[i]));
+  return k_rounded_terms * std::numeric_limits<double>::epsilon() * size;
+}
+// A projection "as closely as rounding allows" aims at this share of that, and is not content with the first
+// iteration that no longer helps.
+constexpr double k_close = 1.0 / 16.0;
+int patience_for(double tolerance, const double* y, int n) {
+  return tolerance <= k_close * position_rounding(y, n) ? 3 : 0;
+}
+
+} // namespace
+
+Residual Dynamics::constraint_values(double t, const double* y) {
+  t = std::min(t, time_cap_);
+  evaluation_.t = t;
+  place(t, y, y + coordinate_count());
+  evaluate_rows();
+  Residual residual;
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) {
+    residual.position = std::max(residual.position, std::abs(row_value_[r]));
+    residual.velocity = std::max(residual.velocity, std::abs(row_rate_[r]));
+  }
+  return residual;
+}
+
+Residual Dynamics::residual(double t, const double* y) {
+  if (layout_->active.empty()) return {};
+  is_factored_ = false;
+  return constraint_values(t, y);
+}
+
+void Dynamics::fail_projection(double t) const {
+  const Layout& layout = *layout_;
+  int worst = 0;
+  for (std::size_t r = 1; r < layout.active.size(); ++r)
+    if (!(std::abs(row_value_[r]) <= std::abs(row_value_[worst]))) worst = static_cast<int>(r);
+  const RowSpec& spec = *layout.active[worst].spec;
+  throw ConstraintFailure("constraint " + std::string(spec.quantity) + " of '" +
+                              system_.element_names[spec.element] + "' cannot be met at t = " +
+                              std::to_string(t) + " s: residual " + number_text(row_value_[worst]),
+                          spec.element, row_value_[worst], spec.kind == MeasureKind::angle);
+}
+
+void Dynamics::fail_velocities(double t) const {
+  const Layout& layout = *layout_;
+  std::size_t worst = 0;
+  for (std::size_t r = 1; r < layout.active.size(); ++r)
+    if (!(std::abs(row_rate_[r]) <= std::abs(row_rate_[worst]))) worst = r;
+  const RowSpec& spec = *layout.active[worst].spec;
+  throw NumericalFailure("the rate of constraint " + std::string(spec.quantity) + " of '" + system_.element_names[spec.element] +
+                         "' cannot be met at t = " + number_text(t) + " s: " + number_text(row_rate_[worst]) +
+                         (spec.kind == MeasureKind::angle ? " rad/s" : " m/s") +
+                         " are left. It contradicts other joints or drives there");
+}
+
+void Dynamics::factor_rows(double shift) {
+  layout_->schur.factor(layout_->schur_rows, shift);
+  is_factored_ = true;
+}
+
+// change += W Jᵀ A⁻¹ right_side_.
+void Dynamics::add_response(double* change) {
+  const Layout& layout = *layout_;
+  layout.schur.solve(layout.schur_rows, right_side_.data());
+  for (std::size_t r = 0; r < layout.active.size(); ++r)
+    for (int side = 0; side < 2; ++side) {
+      const SchurRow& row = layout.schur_rows[r];
+      if (row.body[side] < 0) continue;
+      for (int c = 0; c < 3; ++c)
+        change[3 * row.body[side] + c] += row.wj[side][c] * right_side_[r];
+    }
+}
+
+bool Dynamics::is_near_singular() const {
+  return !layout_->active.empty() && is_factored_ && layout_->schur.smallest_pivot() < k_removal_pivot;
+}
+
+void Dynamics::keep_allowed(double* change) {
+  const Layout& layout = *layout_;
+  if (layout.active.empty()) return;
+  if (!is_factored_) factor_rows();
+  for (std::size_t r = 0; r < layout.active.size(); ++r) {
+    const SchurRow& row = layout.schur_rows[r];
+    double sum = 0.0;
+    for (int side = 0; side < 2; ++side)
+      if (row.body[side] >= 0)
+        for (int c = 0; c < 3; ++c) sum -= row.j[side][c] * change[3 * row.body[side] + c];
+    right_side_[r] = sum;
+  }
+  add_response(change);
+}
+
+void Dynamics::remove_held(double* change) {
+  if (!is_near_singular()) return;
+  keep_allowed(change);
+  keep_allowed(change + coordinate_count());
+}
+
+Residual Dynamics::project(double t, double* y, double tolerance) {
+  const Layout& layout = *layout_;
+  const int n = coordinate_count();
+  aim_locks(std::min(t, time_cap_));
+  for (std::size_t i = 0; i < layout.locks.size(); ++i) {
+    const int k = 3 * layout.locks[i].cluster + layout.locks[i].coordinate;
+    y[k] = lock_target_[i].value;
+    y[n + k] = lock_target_[i].rate;
+  }
+  if (layout.active.empty()) return {};
+  // Kilometres from the origin a position is not known to a picometre.
+  double farthest = 0.0;
+  for (int i = 0; i < n; ++i)
+    if (i % 3 != 2) farthest = std::max(farthest, std::abs(y[i]));
+  const double least = 8.0 * std::numeric_limits<double>::epsilon() * farthest;
+  const bool is_close = tolerance == 0.0;
+  const Residual first = constraint_values(t, y);
+  Residual now = first;
+  if (!reach_positions(t, y, is_close ? k_close * position_rounding(y, n) : std::max(tolerance, least), now))
+    fail_projection(t);
+  reach_velocities(t, y, now, is_close ? k_close * position_rounding(y + n, n) : std::max(tolerance, least));
+  return first;
+}
+
+void Dynamics::close_velocities(double t, double* y) {
+  double* const rates = y + coordinate_count();
+  if (!layout_->active.empty()) reach_velocities(t, y, constraint_values(t, y), k_close * position_rounding(rates, coordinate_count()));
+}
+
+// The factorisation of the step's last evaluation serves while it converges fast. Near a singular position it
+// does not serve, and Newton's steps would be as long as the residual is to the distance from there: damped
+// by the residual itself they stay short, and still converge quadratically (J. Fan, Y. Yuan, Computing 74
+// (2005) 23, for Levenberg–Marquardt with this choice).
+bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& now) {
+  Layout& layout = *layout_;
+  int patience = patience_for(tolerance, y, coordinate_count());
+  for (int iteration = 0; now.position > tolerance; ++iteration) {
+    if (iteration == k_max_projection_iterations || !std::isfinite(now.position)) return false;
+    if (is_factored_ && layout.schur.smallest_pivot() < k_chord_pivot) is_factored_ = false;
+    if (!is_factored_ || iteration % k_iterations_per_factorization == k_iterations_per_factorization - 1) {
+      factor_rows();
+      if (layout.schur.smallest_pivot() < k_chord_pivot) factor_rows(std::min(now.position, k_largest_damping));
+    }
+    const double before = now.position;
+    move_by(row_value_, y);
+    now = constraint_values(t, y);
+    if (now.position > k_chord_worth * before) is_factored_ = false;
+    if (now.position >= 0.5 * before && now.position <= position_rounding(y, coordinate_count()) && --patience < 0)
+      break;
+  }
+  return true;
+}
+
+// The velocities that the constraints allow differ from those at hand by the solution of a linear system: with a
+// few rows that are far from a singularity one step leaves rounding, and is not looked at again.
+void Dynamics::reach_velocities(double t, double* y, Residual now, double tolerance) {
+  int patience = patience_for(tolerance, y + coordinate_count(), coordinate_count());
+  for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
+    factor_rows();
+    const double before = now.velocity;
+    move_by(row_rate_, y + coordinate_count());
+    if (layout_->schur.is_small() && !layout_->schur.is_near_singular() && !layout_->schur.is_singular()) return;
+    now = constraint_values(t, y);
+    if (now.velocity >= 0.5 * before && --patience < 0) break; // rounding of fast motions
+  }
+  double fastest = 0.0;
+  for (int i = 0; i < coordinate_count(); ++i) fastest = std::max(fastest, std::abs(y[coordinate_count() + i]));
+  if (!(now.velocity <= tolerance + k_rate_left * (1.0 + fastest)))
+    fail_velocities(t);
+}
+
+void Dynamics::move_by(const std::vector<double>& residual, double* target) {
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) right_side_[r] = -residual[r];
+  add_response(target);
+}
+
+// Near a singular position what a stage is off the constraints by, a power of the step size, is divided by the
+// distance from there: accelerations grow beyond all bounds unless it lies on the constraints. The rates of
+// the nearest state that does are as smooth, and the same where a step begins and ends.
+void Dynamics::rates_nearby(double t, const double* y, double* dy) {
+  const int n = coordinate_count();
+  std::copy(y, y + dimension(), placed_.begin());
+  Residual off = constraint_values(t, y);
+  if (off.position <= position_rounding(y, n) && off.velocity <= position_rounding(y + n, n)) {
+    rates_at(t, y, dy);
+    return;
+  }
+  const bool is_placed = reach_positions(t, placed_.data(), position_rounding(y, n), off);
+  if (is_placed) reach_velocities(t, placed_.data(), off, position_rounding(y + n, n));
+  rates_at(t, is_placed ? placed_.data() : y, dy);
+}
+
+} // namespace steplap

@@ -1,0 +1,316 @@
+#include "mbd/dynamics/schur.h"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+using Pattern = Eigen::SparseMatrix<double>;
+
+// Pairs (i, j, side i, side j) of rows that share a body.
+struct Coupling {
+  int i, j;
+  unsigned char side_i, side_j;
+};
+
+constexpr int k_max_refinements = 4;
+
+int count_bodies(const std::vector<SchurRow>& rows) {
+  int count = 0;
+  for (const SchurRow& row : rows) count = std::max({count, row.body[0] + 1, row.body[1] + 1});
+  return count;
+}
+
+std::vector<Coupling> couplings(const std::vector<SchurRow>& rows, int body_count) {
+  std::vector<std::vector<std::pair<int, unsigned char>>> at_body(body_count);
+  for (int i = 0; i < static_cast<int>(rows.size()); ++i)
+    for (unsigned char side = 0; side < 2; ++side)
+      if (rows[i].body[side] >= 0) at_body[rows[i].body[side]].push_back({i, side});
+  std::vector<Coupling> result;
+  for (const auto& members : at_body)
+    for (const auto& [i, side_i] : members)
+      for (const auto& [j, side_j] : members) result.push_back({i, j, side_i, side_j});
+  return result;
+}
+
+std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Coupling& c : coupled) entries.emplace_back(c.i, c.j, 1.0);
+  for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
+  Pattern pattern(n, n);
+  pattern.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation(n);
+  Eigen::AMDOrdering<int> ordering;
+  ordering(pattern, permutation);
+  std::vector<int> order(n);
+  for (int k = 0; k < n; ++k) order[k] = permutation.indices()[k];
+  return order;
+}
+
+} // namespace
+
+void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
+  n_ = static_cast<int>(rows.size());
+  length_ = std::max(1.0, n_ / k_usual_rows);
+  body_count_ = count_bodies(rows);
+  const std::vector<Coupling> coupled = couplings(rows, body_count_);
+  right_.assign(n_, 0.0);
+  correction_.assign(n_, 0.0);
+  response_.assign(3 * static_cast<std::size_t>(body_count_), 0.0);
+  position_.resize(n_);
+  inverse_d_.assign(n_, 0.0);
+  if (n_ <= k_max_dense) {
+    dense_products_.clear();
+    for (int k = 0; k < n_; ++k) position_[k] = k;
+    const auto place = [](int row, std::size_t member, int side) {
+      return static_cast<std::uint16_t>((row * sizeof(SchurRow) + member) / sizeof(double) + 3 * side);
+    };
+    dense_turns_.clear();
+    dense_constant_.fill(0.0);
+    for (const Coupling& c : coupled) {
+      if (c.j > c.i) continue;
+      const SchurRow &row = rows[c.i], &other = rows[c.j];
+      const auto entry = static_cast<std::uint16_t>(c.i * n_ + c.j);
+      const DenseProduct product{entry, place(c.i, offsetof(SchurRow, wj), c.side_i),
+                                 place(c.j, offsetof(SchurRow, j), c.side_j)};
+      if (row.is_constant && other.is_constant)
+        dense_constant_[entry] += row.wj[c.side_i][2] * other.j[c.side_j][2];
+      else (row.is_constant || other.is_constant ? dense_turns_ : dense_products_).push_back(product);
+    }
+    return;
+  }
+  order_ = fill_reducing_order(n_, coupled);
+  for (int k = 0; k < n_; ++k) position_[order_[k]] = k;
+
+  // Upper triangle of the permuted matrix, column by column: products that make up A(i, k), i ≤ k.
+  std::vector<std::vector<Product>> by_column(n_);
+  for (const Coupling& c : coupled) {
+    const int k = position_[c.i], i = position_[c.j];
+    if (i <= k) by_column[k].push_back({c.j, i, c.side_i, c.side_j});
+  }
+  product_begin_.assign(1, 0);
+  products_.clear();
+  for (auto& column : by_column) {
+    std::sort(column.begin(), column.end(),
+              [](const Product& x, const Product& y) { return x.position < y.position; });
+    products_.insert(products_.end(), column.begin(), column.end());
+    product_begin_.push_back(static_cast<int>(products_.size()));
+  }
+
+  // Elimination tree and the pattern of each row of L (T. A. Davis, Direct Methods for Sparse Linear
+  // Systems, §4.1): row k of L is the union of the paths from each i with A(i, k) ≠ 0 up to k.
+  std::vector<int> parent(n_, -1), mark(n_, -1), count(n_, 0);
+  pattern_begin_.assign(1, 0);
+  pattern_.clear();
+  for (int k = 0; k < n_; ++k) {
+    mark[k] = k;
+    for (const Product& p : by_column[k])
+      for (int i = p.position; mark[i] != k; i = parent[i]) {
+        if (parent[i] < 0) parent[i] = k;
+        mark[i] = k;
+        pattern_.push_back(i);
+        ++count[i];
+      }
+    std::sort(pattern_.begin() + pattern_begin_.back(), pattern_.end());
+    pattern_begin_.push_back(static_cast<int>(pattern_.size()));
+  }
+  column_begin_.assign(1, 0);
+  for (int k = 0; k < n_; ++k) column_begin_.push_back(column_begin_[k] + count[k]);
+  column_row_.assign(column_begin_.back(), 0);
+  std::vector<int> next(column_begin_.begin(), column_begin_.end() - 1);
+  for (int k = 0; k < n_; ++k)
+    for (int p = pattern_begin_[k]; p < pattern_begin_[k + 1]; ++p) column_row_[next[pattern_[p]]++] = k;
+
+  column_fill_.assign(n_, 0);
+  l_.assign(column_begin_.back(), 0.0);
+  d_.assign(n_, 0.0);
+  work_.assign(n_, 0.0);
+  permuted_.assign(n_, 0.0);
+}
+
+void SchurSolver::decide_rank(const std::vector<char>& is_friction) {
+  can_stay_out_ = is_friction;
+  out_.clear();
+  is_rank_open_ = !is_friction.empty();
+}
+
+void SchurSolver::keep_rank() {
+  is_rank_open_ = false;
+  if (dependent_count_ == 0) return;
+  out_.assign(n_, 0);
+  for (int r = 0; r < n_; ++r) out_[r] = can_stay_out_[r] != 0 && is_dependent(r);
+}
+
+void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
+  factor_as_is(rows, shift);
+  if (is_rank_open_) [[unlikely]] keep_rank();
+}
+
+void SchurSolver::factor_as_is(const std::vector<SchurRow>& rows, double shift) {
+  shift_ = shift;
+  switch (n_) {
+  case 0: break;
+  case 1: factor_dense<1>(rows); break;
+  case 2: factor_dense<2>(rows); break;
+  case 3: factor_dense<3>(rows); break;
+  case 4: factor_dense<4>(rows); break;
+  default:
+    if (n_ <= k_max_dense) factor_dense<0>(rows);
+    else factor_sparse(rows);
+  }
+}
+
+// N: the number of rows if it is small enough to be unrolled, else 0.
+template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& rows) {
+  dependent_count_ = 0;
+  smallest_pivot_ = 1.0;
+  double* const m = dense_.data();
+  const int n = N > 0 ? N : n_;
+  for (int i = 0; i < n * n; ++i) m[i] = dense_constant_[i];
+  const auto* const first = reinterpret_cast<const double*>(rows.data());
+  for (const DenseProduct& p : dense_products_) {
+    const double* a = first + p.wj;
+    const double* b = first + p.j;
+    m[p.entry] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+  for (const DenseProduct& p : dense_turns_) m[p.entry] += first[p.wj + 2] * first[p.j + 2];
+  // Row by row: below the diagonal first L D, then L.
+  for (int i = 0; i < n; ++i) {
+    double* const mi = m + i * n;
+    const double diagonal = mi[i] * (1.0 + shift_);
+    double d = diagonal;
+    for (int j = 0; j < i; ++j) {
+      double sum = mi[j];
+      for (int k = 0; k < j; ++k) sum -= mi[k] * m[j * n + k];
+      mi[j] = sum;
+    }
+    for (int j = 0; j < i; ++j) {
+      const double l = mi[j] * inverse_d_[j];
+      d -= l * mi[j];
+      mi[j] = l;
+    }
+    if (leaves_out(i, d, diagonal)) [[unlikely]] {
+      inverse_d_[i] = 0.0;
+      ++dependent_count_;
+    } else {
+      inverse_d_[i] = 1.0 / d;
+      if (d < smallest_pivot_ * diagonal) smallest_pivot_ = d / diagonal;
+    }
+  }
+}
+
+template <int N> void SchurSolver::solve_dense(double* x) const {
+  const double* const m = dense_.data();
+  const int n = N > 0 ? N : n_;
+  for (int i = 1; i < n; ++i)
+    for (int j = 0; j < i; ++j) x[i] -= m[i * n + j] * x[j];
+  for (int i = 0; i < n; ++i) x[i] *= inverse_d_[i];
+  for (int i = n - 1; i > 0; --i)
+    for (int j = 0; j < i; ++j) x[j] -= m[i * n + j] * x[i];
+}
+
+void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
+  dependent_count_ = 0;
+  smallest_pivot_ = 1.0;
+  double* const y = work_.data();
+  for (int k = 0; k < n_; ++k) column_fill_[k] = column_begin_[k];
+  for (int k = 0; k < n_; ++k) {
+    const SchurRow& row_k = rows[order_[k]];
+    for (int p = product_begin_[k]; p < product_begin_[k + 1]; ++p) {
+      const Product& product = products_[p];
+      const double* a = row_k.wj[product.side_k];
+      const double* b = rows[product.row].j[product.side_i];
+      y[product.position] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    }
+    const double diagonal = y[k] * (1.0 + shift_);
+    double d = diagonal;
+    y[k] = 0.0;
+    for (int p = pattern_begin_[k]; p < pattern_begin_[k + 1]; ++p) {
+      const int i = pattern_[p];
+      const double yi = y[i];
+      y[i] = 0.0;
+      const int end = column_fill_[i];
+      for (int c = column_begin_[i]; c < end; ++c) y[column_row_[c]] -= l_[c] * yi;
+      const double lki = yi * inverse_d_[i];
+      d -= lki * yi;
+      l_[end] = lki;
+      column_fill_[i] = end + 1;
+    }
+    d_[k] = d;
+    if (leaves_out(order_[k], d, diagonal)) [[unlikely]] {
+      inverse_d_[k] = 0.0;
+      ++dependent_count_;
+    } else {
+      inverse_d_[k] = 1.0 / d;
+      smallest_pivot_ = std::min(smallest_pivot_, d / diagonal);
+    }
+  }
+}
+
+void SchurSolver::solve(const std::vector<SchurRow>& rows, double* x) const {
+  if (!is_near_singular() || shift_ > 0.0) [[likely]]
+    return eliminate(x);
+  std::copy(x, x + n_, right_.begin());
+  eliminate(x);
+  refine(rows, right_.data(), x);
+}
+
+// x += A⁻¹ (right − J (W Jᵀ x)) while that makes the correction smaller.
+void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right, double* x) const {
+  double* const correction = correction_.data();
+  double previous = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < k_max_refinements; ++iteration) {
+    std::fill(response_.begin(), response_.end(), 0.0);
+    for (int r = 0; r < n_; ++r)
+      for (int side = 0; side < 2; ++side)
+        if (rows[r].body[side] >= 0)
+          for (int c = 0; c < 3; ++c) response_[3 * rows[r].body[side] + c] += rows[r].wj[side][c] * x[r];
+    for (int r = 0; r < n_; ++r) {
+      double sum = right[r];
+      for (int side = 0; side < 2; ++side)
+        if (rows[r].body[side] >= 0)
+          for (int c = 0; c < 3; ++c) sum -= rows[r].j[side][c] * response_[3 * rows[r].body[side] + c];
+      correction[r] = sum;
+    }
+    eliminate(correction);
+    double size = 0.0, scale = 0.0;
+    for (int r = 0; r < n_; ++r) {
+      size = std::max(size, std::abs(correction[r]));
+      scale = std::max(scale, std::abs(x[r]));
+    }
+    if (!(size < 0.5 * previous)) return;
+    for (int r = 0; r < n_; ++r) x[r] += correction[r];
+    if (size <= std::numeric_limits<double>::epsilon() * scale) return;
+    previous = size;
+  }
+}
+
+void SchurSolver::eliminate(double* x) const {
+  switch (n_) {
+  case 0: return;
+  case 1: return solve_dense<1>(x);
+  case 2: return solve_dense<2>(x);
+  case 3: return solve_dense<3>(x);
+  case 4: return solve_dense<4>(x);
+  default: break;
+  }
+  if (n_ <= k_max_dense) return solve_dense<0>(x);
+  double* const y = permuted_.data();
+  for (int k = 0; k < n_; ++k) y[k] = x[order_[k]];
+  for (int k = 0; k < n_; ++k)
+    for (int c = column_begin_[k]; c < column_begin_[k + 1]; ++c) y[column_row_[c]] -= l_[c] * y[k];
+  for (int k = 0; k < n_; ++k) y[k] *= inverse_d_[k];
+  for (int k = n_ - 1; k >= 0; --k)
+    for (int c = column_begin_[k]; c < column_begin_[k + 1]; ++c) y[k] -= l_[c] * y[column_row_[c]];
+  for (int k = 0; k < n_; ++k) x[order_[k]] = y[k];
+}
+
+} // namespace steplap

@@ -1,0 +1,70 @@
+// Dynamics of constraints that depend on each other: the watch of sticking groups, and which of many
+// sharings is reported (load_sharing.h).
+#include "mbd/dynamics/dynamics.h"
+
+#include <algorithm>
+
+namespace steplap {
+
+// Anew at the present pose, if the null vectors known are not those of it.
+void Dynamics::find_sharing() {
+  Layout& layout = *layout_;
+  for (int i = 1; i < system_.body_count(); ++i) place_member(i);
+  if (layout.sharing && layout.sharing->holds_at(motion_)) return;
+  layout.sharing = std::make_unique<LoadSharing>(system_, *state_, motion_);
+  if (layout.sharing->has_friction()) layout.is_merged_watched = true;
+}
+
+const LoadSharing* Dynamics::sharing() const {
+  const Layout& layout = *layout_;
+  return layout.schur.is_singular() ? layout.sharing.get() : nullptr;
+}
+
+bool Dynamics::is_shared(int friction) const {
+  const LoadSharing* const shared = sharing();
+  return shared && shared->group_of(friction) >= 0;
+}
+
+// A reported sharing may have taken the place of the one that was solved for.
+void Dynamics::take_solved_friction() {
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) {
+    const ActiveRow& row = layout_->active[r];
+    if (row.friction >= 0) friction_force_[system_.frictions[row.friction].row + row.friction_row] = right_side_[r];
+  }
+}
+
+// A group's watch values stand in the slots of all its elements: the first one, they give way together, or rather the
+// mode problem tells which of them do; the second one, their rows begin to move against each other. To be called with the wrenches of merged joints up to date.
+bool Dynamics::watch_groups() {
+  bool is_near = false;
+  if (!sharing()) return is_near;
+  find_sharing();
+  layout_->sharing->solve(evaluation_, friction_force_.data());
+  const std::vector<SharingGroup>& groups = layout_->sharing->groups();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const SharingGroup& group = groups[g];
+    const double margin = 1.0 + k_bound_slack - group.least.usage();
+    const double concord = 1.0 - layout_->sharing->discord(static_cast<int>(g), evaluation_, acceleration_.data());
+    for (const int f : group.frictions) {
+      watch_[system_.frictions[f].watch] = margin;
+      watch_[system_.frictions[f].watch + 1] = concord;
+    }
+    if (concord < k_near_limit) is_near = true;
+    if (margin < k_near_limit) is_near = true;
+  }
+  return is_near;
+}
+
+void Dynamics::settle_loads() {
+  const Layout& layout = *layout_;
+  if (!layout.schur.is_singular() && layout.redundant_blocks.empty()) return;
+  for (const int i : layout.redundant_blocks) {
+    const RowBlock& block = system_.row_blocks[i];
+    std::fill_n(&row_force_[block.first], block.count, 0.0);
+  }
+  find_sharing();
+  layout_->sharing->solve(evaluation_, friction_force_.data());
+  layout_->sharing->settle(row_force_.data(), friction_force_.data());
+}
+
+} // namespace steplap

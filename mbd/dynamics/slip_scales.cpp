@@ -1,0 +1,56 @@
+// What slip laws that turn with the direction of slip ask of a method: how fine velocities have to be known, and how
+// short steps have to be.
+#include "mbd/dynamics/dynamics.h"
+#include "mbd/math/portable_math.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+void Dynamics::sliding_rates(std::size_t i, double* rate) const {
+  const FrictionUnit& unit = system_.frictions[layout_->sliding[i]];
+  const RowSpec* rows = unit.friction->rows(state_->friction[layout_->sliding[i]]);
+  for (int r = 0; r < unit.friction->dimension(); ++r)
+    rate[r] = evaluate_row<false>(rows[r], motion_[layout_->sliding_link[i]], Origin{}).rate;
+}
+
+bool Dynamics::slip_scales(double* scale) const {
+  bool is_any = false;
+  for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
+    const FrictionState& friction = state_->friction[layout_->sliding[i]];
+    const FrictionElement& element = *system_.frictions[layout_->sliding[i]].friction;
+    double rate[3];
+    sliding_rates(i, rate);
+    const SlipScale found = element.slip_scale(evaluation_, friction, rate);
+    if (!std::isfinite(found.speed)) continue;
+    if (!is_any) std::fill(scale, scale + coordinate_count(), std::numeric_limits<double>::infinity());
+    is_any = true;
+    const RowSpec& row = element.rows(friction)[0];
+    for (const int body : {row.a, row.b}) {
+      const int cluster = layout_->placements[body].cluster;
+      if (cluster < 0) continue;
+      const Motion<double>& centre = motion_[layout_->clusters[cluster].motion];
+      const double lever =
+          found.lever + portable::hypot(motion_[row.a].x - centre.x, motion_[row.a].y - centre.y);
+      double* const of_cluster = scale + 3 * cluster;
+      for (int c = 0; c < 3; ++c)
+        of_cluster[c] = std::min(of_cluster[c], c < 2 ? found.speed : found.speed / lever);
+    }
+  }
+  return is_any;
+}
+
+double Dynamics::slip_decay_rate() const {
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
+    const int f = layout_->sliding[i];
+    double rate[3];
+    sliding_rates(i, rate);
+    fastest = std::max(fastest, system_.frictions[f].friction->decay_rate(evaluation_, state_->friction[f], rate));
+  }
+  return fastest;
+}
+
+} // namespace steplap

@@ -1,0 +1,273 @@
+#include "mbd/events/event_handler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// Below this relative velocity, m/s, a friction element that becomes loaded counts as at rest: far
+// above the rounding of a projected velocity, far below any motion.
+constexpr double k_rest_velocity = 1e-12;
+constexpr double k_projection_tolerance = 1e-12; // m, rad
+
+} // namespace
+
+EventHandler::EventHandler(const System& system, Dynamics& dynamics)
+    : system_(system), dynamics_(dynamics), modes_(system, dynamics),
+      unit_of_slot_(system.watch_count, -1), friction_of_slot_(system.watch_count, -1),
+      fresh_(system.watch_count, 0), y_(6 * system.bodies.size() + 2), dy_(y_.size()) {
+  for (std::size_t u = 0; u < system.units.size(); ++u)
+    for (int w = 0; w < system.units[u].watch_count; ++w)
+      unit_of_slot_[system.units[u].watch + w] = static_cast<int>(u);
+  for (std::size_t f = 0; f < system.frictions.size(); ++f)
+    for (int w = 0; w < k_friction_watches; ++w)
+      friction_of_slot_[system.frictions[f].watch + w] = static_cast<int>(f);
+}
+
+void EventHandler::evaluate(const State& state) {
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  dynamics_.watch_merged(dy_.data());
+}
+
+void EventHandler::slip_rates(const State& state, int f, double* rate) const {
+  const FrictionElement& friction = *system_.frictions[f].friction;
+  const RowSpec* rows = friction.rows(state.friction[f]);
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  for (int r = 0; r < friction.dimension(); ++r)
+    rate[r] = evaluate_row<false>(rows[r], motion.data()).rate;
+}
+
+// Element f has got its normal force: at the place that the pose asks for (it is not watched while there
+// is no force), anchored there, at rest or sliding as the bodies move.
+void EventHandler::load(State& state, int f) {
+  FrictionState& friction = state.friction[f];
+  const FrictionElement& element = *system_.frictions[f].friction;
+  if (element.watch_place(dynamics_.evaluation(), friction) < 0.0)
+    element.change_place(dynamics_.evaluation(), friction);
+  if (friction.phase == FrictionPhase::apart) return;
+  modes_.set_anchor(state, f);
+  double rate[3] = {0, 0, 0};
+  slip_rates(state, f, rate);
+  double largest = 0.0;
+  for (const double r : rate) largest = std::max(largest, std::abs(r));
+  const bool is_sliding = largest > k_rest_velocity && !element.never_slips();
+  friction.phase = is_sliding ? FrictionPhase::slip : FrictionPhase::stick;
+  friction.is_starting = false;
+  element.aim(friction, rate);
+}
+
+// While a rigid joint slides, its two bodies move against each other: layouts that merge them are stale.
+void EventHandler::forget_moved_layouts(const State& state) {
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f)
+    if (state.friction[f].phase == FrictionPhase::slip && system_.frictions[f].friction->is_rigid())
+      return dynamics_.forget_layouts();
+}
+
+// Joints and drives alone, friction let go: which friction slides depends on the velocities they leave.
+void EventHandler::meet_constraints(State& state) {
+  for (FrictionState& friction : state.friction)
+    if (friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.project(state.t, y_.data(), k_projection_tolerance);
+  dynamics_.unpack(state.t, y_.data(), state);
+}
+
+void EventHandler::start(State& state) {
+  dynamics_.forget_layouts();
+  meet_constraints(state);
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  for (std::size_t u = 0; u < system_.units.size(); ++u) {
+    const Unit& unit = system_.units[u];
+    state.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
+  }
+  evaluate(state);
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    FrictionState& friction = state.friction[f];
+    modes_.set_anchor(state, f);
+    if (friction.phase != FrictionPhase::apart &&
+        system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction))
+      load(state, f);
+  }
+  modes_.decide(state);
+  clear_fresh();
+}
+
+bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
+                                std::vector<Event>& events) {
+  bool is_any = false;
+  for (const int slot : fired) {
+    const int u = unit_of_slot_[slot];
+    if (u < 0) continue;
+    const Unit& unit = system_.units[u];
+    const UnitMode from = state.mode[u];
+    const UnitMode to =
+        unit.group->next_mode(unit.index, from, slot - unit.watch, dynamics_.evaluation());
+    if (to == from) continue;
+    state.mode[u] = to;
+    is_any = true;
+    for (int w = 0; w < unit.watch_count; ++w) fresh_[unit.watch + w] = 1;
+    events.push_back({state.t, system_.element_names[unit.element], unit.group->transition_name(from, to),
+                      unit.group->has_only_kinks()});
+  }
+  return is_any;
+}
+
+void EventHandler::fire_friction(State& state, int f, int slot) {
+  const FrictionUnit& unit = system_.frictions[f];
+  FrictionState& friction = state.friction[f];
+  if (slot == unit.watch + 2) {
+    if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
+    unit.friction->change_place(dynamics_.evaluation(), friction);
+    modes_.set_anchor(state, f);
+  } else if (friction.phase == FrictionPhase::stick) {
+    friction.phase = FrictionPhase::slip;
+    friction.has_slipped = friction.is_starting = true;
+    const Snapshot snapshot = dynamics_.snapshot(dy_.data());
+    unit.friction->begin_slip(dynamics_.evaluation(), friction, snapshot.friction_force + unit.row);
+  } else if (friction.phase == FrictionPhase::slip) {
+    double rate[3];
+    slip_rates(state, f, rate);
+    if (unit.friction->goes_on_slipping(dynamics_.evaluation(), friction, rate, slot - unit.watch)) return;
+    modes_.end_slip(state, f);
+    friction.phase = FrictionPhase::stick; // or it reverses: the mode problem tells
+  }
+}
+
+// Friction gains or loses its normal force with the contacts.
+void EventHandler::update_loading(State& state) {
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    FrictionState& friction = state.friction[f];
+    if (friction.phase == FrictionPhase::apart) continue;
+    const bool is_loaded = system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction);
+    if (is_loaded && friction.phase == FrictionPhase::free) {
+      load(state, f);
+      if (friction.phase == FrictionPhase::slip) friction.has_slipped = true;
+    } else if (!is_loaded && friction.phase != FrictionPhase::free) {
+      if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
+      friction.phase = FrictionPhase::free;
+    }
+  }
+}
+
+bool EventHandler::is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const {
+  if (system_.frictions[f].friction->dimension() == 1) return a.sign == b.sign;
+  return !b.is_starting || (a.is_starting && std::equal(a.direction, a.direction + 3, b.direction));
+}
+
+void EventHandler::note_friction(const State& before, const State& state, std::vector<Event>& events) {
+  for (std::size_t f = 0; f < state.friction.size(); ++f) {
+    const FrictionState& old = before.friction[f];
+    const FrictionState& now = state.friction[f];
+    const bool is_same_slip = now.phase != FrictionPhase::slip || is_same_direction(f, old, now);
+    if (old.phase == now.phase && old.foot == now.foot && is_same_slip) continue;
+    const FrictionUnit& unit = system_.frictions[f];
+    for (int w = 0; w < k_friction_watches; ++w) fresh_[unit.watch + w] = 1;
+    const std::string& name = system_.element_names[unit.element];
+    if (old.foot != now.foot && now.phase != FrictionPhase::apart)
+      events.push_back({state.t, name, unit.friction->place_change_name(old, now)});
+    if (old.phase == now.phase && is_same_slip) continue;
+    const char* what = "";
+    switch (now.phase) {
+    case FrictionPhase::free: what = "loses its normal force"; break;
+    case FrictionPhase::stick: what = "sticks"; break;
+    case FrictionPhase::slip:
+      if (unit.friction->dimension() == 3)
+        what = old.phase == FrictionPhase::slip ? "slips another way" : "slips";
+      else what = now.sign > 0 ? "slips forward" : "slips backward";
+      break;
+    case FrictionPhase::apart: what = "comes apart"; break;
+    }
+    events.push_back({state.t, name, what});
+    if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart())
+      stop_reason_ = "'" + name + "' came apart";
+    if (unit.friction->is_rigid()) dynamics_.forget_layouts();
+  }
+}
+
+void EventHandler::settle_phases(State& state) {
+  clear_fresh();
+  forget_moved_layouts(state);
+  settle(state);
+  modes_.decide(state);
+  std::fill(fresh_.begin(), fresh_.end(), 1); // none of the watch values was followed up to here
+}
+
+void EventHandler::note_changes(const State& before, const State& state, std::vector<Event>& events) {
+  for (std::size_t u = 0; u < system_.units.size(); ++u) {
+    const Unit& unit = system_.units[u];
+    if (before.mode[u] != state.mode[u])
+      events.push_back({state.t, system_.element_names[unit.element],
+                        unit.group->transition_name(before.mode[u], state.mode[u]), unit.group->has_only_kinks()});
+  }
+  note_friction(before, state, events);
+  clear_fresh();
+}
+
+void EventHandler::handle(State& state, const std::vector<int>& fired, std::vector<Event>& events) {
+  clear_fresh();
+  settled_ = 0.0;
+  const State before = state;
+  forget_moved_layouts(state);
+  evaluate(state);
+  const bool is_contact_changed = switch_units(state, fired, events);
+  bool is_any_at_rest = false;
+  const LoadSharing* const sharing = dynamics_.sharing();
+  std::vector<char> is_released(sharing ? sharing->groups().size() : 0, 0);
+  for (const int slot : fired) {
+    const int f = friction_of_slot_[slot];
+    if (f < 0) continue;
+    const int group = sharing && slot != system_.frictions[f].watch + 2 ? sharing->group_of(f) : -1;
+    if (group >= 0 && slot == system_.frictions[f].watch + 1) continue; // its rows move apart: decide() finds out how
+    if (group >= 0) { // fires in the slots of all its elements
+      if (!is_released[group]) modes_.release(state, group);
+      is_released[group] = 1;
+      continue;
+    }
+    fire_friction(state, f, slot);
+    is_any_at_rest = is_any_at_rest || state.friction[f].phase == FrictionPhase::stick;
+  }
+  // The mode problem is one of elements at rest: what little is left of a slip that has ended goes first.
+  if (is_any_at_rest) {
+    settle(state);
+    modes_.rejoin(state);
+  }
+  if (is_contact_changed) {
+    evaluate(state);
+    update_loading(state);
+  }
+  if (modes_.catch_reversals(state, before.friction)) settle(state);
+  modes_.decide(state);
+  note_friction(before, state, events);
+  if (has_new_rows(before, state)) settle(state);
+}
+
+// Some friction holds that did not, or holds elsewhere: the state was not projected onto its rows yet.
+bool EventHandler::has_new_rows(const State& before, const State& state) {
+  for (std::size_t f = 0; f < state.friction.size(); ++f) {
+    const FrictionState &old = before.friction[f], &now = state.friction[f];
+    if (now.phase == FrictionPhase::stick && (old.phase != now.phase || old.foot != now.foot)) return true;
+  }
+  return false;
+}
+
+// What sticks may still have a relative velocity of the size of errors: projecting it away books what
+// is lost as dissipated.
+void EventHandler::settle(State& state) {
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  const double energy = system_.kinetic_energy(state);
+  dynamics_.project(state.t, y_.data(), k_projection_tolerance);
+  dynamics_.close_velocities(state.t, y_.data());
+  dynamics_.unpack(state.t, y_.data(), state);
+  const double lost = energy - system_.kinetic_energy(state);
+  state.dissipated += lost;
+  settled_ += lost;
+}
+
+} // namespace steplap

@@ -1,0 +1,67 @@
+// What happens at an event: contacts change mode, friction changes place or phase, and all friction
+// modes that this may upset are decided anew together.
+#pragma once
+
+#include "mbd/friction/friction_modes.h"
+
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// One line of the list of events.
+struct Event {
+  double t = 0.0;
+  std::string element;
+  std::string what; ///< "opens", "closes", "slips forward", "sticks", …
+  bool is_kink = false; ///< of a characteristic: no force jumps
+};
+
+class EventHandler {
+public:
+  EventHandler(const System& system, Dynamics& dynamics);
+
+  /// Modes and phases at the start: contacts from their gaps, friction from the mode problem.
+  void start(State& state);
+  /// `state` is at the event, `fired` the watch slots that fell below zero (none: a breakpoint of a
+  /// signal, at which loads may jump). Changes modes, phases and anchors, notes what changed.
+  void handle(State& state, const std::vector<int>& fired, std::vector<Event>& events);
+
+  /// After a method that decides modes and phases itself: those that hold at the accelerations' level.
+  void settle_phases(State& state);
+  /// Notes what has changed between two states, for a method that decides modes and phases itself.
+  void note_changes(const State& before, const State& state, std::vector<Event>& events);
+
+  /// Slots whose unit or friction changed in the last handle(), for EventFinder.
+  [[nodiscard]] const std::vector<char>& fresh() const { return fresh_; }
+  /// Not empty once an element has ended the run: which, and why.
+  [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
+  /// Kinetic energy that setting to rest took in the last handle(), J: what errors have left of it.
+  [[nodiscard]] double settled() const { return settled_; }
+  void clear_fresh() { std::fill(fresh_.begin(), fresh_.end(), 0); }
+
+private:
+  void evaluate(const State& state);
+  void meet_constraints(State& state);
+  bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
+  void fire_friction(State& state, int f, int slot);
+  void update_loading(State& state);
+  [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
+  void note_friction(const State& before, const State& state, std::vector<Event>& events);
+  void forget_moved_layouts(const State& state);
+  void load(State& state, int f);
+  void slip_rates(const State& state, int f, double* rate) const;
+  void settle(State& state);
+  [[nodiscard]] static bool has_new_rows(const State& before, const State& state);
+
+  const System& system_;
+  Dynamics& dynamics_;
+  FrictionModes modes_;
+  std::vector<int> unit_of_slot_, friction_of_slot_;
+  std::vector<char> fresh_;
+  std::string stop_reason_;
+  double settled_ = 0.0;
+  std::vector<double> y_, dy_;
+};
+
+} // namespace steplap

@@ -1,0 +1,129 @@
+#include "mbd/friction/box_problem.h"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+// Rows of A, scaled to a diagonal of 1, that are beyond the others by less than this depend on them.
+constexpr double k_dependent = 1e-11;
+constexpr double k_rounding = 1e-13; // of the terms of g_i
+
+class ActiveSet {
+public:
+  ActiveSet(const MatX& a, const VecX& b, const VecX& c, const VecX& rounding)
+      : a_(a), b_(b), c_(c), rounding_(rounding), n_(b.size()), w_(VecX::Zero(n_)), at_bound_(n_, 0) {
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (!(c_[i] > 0.0)) at_bound_[i] = 1;
+  }
+
+  BoxSolution solve() {
+    BoxSolution solution;
+    const Eigen::Index most = 20 * (n_ + 2) * (n_ + 2);
+    for (Eigen::Index i = 0; i < most && !solution.is_solved; ++i)
+      solution.is_solved = !move_free() && !release_one();
+    solution.w = w_;
+    solution.g = gradient();
+    for (Eigen::Index i = 0; i < n_; ++i) solution.is_free.push_back(at_bound_[i] == 0 || !pulls(i, solution.g[i]));
+    return solution;
+  }
+
+private:
+  [[nodiscard]] VecX gradient() const { return a_ * w_ + b_; }
+  [[nodiscard]] double tolerance(Eigen::Index i) const {
+    return rounding_[i] + k_rounding * (a_.row(i).cwiseAbs().dot(w_.cwiseAbs()) + std::abs(b_[i]));
+  }
+  // Is g_i no rounding?
+  [[nodiscard]] bool pulls(Eigen::Index i, double g) const { return std::abs(g) > tolerance(i); }
+
+  // Of the free variables: to their minimum, or as far as bounds let them. False if they are there already.
+  bool move_free() {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (at_bound_[i] == 0) free.push_back(i);
+    const VecX g = gradient();
+    const bool is_pulled = std::any_of(free.begin(), free.end(), [&](Eigen::Index i) { return pulls(i, g[i]); });
+    if (!is_pulled) return false;
+    const auto m = static_cast<Eigen::Index>(free.size());
+    MatX own(m, m);
+    VecX scale(m), right(m);
+    for (Eigen::Index i = 0; i < m; ++i) scale[i] = a_(free[i], free[i]) > 0.0 ? 1.0 / std::sqrt(a_(free[i], free[i])) : 1.0;
+    for (Eigen::Index i = 0; i < m; ++i) {
+      right[i] = -scale[i] * g[free[i]];
+      for (Eigen::Index j = 0; j < m; ++j) own(i, j) = scale[i] * scale[j] * a_(free[i], free[j]);
+    }
+    Eigen::CompleteOrthogonalDecomposition<MatX> factor(m, m);
+    factor.setThreshold(k_dependent);
+    factor.compute(own);
+    VecX direction = factor.solve(right);
+    const VecX left = right - own * direction; // in the null space, if not rounding
+    bool is_endless = false;
+    for (Eigen::Index i = 0; i < m; ++i) is_endless = is_endless || pulls(free[i], left[i] / scale[i]);
+    if (is_endless) direction = left;
+    direction = direction.cwiseProduct(scale);
+    double step = is_endless ? std::numeric_limits<double>::infinity() : 1.0;
+    Eigen::Index first = -1;
+    for (Eigen::Index i = 0; i < m; ++i) {
+      const double d = direction[i], w = w_[free[i]], c = c_[free[i]];
+      if (d == 0.0) continue;
+      const double reach = std::max(0.0, ((d > 0.0 ? c : -c) - w) / d);
+      if (reach >= step) continue;
+      step = reach;
+      first = i;
+    }
+    if (!std::isfinite(step)) return false;
+    for (Eigen::Index i = 0; i < m; ++i) w_[free[i]] += step * direction[i];
+    if (first < 0) return is_progress(g);
+    w_[free[first]] = direction[first] > 0.0 ? c_[free[first]] : -c_[free[first]];
+    at_bound_[free[first]] = direction[first] > 0.0 ? 1 : -1;
+    return true;
+  }
+
+  // A minimum that is as near as rounding lets it be is one.
+  [[nodiscard]] bool is_progress(const VecX& before) const {
+    const VecX now = gradient();
+    double old_pull = 0.0, pull = 0.0;
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (at_bound_[i] == 0) {
+        old_pull = std::max(old_pull, std::abs(before[i]));
+        pull = std::max(pull, std::abs(now[i]));
+      }
+    return pull < 0.5 * old_pull;
+  }
+
+  // The variable at its bound that is pulled back inside most.
+  bool release_one() {
+    const VecX g = gradient();
+    Eigen::Index worst = -1;
+    double most = 0.0;
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      if (at_bound_[i] == 0 || !(c_[i] > 0.0) || !pulls(i, g[i])) continue;
+      const double back = at_bound_[i] * g[i] / (a_(i, i) > 0.0 ? std::sqrt(a_(i, i)) : 1.0);
+      if (back <= most) continue;
+      most = back;
+      worst = i;
+    }
+    if (worst < 0) return false;
+    at_bound_[worst] = 0;
+    return true;
+  }
+
+  const MatX& a_;
+  const VecX &b_, &c_, &rounding_;
+  Eigen::Index n_;
+  VecX w_;
+  std::vector<signed char> at_bound_; ///< −1, 1: at the lower or upper bound; 0: free
+};
+
+} // namespace
+
+BoxSolution solve_box_problem(const MatX& a, const VecX& b, const VecX& c, const VecX& rounding) {
+  return ActiveSet(a, b, c, rounding).solve();
+}
+
+} // namespace steplap

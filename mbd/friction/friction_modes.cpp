@@ -1,0 +1,344 @@
+#include "mbd/friction/friction_modes.h"
+#include "mbd/friction/box_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_max_sweeps = 20000;
+// Wrenches settle to rounding; what is left after that is the conditioning of A.
+constexpr double k_settled = 1e-15;
+// Three-dimensional blocks are solved to about 1e-11 and jitter at that level: no progress for this
+// many sweeps, once the change is small, is the end too.
+constexpr int k_stalled_sweeps = 20;
+constexpr double k_small_change = 1e-9;
+// Relative velocity, m/s, that counts as rest: far above the rounding of a projected one, far below any motion.
+constexpr double k_rest_velocity = 1e-12;
+
+// The same for an event or drive that brings several to rest at once: what projection and the instant's own rounding
+// leave of their rates.
+constexpr double k_rest_at_event = 1e-11;
+// Accelerations that a sweep still changes by more than this share have not settled.
+constexpr double k_settled_acceleration = 1e-7;
+
+// The dual. Of elements of one dimension an active-set method makes an exact end (box_problem.h). With others among
+// them block Gauss–Seidel: each element's part is solved exactly in turn. It converges for every positive semidefinite
+// A, and the accelerations are unique even where the wrenches are not.
+class DualProblem {
+public:
+  DualProblem(const System& system, const State& state, const std::vector<int>& elements,
+              const Evaluation& evaluation, const Dynamics::Candidates& candidates)
+      : system_(system), state_(state), elements_(elements), evaluation_(evaluation),
+        candidates_(candidates), n_(candidates.rows.size()), wrench_(n_, 0.0),
+        blocks_(elements.size()), is_kinetic_(elements.size(), 0) {
+    for (const int f : elements) is_flat_ = is_flat_ && system.frictions[f].friction->dimension() == 1;
+  }
+
+  // μ_s first; those that slip get μ_k, and so on: the slipping set only grows (physics.md §3).
+  const std::vector<FrictionBlock>& solve() {
+    for (std::size_t pass = 0; pass <= elements_.size(); ++pass) {
+      if (is_flat_) solve_flat();
+      else sweep_until_settled();
+      bool is_changed = false;
+      for (std::size_t e = 0; e < elements_.size(); ++e)
+        if (!blocks_[e].is_inside && !is_kinetic_[e]) is_kinetic_[e] = is_changed = true;
+      if (!is_changed) break;
+    }
+    return blocks_;
+  }
+
+private:
+  void solve_flat() {
+    const auto n = static_cast<Eigen::Index>(n_);
+    MatX a(n, n);
+    VecX b(n), bound(n), rounding(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double no_compliance = 0.0, pull = -1.0;
+      b[i] = candidates_.acceleration[i];
+      rounding[i] = candidates_.rounding[i];
+      bound[i] = block_of(i, &no_compliance, &pull).wrench[0];
+      for (Eigen::Index j = 0; j < n; ++j) a(i, j) = candidates_.compliance[i * n + j];
+    }
+    const BoxSolution solution = solve_box_problem(a, b, bound, rounding);
+    if (!solution.is_solved) return sweep_until_settled(); // its set of bounds repeats itself, by rounding
+    for (Eigen::Index i = 0; i < n; ++i) {
+      FrictionBlock& block = blocks_[i];
+      block = {};
+      block.wrench[0] = solution.w[i];
+      block.is_inside = solution.is_free[i] != 0;
+      block.direction[0] = solution.g[i] > 0.0 ? 1.0 : -1.0;
+    }
+  }
+
+  [[nodiscard]] FrictionBlock block_of(std::size_t e, const double* a, const double* b) const {
+    return system_.frictions[elements_[e]].friction->solve_block(evaluation_, state_.friction[elements_[e]], a, b,
+                                                                 is_kinetic_[e] != 0);
+  }
+
+  [[noreturn]] void fail(const std::string& why) const {
+    std::string message = "which friction sticks cannot be decided at t = " + std::to_string(state_.t) + " s (" + why + "):";
+    for (const int f : elements_) message += " '" + system_.element_names[system_.frictions[f].element] + "'";
+    throw NumericalFailure(message + ". Give feet of one pair of bodies a common coulomb_stick, or check their normal forces");
+  }
+
+  void sweep_until_settled() {
+    double least = std::numeric_limits<double>::infinity();
+    int stalled = 0;
+    for (int sweep = 0; sweep < k_max_sweeps; ++sweep) {
+      double change = 0.0, size = 0.0;
+      std::size_t row = 0;
+      for (std::size_t e = 0; e < elements_.size(); ++e) {
+        const FrictionElement& friction = *system_.frictions[elements_[e]].friction;
+        const std::size_t m = friction.dimension();
+        solve_element(e, row, m, change, size);
+        row += m;
+      }
+      if (change <= k_settled * size || elements_.size() == 1) return;
+      stalled = change < least ? 0 : stalled + 1;
+      least = std::min(least, change);
+      if (stalled >= k_stalled_sweeps && least <= k_small_change * size) return;
+    }
+    // Wrenches that depend on each other may wander where the accelerations have long settled.
+    const std::vector<double> before = wrench_;
+    double change = 0.0, size = 0.0;
+    std::size_t row = 0;
+    for (std::size_t e = 0; e < elements_.size(); ++e) {
+      const FrictionElement& friction = *system_.frictions[elements_[e]].friction;
+      solve_element(e, row, friction.dimension(), change, size);
+      row += friction.dimension();
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+      double moved = 0.0, terms = std::abs(candidates_.acceleration[i]);
+      for (std::size_t j = 0; j < n_; ++j) {
+        moved += candidates_.compliance[i * n_ + j] * (wrench_[j] - before[j]);
+        terms += std::abs(candidates_.compliance[i * n_ + j] * wrench_[j]);
+      }
+      if (std::abs(moved) > k_settled_acceleration * terms) fail("accelerations do not settle");
+    }
+  }
+
+  void solve_element(std::size_t e, std::size_t row, std::size_t m, double& change, double& size) {
+    double a[9], b[3];
+    for (std::size_t i = 0; i < m; ++i) {
+      b[i] = candidates_.acceleration[row + i];
+      for (std::size_t j = 0; j < n_; ++j)
+        if (j < row || j >= row + m)
+          b[i] += candidates_.compliance[(row + i) * n_ + j] * wrench_[j];
+      for (std::size_t j = 0; j < m; ++j)
+        a[i * m + j] = candidates_.compliance[(row + i) * n_ + row + j];
+    }
+    blocks_[e] = block_of(e, a, b);
+    for (std::size_t i = 0; i < m; ++i) {
+      change = std::max(change, std::abs(blocks_[e].wrench[i] - wrench_[row + i]));
+      size = std::max(size, std::abs(blocks_[e].wrench[i]));
+      wrench_[row + i] = blocks_[e].wrench[i];
+    }
+  }
+
+  const System& system_;
+  const State& state_;
+  const std::vector<int>& elements_;
+  const Evaluation& evaluation_;
+  const Dynamics::Candidates& candidates_;
+  std::size_t n_;
+  std::vector<double> wrench_;
+  std::vector<FrictionBlock> blocks_;
+  std::vector<char> is_kinetic_;
+  bool is_flat_ = true; ///< all of one dimension
+};
+
+} // namespace
+
+FrictionModes::FrictionModes(const System& system, Dynamics& dynamics)
+    : system_(system), dynamics_(dynamics), y_(6 * system.bodies.size() + 2), dy_(y_.size()) {}
+
+void FrictionModes::set_anchor(State& state, int f) const {
+  const FrictionElement& friction = *system_.frictions[f].friction;
+  const RowSpec* rows = friction.rows(state.friction[f]);
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  for (int r = 0; r < friction.dimension(); ++r)
+    if (rows[r].memory >= 0)
+      state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion.data()).value;
+}
+
+// Within one slip the direction does not change.
+void FrictionModes::end_slip(State& state, int f) const {
+  const RowSpec* rows = system_.frictions[f].friction->rows(state.friction[f]);
+  const double before = rows[0].memory >= 0 ? state.memory[rows[0].memory] : 0.0;
+  set_anchor(state, f);
+  if (rows[0].memory >= 0) state.friction[f].slid += std::abs(state.memory[rows[0].memory] - before);
+}
+
+std::vector<int> FrictionModes::violated(const State& state) {
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  dynamics_.watch_merged(dy_.data());
+  std::vector<int> result;
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    if (state.friction[f].phase != FrictionPhase::stick) continue;
+    const double* watch = &dynamics_.watch()[system_.frictions[f].watch];
+    if (watch[0] < 0.0 || watch[1] < 0.0) result.push_back(f);
+  }
+  return result;
+}
+
+// The candidates alone, everything else as it is: fills in their phases.
+void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
+  for (const int f : candidates)
+    state.friction[f].phase = FrictionPhase::free;
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  Dynamics::Candidates problem;
+  for (const int f : candidates) {
+    const FrictionElement& friction = *system_.frictions[f].friction;
+    for (int r = 0; r < friction.dimension(); ++r)
+      problem.rows.push_back(friction.rows(state.friction[f]) + r);
+  }
+  dynamics_.respond(problem, dy_.data());
+  DualProblem dual(system_, state, candidates, dynamics_.evaluation(), problem);
+  const std::vector<FrictionBlock>& blocks = dual.solve();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    FrictionState& friction = state.friction[candidates[i]];
+    friction.phase = blocks[i].is_inside ? FrictionPhase::stick : FrictionPhase::slip;
+    std::copy(blocks[i].direction, blocks[i].direction + 3, friction.direction);
+    friction.sign = blocks[i].direction[0] > 0.0 ? 1 : -1;
+    friction.is_starting = !blocks[i].is_inside;
+    if (!blocks[i].is_inside) friction.has_slipped = true;
+  }
+}
+
+void FrictionModes::release(State& state, int group) const {
+  for (const Release& r : dynamics_.sharing()->releases(group)) {
+    FrictionState& friction = state.friction[r.friction];
+    friction.phase = FrictionPhase::slip;
+    friction.has_slipped = friction.is_starting = true;
+    system_.frictions[r.friction].friction->begin_slip(dynamics_.evaluation(), friction, r.wrench);
+  }
+}
+
+bool FrictionModes::release_overloaded(State& state) const {
+  const LoadSharing* const sharing = dynamics_.sharing();
+  if (!sharing) return false;
+  bool is_any = false;
+  for (std::size_t g = 0; g < sharing->groups().size(); ++g) {
+    const int first = sharing->groups()[g].frictions.front();
+    if (dynamics_.watch()[system_.frictions[first].watch] >= 0.0) continue;
+    release(state, static_cast<int>(g));
+    is_any = true;
+  }
+  return is_any;
+}
+
+bool FrictionModes::is_at_rest(const State& state, int f) const {
+  const FrictionElement& friction = *system_.frictions[f].friction;
+  const RowSpec* rows = friction.rows(state.friction[f]);
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  for (int r = 0; r < friction.dimension(); ++r)
+    if (std::abs(evaluate_row<false>(rows[r], motion.data()).rate) > k_rest_velocity) return false;
+  return true;
+}
+
+void FrictionModes::rejoin(State& state) {
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    if (state.friction[f].phase != FrictionPhase::slip || !is_at_rest(state, f)) continue;
+    State trial = state;
+    end_slip(trial, f);
+    trial.friction[f].phase = FrictionPhase::stick;
+    (void)violated(trial);
+    const LoadSharing* const sharing = dynamics_.sharing();
+    const double* watch = &dynamics_.watch()[system_.frictions[f].watch];
+    const bool is_held = sharing && sharing->group_of(f) >= 0 && watch[0] >= 0.0 && watch[1] >= 0.0;
+    if (is_held) std::swap(state, trial);
+    dynamics_.set_state(state);
+  }
+}
+
+bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionState>& before) {
+  std::vector<int> slow;
+  std::vector<Motion<double>> motion;
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    const FrictionElement& friction = *system_.frictions[f].friction;
+    if (friction.dimension() != 1 || state.friction[f].phase != FrictionPhase::slip || before[f].phase != FrictionPhase::slip)
+      continue;
+    if (motion.empty()) place_bodies(state.q, state.v, motion);
+    const double rate = evaluate_row<false>(*friction.rows(state.friction[f]), motion.data()).rate;
+    if (state.friction[f].sign * rate <= k_rest_at_event) slow.push_back(f);
+  }
+  if (slow.empty()) return false;
+  dynamics_.set_state(state);
+  dynamics_.pack(state, y_.data());
+  dynamics_.rates(state.t, y_.data(), dy_.data());
+  bool is_any = false;
+  for (const int f : slow) {
+    double rate = 0.0, acceleration = 0.0, rounding = 0.0;
+    dynamics_.slip_motion(f, dy_.data(), &rate, &acceleration, &rounding);
+    if (state.friction[f].sign * acceleration > rounding) continue; // it has only begun
+    end_slip(state, f);
+    state.friction[f].phase = FrictionPhase::stick;
+    is_any = true;
+  }
+  return is_any;
+}
+
+// Rows that hold together only at rest, of which some move: those slide, the way they move.
+void FrictionModes::let_go_moving(State& state) {
+  bool is_any = false;
+  std::vector<Motion<double>> motion;
+  const LoadSharing* const sharing = dynamics_.sharing();
+  if (!sharing) return;
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    const bool is_discordant = state.friction[f].phase == FrictionPhase::stick && sharing->group_of(f) >= 0 &&
+                               dynamics_.watch()[system_.frictions[f].watch + 1] < 0.0;
+    const FrictionElement& friction = *system_.frictions[f].friction;
+    if (!is_discordant || friction.dimension() != 1) continue;
+    if (motion.empty()) place_bodies(state.q, state.v, motion);
+    const double rate = evaluate_row<false>(*friction.rows(state.friction[f]), motion.data()).rate;
+    if (std::abs(rate) <= k_rest_velocity) continue;
+    state.friction[f].phase = FrictionPhase::slip;
+    state.friction[f].has_slipped = true;
+    state.friction[f].is_starting = false;
+    friction.aim(state.friction[f], &rate);
+    is_any = true;
+  }
+  if (is_any) (void)violated(state);
+}
+
+void FrictionModes::decide(State& state) {
+  std::vector<int> candidates = violated(state);
+  if (candidates.empty()) return;
+  let_go_moving(state);
+  candidates = violated(state);
+  if (candidates.empty()) return;
+  settle_candidates(state, std::move(candidates));
+  rejoin(state);
+}
+
+void FrictionModes::settle_candidates(State& state, std::vector<int> candidates) {
+  // Candidates only grow, but where a group is let go, which happens to an element once.
+  const std::size_t most = (system_.frictions.size() + 1) * (system_.frictions.size() + 1);
+  for (std::size_t pass = 0; !candidates.empty(); ++pass) {
+    if (pass > most)
+      throw NumericalFailure("friction modes cannot be decided at t = " + std::to_string(state.t) + " s");
+    solve(state, candidates);
+    std::vector<int> more = violated(state);
+    const bool is_any_over = !more.empty();
+    std::erase_if(more, [&](int f) { return std::find(candidates.begin(), candidates.end(), f) != candidates.end(); });
+    // Candidates that were found to stick and yet are overloaded: rounding. Of a group limit analysis tells.
+    if (more.empty()) {
+      if (!is_any_over || !release_overloaded(state)) return;
+      candidates = violated(state);
+    } else {
+      candidates.insert(candidates.end(), more.begin(), more.end());
+    }
+  }
+}
+
+} // namespace steplap

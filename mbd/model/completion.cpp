@@ -1,0 +1,108 @@
+#include "mbd/model/completion.h"
+
+namespace steplap {
+
+namespace {
+
+// Markers that stand for bodies' centres of gravity, where an element names a body as a marker.
+void add_body_markers(Model& model) {
+  std::unordered_map<std::string, const Body*> bodies{{"ground", nullptr}};
+  for (const Body& body : model.bodies) bodies.emplace(body.name, &body);
+  std::unordered_set<std::string> known;
+  for (const Marker& marker : model.markers) known.insert(marker.name);
+  const auto add_for = [&](const FieldTable& table, const void* object) {
+    for (const Field& field : table.fields()) {
+      if (field.type != FieldType::marker) continue;
+      const std::string name = std::get<std::string>(field.get(object));
+      const auto body = bodies.find(name);
+      if (body == bodies.end() || !known.insert(name).second) continue;
+      Marker& marker = model.markers.emplace_back();
+      marker.name = marker.body = name;
+      if (body->second) marker.where = body->second->where;
+    }
+  };
+  for (const ElementEntry& entry : model.elements) add_for(entry.kind->fields, entry.element.get());
+  for (const TableEntry& entry : model.tables) add_for(entry.kind->fields, entry.table.get());
+}
+
+// Markers without a place go to their body's centre of gravity.
+void place_markers(Model& model) {
+  std::unordered_map<std::string, const Body*> bodies;
+  for (const Body& body : model.bodies) bodies.emplace(body.name, &body);
+  for (Marker& marker : model.markers) {
+    if (marker.point || marker.at) continue;
+    const auto body = bodies.find(marker.body);
+    marker.point = body == bodies.end() ? Vec2(Vec2::Zero()) : body->second->cg;
+  }
+}
+
+bool apply_tables(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
+  bool is_every_one = true;
+  for (std::size_t i = 0; i < model.tables.size(); ++i) {
+    const TableEntry& entry = model.tables[i];
+    const std::size_t before = problems.size();
+    FieldChecker(model, problems)
+        .check(entry.kind->fields, entry.table.get(), subject_text(entry.kind->name, entry.table->name),
+               [&](const std::string& field) {
+                 return places.locate_in_table ? places.locate_in_table(i, field) : std::optional(entry.table->where);
+               });
+    const bool is_usable = !places.is_table_usable || places.is_table_usable(i);
+    if (!is_usable || problems.size() != before) {
+      is_every_one = false;
+      continue;
+    }
+    try {
+      entry.kind->apply(*entry.table, model);
+    } catch (const ModelError& error) {
+      problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  }
+  return is_every_one;
+}
+
+// A model made in code gives what it sets to something else than the default.
+GivenBodyField given_in_code(const Model& model) {
+  return [&model](std::size_t index, const std::string& name) -> std::optional<Location> {
+    const Field* const field = Body::fields().find(name);
+    const Body usual;
+    if (!field || field->get(&model.bodies[index]) == field->get(&usual)) return std::nullopt;
+    return model.bodies[index].where;
+  };
+}
+
+FieldLocator own_places(const Model& model) {
+  return [&model](Section section, std::size_t index, const std::string&) -> std::optional<Location> {
+    switch (section) {
+    case Section::header: return model.header.where;
+    case Section::simulation: return model.simulation.where;
+    case Section::output: return model.output.where;
+    case Section::body: return model.bodies[index].where;
+    case Section::marker: return model.markers[index].where;
+    case Section::signal: return model.signals[index].definition->where;
+    case Section::element: return model.elements[index].element->where;
+    }
+    return std::nullopt;
+  };
+}
+
+} // namespace
+
+bool complete(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
+  add_body_markers(model);
+  place_markers(model);
+  place_by_joints(model, places.given ? places.given : given_in_code(model),
+                  places.locate ? places.locate : own_places(model), problems);
+  return apply_tables(model, places, problems);
+}
+
+Model completed(const Model& given) {
+  Model model = given;
+  std::vector<Diagnostic> problems;
+  complete(model, {}, problems);
+  const std::vector<Diagnostic> found = validate(model);
+  problems.insert(problems.end(), found.begin(), found.end());
+  if (!problems.empty()) throw ModelError(std::move(problems));
+  return model;
+}
+
+} // namespace steplap

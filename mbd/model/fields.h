@@ -1,0 +1,163 @@
+// The fields of everything a model file can contain, declared once.
+//
+// A kind of thing (a body, a signal, a spring-damper, the simulation settings) is a plain struct.
+// Its FieldTable lists name, type, unit, default, range and one line of documentation for each
+// member. From that table come: reading, validation messages, `--set` paths, the generated
+// reference and the JSON Schema. A struct never parses anything itself.
+#pragma once
+
+#include "mbd/base/types.h"
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace steplap {
+
+enum class FieldType {
+  number,      ///< double, in `unit`
+  integer,     ///< long
+  boolean,     ///< bool
+  text,        ///< free text
+  choice,      ///< one of `choices`
+  vec2,        ///< [x, y], both in `unit`
+  numbers,     ///< list of numbers, each in `unit`
+  points,      ///< list of [x, y]; x in `unit`, y in `unit2` (same as unit if empty)
+  rings,       ///< list of lists of [x, y]
+  body,        ///< name of a body, or "ground"
+  marker,      ///< name of a marker or body, or an inline marker { body, at | point, ... }
+  signal,      ///< name of a signal
+  signals,     ///< list of names of signals
+  element,     ///< name of an element
+  elements,    ///< list of names of elements
+  texts,       ///< list of free texts
+  quantity,    ///< number, or text with a unit that is only known later: kept as text
+  file         ///< path of a file, relative to the model file that names it; read as a usable path
+};
+
+/// What a field holds, after reading: units removed, inline markers replaced by a marker's name.
+using FieldValue = std::variant<double, long, bool, std::string, Vec2, std::vector<double>,
+                                std::vector<Vec2>, std::vector<std::vector<Vec2>>, std::vector<std::string>>;
+
+struct Field {
+  std::string name;
+  FieldType type = FieldType::number;
+  std::string unit;  ///< SI unit in UDUNITS spelling ("N/m"), "" = dimensionless
+  std::string unit2; ///< second unit of a list of points
+  std::string doc;   ///< one line
+  bool is_required = false;
+  double minimum = -std::numeric_limits<double>::infinity();
+  double maximum = std::numeric_limits<double>::infinity();
+  bool is_minimum_excluded = false;
+  std::vector<std::string> choices;
+  std::function<void(void* object, const FieldValue&)> set;
+  std::function<FieldValue(const void* object)> get;
+};
+
+/// Chained description of one field: table.add("mass", &Body::mass).in("kg").positive().required().
+class FieldBuilder {
+public:
+  explicit FieldBuilder(Field& field) : field_(&field) {}
+  FieldBuilder& in(std::string unit) { return assign(field_->unit, std::move(unit)); }
+  FieldBuilder& in(std::string unit, std::string unit2) {
+    field_->unit2 = std::move(unit2);
+    return in(std::move(unit));
+  }
+  FieldBuilder& doc(std::string text) { return assign(field_->doc, std::move(text)); }
+  FieldBuilder& required() { return assign(field_->is_required, true); }
+  FieldBuilder& positive() { return at_least(0.0).excluding_minimum(); }
+  FieldBuilder& not_negative() { return at_least(0.0); }
+  FieldBuilder& at_least(double lowest) { return assign(field_->minimum, lowest); }
+  FieldBuilder& at_most(double largest) { return assign(field_->maximum, largest); }
+  FieldBuilder& excluding_minimum() { return assign(field_->is_minimum_excluded, true); }
+  FieldBuilder& one_of(std::vector<std::string> choices) {
+    field_->type = FieldType::choice;
+    return assign(field_->choices, std::move(choices));
+  }
+  FieldBuilder& as(FieldType type) { return assign(field_->type, type); }
+
+private:
+  template <class T> FieldBuilder& assign(T& target, T value) {
+    target = std::move(value);
+    return *this;
+  }
+  Field* field_;
+};
+
+class FieldTable {
+public:
+  /// Adds the member `member` of struct T under `name`. Its default is what T{} holds. A member of
+  /// type std::optional<X> is a field without a default: absent means "not given".
+  template <class T, class M> FieldBuilder add(std::string name, M T::*member);
+
+  [[nodiscard]] const std::vector<Field>& fields() const { return fields_; }
+  [[nodiscard]] const Field* find(const std::string& name) const;
+  [[nodiscard]] std::vector<std::string> names() const;
+
+private:
+  std::vector<Field> fields_;
+};
+
+// ---------------------------------------------------------------------------------------------
+
+namespace detail {
+
+template <class M> constexpr FieldType default_field_type() {
+  if constexpr (std::is_same_v<M, bool>) return FieldType::boolean;
+  else if constexpr (std::is_integral_v<M>) return FieldType::integer;
+  else if constexpr (std::is_floating_point_v<M>) return FieldType::number;
+  else if constexpr (std::is_same_v<M, std::string>) return FieldType::text;
+  else if constexpr (std::is_same_v<M, Vec2>) return FieldType::vec2;
+  else if constexpr (std::is_same_v<M, std::vector<double>>) return FieldType::numbers;
+  else if constexpr (std::is_same_v<M, std::vector<Vec2>>) return FieldType::points;
+  else if constexpr (std::is_same_v<M, std::vector<std::vector<Vec2>>>) return FieldType::rings;
+  else return FieldType::texts;
+}
+
+template <class M> M from_field_value(const FieldValue& value) {
+  if constexpr (std::is_same_v<M, bool>) return std::get<bool>(value);
+  else if constexpr (std::is_integral_v<M>) return static_cast<M>(std::get<long>(value));
+  else return std::get<M>(value);
+}
+
+template <class M> FieldValue to_field_value(const M& value) {
+  if constexpr (std::is_same_v<M, bool>) return value;
+  else if constexpr (std::is_integral_v<M>) return static_cast<long>(value);
+  else return value;
+}
+
+template <class M> struct optional_traits {
+  using type = M;
+  static constexpr bool is_optional = false;
+};
+template <class M> struct optional_traits<std::optional<M>> {
+  using type = M;
+  static constexpr bool is_optional = true;
+};
+
+} // namespace detail
+
+template <class T, class M> FieldBuilder FieldTable::add(std::string name, M T::*member) {
+  using Value = typename detail::optional_traits<M>::type;
+  Field& field = fields_.emplace_back();
+  field.name = std::move(name);
+  field.type = detail::default_field_type<Value>();
+  field.set = [member](void* object, const FieldValue& value) {
+    static_cast<T*>(object)->*member = detail::from_field_value<Value>(value);
+  };
+  field.get = [member](const void* object) -> FieldValue {
+    if constexpr (detail::optional_traits<M>::is_optional) {
+      const M& held = static_cast<const T*>(object)->*member;
+      return held ? detail::to_field_value<Value>(*held) : FieldValue(std::string());
+    } else {
+      return detail::to_field_value<Value>(static_cast<const T*>(object)->*member);
+    }
+  };
+  return FieldBuilder(field);
+}
+
+} // namespace steplap

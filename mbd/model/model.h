@@ -1,0 +1,229 @@
+// The model: what the user described, by name, before anything is compiled or run.
+//
+// Bodies, markers, signals and elements refer to each other by name; every entry remembers the
+// place in the file it came from, so that an error found later can still point at it.
+#pragma once
+
+#include "mbd/base/diagnostics.h"
+#include "mbd/model/fields.h"
+#include "mbd/model/signal.h"
+#include "mbd/base/types.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+class SystemBuilder;
+struct Model;
+
+/// A rigid body. Its frame has the origin `position` and the angle `angle` in the reference pose (the
+/// pose the file gives); its centre of gravity lies at `cg` in that frame.
+struct Body {
+  std::string name;
+  double mass = 0.0;    ///< kg, > 0
+  double inertia = 0.0; ///< kg m², about the centre of gravity, > 0
+  Vec2 position = Vec2::Zero();
+  double angle = 0.0;
+  Vec2 cg = Vec2::Zero();
+  Vec2 velocity = Vec2::Zero(); ///< of the centre of gravity, m/s, ground axes
+  double angular_velocity = 0.0;
+  bool fixed = false;
+  std::string label;
+  std::vector<Vec2> outline; ///< body frame, m; for drawings only
+  Location where;
+
+  /// (x, y, θ) of the centre of gravity in the reference pose.
+  [[nodiscard]] Vec3 reference_pose() const;
+  [[nodiscard]] static const FieldTable& fields();
+};
+
+/// A point fixed in a body (or the ground), with axes turned by `angle` against the body's.
+/// Given either by `point` (body frame) or by `at` (ground frame, reference pose).
+struct Marker {
+  std::string name;
+  std::string body = "ground";
+  std::optional<Vec2> point;
+  std::optional<Vec2> at;
+  double angle = 0.0;
+  Location where;
+
+  [[nodiscard]] static const FieldTable& fields();
+};
+
+/// What an element of any kind has. Kinds derive from it and add their fields.
+struct Element {
+  virtual ~Element() = default;
+  std::string name;
+  std::string draw = "auto"; ///< how drawings show it; "auto": as its kind is usually drawn
+  Location where;
+
+  /// Fields that elements of every kind have, besides name and kind.
+  [[nodiscard]] static const FieldTable& common_fields();
+};
+
+/// One kind of element: its fields and how it becomes part of a compiled system.
+struct ElementKind {
+  std::string name; ///< as written in a model file, "spring_damper"
+  std::string doc;  ///< a few sentences: what it models, sign convention
+  FieldTable fields;
+  int stage = 0; ///< kinds that refer to other elements compile at stage 1
+  std::shared_ptr<Element> (*create)() = nullptr;
+  std::shared_ptr<Element> (*copy)(const Element& element) = nullptr;
+  /// Adds the element to the system; reports what is wrong through the builder's errors.
+  void (*compile)(const Element& element, SystemBuilder& builder) = nullptr;
+
+  /// Its elements are of type T.
+  template <class T> void holds() {
+    create = make_held<Element, T>;
+    copy = copy_held<Element, T>;
+  }
+};
+
+/// An element of a kind; a copy has an element of its own.
+struct ElementEntry {
+  const ElementKind* kind = nullptr;
+  std::shared_ptr<Element> element;
+
+  ElementEntry(const ElementKind* kind_, std::shared_ptr<Element> element_) : kind(kind_), element(std::move(element_)) {}
+  ElementEntry(const ElementEntry& other) : kind(other.kind), element(other.kind->copy(*other.element)) {}
+  ElementEntry(ElementEntry&&) = default;
+  ElementEntry& operator=(const ElementEntry& other) { return *this = ElementEntry(other); }
+  ElementEntry& operator=(ElementEntry&&) = default;
+  ~ElementEntry() = default;
+};
+
+/// A named signal: a scalar function of time; a copy has a definition of its own.
+struct SignalEntry {
+  const SignalKind* kind = nullptr;
+  std::shared_ptr<SignalDefinition> definition;
+
+  SignalEntry(const SignalKind* kind_, std::shared_ptr<SignalDefinition> definition_) : kind(kind_), definition(std::move(definition_)) {}
+  SignalEntry(const SignalEntry& other) : kind(other.kind), definition(other.kind->copy(*other.definition)) {}
+  SignalEntry(SignalEntry&&) = default;
+  SignalEntry& operator=(const SignalEntry& other) { return *this = SignalEntry(other); }
+  SignalEntry& operator=(SignalEntry&&) = default;
+  ~SignalEntry() = default;
+};
+
+/// Runs of more steps than this are not begun, or given up when they turn out to need them: days of computing.
+inline constexpr double k_most_steps = 1e10;
+
+struct SimulationSettings {
+  double end = 1.0;                     ///< s
+  std::string integrator = "auto";
+  std::optional<double> step;           ///< s, fixed step methods
+  std::optional<double> tolerance;      ///< relative, adaptive methods
+  std::string initial = "as_given";     ///< "as_given" or "equilibrium"
+  Vec2 velocity = Vec2::Zero();         ///< m/s, added to every body's initial velocity
+  double projection_tolerance = 1e-12;  ///< largest constraint residual left after a step, m or rad
+  long max_events = 100000;
+  Location where;
+
+  [[nodiscard]] static const FieldTable& fields();
+};
+
+struct OutputSettings {
+  double step = 1e-3;                ///< s
+  std::vector<std::string> channels; ///< patterns with * and ?; empty = all
+  std::string seen_from;             ///< body that drawings stand still with; "" = chosen by the drawing
+  Location where;
+
+  [[nodiscard]] static const FieldTable& fields();
+};
+
+/// What an array of tables that is none of the kernel's holds: it knows where its fields stand in the file.
+struct TableObject : Element {
+  std::map<std::string, Location> places; ///< of the fields given
+
+  /// Of the field, or of the whole table if it is not given.
+  [[nodiscard]] const Location& place(const std::string& field) const;
+};
+
+/// [[plot]]: time histories that belong in one figure, all of one unit.
+struct Plot : TableObject {
+  std::string title;
+  std::vector<std::string> channels; ///< patterns with * and ?
+  std::vector<std::string> bounds;   ///< channels drawn dashed at plus and minus their value
+};
+
+/// [[acceptance]]: what the receiver of a machine may ask of a run. Either of channels (over the samples
+/// of the trajectory) or of events that must not happen.
+struct Criterion : TableObject {
+  std::string channel;                   ///< pattern with * and ?
+  std::string at_least_text, at_most_text, within_text; ///< as given, "300 kN": empty if not
+  /// The same in the channels' unit, once these are known; `within` bounds the absolute value.
+  std::optional<double> at_least, at_most, within;
+  std::string element, event;            ///< patterns: no such event of such an element
+  std::string consequence = "inspect";   ///< if it is not met: "inspect" or "reject"
+  std::string reason;                    ///< why, or by which document
+};
+
+/// Top-level scalars of a model file.
+struct ModelHeader {
+  std::string title;
+  std::string source; ///< where the values come from
+  Vec2 gravity{0.0, -9.81};
+  Location where;
+
+  [[nodiscard]] static const FieldTable& fields();
+};
+
+/// A top-level array of tables that is not the kernel's: handed in by another room (a core's geometry,
+/// say), it reads its own fields and adds bodies, markers or elements to the model.
+struct TableKind {
+  std::string name; ///< as in [[name]]
+  std::string doc;
+  FieldTable fields;
+  std::shared_ptr<Element> (*create)() = nullptr;
+  std::shared_ptr<Element> (*copy)(const Element& table) = nullptr;
+  void (*apply)(const Element& table, Model& model) = nullptr; ///< throws ModelError
+
+  /// Its tables are of type T.
+  template <class T> void holds() {
+    create = make_held<Element, T>;
+    copy = copy_held<Element, T>;
+  }
+};
+
+/// A table of such a kind; a copy has a table of its own.
+struct TableEntry {
+  const TableKind* kind = nullptr;
+  std::shared_ptr<Element> table;
+
+  TableEntry(const TableKind* kind_, std::shared_ptr<Element> table_) : kind(kind_), table(std::move(table_)) {}
+  TableEntry(const TableEntry& other) : kind(other.kind), table(other.kind->copy(*other.table)) {}
+  TableEntry(TableEntry&&) = default;
+  TableEntry& operator=(const TableEntry& other) { return *this = TableEntry(other); }
+  TableEntry& operator=(TableEntry&&) = default;
+  ~TableEntry() = default;
+};
+
+struct Model {
+  ModelHeader header;
+  SimulationSettings simulation;
+  OutputSettings output;
+  std::vector<Body> bodies;
+  std::vector<Marker> markers;
+  std::vector<SignalEntry> signals;
+  std::vector<ElementEntry> elements;
+  std::vector<Plot> plots;
+  std::vector<Criterion> criteria;
+  std::vector<TableEntry> tables; ///< of other rooms, as given: complete() adds what they stand for
+
+  [[nodiscard]] const Body* find_body(const std::string& name) const;
+};
+
+/// The kinds a model file may use: the kernel and the reader know none by name.
+struct Catalogue {
+  std::vector<const ElementKind*> elements;
+  std::vector<const SignalKind*> signals;
+  std::vector<const TableKind*> tables;
+
+  [[nodiscard]] const ElementKind* find_element(const std::string& name) const;
+};
+
+} // namespace steplap

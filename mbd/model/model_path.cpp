@@ -1,0 +1,195 @@
+#include "mbd/model/model_path.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/model/validate.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+[[noreturn]] void complain(const std::string& path, const std::string& message) {
+  throw ModelError(Location{path, 0, 0}, message);
+}
+
+// A field of an object of the model, and which part of it.
+struct Target {
+  const void* object = nullptr;
+  const Field* field = nullptr;
+  std::string subject;
+  std::vector<std::size_t> items; ///< one or two indices into what the field holds
+};
+
+// An entry of one of the model's arrays.
+struct Candidate {
+  const std::string* name;
+  const FieldTable* fields;
+  const void* object;
+  const FieldTable* common; ///< fields that all entries of the array have besides, or null
+};
+
+template <class Visit> void visit_entries(const Model& model, const std::string& array, const Visit& visit) {
+  if (array == "body")
+    for (const Body& body : model.bodies) visit(Candidate{&body.name, &Body::fields(), &body, nullptr});
+  if (array == "marker")
+    for (const Marker& marker : model.markers) visit(Candidate{&marker.name, &Marker::fields(), &marker, nullptr});
+  if (array == "signal")
+    for (const SignalEntry& e : model.signals)
+      visit(Candidate{&e.definition->name, &e.kind->fields, e.definition.get(), nullptr});
+  if (array == "element")
+    for (const ElementEntry& e : model.elements)
+      visit(Candidate{&e.element->name, &e.kind->fields, e.element.get(), &Element::common_fields()});
+  for (const TableEntry& e : model.tables)
+    if (e.kind->name == array) visit(Candidate{&e.table->name, &e.kind->fields, e.table.get(), nullptr});
+}
+
+class Resolver {
+public:
+  Resolver(const Model& model, const std::string& path) : model_(model), path_(path), rest_(path) {}
+
+  Target resolve() {
+    const std::string top = take();
+    if (top == "simulation" || top == "output") {
+      if (rest_.empty()) complain(path_, "name a key of '" + top + "', as in " + top + ".step");
+      const bool is_output = top == "output";
+      return field_of(is_output ? OutputSettings::fields() : SimulationSettings::fields(), nullptr,
+                      is_output ? static_cast<const void*>(&model_.output) : &model_.simulation, "[" + top + "]", take());
+    }
+    if (ModelHeader::fields().find(top)) return field_of(ModelHeader::fields(), nullptr, &model_.header, "the model", top);
+    return in_entry(top);
+  }
+
+private:
+  // The part before the next point.
+  std::string take() {
+    const std::size_t point = rest_.find('.');
+    std::string segment(rest_.substr(0, point));
+    rest_ = point == std::string_view::npos ? std::string_view() : rest_.substr(point + 1);
+    return segment;
+  }
+
+  Target in_entry(const std::string& array) {
+    Candidate best{};
+    std::vector<std::string> known;
+    visit_entries(model_, array, [&](const Candidate& c) {
+      known.push_back(*c.name);
+      const std::string& name = *c.name;
+      const bool leads = !name.empty() && rest_.size() > name.size() && rest_.starts_with(name) && rest_[name.size()] == '.';
+      if (leads && (!best.name || name.size() > best.name->size())) best = c;
+    });
+    if (!best.name) {
+      const std::string wanted(rest_.substr(0, rest_.rfind('.')));
+      for (const char* name : {"body", "marker", "signal", "element"})
+        if (array == name || !known.empty()) complain(path_, "there is no " + array + " '" + wanted + "'" + did_you_mean(wanted, known));
+      complain(path_, "a model has no '" + array + "'");
+    }
+    rest_ = rest_.substr(best.name->size() + 1);
+    return field_of(*best.fields, best.common, best.object, subject_text(array, *best.name), take());
+  }
+
+  Target field_of(const FieldTable& table, const FieldTable* common, const void* object, std::string subject, const std::string& name) {
+    Target target{object, table.find(name), std::move(subject), {}};
+    if (!target.field && common) target.field = common->find(name);
+    if (!target.field) complain(path_, "unknown key '" + name + "' in " + target.subject + did_you_mean(name, table.names()));
+    while (!rest_.empty()) {
+      const std::string item = take();
+      std::size_t index = 0;
+      const auto [end, status] = std::from_chars(item.data(), item.data() + item.size(), index);
+      if (status != std::errc() || end != item.data() + item.size()) complain(path_, "'" + item + "' is not an item of '" + name + "'");
+      target.items.push_back(index);
+    }
+    return target;
+  }
+
+  const Model& model_;
+  const std::string& path_;
+  std::string_view rest_;
+};
+
+// The component that `items` name, null if there is none.
+double* component_of(FieldValue& value, const std::vector<std::size_t>& items) {
+  const auto of_point = [](Vec2& p, std::size_t i) { return i < 2 ? &p[static_cast<Eigen::Index>(i)] : nullptr; };
+  if (auto* p = std::get_if<Vec2>(&value); p && items.size() == 1) return of_point(*p, items[0]);
+  if (auto* list = std::get_if<std::vector<double>>(&value); list && items.size() == 1)
+    return items[0] < list->size() ? &(*list)[items[0]] : nullptr;
+  if (auto* list = std::get_if<std::vector<Vec2>>(&value); list && items.size() == 2)
+    return items[0] < list->size() ? of_point((*list)[items[0]], items[1]) : nullptr;
+  return nullptr;
+}
+
+// What kind of value a field holds, in words.
+const char* text_of(const FieldValue& value) {
+  static constexpr const char* k_texts[] = {"a number",          "an integer",       "true or false",     "a text",         "a point",
+                                            "a list of numbers", "a list of points", "a list of rings", "a list of texts"};
+  return k_texts[value.index()];
+}
+
+// The value as the field's type has it.
+FieldValue fitted(const std::string& path, const Target& target, FieldValue value) {
+  const bool is_integer = target.field->type == FieldType::integer;
+  if (const double* x = std::get_if<double>(&value); x && is_integer) {
+    if (std::nearbyint(*x) != *x || std::abs(*x) > 9e15) complain(path, "expected an integer, got " + number_text(*x));
+    return static_cast<long>(*x);
+  }
+  if (const long* n = std::get_if<long>(&value); n && !is_integer) return static_cast<double>(*n);
+  return value;
+}
+
+// An alternative of FieldValue that a field of this type holds.
+std::size_t index_of(FieldType type) {
+  switch (type) {
+  case FieldType::number: return FieldValue(0.0).index();
+  case FieldType::integer: return FieldValue(0L).index();
+  case FieldType::boolean: return FieldValue(false).index();
+  case FieldType::vec2: return FieldValue(Vec2(Vec2::Zero())).index();
+  case FieldType::numbers: return FieldValue(std::vector<double>()).index();
+  case FieldType::points: return FieldValue(std::vector<Vec2>()).index();
+  case FieldType::rings: return FieldValue(std::vector<std::vector<Vec2>>()).index();
+  case FieldType::signals:
+  case FieldType::elements:
+  case FieldType::texts: return FieldValue(std::vector<std::string>()).index();
+  default: return FieldValue(std::string()).index();
+  }
+}
+
+} // namespace
+
+void set_value(Model& model, const std::string& path, const FieldValue& value) {
+  const Target target = Resolver(model, path).resolve();
+  FieldValue wanted = fitted(path, target, value);
+  if (!target.items.empty()) {
+    const double* const number = std::get_if<double>(&wanted);
+    FieldValue whole = target.field->get(target.object);
+    double* const component = component_of(whole, target.items);
+    if (!component) complain(path, "'" + target.field->name + "' of " + target.subject + " has no such item");
+    if (!number) complain(path, std::string("expected a number, got ") + text_of(wanted));
+    *component = *number;
+    wanted = std::move(whole);
+  }
+  const bool is_type = wanted.index() == index_of(target.field->type);
+  if (!is_type)
+    complain(path, "'" + target.field->name + "' of " + target.subject + " does not take " + text_of(wanted));
+  std::string problem = range_problem(*target.field, wanted);
+  if (!problem.empty()) complain(path, "'" + target.field->name + "' of " + target.subject + " " + problem);
+  target.field->set(const_cast<void*>(target.object), wanted); // an object of `model`, which is not const
+}
+
+FieldValue value_of(const Model& model, const std::string& path) {
+  const Target target = Resolver(model, path).resolve();
+  FieldValue value = target.field->get(target.object);
+  if (target.items.empty()) return value;
+  const double* const component = component_of(value, target.items);
+  if (!component) complain(path, "'" + target.field->name + "' of " + target.subject + " has no such item");
+  return *component;
+}
+
+double number_of(const Model& model, const std::string& path) {
+  const FieldValue value = value_of(model, path);
+  if (const double* x = std::get_if<double>(&value)) return *x;
+  if (const long* n = std::get_if<long>(&value)) return static_cast<double>(*n);
+  complain(path, std::string("is ") + text_of(value) + ", not a number");
+}
+
+} // namespace steplap

@@ -1,0 +1,359 @@
+#include "mbd/model/signal.h"
+
+#include "mbd/math/portable_math.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace steplap {
+
+namespace {
+
+// A piece's value, first two derivatives and integrals from the piece's start, at τ after it.
+struct PieceJet {
+  double value = 0.0, rate = 0.0, second_rate = 0.0, integral = 0.0, double_integral = 0.0;
+};
+
+// sin x − x without cancellation.
+double sine_minus_argument(double x) {
+  if (std::abs(x) > 0.5) return portable::sin(x) - x;
+  const double y = x * x;
+  // Taylor series; the first term left out is x¹⁷/17! < 1e-19 of the first at |x| = 0.5.
+  return x * y *
+         (-1.0 / 6 +
+          y * (1.0 / 120 +
+               y * (-1.0 / 5040 +
+                    y * (1.0 / 362880 +
+                         y * (-1.0 / 39916800 + y * (1.0 / 6227020800.0 - y / 1307674368000.0))))));
+}
+
+// With x = ωτ: cos(x+φ) = cos φ cos x − sin φ sin x, and
+// ∫ = A/ω [cos φ sin x − sin φ (1−cos x)], ∬ = A/ω² [cos φ (1−cos x) + sin φ (sin x − x)].
+void add_harmonic(const Signal::Harmonic& h, double tau, PieceJet& jet) {
+  const double x = h.frequency * tau;
+  const auto [s, c] = portable::sin_cos(0.5 * x);
+  const double sine = 2.0 * s * c, versine = 2.0 * s * s, cosine = 1.0 - versine;
+  const double value = h.amplitude * (h.cos_phase * cosine - h.sin_phase * sine);
+  const double slope = -h.amplitude * (h.sin_phase * cosine + h.cos_phase * sine);
+  jet.value += value;
+  jet.rate += h.frequency * slope;
+  jet.second_rate -= h.frequency * h.frequency * value;
+  jet.integral += h.integral_scale * (h.cos_phase * sine - h.sin_phase * versine);
+  double bracket = h.cos_phase * versine;
+  if (h.sin_phase != 0.0) bracket += h.sin_phase * sine_minus_argument(x);
+  jet.double_integral += h.double_integral_scale * bracket;
+}
+
+void add_polynomial(const double* c, double tau, PieceJet& jet) {
+  jet.value = c[0] + tau * (c[1] + tau * (c[2] + tau * c[3]));
+  jet.rate = c[1] + tau * (2.0 * c[2] + tau * 3.0 * c[3]);
+  jet.second_rate = 2.0 * c[2] + 6.0 * c[3] * tau;
+  jet.integral = tau * (c[0] + tau * (c[1] / 2 + tau * (c[2] / 3 + tau * (c[3] / 4))));
+  jet.double_integral =
+      tau * tau * (c[0] / 2 + tau * (c[1] / 6 + tau * (c[2] / 12 + tau * (c[3] / 20))));
+}
+
+// ∫₀¹ uⁿ e^{ixu} du of two neighbouring n.
+struct Moments {
+  double real[2] = {0.0, 0.0}, imaginary[2] = {0.0, 0.0};
+};
+
+// Σ (ix)^k / (k! (n+k+1)), which loses few digits while |x| ≤ max(2, n/2).
+void add_moment_series(int n, double x, double& real, double& imaginary) {
+  double term = 1.0; // x^k / k!
+  for (int k = 0; k < 80 && std::abs(term) > 1e-20; ++k) {
+    const double part = (k % 4 < 2 ? term : -term) / (n + k + 1);
+    (k % 2 == 0 ? real : imaginary) += part;
+    term *= x / (k + 1);
+  }
+}
+
+// For larger x by parts, upwards from n = 0: F_n = (e^{ix} − n F_{n−1}) / (ix).
+Moments moments(int n, double x) {
+  Moments m;
+  if (std::abs(x) <= std::max(2.0, 0.5 * n)) {
+    for (int j = 0; j < 2; ++j) add_moment_series(n + j, x, m.real[j], m.imaginary[j]);
+    return m;
+  }
+  const auto [s, c] = portable::sin_cos(x);
+  double real = s / x, imaginary = (1.0 - c) / x;
+  for (int k = 1; k <= n + 1; ++k) {
+    if (k == n + 1) m.real[0] = real, m.imaginary[0] = imaginary;
+    const double next = (s - k * imaginary) / x;
+    imaginary = (k * real - c) / x;
+    real = next;
+  }
+  m.real[1] = real;
+  m.imaginary[1] = imaginary;
+  return m;
+}
+
+double power(double x, int n) {
+  double result = 1.0;
+  for (; n > 0; --n) result *= x;
+  return result;
+}
+
+// ∫ τⁿ cos(ωτ+φ) = τⁿ⁺¹ Re e^{iφ} F_n, ∬ = ∫ (τ−s) sⁿ cos = τⁿ⁺² Re e^{iφ} (F_n − F_n+1).
+void add_modulated(const Signal::Modulated& m, double tau, bool has_integrals, PieceJet& jet) {
+  const int n = m.power;
+  const double x = m.frequency * tau;
+  const auto [s, c] = portable::sin_cos(0.5 * x);
+  const double sine = 2.0 * s * c, cosine = 1.0 - 2.0 * s * s;
+  const double wave = m.amplitude * (m.cos_phase * cosine - m.sin_phase * sine);
+  const double slope = -m.amplitude * m.frequency * (m.sin_phase * cosine + m.cos_phase * sine);
+  const double p = power(tau, n), p1 = n > 0 ? n * power(tau, n - 1) : 0.0;
+  const double p2 = n > 1 ? n * (n - 1) * power(tau, n - 2) : 0.0;
+  jet.value += p * wave;
+  jet.rate += p1 * wave + p * slope;
+  jet.second_rate += p2 * wave + 2.0 * p1 * slope - m.frequency * m.frequency * p * wave;
+  if (!has_integrals) return;
+  const Moments f = moments(n, x);
+  const double first = m.cos_phase * f.real[0] - m.sin_phase * f.imaginary[0];
+  const double second = m.cos_phase * (f.real[0] - f.real[1]) - m.sin_phase * (f.imaginary[0] - f.imaginary[1]);
+  jet.integral += m.amplitude * p * tau * first;
+  jet.double_integral += m.amplitude * p * tau * tau * second;
+}
+
+PieceJet evaluate(const Signal::Piece& piece, double tau, bool has_integrals = true) {
+  const double* c = piece.c;
+  PieceJet jet;
+  if (piece.is_level) {
+    jet.value = c[0];
+    jet.integral = tau * c[0];
+    jet.double_integral = tau * tau * (c[0] / 2);
+  } else {
+    add_polynomial(c, tau, jet);
+  }
+  for (const Signal::Harmonic& h : piece.harmonics)
+    add_harmonic(h, tau, jet);
+  for (const Signal::Modulated& m : piece.modulated)
+    add_modulated(m, tau, has_integrals, jet);
+  return jet;
+}
+
+// A bound of the piece's terms up to τ: the scale of its rounding.
+double magnitude(const Signal::Piece& piece, double tau) {
+  double sum = 0.0;
+  for (int i = 3; i >= 0; --i)
+    sum = sum * tau + std::abs(piece.c[i]);
+  for (const Signal::Harmonic& h : piece.harmonics)
+    sum += std::abs(h.amplitude);
+  for (const Signal::Modulated& m : piece.modulated)
+    sum += std::abs(m.amplitude) * power(tau, m.power);
+  return sum;
+}
+
+bool is_finite(const Signal::Piece& piece) {
+  double sum = piece.start;
+  for (const double c : piece.c)
+    sum += c;
+  for (const Signal::Harmonic& h : piece.harmonics)
+    sum += h.amplitude + h.frequency + h.phase;
+  for (const Signal::Modulated& m : piece.modulated)
+    sum += m.amplitude + m.frequency + m.phase;
+  return std::isfinite(sum);
+}
+
+void check(const std::vector<Signal::Piece>& pieces) {
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (!is_finite(pieces[k]))
+      throw std::invalid_argument("a piece of a signal holds a number that is not finite");
+    if (k > 0 && !(pieces[k].start > pieces[k - 1].start))
+      throw std::invalid_argument("pieces of a signal must start at ascending times");
+    for (const Signal::Harmonic& h : pieces[k].harmonics)
+      if (h.frequency == 0.0) throw std::invalid_argument("a harmonic of frequency zero");
+  }
+}
+
+} // namespace
+
+Signal::Signal(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
+  check(pieces_);
+  for (Piece& piece : pieces_) {
+    piece.is_level = piece.c[1] == 0.0 && piece.c[2] == 0.0 && piece.c[3] == 0.0;
+    for (Harmonic& h : piece.harmonics) {
+      const portable::SinCos phase = portable::sin_cos(h.phase);
+      h.cos_phase = phase.cos;
+      h.sin_phase = phase.sin;
+      h.integral_scale = h.amplitude / h.frequency;
+      h.double_integral_scale = h.integral_scale / h.frequency;
+    }
+    for (Modulated& m : piece.modulated) {
+      const portable::SinCos phase = portable::sin_cos(m.phase);
+      m.cos_phase = phase.cos;
+      m.sin_phase = phase.sin;
+    }
+  }
+  accumulate_integrals();
+  if (!is_constant())
+    for (const Piece& piece : pieces_)
+      breakpoints_.push_back(piece.start);
+  value_at_zero_ = value(0.0);
+}
+
+Signal Signal::constant(double value) {
+  return Signal({Piece{0.0, {value, 0.0, 0.0, 0.0}, {}, {}}});
+}
+
+// The integrals at the starts, forwards and backwards from the piece that holds t = 0, so that
+// pieces long before t = 0 cost those after it no digits.
+void Signal::accumulate_integrals() {
+  if (pieces_.empty()) return;
+  const Piece* at_zero = piece_at(0.0);
+  const std::size_t first = at_zero ? static_cast<std::size_t>(at_zero - pieces_.data()) : 0;
+  if (at_zero) {
+    Piece& p = pieces_[first];
+    const PieceJet jet = evaluate(p, -p.start);
+    p.integral = -jet.integral;
+    p.double_integral = -jet.double_integral + p.integral * p.start;
+  }
+  for (std::size_t k = first; k > 0; --k) {
+    const Piece& next = pieces_[k];
+    Piece& p = pieces_[k - 1];
+    const double length = next.start - p.start;
+    const PieceJet jet = evaluate(p, length);
+    p.integral = next.integral - jet.integral;
+    p.double_integral = next.double_integral - p.integral * length - jet.double_integral;
+  }
+  for (std::size_t k = first + 1; k < pieces_.size(); ++k) {
+    const Piece& last = pieces_[k - 1];
+    const double length = pieces_[k].start - last.start;
+    const PieceJet jet = evaluate(last, length);
+    pieces_[k].integral = last.integral + jet.integral;
+    pieces_[k].double_integral =
+        last.double_integral + last.integral * length + jet.double_integral;
+  }
+}
+
+const Signal::Piece* Signal::piece_at(double t) const {
+  const auto after = std::upper_bound(pieces_.begin(), pieces_.end(), t,
+                                      [](double time, const Piece& p) { return time < p.start; });
+  return after == pieces_.begin() ? nullptr : &*(after - 1);
+}
+
+double Signal::value(double t) const {
+  const Piece* piece = piece_at(t);
+  return piece ? evaluate(*piece, t - piece->start, false).value : 0.0;
+}
+
+SignalJet Signal::drive(double t, DriveLevel level) const {
+  const Piece* piece = piece_at(t);
+  PieceJet jet;
+  if (piece) {
+    const double tau = t - piece->start;
+    jet = evaluate(*piece, tau, level != DriveLevel::position);
+    jet.double_integral += piece->double_integral + piece->integral * tau;
+    jet.integral += piece->integral;
+  } else if (!pieces_.empty() && pieces_.front().start < 0.0) {
+    const Piece& p = pieces_.front();
+    jet.integral = p.integral;
+    jet.double_integral = p.double_integral + p.integral * (t - p.start);
+  }
+  switch (level) {
+  case DriveLevel::position:
+    return {jet.value - value_at_zero_, jet.rate, jet.second_rate};
+  case DriveLevel::velocity:
+    return {jet.integral, jet.value, jet.rate};
+  case DriveLevel::acceleration:
+    break;
+  }
+  return {jet.double_integral, jet.integral, jet.value};
+}
+
+double Signal::fastest_at(double t) const {
+  constexpr int k_tame_power = 3; // a cubic is followed by every method
+  double fastest = 0.0;
+  const Piece* piece = piece_at(t);
+  if (!piece) return fastest;
+  for (const Harmonic& harmonic : piece->harmonics)
+    if (harmonic.amplitude != 0.0) fastest = std::max(fastest, std::abs(harmonic.frequency));
+  const bool is_last = piece == &pieces_.back();
+  for (const Modulated& m : piece->modulated) {
+    if (m.amplitude == 0.0) continue;
+    fastest = std::max(fastest, std::abs(m.frequency));
+    if (m.power > k_tame_power && !is_last)
+      fastest = std::max(fastest, m.power * std::numbers::pi / ((piece + 1)->start - piece->start));
+  }
+  return fastest;
+}
+
+bool Signal::is_constant() const {
+  if (pieces_.empty()) return true;
+  const Piece& p = pieces_.front();
+  return pieces_.size() == 1 && p.start <= 0.0 && p.harmonics.empty() && p.modulated.empty() && p.c[1] == 0.0 &&
+         p.c[2] == 0.0 && p.c[3] == 0.0;
+}
+
+namespace {
+
+constexpr double k_rounding = 1e-12;
+
+// On either side of a breakpoint, and how much of it may be rounding.
+struct Sides {
+  double before = 0.0, after = 0.0, scale = 0.0;
+  [[nodiscard]] bool differ() const { return std::abs(after - before) > k_rounding * scale; }
+};
+
+Sides values_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
+  const Signal::Piece& right = pieces.at(k);
+  Sides sides{0.0, evaluate(right, 0.0).value, magnitude(right, 0.0)};
+  if (k == 0) return sides;
+  const Signal::Piece& left = pieces[k - 1];
+  const double length = right.start - left.start;
+  sides.before = evaluate(left, length).value;
+  sides.scale = std::max(sides.scale, magnitude(left, length));
+  return sides;
+}
+
+// A bound of the terms of a piece's rate up to τ.
+double rate_magnitude(const Signal::Piece& piece, double tau) {
+  double sum = std::abs(piece.c[1]) + tau * (2.0 * std::abs(piece.c[2]) + tau * 3.0 * std::abs(piece.c[3]));
+  for (const Signal::Harmonic& h : piece.harmonics) sum += std::abs(h.amplitude * h.frequency);
+  for (const Signal::Modulated& m : piece.modulated) {
+    const double slope = m.power > 0 ? m.power * power(tau, m.power - 1) : 0.0;
+    sum += std::abs(m.amplitude) * (slope + std::abs(m.frequency) * power(tau, m.power));
+  }
+  return sum;
+}
+
+// The slope of a line between two samples is rounded as their values and times are, over its length.
+double slope_rounding(const Signal::Piece& piece, double length) {
+  const double value = magnitude(piece, length) + std::abs(piece.start) * rate_magnitude(piece, length);
+  return 16.0 * std::numeric_limits<double>::epsilon() * value / length;
+}
+
+Sides rates_at(const std::vector<Signal::Piece>& pieces, std::size_t k) {
+  const Signal::Piece& right = pieces.at(k);
+  Sides sides{0.0, evaluate(right, 0.0).rate, rate_magnitude(right, 0.0)};
+  if (k + 1 < pieces.size()) sides.scale += slope_rounding(right, pieces[k + 1].start - right.start) / k_rounding;
+  if (k == 0) return sides;
+  const Signal::Piece& left = pieces[k - 1];
+  const double length = right.start - left.start;
+  sides.before = evaluate(left, length).rate;
+  sides.scale = std::max(sides.scale, rate_magnitude(left, length) + slope_rounding(left, length) / k_rounding);
+  return sides;
+}
+
+} // namespace
+
+bool Signal::jumps_at(std::size_t k) const { return values_at(pieces_, k).differ(); }
+
+bool Signal::rate_jumps_at(std::size_t k) const { return rates_at(pieces_, k).differ(); }
+
+std::optional<Signal::Jump> Signal::first_jump(DriveLevel level, double from, double end) const {
+  if (level == DriveLevel::acceleration) return std::nullopt;
+  for (std::size_t k = 0; k < breakpoints_.size(); ++k) {
+    const double t = breakpoints_[k];
+    if (t <= from || t >= end) continue;
+    if (const Sides values = values_at(pieces_, k); values.differ()) return Jump{t, values.before, values.after, false};
+    if (level != DriveLevel::position) continue;
+    if (const Sides rates = rates_at(pieces_, k); rates.differ()) return Jump{t, rates.before, rates.after, true};
+  }
+  return std::nullopt;
+}
+
+} // namespace steplap

@@ -1,0 +1,246 @@
+// The kinds of signal that need no file. A pulse is zero outside [start, start + duration];
+// a deceleration is a pulse with a negative peak.
+#include "mbd/model/signal.h"
+
+#include "mbd/model/signal_composites.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_pi = std::numbers::pi;
+using Piece = Signal::Piece;
+
+// Fields "peak", "start", "duration" of every pulse.
+struct Pulse : SignalDefinition {
+  double peak = 0.0;
+  double start = 0.0;    // s
+  double duration = 0.0; // s
+};
+
+void add_pulse_fields(FieldTable& f) {
+  f.add("peak", &Pulse::peak).in("*").required().doc("largest value; negative for a deceleration");
+  f.add("start", &Pulse::start).in("s").doc("time at which the pulse begins");
+  f.add("duration", &Pulse::duration).in("s").positive().required().doc("length of the pulse");
+}
+
+FieldTable pulse_fields() {
+  FieldTable f;
+  add_pulse_fields(f);
+  return f;
+}
+
+template <class T> const T& as(const SignalDefinition& definition) {
+  return static_cast<const T&>(definition);
+}
+
+Piece polynomial(double start, double c0, double c1 = 0.0) {
+  Piece piece;
+  piece.start = start;
+  piece.c[0] = c0;
+  piece.c[1] = c1;
+  return piece;
+}
+
+// Corners of a polygonal line, zero before the first and after the last; corners at the same time
+// make a jump.
+Signal polygon(const std::vector<Vec2>& corners) {
+  std::vector<Piece> pieces;
+  for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
+    const double length = corners[k + 1].x() - corners[k].x();
+    if (length > 0.0)
+      pieces.push_back(polynomial(corners[k].x(), corners[k].y(),
+                                  (corners[k + 1].y() - corners[k].y()) / length));
+  }
+  pieces.push_back(polynomial(corners.back().x(), 0.0));
+  return Signal(std::move(pieces));
+}
+
+struct Constant : SignalDefinition {
+  double value = 0.0;
+};
+
+const SignalKind& constant_kind() {
+  static const SignalKind kind = [] {
+    SignalKind k{"constant", "The same value at all times.", {}, make_held<SignalDefinition, Constant>, copy_held<SignalDefinition, Constant>, nullptr};
+    k.fields.add("value", &Constant::value).in("*").required().doc("the value");
+    k.build = [](const SignalDefinition& d) { return Signal::constant(as<Constant>(d).value); };
+    return k;
+  }();
+  return kind;
+}
+
+const SignalKind& haversine_kind() {
+  static const SignalKind kind{
+      "haversine",
+      "Raised cosine, peak (1 - cos(2 pi tau / duration)) / 2; its integral is "
+      "peak duration / 2.",
+      pulse_fields(), make_held<SignalDefinition, Pulse>, copy_held<SignalDefinition, Pulse>, [](const SignalDefinition& d) {
+        const Pulse& p = as<Pulse>(d);
+        Piece piece = polynomial(p.start, 0.5 * p.peak);
+        piece.harmonics.push_back({-0.5 * p.peak, 2.0 * k_pi / p.duration, 0.0});
+        return Signal({piece, polynomial(p.start + p.duration, 0.0)});
+      }};
+  return kind;
+}
+
+const SignalKind& half_sine_kind() {
+  static const SignalKind kind{
+      "half_sine",
+      "Half a sine wave, peak sin(pi tau / duration); its integral is 2/pi peak "
+      "duration.",
+      pulse_fields(), make_held<SignalDefinition, Pulse>, copy_held<SignalDefinition, Pulse>, [](const SignalDefinition& d) {
+        const Pulse& p = as<Pulse>(d);
+        Piece piece = polynomial(p.start, 0.0);
+        piece.harmonics.push_back({p.peak, k_pi / p.duration, -0.5 * k_pi});
+        return Signal({piece, polynomial(p.start + p.duration, 0.0)});
+      }};
+  return kind;
+}
+
+const SignalKind& rectangle_kind() {
+  static const SignalKind kind{
+      "rectangle", "The value peak for the whole duration; its integral is peak duration.",
+      pulse_fields(), make_held<SignalDefinition, Pulse>, copy_held<SignalDefinition, Pulse>, [](const SignalDefinition& d) {
+        const Pulse& p = as<Pulse>(d);
+        return Signal({polynomial(p.start, p.peak), polynomial(p.start + p.duration, 0.0)});
+      }};
+  return kind;
+}
+
+struct Triangle : Pulse {
+  std::optional<double> rise; // s
+};
+
+Signal build_triangle(const SignalDefinition& definition) {
+  const Triangle& p = as<Triangle>(definition);
+  const double rise = p.rise.value_or(0.5 * p.duration);
+  if (rise > p.duration)
+    throw ModelError(p.where, "triangle '" + p.name +
+                                  "' rises longer than it lasts: 'rise' must "
+                                  "not exceed 'duration'");
+  return polygon({{p.start, 0.0}, {p.start + rise, p.peak}, {p.start + p.duration, 0.0}});
+}
+
+const SignalKind& triangle_kind() {
+  static const SignalKind kind = [] {
+    SignalKind k{"triangle",
+                 "Linear up to the peak and down again; its integral is peak duration / 2.",
+                 pulse_fields(), make_held<SignalDefinition, Triangle>, copy_held<SignalDefinition, Triangle>, build_triangle};
+    k.fields.add("rise", &Triangle::rise)
+        .in("s")
+        .not_negative()
+        .doc("time from start to peak; half the duration if not given");
+    return k;
+  }();
+  return kind;
+}
+
+struct Trapezoid : Pulse {
+  double rise = 0.0; // s
+  double fall = 0.0; // s
+};
+
+Signal build_trapezoid(const SignalDefinition& definition) {
+  const Trapezoid& p = as<Trapezoid>(definition);
+  constexpr double k_rounding = 1e-12;
+  const double excess = p.rise + p.fall - p.duration;
+  if (excess > k_rounding * p.duration)
+    throw ModelError(p.where, "trapezoid '" + p.name +
+                                  "' rises and falls longer than it lasts: "
+                                  "'rise' + 'fall' must not exceed 'duration'");
+  const double end = p.start + p.duration;
+  const double rise_end = p.start + p.rise;
+  const double fall_start = excess > -k_rounding * p.duration ? rise_end : end - p.fall;
+  return polygon({{p.start, 0.0}, {rise_end, p.peak}, {fall_start, p.peak}, {end, 0.0}});
+}
+
+const SignalKind& trapezoid_kind() {
+  static const SignalKind kind = [] {
+    SignalKind k{"trapezoid",
+                 "Linear rise, constant peak, linear fall; its integral is peak "
+                 "(duration - rise / 2 - fall / 2).",
+                 pulse_fields(), make_held<SignalDefinition, Trapezoid>, copy_held<SignalDefinition, Trapezoid>, build_trapezoid};
+    k.fields.add("rise", &Trapezoid::rise)
+        .in("s")
+        .not_negative()
+        .required()
+        .doc("time from start to the peak value");
+    k.fields.add("fall", &Trapezoid::fall)
+        .in("s")
+        .not_negative()
+        .required()
+        .doc("time from the peak value to the end; part of the duration");
+    return k;
+  }();
+  return kind;
+}
+
+struct Harmonics : SignalDefinition {
+  double offset = 0.0;
+  std::vector<double> amplitudes, frequencies, phases; // -, Hz, rad
+  double start = 0.0;                                  // s
+  std::optional<double> duration;                      // s
+};
+
+Signal build_harmonics(const SignalDefinition& definition) {
+  const Harmonics& h = as<Harmonics>(definition);
+  const auto fail = [&](const std::string& what) {
+    throw ModelError(h.where, "harmonics '" + h.name + "': " + what);
+  };
+  const std::size_t count = h.amplitudes.size();
+  if (h.frequencies.size() != count || (!h.phases.empty() && h.phases.size() != count))
+    fail("'amplitudes', 'frequencies' and 'phases' must be of equal length");
+  Piece piece = polynomial(h.start, h.offset);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(h.frequencies[i] > 0.0))
+      fail("frequencies must be greater than 0; use 'offset' for a constant");
+    piece.harmonics.push_back(
+        {h.amplitudes[i], 2.0 * k_pi * h.frequencies[i], h.phases.empty() ? 0.0 : h.phases[i]});
+  }
+  std::vector<Piece> pieces{piece};
+  if (h.duration) pieces.push_back(polynomial(h.start + *h.duration, 0.0));
+  return Signal(std::move(pieces));
+}
+
+const SignalKind& harmonics_kind() {
+  static const SignalKind kind = [] {
+    SignalKind k{"harmonics",
+                 "offset + sum of amplitude cos(2 pi frequency (t - start) + phase), zero before "
+                 "start; a phase of -90 deg makes a sine.",
+                 {},
+                 make_held<SignalDefinition, Harmonics>, copy_held<SignalDefinition, Harmonics>,
+                 build_harmonics};
+    k.fields.add("offset", &Harmonics::offset).in("*").doc("constant added to the harmonics");
+    k.fields.add("amplitudes", &Harmonics::amplitudes).in("*").required().doc("one per harmonic");
+    k.fields.add("frequencies", &Harmonics::frequencies)
+        .in("Hz")
+        .required()
+        .doc("cycles per second, one per harmonic");
+    k.fields.add("phases", &Harmonics::phases)
+        .in("rad")
+        .doc("one per harmonic; all 0 if not given");
+    k.fields.add("start", &Harmonics::start).in("s").doc("time at which the signal begins");
+    k.fields.add("duration", &Harmonics::duration)
+        .in("s")
+        .positive()
+        .doc("zero again after this time; endless if not given");
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace
+
+const std::vector<const SignalKind*>& signal_kinds() {
+  static const std::vector<const SignalKind*> kinds{
+      &constant_kind(),  &haversine_kind(), &half_sine_kind(), &triangle_kind(),
+      &trapezoid_kind(), &rectangle_kind(), &harmonics_kind(),
+      &sum_kind(),       &product_kind(),   &scaled_kind()};
+  return kinds;
+}
+
+} // namespace steplap

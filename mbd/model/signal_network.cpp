@@ -1,0 +1,74 @@
+#include "mbd/model/signal_network.h"
+
+#include "mbd/model/validate.h"
+
+#include <stdexcept>
+
+namespace steplap {
+
+std::vector<std::string> parts_of(const FieldTable& fields, const void* object) {
+  std::vector<std::string> names;
+  for (const Field& field : fields.fields()) {
+    if (field.type != FieldType::signal && field.type != FieldType::signals) continue;
+    const FieldValue value = field.get(object);
+    if (const auto* list = std::get_if<std::vector<std::string>>(&value))
+      names.insert(names.end(), list->begin(), list->end());
+    else if (const auto& name = std::get<std::string>(value); !name.empty())
+      names.push_back(name);
+  }
+  return names;
+}
+
+SignalNetwork::SignalNetwork(const Model& model) {
+  for (const SignalEntry& entry : model.signals) items_.try_emplace(entry.definition->name, Item{&entry, {}, {}});
+}
+
+void SignalNetwork::exclude(const std::string& name) { items_[name].status = Status::failed; }
+
+void SignalNetwork::fail_in_a_circle(const Item& item) const {
+  const SignalDefinition& definition = *item.entry->definition;
+  std::string circle = "'" + definition.name + "'";
+  bool is_inside = false;
+  for (const Item* link : chain_) {
+    if (is_inside) circle += " -> '" + link->entry->definition->name + "'";
+    is_inside = is_inside || link == &item;
+  }
+  throw ModelError(definition.where, "signal '" + definition.name + "' is made of itself: " + circle + " -> '" +
+                                         definition.name + "'");
+}
+
+const Signal* SignalNetwork::build(const std::string& name) {
+  const auto found = items_.find(name);
+  return found == items_.end() ? nullptr : build(found->second);
+}
+
+const Signal* SignalNetwork::build(Item& item) {
+  if (item.status == Status::built) return &item.signal;
+  if (item.status == Status::failed) return nullptr;
+  if (item.status == Status::begun) fail_in_a_circle(item);
+  const SignalKind& kind = *item.entry->kind;
+  const SignalDefinition& definition = *item.entry->definition;
+  const std::size_t depth = chain_.size();
+  chain_.push_back(&item);
+  item.status = Status::begun;
+  try {
+    bool is_complete = true;
+    std::vector<const Signal*> parts;
+    if (kind.combine)
+      for (const std::string& name : parts_of(kind.fields, &definition)) {
+        parts.push_back(build(name));
+        is_complete = is_complete && parts.back();
+      }
+    if (is_complete) item.signal = kind.combine ? kind.combine(definition, parts) : kind.build(definition);
+    item.status = is_complete ? Status::built : Status::failed;
+  } catch (const std::exception& error) {
+    item.status = Status::failed;
+    chain_.resize(depth);
+    if (!dynamic_cast<const std::invalid_argument*>(&error)) throw;
+    throw ModelError(definition.where, subject_text(kind.name, definition.name) + ": " + error.what());
+  }
+  chain_.resize(depth);
+  return item.status == Status::built ? &item.signal : nullptr;
+}
+
+} // namespace steplap

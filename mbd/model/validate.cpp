@@ -1,0 +1,384 @@
+#include "mbd/model/validate.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/model/signal_network.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace steplap {
+
+bool has_fixed_step(const std::string& integrator) {
+  return integrator == "rk4" || integrator == "moreau";
+}
+
+std::string subject_text(const std::string& kind, const std::string& name) {
+  if (!name.empty()) return kind + " '" + name + "'";
+  const bool vowel = std::string("aeiou").find(kind.front()) != std::string::npos;
+  return (vowel ? "an " : "a ") + kind;
+}
+
+std::string missing_field_message(const Field& field, const std::string& subject) {
+  std::string text = subject + " needs '" + field.name + "' (" + field.doc;
+  if (!field.unit.empty() && field.unit != "*") text += "; in " + field.unit;
+  return text + ")";
+}
+
+bool is_excused(const Body& body, const Field& field) {
+  return body.fixed && (field.name == "mass" || field.name == "inertia");
+}
+
+namespace {
+
+std::string place_text(const Location& first, const Location& second) {
+  if (first.line == 0) return "";
+  std::string text = " (line " + std::to_string(first.line);
+  if (first.file != second.file)
+    text += " of " + std::filesystem::path(first.file).filename().string();
+  return text + ")";
+}
+
+std::string of(const Field& field, const std::string& subject) {
+  return "'" + field.name + "' of " + subject;
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  return number_text(value) + (unit.empty() || unit == "*" ? "" : " " + unit);
+}
+
+std::string reference_noun(FieldType type) {
+  switch (type) {
+  case FieldType::body:
+    return "body";
+  case FieldType::marker:
+    return "marker or body";
+  case FieldType::signal:
+  case FieldType::signals:
+    return "signal";
+  default:
+    return "element";
+  }
+}
+
+// Not given: empty text, also what an optional number without a value is read as.
+bool is_absent(const FieldValue& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text && text->empty();
+}
+
+std::string number_problem(const Field& field, double value) {
+  std::string need;
+  if (!std::isfinite(value))
+    need = "finite";
+  else if (field.is_minimum_excluded && !(value > field.minimum))
+    need = "greater than " + with_unit(field.minimum, field.unit);
+  else if (value < field.minimum)
+    need = "at least " + with_unit(field.minimum, field.unit);
+  else if (value > field.maximum)
+    need = "at most " + with_unit(field.maximum, field.unit);
+  return need.empty() ? "" : "must be " + need + ", got " + number_text(value);
+}
+
+std::string choice_problem(const Field& field, const std::string& value) {
+  std::string list;
+  for (const std::string& choice : field.choices) {
+    if (choice == value) return "";
+    list += (list.empty() ? "'" : ", '") + choice + "'";
+  }
+  return "must be one of " + list + ", got '" + value + "'" + did_you_mean(value, field.choices);
+}
+
+// The first problem of numbers, points or rings.
+std::string first_problem(const Field& field, double value) { return number_problem(field, value); }
+std::string first_problem(const Field& field, const Vec2& p) {
+  const std::string of_x = number_problem(field, p.x());
+  return of_x.empty() ? number_problem(field, p.y()) : of_x;
+}
+template <class T> std::string first_problem(const Field& field, const std::vector<T>& list) {
+  for (const T& item : list)
+    if (std::string problem = first_problem(field, item); !problem.empty()) return problem;
+  return "";
+}
+
+} // namespace
+
+std::string range_problem(const Field& field, const FieldValue& value) {
+  switch (field.type) {
+  case FieldType::number: return number_problem(field, std::get<double>(value));
+  case FieldType::integer: return number_problem(field, static_cast<double>(std::get<long>(value)));
+  case FieldType::vec2: return first_problem(field, std::get<Vec2>(value));
+  case FieldType::numbers: return first_problem(field, std::get<std::vector<double>>(value));
+  case FieldType::points: return first_problem(field, std::get<std::vector<Vec2>>(value));
+  case FieldType::rings: return first_problem(field, std::get<std::vector<std::vector<Vec2>>>(value));
+  case FieldType::choice: return choice_problem(field, std::get<std::string>(value));
+  default: return "";
+  }
+}
+
+FieldChecker::FieldChecker(const Model& model, std::vector<Diagnostic>& problems)
+    : problems_(problems) {
+  bodies_.insert("ground");
+  for (const Body& body : model.bodies)
+    bodies_.insert(body.name);
+  for (const Marker& marker : model.markers)
+    markers_.insert(marker.name);
+  for (const SignalEntry& entry : model.signals)
+    signals_.insert(entry.definition->name);
+  for (const ElementEntry& entry : model.elements)
+    elements_.insert(entry.element->name);
+}
+
+void FieldChecker::check(const FieldTable& table, const void* object, const std::string& subject,
+                         const Locate& locate) {
+  for (const Field& field : table.fields())
+    if (const std::optional<Location> where = locate(field.name))
+      check_field(field, field.get(object), subject, *where);
+}
+
+void FieldChecker::check_field(const Field& field, const FieldValue& value,
+                               const std::string& subject, const Location& where) {
+  if (is_absent(value)) {
+    if (field.is_required && field.name != "name") // names have a check of their own
+      problems_.push_back({where, missing_field_message(field, subject)});
+    return;
+  }
+  if (const std::string problem = range_problem(field, value); !problem.empty())
+    problems_.push_back({where, of(field, subject) + " " + problem});
+  switch (field.type) {
+  case FieldType::body:
+  case FieldType::marker:
+  case FieldType::signal:
+  case FieldType::element:
+    check_reference(field, std::get<std::string>(value), subject, where);
+    break;
+  case FieldType::signals:
+  case FieldType::elements:
+    for (const std::string& name : std::get<std::vector<std::string>>(value))
+      check_reference(field, name, subject, where);
+    break;
+  default:
+    break;
+  }
+}
+
+void FieldChecker::check_reference(const Field& field, const std::string& name,
+                                   const std::string& subject, const Location& where) {
+  if (refers(field.type, name)) return;
+  problems_.push_back({where, of(field, subject) + ": there is no " + reference_noun(field.type) +
+                                  " '" + name + "'" + suggestion(field.type, name)});
+}
+
+bool FieldChecker::refers(FieldType type, const std::string& name) const {
+  switch (type) {
+  case FieldType::body:
+    return bodies_.count(name) > 0;
+  case FieldType::marker:
+    return markers_.count(name) > 0 || bodies_.count(name) > 0;
+  case FieldType::signal:
+  case FieldType::signals:
+    return signals_.count(name) > 0;
+  default:
+    return elements_.count(name) > 0;
+  }
+}
+
+std::string FieldChecker::suggestion(FieldType type, const std::string& name) {
+  if (--suggestions_left_ < 0) return "";
+  std::vector<std::string> known;
+  const auto take = [&](const Names& names) {
+    known.insert(known.end(), names.begin(), names.end());
+  };
+  if (type == FieldType::marker) take(markers_);
+  if (type == FieldType::marker || type == FieldType::body) take(bodies_);
+  if (type == FieldType::signal || type == FieldType::signals) take(signals_);
+  if (type == FieldType::element || type == FieldType::elements) take(elements_);
+  std::sort(known.begin(), known.end()); // so that ties are decided alike everywhere
+  return did_you_mean(name, known);
+}
+
+namespace {
+
+// One run over a model.
+class Validation {
+public:
+  Validation(const Model& model, const FieldLocator& locate)
+      : model_(model), locate_(locate), checker_(model, problems_) {}
+
+  std::vector<Diagnostic> run() {
+    if (model_.bodies.empty())
+      if (const auto where = locate(Section::header, 0, "body", model_.header.where))
+        add(*where, "the model has no body: add at least one [[body]]");
+    check_table(Section::header, 0, ModelHeader::fields(), &model_.header, "the model",
+                model_.header.where);
+    check_table(Section::simulation, 0, SimulationSettings::fields(), &model_.simulation,
+                "[simulation]", model_.simulation.where);
+    check_table(Section::output, 0, OutputSettings::fields(), &model_.output, "[output]",
+                model_.output.where);
+    check_settings();
+    check_bodies();
+    check_markers();
+    check_signals();
+    check_elements();
+    return std::move(problems_);
+  }
+
+private:
+  void add(const Location& where, std::string message) {
+    problems_.push_back({where, std::move(message)});
+  }
+
+  std::optional<Location> locate(Section section, std::size_t index, const std::string& field,
+                                 const Location& fallback) const {
+    return locate_ ? locate_(section, index, field) : fallback;
+  }
+
+  void check_table(Section section, std::size_t index, const FieldTable& table, const void* object,
+                   const std::string& subject, const Location& where) {
+    checker_.check(table, object, subject,
+                   [&](const std::string& field) { return locate(section, index, field, where); });
+  }
+
+  using Seen = std::unordered_map<std::string, Location>;
+
+  // Names: there, and not used twice.
+  void check_name(Section section, std::size_t index, const std::string& noun,
+                  const std::string& name, const Location& where, Seen& seen) {
+    const std::optional<Location> place = locate(section, index, "name", where);
+    if (!place) return;
+    if (name.empty()) {
+      add(*place, "the name of " + subject_text(noun, "") + " must not be empty");
+      return;
+    }
+    const auto [first, is_new] = seen.emplace(name, *place);
+    if (!is_new)
+      add(*place, subject_text(noun, "") + " named '" + name + "' exists already" +
+                      place_text(first->second, *place) + ": choose another name");
+  }
+
+  void check_settings();
+  void check_bodies();
+  void check_markers();
+  void check_signals();
+  void check_elements();
+  bool is_readable(std::size_t signal) const;
+  void check_signal_value(SignalNetwork& network, const std::string& name);
+
+  const Model& model_;
+  const FieldLocator& locate_;
+  std::vector<Diagnostic> problems_;
+  FieldChecker checker_;
+};
+
+void Validation::check_settings() {
+  const SimulationSettings& s = model_.simulation;
+  const auto complain = [&](Section section, const std::string& field, const std::string& message) {
+    const Location& fallback = section == Section::output ? model_.output.where : s.where;
+    if (const auto where = locate(section, 0, field, fallback)) add(*where, message);
+  };
+  // 'step' is for fixed-step methods, 'tolerance' for adaptive ones: a file may hold both, so that
+  // the integrator alone can be changed.
+  if (has_fixed_step(s.integrator) && !s.step)
+    complain(Section::simulation, "step",
+             "[simulation] needs 'step' for the fixed-step integrator '" + s.integrator +
+                 "', for example step = 1e-4");
+  const std::string end = "'end' of [simulation], " + number_text(s.end) + " s";
+  if (s.step && *s.step > s.end && s.end > 0.0)
+    complain(Section::simulation, "step",
+             "'step' of [simulation], " + number_text(*s.step) + " s, is larger than " + end);
+  if (s.step && has_fixed_step(s.integrator) && s.end / *s.step > k_most_steps)
+    complain(Section::simulation, "step",
+             "'step' of [simulation], " + number_text(*s.step) + " s, takes " + number_text(s.end / *s.step) +
+                 " steps to " + end + ": choose a larger one; more than " + number_text(k_most_steps) +
+                 " steps are not begun");
+  if (model_.output.step > s.end && s.end > 0.0)
+    complain(Section::output, "step",
+             "'step' of [output], " + number_text(model_.output.step) + " s, is larger than " +
+                 end);
+}
+
+void Validation::check_bodies() {
+  Seen seen;
+  for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+    const Body& body = model_.bodies[i];
+    check_name(Section::body, i, "body", body.name, body.where, seen);
+    if (body.name == "ground")
+      if (const auto where = locate(Section::body, i, "name", body.where))
+        add(*where, "the name 'ground' is taken by the ground: choose another name");
+    checker_.check(Body::fields(), &body, subject_text("body", body.name),
+                   [&](const std::string& name) -> std::optional<Location> {
+                     const Field& field = *Body::fields().find(name);
+                     if (is_excused(body, field) && std::get<double>(field.get(&body)) == 0.0)
+                       return std::nullopt;
+                     return locate(Section::body, i, name, body.where);
+                   });
+  }
+}
+
+void Validation::check_markers() {
+  Seen seen;
+  for (std::size_t i = 0; i < model_.markers.size(); ++i) {
+    const Marker& marker = model_.markers[i];
+    const std::string subject = subject_text("marker", marker.name);
+    check_name(Section::marker, i, "marker", marker.name, marker.where, seen);
+    check_table(Section::marker, i, Marker::fields(), &marker, subject, marker.where);
+    if (checker_.is_body(marker.name) && marker.body != marker.name)
+      if (const auto where = locate(Section::marker, i, "name", marker.where))
+        add(*where, subject + " has the name of a body, which stands for that body's centre of "
+                              "gravity: choose another name");
+    if (marker.point && marker.at)
+      if (const auto where = locate(Section::marker, i, "at", marker.where))
+        add(*where, subject + " gives both 'point' and 'at': give one of them");
+  }
+}
+
+// Every field was read without an error.
+bool Validation::is_readable(std::size_t signal) const {
+  const SignalEntry& entry = model_.signals[signal];
+  for (const Field& field : entry.kind->fields.fields())
+    if (!locate(Section::signal, signal, field.name, entry.definition->where)) return false;
+  return true;
+}
+
+void Validation::check_signal_value(SignalNetwork& network, const std::string& name) {
+  try {
+    static_cast<void>(network.build(name));
+  } catch (const ModelError& error) {
+    problems_.insert(problems_.end(), error.diagnostics().begin(), error.diagnostics().end());
+  }
+}
+
+void Validation::check_signals() {
+  Seen seen;
+  SignalNetwork network(model_);
+  for (std::size_t i = 0; i < model_.signals.size(); ++i) {
+    const SignalEntry& entry = model_.signals[i];
+    const SignalDefinition& signal = *entry.definition;
+    check_name(Section::signal, i, "signal", signal.name, signal.where, seen);
+    const std::size_t before = problems_.size();
+    check_table(Section::signal, i, entry.kind->fields, &signal,
+                subject_text(entry.kind->name, signal.name), signal.where);
+    if (problems_.size() != before || !is_readable(i)) network.exclude(signal.name);
+  }
+  for (const SignalEntry& entry : model_.signals) check_signal_value(network, entry.definition->name);
+}
+
+void Validation::check_elements() {
+  Seen seen;
+  for (std::size_t i = 0; i < model_.elements.size(); ++i) {
+    const ElementEntry& entry = model_.elements[i];
+    const Element& element = *entry.element;
+    check_name(Section::element, i, "element", element.name, element.where, seen);
+    for (const FieldTable* table : {&entry.kind->fields, &Element::common_fields()})
+      check_table(Section::element, i, *table, &element,
+                  subject_text(entry.kind->name, element.name), element.where);
+  }
+}
+
+} // namespace
+
+std::vector<Diagnostic> validate(const Model& model, const FieldLocator& locate) {
+  return Validation(model, locate).run();
+}
+
+} // namespace steplap

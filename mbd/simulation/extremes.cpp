@@ -1,0 +1,510 @@
+#include "mbd/simulation/extremes.h"
+
+#include "mbd/integrators/methods.h"
+#include "mbd/math/portable_math.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+// Of the loads' and drives' harmonics about t, s; infinite if there are none.
+double shortest_period(const System& system, double t) {
+  return 2.0 * std::numbers::pi / system.fastest_at(t);
+}
+
+constexpr int k_last = 8; // node at the stretch's end
+constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
+
+// What the second difference of three ends leaves out: a bend three times as strong is allowed for.
+constexpr double k_surprise = 3.0;
+// Of the bend of the stretches before: long steps meet an oscillation where it happens to be straight.
+constexpr double k_remembered = 0.5;
+constexpr double k_looks_per_period = 8.0; // of the quickest load
+constexpr int k_most_sections = 40;
+constexpr double k_fine = 3e-4, k_about = 1e-3; // of a stretch, near the top of a polynomial
+constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
+constexpr double k_same_crossing = 1e-10; // of a stretch
+constexpr double k_golden = 0.3819660112501051;
+// Error of a straight line through two ends against the third, of a channel's range: below and above which the
+// stretches of a fixed-step method become longer and shorter.
+constexpr double k_well_resolved = 0.01, k_badly_resolved = 0.05;
+
+double node_theta(int node) {
+  return 0.5 * (1.0 - portable::cos(std::numbers::pi * node / k_last));
+}
+
+// Nodes of levels 1, 2, 3: every fourth, second, every one; barycentric weights of Chebyshev and Lobatto.
+constexpr int spacing(int level) { return 8 >> level; }
+
+const std::array<double, k_last + 1>& thetas() {
+  static const std::array<double, k_last + 1> values = [] {
+    std::array<double, k_last + 1> t{};
+    for (int i = 0; i <= k_last; ++i) t[i] = node_theta(i);
+    return t;
+  }();
+  return values;
+}
+
+// Of each channel of a body's motion the one that is its rate.
+std::vector<int> rates_of(const System& system) {
+  static constexpr std::array<std::pair<const char*, const char*>, 6> k_rates = {
+      {{".x", ".vx"}, {".y", ".vy"}, {".theta", ".omega"}, {".vx", ".ax"}, {".vy", ".ay"}, {".omega", ".alpha"}}};
+  std::map<std::string, int> place;
+  for (std::size_t c = 0; c < system.channels.size(); ++c) place[system.channels[c].name] = static_cast<int>(c);
+  std::vector<int> rates(system.channels.size(), -1);
+  for (const BodyData& body : system.bodies)
+    for (const auto& [value, rate] : k_rates) {
+      const auto of = place.find(body.name + value), its = place.find(body.name + rate);
+      if (of != place.end() && its != place.end()) rates[of->second] = its->second;
+    }
+  return rates;
+}
+
+// Vertex of the parabola through three points; the middle one if it has none.
+Extreme vertex(const Extreme& a, const Extreme& b, const Extreme& c) {
+  const double p = (b.value - a.value) / (b.t - a.t), q = (c.value - b.value) / (c.t - b.t);
+  const double bend = (q - p) / (c.t - a.t);
+  if (!(std::abs(bend) > 0.0)) return b;
+  const double slope = p + bend * (b.t - a.t); // at b
+  const double shift = std::clamp(-0.5 * slope / bend, a.t - b.t, c.t - b.t);
+  return {b.value + shift * (slope + bend * shift), b.t + shift};
+}
+
+} // namespace
+
+const Extreme& ChannelRange::largest() const {
+  return std::abs(low.value) > std::abs(high.value) ? low : high;
+}
+
+ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
+    : system_(system), count_(system.channels.size()), ranges_(count_), kind_(count_), screened_slot_(count_, -1),
+      before_(count_, k_unknown), node_(k_nodes, std::vector<double>(count_, k_unknown)), curve_(count_), curvature_(count_, 0.0),
+      step_t_(k_longest + 1), stride_(static_cast<std::size_t>(max_dimension)), y_(stride_), dy_(stride_), scratch_(count_) {
+  step_y_.resize(stride_ * (k_longest + 1));
+  step_k_.resize(stride_ * (k_longest + 1));
+  std::vector<std::string> units;
+  for (std::size_t c = 0; c < count_; ++c) {
+    const Channel& channel = system.channels[c];
+    ranges_[c].channel = &channel;
+    const auto unit = std::find(units.begin(), units.end(), channel.unit);
+    kind_[c] = static_cast<int>(unit - units.begin());
+    if (unit == units.end()) units.push_back(channel.unit);
+    if (!channel.has_extremes) continue;
+    tracked_.push_back(c);
+    if (channel.unit.empty()) dimensionless_.push_back(c);
+    if (!channel.bounds) continue;
+    screened_slot_[c] = static_cast<int>(bounds_.size());
+    bounds_.emplace_back();
+  }
+  rate_of_ = rates_of(system);
+  bounds_before_ = bounds_;
+  is_wanted_.assign(bounds_.size(), 1);
+  kinds_.resize(units.size());
+  open_.reserve(count_);
+}
+
+double ExtremeFinder::tolerance(std::size_t c) const {
+  const Kind& kind = kinds_[kind_[c]];
+  const double range = ranges_[c].high.value - ranges_[c].low.value;
+  return k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounding * std::max(kind.largest, kind.scale);
+}
+
+void ExtremeFinder::note(std::size_t c, double value, double t) {
+  ChannelRange& range = ranges_[c];
+  if (std::isnan(value)) {
+    range.had_no_value = true;
+    return;
+  }
+  if (!(value >= range.low.value)) range.low = {value, t};
+  if (!(value <= range.high.value)) range.high = {value, t};
+}
+
+void ExtremeFinder::take(std::size_t c, double t, const Snapshot& snapshot, double* values) {
+  const double value = values[c] = ranges_[c].channel->value(snapshot);
+  const bool is_new = !(value >= ranges_[c].low.value && value <= ranges_[c].high.value);
+  if (!is_new) return;
+  note(c, value, t);
+  if (!std::isfinite(value)) return;
+  Kind& kind = kinds_[kind_[c]];
+  const double range = ranges_[c].high.value - ranges_[c].low.value;
+  if (std::isfinite(range)) kind.range = std::max(kind.range, range);
+  kind.largest = std::max(kind.largest, std::abs(value));
+}
+
+// Values of all channels at an end of a stretch; not of those that bounds rule out, unless `is_everything`.
+void ExtremeFinder::evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything) {
+  for (const std::size_t c : tracked_)
+    if (is_everything || !is_ruled_out(c)) take(c, t, snapshot, values);
+    else values[c] = k_unknown;
+}
+
+// Could a channel that costs much be beyond its extremes? The bounds tell, with what they changed by since the last end.
+void ExtremeFinder::screen(const Snapshot& snapshot) {
+  std::swap(bounds_, bounds_before_);
+  for (const std::size_t c : tracked_) {
+    const int slot = screened_slot_[c];
+    if (slot < 0) continue;
+    const ValueBounds now = ranges_[c].channel->bounds(snapshot), before = bounds_before_[slot];
+    bounds_[slot] = now;
+    const double up = now.high + std::abs(now.high - before.high), down = now.low - std::abs(now.low - before.low);
+    const double slack = tolerance(c);
+    is_wanted_[slot] = !(up <= ranges_[c].high.value + slack) || !(down >= ranges_[c].low.value - slack);
+  }
+}
+
+// Sizes beside which rounding is seen where everything rests: of lengths, of the forces at the start over all masses.
+void ExtremeFinder::set_scales() {
+  const auto kind_of = [this](const char* unit) -> Kind* {
+    for (std::size_t c = 0; c < count_; ++c)
+      if (ranges_[c].channel->unit == unit) return &kinds_[kind_[c]];
+    return nullptr;
+  };
+  const auto largest = [&](const char* unit) { return kind_of(unit) ? kind_of(unit)->largest : 0.0; };
+  double mass = 0.0;
+  for (const BodyData& body : system_.bodies) mass += body.mass;
+  const double length = largest("m") > 0.0 ? largest("m") : 1.0;
+  const double force = std::max(largest("N"), mass * system_.gravity.norm()), a = mass > 0.0 ? force / mass : 0.0;
+  const double v = std::sqrt(a * length);
+  const std::pair<const char*, double> scales[] = {{"m", length},      {"rad", 1.0},           {"m/s", v},
+                                                   {"rad/s", v / length}, {"m/s^2", a},         {"rad/s^2", a / length},
+                                                   {"N", force},       {"N m", force * length}, {"W", force * v}};
+  for (const auto& [unit, scale] : scales)
+    if (Kind* kind = kind_of(unit)) kind->scale = scale;
+}
+
+void ExtremeFinder::begin(double t, const Snapshot& snapshot) {
+  const bool is_start = !is_begun_;
+  is_begun_ = true;
+  screen(snapshot);
+  evaluate(t, snapshot, node_[0].data(), is_start);
+  if (is_start) {
+    for (std::size_t c = 0; c < count_; ++c) ranges_[c].first = ranges_[c].channel->value(snapshot);
+    set_scales();
+  }
+  for (const std::size_t c : dimensionless_)
+    if (!ranges_[c].first_above_one && node_[0][c] > 1.0) ranges_[c].first_above_one = t;
+  t_ = t;
+  h_last_ = 0.0;
+  steps_ = 0;
+  longest_ = 1;
+}
+
+void ExtremeFinder::finish(const Snapshot& snapshot) {
+  for (std::size_t c = 0; c < count_; ++c) {
+    ranges_[c].final = ranges_[c].channel->value(snapshot);
+    ranges_[c].resolution = tolerance(c);
+  }
+}
+
+// --- along the steps --------------------------------------------------------------------------------------------
+
+// The beginning of one of several steps of a stretch.
+void ExtremeFinder::keep_step(const Integrator& integrator, const Dynamics& dynamics) {
+  if (integrator.is_adaptive()) return;
+  const auto n = static_cast<std::size_t>(dynamics.dimension());
+  const auto i = static_cast<std::size_t>(steps_++);
+  step_t_[i] = integrator.t0();
+  std::copy_n(integrator.y0(), n, &step_y_[stride_ * i]);
+  std::copy_n(integrator.rate0(), n, &step_k_[stride_ * i]);
+}
+
+void ExtremeFinder::add_step(Integrator& integrator, Dynamics& dynamics, bool is_at_end, bool is_last) {
+  keep_step(integrator, dynamics);
+  if (steps_ > 0 && steps_ < longest_ && !is_last) return;
+  if (!is_at_end) dynamics.rates(integrator.t1(), integrator.y1(), dy_.data());
+  end_stretch(integrator.t1(), is_at_end ? integrator.rate1() : dy_.data(), integrator, dynamics);
+}
+
+void ExtremeFinder::end_at(double t, Integrator& integrator, Dynamics& dynamics) {
+  keep_step(integrator, dynamics);
+  state_at(t, integrator, dynamics);
+  dynamics.rates(t, y_.data(), dy_.data());
+  end_stretch(t, dy_.data(), integrator, dynamics);
+}
+
+void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrator, Dynamics& dynamics) {
+  // Where nothing moves a step may pass over many periods of a load: it is looked at piece by piece.
+  const double begin = t_, pieces = std::ceil((t - t_) / shortest_period(system_, 0.5 * (t_ + t)) * k_looks_per_period / k_last);
+  for (double i = 1.0; i < pieces; ++i) {
+    const double piece_end = begin + i / pieces * (t - begin);
+    state_at(piece_end, integrator, dynamics);
+    dynamics.rates(piece_end, y_.data(), dy_.data());
+    arrive(piece_end, dynamics.snapshot(dy_.data()), integrator, dynamics);
+  }
+  if (pieces > 1.0) { // the end was evaluated before
+    state_at(t, integrator, dynamics);
+    dynamics.rates(t, y_.data(), dy_.data());
+    dy = dy_.data();
+  }
+  arrive(t, dynamics.snapshot(dy), integrator, dynamics);
+  steps_ = 0;
+}
+
+void ExtremeFinder::arrive(double t, const Snapshot& snapshot, Integrator& integrator, Dynamics& dynamics) {
+  screen(snapshot);
+  evaluate(t, snapshot, node_[k_last].data(), false);
+  close(t, integrator, dynamics);
+}
+
+void ExtremeFinder::state_at(double t, Integrator& integrator, Dynamics& dynamics) {
+  int i = steps_ - 1;
+  while (i > 0 && t < step_t_[i]) --i;
+  if (i == steps_ - 1 || i < 0) {
+    integrator.dense(dynamics, std::clamp((t - integrator.t0()) / integrator.h(), 0.0, 1.0), y_.data());
+    return;
+  }
+  const double h = step_t_[i + 1] - step_t_[i];
+  const double *y = &step_y_[stride_ * i], *k = &step_k_[stride_ * i];
+  hermite_dense(dynamics.coordinate_count(), (t - step_t_[i]) / h, h, y, y + stride_, k, k + stride_, y_.data());
+}
+
+Snapshot ExtremeFinder::look(double theta, Integrator& integrator, Dynamics& dynamics) {
+  const double t = t_ + theta * (t1_ - t_);
+  state_at(t, integrator, dynamics);
+  dynamics.rates(t, y_.data(), dy_.data());
+  return dynamics.snapshot(dy_.data());
+}
+
+void ExtremeFinder::close(double t, Integrator& integrator, Dynamics& dynamics) {
+  t1_ = t;
+  const double h = t1_ - t_;
+  if (h > 0.0) {
+    if (suspect(h)) search(integrator, dynamics);
+    find_crossings(integrator, dynamics);
+    adapt_length();
+  }
+  std::swap(before_, node_[0]);
+  std::swap(node_[0], node_[k_last]);
+  t_last_ = t_;
+  h_last_ = h;
+  t_ = t;
+}
+
+// Does the cubic through a body's coordinate or velocity and its rates at both ends rise and fall?
+bool ExtremeFinder::turns_inside(std::size_t c, double h) const {
+  const int rate = rate_of_[c];
+  if (rate < 0) return false;
+  const double s0 = h * at(rate, 0), s1 = h * at(rate, k_last), rise = at(c, k_last) - at(c, 0);
+  if (!(s0 * s1 > 0.0)) return s0 != 0.0 || s1 != 0.0;
+  // Its slope s0 + 2 (3 rise − 2 s0 − s1) θ + 3 (s0 + s1 − 2 rise) θ², and the least of that against the ends' sign.
+  const double b = 3.0 * rise - 2.0 * s0 - s1, a = 3.0 * (s0 + s1 - 2.0 * rise), theta = a != 0.0 ? -b / a : -1.0;
+  return theta > 0.0 && theta < 1.0 && (s0 + b * theta) * s0 <= 0.0;
+}
+
+// The channels that may have passed an extreme of the run inside the stretch go to open_; true if there are any.
+bool ExtremeFinder::suspect(double h) {
+  open_.clear();
+  for (const std::size_t c : tracked_) {
+    const double a = node_[0][c], b = node_[k_last][c];
+    Curve& curve = curve_[c];
+    curve.is_open = false;
+    curve.error = std::numeric_limits<double>::infinity();
+    if (is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
+    const double slope = b - a, last = h_last_ > 0.0 ? (a - before_[c]) * (h / h_last_) : k_unknown;
+    if (!std::isnan(slope) && !std::isnan(last)) { // over the stretch, and over as long before
+      const double bend_now = std::abs(slope - last) / (1.0 + h_last_ / h);
+      curvature_[c] = std::max(bend_now / (h * h), k_remembered * curvature_[c]);
+      const double bend = k_surprise * curvature_[c] * h * h;
+      const bool turns = turns_inside(c, h);
+      if (std::abs(slope) > bend && !turns) continue; // it only rises, or only falls
+      const double slack = tolerance(c);
+      const double gain = 0.25 * (turns ? std::max({bend, std::abs(h * at(rate_of_[c], 0)), std::abs(h * at(rate_of_[c], k_last))}) : bend);
+      const ChannelRange& r = ranges_[c];
+      if (gain <= slack) continue;
+      if (std::max(a, b) + gain <= r.high.value + slack && std::min(a, b) - gain >= r.low.value - slack) continue;
+    }
+    curve.is_open = true;
+    open_.push_back(c);
+  }
+  return !open_.empty();
+}
+
+// --- inside a stretch ---------------------------------------------------------------------------------------------
+
+double ExtremeFinder::interpolate(std::size_t c, int level, double theta) const {
+  const int step = spacing(level);
+  double above = 0.0, below = 0.0, sign = 1.0;
+  for (int i = 0; i <= k_last; i += step) {
+    const double distance = theta - thetas()[i];
+    if (distance == 0.0) return at(c, i);
+    const double weight = (i == 0 || i == k_last ? 0.5 : 1.0) * sign / distance;
+    above += weight * at(c, i);
+    below += weight;
+    sign = -sign;
+  }
+  return above / below;
+}
+
+// Is channel c done with after the nodes of `level`? If its polynomial is exact enough its extremes are noted.
+bool ExtremeFinder::settle(std::size_t c, int level) {
+  const int step = spacing(level);
+  const double slack = tolerance(c);
+  const ChannelRange& r = ranges_[c];
+  // What the polynomial of half the degree was off by at the new nodes; of a smooth curve twice as many nodes square
+  // the share that is missed.
+  double least = at(c, 0), most = at(c, 0);
+  for (int i = step; i <= k_last; i += step) {
+    least = std::min(least, at(c, i));
+    most = std::max(most, at(c, i));
+  }
+  const double spread = most - least;
+  const double error = level > 1 && spread > 0.0 ? curve_[c].error * std::min(1.0, curve_[c].error / spread) : curve_[c].error;
+  for (const double sign : {1.0, -1.0}) {
+    const double record = sign > 0.0 ? r.high.value : -r.low.value;
+    int best = 0;
+    for (int i = step; i <= k_last; i += step)
+      if (sign * at(c, i) > sign * at(c, best)) best = i;
+    if (!std::isfinite(at(c, best))) continue;
+    const int middle = std::clamp(best, step, k_last - step), low = middle - step, high = middle + step;
+    const auto point = [&](int i) { return Extreme{at(c, i), thetas()[i]}; };
+    const Extreme top = vertex(point(low), point(middle), point(high));
+    const double gain = std::max(0.0, sign * (top.value - at(c, best)));
+    // Beyond the nodes by more than anybody asks for?
+    if (sign * at(c, best) + 2.0 * gain + error <= record + slack) continue;
+    if (2.0 * gain + error <= slack) continue;
+    if (error > slack) return false;
+    double a = thetas()[low], b = thetas()[high];
+    double p = a + k_golden * (b - a), q = b - k_golden * (b - a);
+    double at_p = sign * interpolate(c, level, p), at_q = sign * interpolate(c, level, q);
+    while (b - a > k_fine) {
+      if (at_p > at_q) {
+        b = q;
+        q = p;
+        at_q = at_p;
+        at_p = sign * interpolate(c, level, p = a + k_golden * (b - a));
+      } else {
+        a = p;
+        p = q;
+        at_p = at_q;
+        at_q = sign * interpolate(c, level, q = b - k_golden * (b - a));
+      }
+    }
+    // The last digits by a parabola about it.
+    const double x = std::clamp(at_p > at_q ? p : q, k_about, 1.0 - k_about);
+    const auto about = [&](double theta) { return Extreme{sign * interpolate(c, level, theta), theta}; };
+    const Extreme last = vertex(about(x - k_about), about(x), about(x + k_about));
+    const Extreme found = last.value > std::max(at_p, at_q) ? last : at_p > at_q ? Extreme{at_p, p} : Extreme{at_q, q};
+    note(c, sign * found.value, t_ + found.t * (t1_ - t_));
+  }
+  return true;
+}
+
+void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics) {
+  const int step = spacing(level);
+  for (const std::size_t c : open_) curve_[c].error = level == 1 && h_last_ == 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+  for (int i = step; i < k_last; i += 2 * step) {
+    const double theta = thetas()[i];
+    const Snapshot snapshot = look(theta, integrator, dynamics);
+    for (const std::size_t c : open_) {
+      take(c, t_ + theta * (t1_ - t_), snapshot, node_[i].data());
+      double guess = k_unknown;
+      if (level > 1) guess = interpolate(c, level - 1, theta);
+      else if (h_last_ > 0.0) { // the parabola through this stretch's ends and the last one's beginning
+        const double h = t1_ - t_, a = at(c, 0), b = at(c, k_last);
+        const double bend = ((b - a) - (a - before_[c]) * (h / h_last_)) / (1.0 + h_last_ / h);
+        guess = 0.5 * (a + b) - 0.25 * bend;
+      }
+      const double error = std::abs(at(c, i) - guess);
+      curve_[c].error = std::isnan(error) ? std::numeric_limits<double>::infinity() : std::max(curve_[c].error, error);
+    }
+  }
+}
+
+void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
+  const bool is_begun = std::none_of(open_.begin(), open_.end(), [this](std::size_t c) { return std::isnan(node_[0][c]); });
+  if (!is_begun) { // some were ruled out there
+    const Snapshot snapshot = look(0.0, integrator, dynamics);
+    for (const std::size_t c : open_)
+      if (std::isnan(node_[0][c])) take(c, t_, snapshot, node_[0].data());
+  }
+  const double wanted = (t1_ - t_) / shortest_period(system_, 0.5 * (t_ + t1_)) * k_looks_per_period;
+  for (int level = 1; level <= 3 && !open_.empty(); ++level) {
+    refine(level, integrator, dynamics);
+    if (wanted > 1 << level) continue; // what loads do between the nodes would not be seen
+    std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
+  }
+  for (const std::size_t c : open_) section(c, integrator, dynamics);
+}
+
+// Golden section about the outermost node, on the motion itself.
+void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dynamics) {
+  double* const values = scratch_.data();
+  for (const double sign : {1.0, -1.0}) {
+    int best = 0;
+    for (int i = 1; i <= k_last; ++i)
+      if (sign * at(c, i) > sign * at(c, best) || std::isnan(at(c, best))) best = i;
+    const int middle = std::clamp(best, 1, k_last - 1);
+    const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
+    const double spread = std::max(std::abs(at(c, middle + 1) - at(c, middle)), std::abs(at(c, middle) - at(c, middle - 1)));
+    if (!(sign * at(c, best) + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
+    double a = thetas()[middle - 1], b = thetas()[middle + 1];
+    const auto value = [&](double theta) {
+      take(c, t_ + theta * (t1_ - t_), look(theta, integrator, dynamics), values);
+      return sign * values[c];
+    };
+    double p = a + k_golden * (b - a), q = b - k_golden * (b - a), at_p = value(p), at_q = value(q);
+    for (int i = 0; i < k_most_sections && b - a > k_same_place; ++i) {
+      const bool is_left = at_p > at_q;
+      if (std::abs(at_p - at_q) <= 0.01 * tolerance(c) && b - a < 0.01) break;
+      (is_left ? b : a) = is_left ? q : p;
+      if (is_left) {
+        q = p;
+        at_q = at_p;
+        at_p = value(p = a + k_golden * (b - a));
+      } else {
+        p = q;
+        at_p = at_q;
+        at_q = value(q = b - k_golden * (b - a));
+      }
+    }
+  }
+}
+
+// The first time that a share passes 1, by bisection.
+void ExtremeFinder::find_crossings(Integrator& integrator, Dynamics& dynamics) {
+  for (const std::size_t c : dimensionless_) {
+    ChannelRange& r = ranges_[c];
+    if (r.first_above_one || !(r.high.value > 1.0)) continue;
+    if (r.high.t <= t_) { // noted on this side of an event
+      r.first_above_one = r.high.t;
+      continue;
+    }
+    const double h = t1_ - t_;
+    double low = 0.0, high = std::min(1.0, (r.high.t - t_) / h);
+    while (high - low > k_same_crossing) {
+      const double middle = 0.5 * (low + high);
+      take(c, t_ + middle * h, look(middle, integrator, dynamics), scratch_.data());
+      (scratch_[c] > 1.0 ? high : low) = middle;
+    }
+    r.first_above_one = t_ + high * h;
+  }
+}
+
+// How far the line through the ends of two stretches is off at the third tells how well the curves are resolved.
+void ExtremeFinder::adapt_length() {
+  if (steps_ == 0) return;
+  const double h = t1_ - t_;
+  if (!(h_last_ > 0.0)) {
+    longest_ = 1;
+    return;
+  }
+  double worst = 0.0;
+  for (const std::size_t c : tracked_) {
+    const double off = std::abs((at(c, k_last) - at(c, 0)) - (at(c, 0) - before_[c]) * (h / h_last_));
+    if (!std::isfinite(off)) continue;
+    const ChannelRange& r = ranges_[c];
+    const double scale = r.high.value - r.low.value + (tolerance(c) / k_badly_resolved);
+    worst = std::max(worst, off / scale);
+  }
+  if (worst < k_well_resolved) longest_ = std::min(2 * longest_, k_longest);
+  else if (worst > k_badly_resolved) longest_ = std::max(1, longest_ / 2);
+}
+
+} // namespace steplap

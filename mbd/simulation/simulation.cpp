@@ -1,0 +1,380 @@
+#include "mbd/simulation/simulation.h"
+
+#include "mbd/base/number_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <sstream>
+
+namespace steplap {
+
+namespace {
+
+// Events within this relative distance of each other count as one instant; more of them than the
+// limit means that modes chase each other without the motion getting anywhere.
+constexpr double k_same_instant = 1e-13;
+constexpr int k_max_events_at_once = 60;
+constexpr double k_storm_interval = 2e-3;  // s, that time stepping goes over
+constexpr long k_storm_parts = 10000;      // into which these are halved at most: events are the cheaper then
+constexpr long k_steps_between_looks = 1L << 16;
+// By how much a joint that holds may be beyond its limit, in shares of it: the mode problem knows wrenches to 1e-9 of the
+// capacities and finds events to rounding; what is a thousand times that is neither.
+constexpr double k_held_beyond = 1e-6;
+constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
+
+} // namespace
+
+double thread_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+SimulationOptions options_of(const Model& model) {
+  SimulationOptions options;
+  const SimulationSettings& s = model.simulation;
+  options.end = s.end;
+  options.integrator = s.integrator;
+  options.settings.step = s.step.value_or(0.0);
+  options.settings.tolerance = s.tolerance.value_or(1e-8);
+  options.settings.projection_tolerance = s.projection_tolerance;
+  options.output_step = model.output.step;
+  options.channels = model.output.channels;
+  options.has_extremes = true;
+  options.max_events = s.max_events;
+  return options;
+}
+
+Simulation::Simulation(const System& system, const State& initial, SimulationOptions options)
+    : system_(system), options_(std::move(options)), state_(initial), dynamics_(system),
+      handler_(system, dynamics_), finder_(system, 6 * system.body_count() + 2),
+      y_(6 * system.bodies.size() + 2), dy_(y_.size()) {
+  cpu_start_ = thread_cpu_seconds();
+  if (options_.end > system.drives_end)
+    throw NumericalFailure("a drive jumps at t = " + std::to_string(system.drives_end) + " s, before the end of the run");
+  integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
+  trajectory_ = std::make_unique<Trajectory>(system, options_.channels);
+  start_drives(system_, state_);
+  dynamics_.set_time_limit(next_limit());
+  handler_.start(state_);
+  // The poses as given meet the constraints to the digits of the file: now they do to rounding.
+  dynamics_.set_state(state_);
+  dynamics_.pack(state_, y_.data());
+  dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
+  dynamics_.unpack(state_.t, y_.data(), state_);
+  for (const FrictionState& friction : state_.friction) first_phases_.push_back(friction.phase);
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const FrictionElement& friction = *system.frictions[f].friction;
+    if (friction.dimension() > 1 && !friction.never_slips()) joints_.push_back(static_cast<int>(f));
+  }
+  if (options_.has_extremes)
+    extremes_ = std::make_unique<ExtremeFinder>(system, 6 * system.body_count() + 2);
+  restart();
+  energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
+  if (options_.output_step > 0.0) record_sample(state_.t);
+}
+
+double Simulation::next_limit() const {
+  const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t);
+  return next == system_.breakpoints.end() ? options_.end : std::min(*next, options_.end);
+}
+
+// What signals do up to the next breakpoint.
+void Simulation::approach_limit() {
+  const double limit = next_limit();
+  dynamics_.set_time_limit(limit);
+  const double fastest = system_.fastest_at(0.5 * (state_.t + limit));
+  integrator_->limit_step(fastest > 0.0 ? Integrator::k_largest_turn / fastest : std::numeric_limits<double>::infinity());
+}
+
+void Simulation::restart() {
+  dynamics_.set_state(state_);
+  approach_limit();
+  dynamics_.pack(state_, y_.data());
+  integrator_->restart(dynamics_, state_.t, y_.data());
+  if (!integrator_->stepped_state()) check_holding(state_.t, integrator_->watch0());
+  if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
+  is_between_events_ = true;
+}
+
+// What no method may pass on.
+void Simulation::check_finite() {
+  const double* y = integrator_->y1();
+  for (int i = 0; i < dynamics_.dimension(); ++i)
+    if (!std::isfinite(y[i])) fail_infinite(integrator_->t1());
+}
+
+void Simulation::fail_infinite(double t) const {
+  std::ostringstream message;
+  message << "the motion became infinite at t = " << t << " s: '" << integrator_->name()
+          << "' does not bear steps of " << integrator_->h() << " s here";
+  if (!integrator_->is_adaptive()) message << "; try a smaller step, or rodas5p";
+  if (!events_.empty()) message << ". The last event was of '" << events_.back().element << "'";
+  throw NumericalFailure(message.str());
+}
+
+// A joint that is part of the motion holds as long as it can: one that holds beyond its limit is a fault of the event
+// finder or of the mode problem, and whatever it is taken to bear is wrong. Of a group that shares a load the watch is the
+// group's.
+void Simulation::check_holding(double t, const std::vector<double>& watch) const {
+  for (const int f : joints_) {
+    const double left = watch[system_.frictions[f].watch];
+    if (left >= -k_held_beyond || state_.friction[f].phase != FrictionPhase::stick) continue;
+    throw NumericalFailure("at t = " + number_text(t) + " s '" + system_.element_names[system_.frictions[f].element] +
+                           "' holds with a margin of " + number_text(1.0 / (1.0 - left)) +
+                           ": the run contradicts itself, for below 1 it has to slip. Try a smaller tolerance or step, or "
+                           "another integrator");
+  }
+}
+
+// y_ holds the state to sample.
+void Simulation::record_sample(double t) {
+  dynamics_.rates(t, y_.data(), dy_.data());
+  const Snapshot snapshot = dynamics_.snapshot(dy_.data());
+  trajectory_->add(t, snapshot);
+  ++sample_;
+  if (options_.progress) options_.progress(t);
+}
+
+// Samples due in the step made, up to t.
+void Simulation::sample_until(double t) {
+  if (options_.output_step <= 0.0) return;
+  for (;;) {
+    const double due = static_cast<double>(sample_) * options_.output_step;
+    if (due > t + k_output_slack * options_.output_step) return;
+    const double theta = std::clamp((due - integrator_->t0()) / integrator_->h(), 0.0, 1.0);
+    integrator_->dense(dynamics_, theta, y_.data());
+    record_sample(due);
+  }
+}
+
+void Simulation::guard_against_chatter(double t) {
+  const bool is_same = t - last_event_ <= k_same_instant * std::max(1.0, std::abs(t));
+  events_at_once_ = is_same ? events_at_once_ + 1 : 0;
+  last_event_ = t;
+  ++statistics_.events;
+  if (events_at_once_ < k_max_events_at_once && statistics_.events - kinks_ < options_.max_events) return;
+  std::ostringstream message;
+  message.precision(12);
+  message << (events_at_once_ >= k_max_events_at_once ? "events repeat without end at t = "
+                                                      : "more events than simulation.max_events by t = ")
+          << t << " s; the last ones:";
+  const std::size_t shown = std::min<std::size_t>(events_.size(), 4);
+  for (std::size_t i = events_.size() - shown; i < events_.size(); ++i)
+    message << " '" << events_[i].element << "' " << events_[i].what << ";";
+  throw NumericalFailure(message.str());
+}
+
+// A method that chooses its steps may choose such small ones that the run would never end.
+void Simulation::guard_against_crawl() {
+  if (integrator_->steps() < next_look_) return;
+  const double t = integrator_->t1(), passed = t - last_look_;
+  const bool is_first = next_look_ == 0;
+  next_look_ = integrator_->steps() + k_steps_between_looks;
+  last_look_ = t;
+  if (is_first) return;
+  const double needed = (options_.end - t) / passed * static_cast<double>(k_steps_between_looks);
+  if (!(needed > k_most_steps)) return;
+  std::ostringstream message;
+  message << "the last " << k_steps_between_looks << " steps to t = " << t << " s passed " << passed
+          << " s; the rest would take " << needed << " steps. Something is far stiffer or faster than the run is long: '"
+          << integrator_->name() << "' is not made for it, or a stiffness, a mass or the end is mistaken.";
+  throw NumericalFailure(message.str());
+}
+
+// The force of a joint that slides is none where its sheets have parted: the step went on past that kink.
+bool Simulation::are_joints(const std::vector<int>& slots) const {
+  return std::all_of(slots.begin(), slots.end(), [this](int slot) {
+    return std::any_of(system_.frictions.begin(), system_.frictions.end(),
+                       [slot](const FrictionUnit& unit) {
+                         return slot >= unit.watch && slot < unit.watch + k_friction_watches && unit.friction->dimension() > 1;
+                       });
+  });
+}
+
+void Simulation::pass_event(double t, const double* y, const std::vector<int>& fired) {
+  is_between_events_ = false;
+  std::copy(y, y + dynamics_.dimension(), y_.begin());
+  dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
+  energy_.check_step(dynamics_, t, y_.data());
+  dynamics_.unpack(t, y_.data(), state_);
+  if (fired.empty()) dynamics_.set_time_limit(next_limit()); // on the far side of the breakpoint
+  const std::size_t known = events_.size();
+  handler_.handle(state_, fired, events_);
+  energy_.check_settled(state_.t, handler_.settled());
+  const auto is_kink = [](const Event& event) { return event.is_kink; };
+  const auto first_new = events_.begin() + static_cast<std::ptrdiff_t>(known);
+  if (first_new != events_.end() && std::all_of(first_new, events_.end(), is_kink)) ++kinks_;
+  if (options_.integrator == "auto" && handler_.stop_reason().empty())
+    for (std::size_t i = known; i < events_.size(); ++i)
+      if (!events_[i].is_kink && storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
+  if (!fired.empty()) guard_against_chatter(t);
+  restart();
+}
+
+// An element whose events crowd is not followed from one to the next: time stepping goes over an interval,
+// in which modes change where they will, and the usual methods go on from its end.
+void Simulation::step_through_storm(const std::string& element) {
+  if (!stepping_) stepping_ = std::make_unique<TimeStepping>(system_);
+  is_between_events_ = false;
+  ++statistics_.storms;
+  const double begin = state_.t;
+  const double end = std::min(next_limit(), begin + k_storm_interval);
+  events_.push_back({begin, element, "changes " + std::to_string(EventStorm::k_limit) +
+                                         " times within 1 ms: time stepping for " +
+                                         std::to_string(1e3 * (end - begin)) + " ms"});
+  const long parts = stepping_->extra_parts();
+  while (state_.t < end && stepping_->extra_parts() - parts < k_storm_parts) {
+    double t1 = std::min(end, state_.t + options_.storm_step);
+    const double due = static_cast<double>(sample_) * options_.output_step;
+    const bool is_sample = options_.output_step > 0.0 && due > state_.t && due <= t1;
+    if (is_sample) t1 = due;
+    stepping_->step(dynamics_, state_, t1, options_.settings.projection_tolerance);
+    ++statistics_.steps;
+    if (!is_sample && !extremes_) continue;
+    dynamics_.pack(state_, y_.data());
+    if (extremes_) {
+      dynamics_.rates(t1, y_.data(), dy_.data());
+      extremes_->begin(t1, dynamics_.snapshot(dy_.data()));
+    }
+    if (is_sample) record_sample(t1);
+  }
+  handler_.settle_phases(state_);
+  events_.push_back({state_.t, element, "is followed event by event again"});
+  storm_.clear();
+  events_at_once_ = 0;
+  dynamics_.set_time_limit(next_limit());
+  restart();
+}
+
+// `evaluations`: as many as there were when the step was made; none since means that `dynamics_` is at its end. (A method
+// that chooses its steps may have used it for more than evaluations.)
+void Simulation::look_for_extremes(long evaluations, bool is_last) {
+  if (!extremes_) return;
+  const bool is_at_end = !integrator_->is_adaptive() && dynamics_.evaluations() == evaluations;
+  extremes_->add_step(*integrator_, dynamics_, is_at_end, is_last);
+}
+
+bool Simulation::advance() {
+  if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
+  const double limit = next_limit();
+  integrator_->step(dynamics_, limit);
+  const long evaluations = dynamics_.evaluations();
+  guard_against_crawl();
+  if (integrator_->stepped_state()) return pass_stepped();
+  check_finite();
+  if (finder_.find(*integrator_, dynamics_, handler_.fresh())) {
+    const double t = integrator_->t0() + finder_.theta() * integrator_->h();
+    std::vector<double> at_event = finder_.state();
+    if (are_joints(finder_.fired()) && integrator_->end_at(dynamics_, finder_.theta())) std::copy_n(integrator_->y1(), at_event.size(), at_event.begin());
+    if (extremes_) extremes_->end_at(t, *integrator_, dynamics_);
+    sample_until(std::nextafter(t, 0.0) - k_output_slack * options_.output_step);
+    pass_event(t, at_event.data(), finder_.fired());
+    if (!handler_.stop_reason().empty()) end_run();
+    return true;
+  }
+  const double t1 = integrator_->t1();
+  look_for_extremes(evaluations, t1 >= limit);
+  sample_until(t1);
+  handler_.clear_fresh();
+  if (t1 >= limit && limit < options_.end) {
+    const std::vector<double> at_limit(integrator_->y1(), integrator_->y1() + dynamics_.dimension());
+    pass_event(t1, at_limit.data(), {});
+    return true;
+  }
+  check_holding(t1, integrator_->watch1());
+  energy_.check_step(dynamics_, t1, integrator_->y1());
+  if (t1 >= options_.end) {
+    integrator_->accept();
+    dynamics_.unpack(t1, integrator_->y0(), state_);
+    end_run();
+    return false;
+  }
+  state_.t = t1;
+  integrator_->accept();
+  return true;
+}
+
+// The last row, wherever the run ends, and the values that channels end with.
+void Simulation::end_run() {
+  if (!is_between_events_) return; // it broke off at an event
+  is_between_events_ = false;
+  const double t = integrator_->t0();
+  std::copy_n(integrator_->y0(), dynamics_.dimension(), y_.begin());
+  const bool is_sampled = options_.output_step > 0.0;
+  const double last = trajectory_->size() > 0 ? trajectory_->times().back() : -std::numeric_limits<double>::infinity();
+  if (is_sampled && t > last + k_output_slack * options_.output_step) record_sample(t);
+  if (!extremes_) return;
+  dynamics_.rates(t, y_.data(), dy_.data());
+  extremes_->finish(dynamics_.snapshot(dy_.data()));
+}
+
+// A step that has decided the modes itself: they are taken over, and noted where they changed.
+bool Simulation::pass_stepped() {
+  const double t1 = integrator_->t1();
+  sample_until(t1);
+  energy_.note(dynamics_, t1, integrator_->y1()); // in the layout of the step, which the next line may do away with
+  const std::size_t known = events_.size();
+  handler_.note_changes(state_, *integrator_->stepped_state(), events_);
+  state_ = *integrator_->stepped_state();
+  statistics_.events += static_cast<long>(events_.size() - known);
+  dynamics_.set_time_limit(next_limit());
+  restart();
+  if (t1 < options_.end) return true;
+  end_run();
+  return false;
+}
+
+State Simulation::current_state() const {
+  State state = state_;
+  dynamics_.unpack(integrator_->t0(), integrator_->y0(), state);
+  return state;
+}
+
+void Simulation::run() {
+  while (advance()) {
+  }
+}
+
+RunStatistics Simulation::statistics() const {
+  RunStatistics s = statistics_;
+  s.steps += integrator_->steps();
+  s.rejections = integrator_->rejections();
+  s.evaluations = dynamics_.evaluations();
+  s.max_position_residual = integrator_->max_position_residual();
+  s.max_velocity_residual = integrator_->max_velocity_residual();
+  s.energy_residual = energy_.residual();
+  s.energy_exchanged = energy_.exchanged();
+  s.energy_scale = energy_.scale();
+  s.energy_rounding = energy_.rounding();
+  s.dissipated = state_.dissipated;
+  s.work = state_.work;
+  s.cpu_seconds = thread_cpu_seconds() - cpu_start_;
+  return s;
+}
+
+RunResult Simulation::result() && {
+  if (is_between_events_) { // it broke off, in a step that could not be made
+    state_ = current_state();
+    dynamics_.set_state(state_);
+    end_run();
+  }
+  RunResult result;
+  if (extremes_) result.ranges = extremes_->ranges();
+  result.first_phases = std::move(first_phases_);
+  result.statistics = statistics();
+  result.trajectory = std::move(trajectory_);
+  result.events = std::move(events_);
+  result.final_state = std::move(state_);
+  result.stop_reason = handler_.stop_reason();
+  return result;
+}
+
+RunResult simulate(const System& system, const State& initial, const SimulationOptions& options) {
+  Simulation simulation(system, initial, options);
+  simulation.run();
+  return std::move(simulation).result();
+}
+
+} // namespace steplap

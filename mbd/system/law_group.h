@@ -1,0 +1,154 @@
+// All elements that share one measure (measure.h) and one law, contiguous, evaluated in one loop.
+//
+// A law is a value type with
+//   static constexpr int k_watches           0: smooth for ever; n: a unit with n watch values
+//   static constexpr bool k_is_contact       true: its force counts as a normal force for friction
+//   S force(S value, S rate, mode)           force along the measure's gradient
+//   double elastic_force(value, mode)        −dU/dvalue of the stored energy, smooth within a mode
+//   double energy(value)                     U
+//   and, if k_watches > 0: mode_at, next_mode, watch, transition_name;
+//   static constexpr bool k_has_only_kinks   true: its force is continuous across changes of mode.
+// It dissipates (elastic_force − force)·rate.
+#pragma once
+
+#include "mbd/math/dual.h"
+#include "mbd/system/roles.h"
+
+namespace steplap {
+
+/// Pose at derivative indices first…first+2, velocity at 6+first….
+inline Motion<Dual<12>> seeded(const Motion<double>& m, int first) {
+  using D = Dual<12>;
+  Motion<D> s;
+  s.x = D::variable(m.x, first);
+  s.y = D::variable(m.y, first + 1);
+  s.theta = D::variable(m.theta, first + 2);
+  s.c = D(m.c);
+  s.c.d[first + 2] = -m.s;
+  s.s = D(m.s);
+  s.s.d[first + 2] = m.c;
+  s.vx = D::variable(m.vx, 6 + first);
+  s.vy = D::variable(m.vy, 6 + first + 1);
+  s.omega = D::variable(m.omega, 6 + first + 2);
+  return s;
+}
+
+/// Appends the derivatives of force(value, rate), which acts along the measure; returns the force.
+template <class Measure, class Force>
+Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluation& e, const Force& force,
+                           std::vector<PairJacobian>& out) {
+  const auto m = measure.template at<false, Dual<12>>(seeded(e.motion[a], 0), seeded(e.motion[b], 3));
+  const Dual<12> f = force(m.value, m.rate);
+  const Pair<Dual<12>> d = f * m.direction;
+  const Dual<12> couple_a = cross(m.lever_a, d) + f * m.couple;
+  const Dual<12> couple_b = cross(m.lever_b, d) + f * m.couple;
+  const Dual<12> rows[6] = {d.x, d.y, couple_a, -d.x, -d.y, -couple_b};
+  PairJacobian& j = out.emplace_back();
+  j.a = a;
+  j.b = b;
+  for (int i = 0; i < 6; ++i) {
+    j.stiffness.row(i) = rows[i].d.template head<6>().matrix().transpose();
+    j.damping.row(i) = rows[i].d.template tail<6>().matrix().transpose();
+  }
+  return f;
+}
+
+template <class Measure, class Law> class LawGroup final : public ForceGroup {
+public:
+  struct Entry {
+    int a = k_ground, b = k_ground;
+    Measure measure;
+    Law law;
+    int link = 0;    ///< slot of (a, b)
+    int unit = 0;    ///< index of its mode
+    int watch = 0;   ///< index of its first watch value
+    int contact = 0; ///< index of its normal force
+  };
+  std::vector<Entry> entries;
+
+  void add_forces(Evaluation& e) const override {
+    double dissipation = 0.0; // in a register: a sum in memory would chain the elements to each other
+    for (const Entry& entry : entries) {
+      const auto m =
+          entry.measure.template at<false, double>(e.link_motion[entry.link], Origin{});
+      const double f = entry.law.force(m.value, m.rate, mode_of(entry, e));
+      if constexpr (Law::k_is_contact) e.contact_force[entry.contact] = f;
+      if constexpr (Law::k_watches > 0)
+        entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch,
+                        e.watch_rate + entry.watch);
+      if (f != 0.0) apply_force(e.link_force[entry.link], m, f);
+      dissipation += (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
+    }
+    e.dissipation += dissipation;
+  }
+
+  [[nodiscard]] double potential(const Motion<double>* motion) const override {
+    double sum = 0.0;
+    for (const Entry& entry : entries)
+      sum += entry.law.energy(
+          entry.measure.template at<false, double>(motion[entry.a], motion[entry.b]).value);
+    return sum;
+  }
+
+  void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
+    for (const Entry& entry : entries) {
+      const auto law = [&](const Dual<12>& value, const Dual<12>& rate) {
+        return entry.law.force(value, rate, mode_of(entry, e));
+      };
+      const Dual<12> f = add_pair_jacobian(entry.a, entry.b, entry.measure, e, law, out);
+      if constexpr (Law::k_is_contact) {
+        out.back().contact = entry.contact;
+        out.back().normal = f.d.matrix();
+      }
+    }
+  }
+
+  void mark_bodies(std::vector<char>& is_used) const override {
+    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  }
+
+  void enter_links(LinkTable& links) override {
+    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+  }
+
+  [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
+    if constexpr (Law::k_watches > 0) {
+      const auto m = measured(element, e);
+      return entries[element].law.mode_at(m.value, m.rate);
+    }
+    return 0;
+  }
+  [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    if constexpr (Law::k_watches > 0) {
+      const auto m = measured(element, e);
+      return entries[element].law.next_mode(mode, slot, m.value, m.rate);
+    }
+    return mode;
+  }
+  [[nodiscard]] bool has_only_kinks() const override {
+    if constexpr (requires { Law::k_has_only_kinks; }) return Law::k_has_only_kinks;
+    return false;
+  }
+  [[nodiscard]] const char* transition_name(UnitMode from, UnitMode to) const override {
+    if constexpr (Law::k_watches > 0) return Law::transition_name(from, to);
+    return "";
+  }
+
+  /// Value and rate of one element's measure, and its force, for channels.
+  [[nodiscard]] MeasureValue<double> measured(int element, const Evaluation& e) const {
+    const Entry& entry = entries[element];
+    return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
+  }
+  [[nodiscard]] double force_of(int element, const Evaluation& e) const {
+    const auto m = measured(element, e);
+    return entries[element].law.force(m.value, m.rate, mode_of(entries[element], e));
+  }
+
+private:
+  static UnitMode mode_of(const Entry& entry, const Evaluation& e) {
+    if constexpr (Law::k_watches > 0) return e.mode[entry.unit];
+    return 0;
+  }
+};
+
+} // namespace steplap

@@ -1,0 +1,208 @@
+// The roles that an element plays in a compiled system, each a small interface.
+//
+//   ForceGroup       all elements of one kind that give forces, evaluated in one loop;
+//   FrictionElement  rows along which it can stick, the convex set of wrenches it can bear, its slip law;
+//   RowSpec (row.h)  bilateral and driven constraint rows.
+// A *unit* is a force element with modes (a contact: open, pressed, released): its present mode selects
+// a smooth law, and its watch values tell how far that law stays valid: an event is where one of them
+// falls below zero.
+#pragma once
+
+#include "mbd/system/link.h"
+#include "mbd/system/row.h"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// Mode of a unit: which of the smooth pieces of its law holds. Wide enough for two segments of tables of 65 536.
+using UnitMode = std::uint32_t;
+
+enum class FrictionPhase : std::uint8_t {
+  free,  ///< no normal force: no friction
+  stick, ///< its rows hold as constraints
+  slip,  ///< relative motion, the wrench follows the slip law
+  apart  ///< the joint has come apart: no friction for good
+};
+
+/// What a friction element remembers; anchors are in the state's memory (RowSpec::memory).
+struct FrictionState {
+  FrictionPhase phase = FrictionPhase::stick;
+  std::int8_t sign = 0;             ///< direction of slip, for one-dimensional friction
+  std::uint32_t foot = 0;           ///< which of its places it acts at; or a set of places, by bits
+  bool has_slipped = false;
+  bool is_starting = false;         ///< slip has only begun: `direction` still shares in the slip law
+  std::uint8_t stage = 0;           ///< of a slip's start or end, as its element counts them
+  double slid = 0.0;                ///< path length of finished slips (first row), m
+  double direction[3] = {0, 0, 0};  ///< of slip, as last looked at, for three-dimensional friction
+};
+
+/// What an element keeps between evaluations to save work, never to change a result: one per thread.
+struct FrictionScratch {
+  virtual ~FrictionScratch() = default;
+};
+
+/// Everything an evaluation reads and writes; one per thread, sized once.
+struct Evaluation {
+  double t = 0.0;
+  const Motion<double>* motion = nullptr; ///< per body
+  BodyForce* force = nullptr;             ///< per body, accumulated
+  const Motion<double>* link_motion = nullptr; ///< per slot of links (link.h): of a, seen from b
+  BodyForce* link_force = nullptr;        ///< per slot: on a, about its centre, in b's axes; accumulated
+  const UnitMode* mode = nullptr;         ///< per unit
+  const FrictionState* friction = nullptr;
+  const double* memory = nullptr;         ///< of the state: anchors of rows
+  FrictionScratch* const* scratch = nullptr; ///< per friction element; null where it wants none
+  double* contact_force = nullptr;        ///< per contact: normal force f ≥ 0 (N = Σ f)
+  double* watch = nullptr;                ///< per watch slot: valid while ≥ 0
+  double* watch_rate = nullptr;           ///< its rate where the element knows it, else NaN
+  double dissipation = 0.0;               ///< W
+  double work = 0.0;                      ///< W, of loads and drives
+};
+
+/// Adds f along the gradient of a measure taken in the link's frame (Origin).
+STEPLAP_INLINE void apply_force(BodyForce& link_force, const MeasureValue<double>& m, double f) {
+  const Pair<double> d = f * m.direction;
+  link_force.fx += d.x;
+  link_force.fy += d.y;
+  link_force.m += cross(m.lever_a, d) + f * m.couple;
+}
+
+template <int K>
+STEPLAP_INLINE void apply_force(BodyForce& link_force, const CoordinateValue<K>& m, double f) {
+  (K == 0 ? link_force.fx : link_force.fy) += f;
+  link_force.m += K == 0 ? -m.lever_a.y * f : m.lever_a.x * f;
+}
+
+/// ∂(force on a, force on b)/∂(pose a, pose b) and /∂(velocity a, velocity b) of one element.
+struct PairJacobian {
+  int a = 0, b = 0;
+  Eigen::Matrix<double, 6, 6> stiffness; ///< ∂F/∂q
+  Eigen::Matrix<double, 6, 6> damping;   ///< ∂F/∂v
+  int contact = -1;                      ///< index of its normal force, if it is one
+  Eigen::Matrix<double, 12, 1> normal;   ///< ∂(normal force)/∂(pose a, pose b, velocity a, velocity b)
+};
+
+class ForceGroup {
+public:
+  virtual ~ForceGroup() = default;
+  virtual void add_forces(Evaluation& e) const = 0;
+  [[nodiscard]] virtual double potential(const Motion<double>* motion) const = 0;
+  virtual void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const = 0;
+  virtual void mark_bodies(std::vector<char>& is_used) const = 0;
+  /// Enters the pairs of bodies that it acts between, and remembers their indices.
+  virtual void enter_links(LinkTable& /*links*/) {}
+
+  /// Modes, for groups whose elements are units. `slot` is the watch value that fell below zero.
+  [[nodiscard]] virtual UnitMode initial_mode(int /*element*/, const Evaluation&) const { return 0; }
+  [[nodiscard]] virtual UnitMode next_mode(int /*element*/, UnitMode mode, int /*slot*/, const Evaluation&) const {
+    return mode;
+  }
+  /// Changes of mode are kinks of a characteristic, which no force jumps at: many in a short time are no storm.
+  [[nodiscard]] virtual bool has_only_kinks() const { return false; }
+  /// What the change is called in the list of events ("closes", "opens", "force reaches zero").
+  [[nodiscard]] virtual const char* transition_name(UnitMode /*from*/, UnitMode /*to*/) const {
+    return "";
+  }
+};
+
+/// Solution of one element's part of the mode problem.
+struct FrictionBlock {
+  double wrench[3] = {0, 0, 0};
+  double direction[3] = {0, 0, 0}; ///< of the relative acceleration, if it starts to slip
+  bool is_inside = true;           ///< true: sticks
+};
+
+/// How fine velocities have to be known for a slip law that turns with the direction of slip.
+struct SlipScale {
+  double speed = std::numeric_limits<double>::infinity(); ///< m/s: errors have to be small against it
+  double lever = 0.0;                                     ///< m: a rate of turning counts as so much velocity
+};
+
+class FrictionElement {
+public:
+  virtual ~FrictionElement() = default;
+  [[nodiscard]] virtual int dimension() const = 0; ///< 1 or 3
+  /// The `dimension()` rows along which it sticks, at its present place.
+  [[nodiscard]] virtual const RowSpec* rows(const FrictionState& state) const = 0;
+  /// 3 rows that hold b rigidly to a, so that the two may be merged into one body while sticking.
+  [[nodiscard]] virtual bool is_rigid() const { return false; }
+  /// Sticks whatever it takes: nothing to watch.
+  [[nodiscard]] virtual bool never_slips() const { return false; }
+  virtual void mark_bodies(std::vector<char>& is_used) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<FrictionScratch> make_scratch() const { return nullptr; }
+
+  /// Can it bear any wrench at all (some contact closed, some area left)?
+  [[nodiscard]] virtual bool is_loaded(const Evaluation& e, const FrictionState& state) const = 0;
+  /// The wrench of the slip law for the relative velocity `rate` along its rows.
+  virtual void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
+                           double* wrench) const = 0;
+  /// Support function of the set it can bear while sticking: the largest power that an admissible wrench takes
+  /// from `rate`.
+  [[nodiscard]] virtual double support(const Evaluation& e, const FrictionState& state, const double* rate) const = 0;
+  /// Share of its capacity that `wrench` uses, 1 at the bound; `normal`: the n with n·w ≤ share of w for every w,
+  /// equal for `wrench`.
+  [[nodiscard]] virtual double gauge(const Evaluation& e, const FrictionState& state, const double* wrench,
+                                     double* normal) const {
+    const double forward = 1.0, capacity = support(e, state, &forward); // of one dimension
+    normal[0] = wrench[0] < 0.0 ? -1.0 / capacity : 1.0 / capacity;
+    return normal[0] * wrench[0];
+  }
+  /// Watch values while sticking with `wrench`: admissible while both are ≥ 0.
+  virtual void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench,
+                           double* watch) const = 0;
+  /// At the onset of slip, when `wrench` has reached the bound: sets sign or direction.
+  virtual void begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const = 0;
+  /// Sets sign or direction for a slip that is under way.
+  virtual void aim(FrictionState& state, const double* rate) const {
+    state.sign = rate[0] > 0.0 ? 1 : -1;
+  }
+  /// Watch values while sliding at `rate`: its slip law is the one of `state` while both are ≥ 0.
+  virtual void watch_slip(const Evaluation&, const FrictionState& state, const double* rate,
+                          double* watch) const {
+    watch[0] = state.sign * rate[0];
+    watch[1] = 1.0;
+  }
+  /// Of a slip at `rate`; infinite where the law does not turn with it.
+  [[nodiscard]] virtual SlipScale slip_scale(const Evaluation&, const FrictionState&, const double* /*rate*/) const {
+    return {};
+  }
+  /// The fastest rate, 1/s, at which friction alone makes a change of `rate` decay (an upper bound).
+  [[nodiscard]] virtual double decay_rate(const Evaluation&, const FrictionState&, const double* /*rate*/) const {
+    return 0.0;
+  }
+  /// After one of them fell below zero: true if the slip goes on, with `state` brought up to date;
+  /// false if it is at rest, so that the mode problem must tell what comes next.
+  [[nodiscard]] virtual bool goes_on_slipping(const Evaluation&, FrictionState&, const double* /*rate*/,
+                                              int /*slot*/) const {
+    return false;
+  }
+  /// Watch value of the place it acts at (foot switch, coming apart): valid while ≥ 0.
+  [[nodiscard]] virtual double watch_place(const Evaluation&, const FrictionState&) const { return 1.0; }
+  /// Changes the place, or the phase to apart, after watch_place fell below zero.
+  virtual void change_place(const Evaluation&, FrictionState&) const {}
+  [[nodiscard]] virtual const char* place_change_name(const FrictionState& /*from*/,
+                                                      const FrictionState& /*to*/) const {
+    return "changes foot";
+  }
+  /// Does coming apart end the run?
+  [[nodiscard]] virtual bool stops_when_apart() const { return false; }
+  /// min ½ wᵀA w + bᵀw over admissible w (A: dimension × dimension, row-major); `kinetic`: with the
+  /// slip law's bounds instead of the static ones.
+  [[nodiscard]] virtual FrictionBlock solve_block(const Evaluation& e, const FrictionState& state,
+                                                  const double* a, const double* b,
+                                                  bool kinetic) const = 0;
+};
+
+/// Mode of a contact unit in which it presses; every contact law uses these three.
+inline constexpr UnitMode k_contact_open = 0, k_contact_pressed = 1, k_contact_released = 2;
+
+/// Watch slots of a friction element: two for stick bounds or the end of slip, one for its place.
+inline constexpr int k_friction_watches = 3;
+
+} // namespace steplap

@@ -1,0 +1,306 @@
+#include "mbd/system/system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+void place_bodies(const std::vector<double>& q, const std::vector<double>& v,
+                  std::vector<Motion<double>>& motion) {
+  motion.resize(q.size() / 3);
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    Motion<double>& m = motion[i];
+    m.x = q[3 * i];
+    m.y = q[3 * i + 1];
+    set_angle(m, q[3 * i + 2]);
+    m.vx = v[3 * i];
+    m.vy = v[3 * i + 1];
+    m.omega = v[3 * i + 2];
+  }
+}
+
+// A drive read as a velocity or an acceleration begins where the body is; one read as an acceleration
+// also begins with the speed that the body has. A position is absolute: the base is what the signal's
+// increment since t = 0 leaves out.
+void start_drives(const System& system, State& state) {
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  for (const RowSpec& row : system.rows) {
+    if (!row.drive) continue;
+    if (row.level == DriveLevel::position) {
+      state.memory[row.memory] = row.drive->value(0.0);
+      continue;
+    }
+    const auto m = evaluate_row<false>(row, motion.data());
+    const SignalJet now = row.drive->drive(state.t, row.level);
+    const double base_rate = row.level == DriveLevel::acceleration ? m.rate - now.rate : 0.0;
+    state.memory[row.memory] = m.value - now.value - base_rate * state.t;
+    state.memory[row.memory + 1] = base_rate;
+  }
+}
+
+// --- System -----------------------------------------------------------------------------------
+
+State System::initial_state() const {
+  State state;
+  state.q.resize(3 * bodies.size());
+  state.v.resize(3 * bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      state.q[3 * i + k] = bodies[i].pose[k];
+      state.v[3 * i + k] = bodies[i].velocity[k];
+    }
+  state.mode.assign(units.size(), 0);
+  state.friction.resize(frictions.size());
+  state.memory = initial_memory;
+  return state;
+}
+
+double System::potential_energy(const Motion<double>* motion) const {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < bodies.size(); ++i)
+    sum -= bodies[i].mass * (gravity.x() * motion[i].x + gravity.y() * motion[i].y);
+  for (const auto& group : groups) sum += group->potential(motion);
+  return sum;
+}
+
+double System::kinetic_energy(const State& state) const {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < bodies.size(); ++i) {
+    const double* v = &state.v[3 * i];
+    sum += 0.5 * bodies[i].mass * (v[0] * v[0] + v[1] * v[1]) + 0.5 * bodies[i].inertia * v[2] * v[2];
+  }
+  return sum;
+}
+
+double System::fastest_at(double t) const {
+  double fastest = 0.0;
+  for (const auto& signal : signals_) fastest = std::max(fastest, signal->fastest_at(t));
+  return fastest;
+}
+
+const Channel* System::find_channel(const std::string& name) const {
+  for (const Channel& channel : channels)
+    if (channel.name == name) return &channel;
+  return nullptr;
+}
+
+// --- SystemBuilder ------------------------------------------------------------------------------
+
+SystemBuilder::SystemBuilder(const Model& model) : model_(model), system_(new System), signals_(model) {
+  system_->title = model.header.title;
+  system_->gravity = model.header.gravity;
+}
+
+void SystemBuilder::compile_bodies() {
+  system_->bodies.push_back({"ground", 0.0, 0.0, Vec3::Zero(), Vec3::Zero()});
+  body_index_["ground"] = k_ground;
+  std::unordered_map<std::string, const Body*> by_name;
+  for (const Body& body : model_.bodies) {
+    by_name[body.name] = &body;
+    if (body.fixed) {
+      body_index_[body.name] = k_ground;
+      continue;
+    }
+    body_index_[body.name] = system_->body_count();
+    const Vec2 velocity = body.velocity + model_.simulation.velocity;
+    system_->bodies.push_back({body.name, body.mass, body.inertia, body.reference_pose(),
+                               Vec3(velocity.x(), velocity.y(), body.angular_velocity)});
+  }
+  State state = system_->initial_state();
+  place_bodies(state.q, state.v, reference_);
+
+  // A marker's point is measured from the centre of gravity; on a fixed body it becomes a point of
+  // the ground, so that fixed bodies cost nothing.
+  const auto compiled = [&](const std::string& body_name, const std::optional<Vec2>& point,
+                            const std::optional<Vec2>& at, double angle) {
+    CompiledMarker marker;
+    marker.body = body_index_.at(body_name);
+    marker.angle = angle;
+    const auto found = by_name.find(body_name);
+    const Body* body = found == by_name.end() ? nullptr : found->second;
+    Vec2 ground_position = Vec2::Zero();
+    if (at) ground_position = *at;
+    else if (body)
+      ground_position = body->position + rotated(point ? *point : body->cg, body->angle);
+    else if (point) ground_position = *point;
+    if (marker.body == k_ground) {
+      marker.point = ground_position;
+      if (body) marker.angle += body->angle;
+    } else if (point) {
+      marker.point = *point - body->cg;
+    } else {
+      const Motion<double>& m = reference_[marker.body];
+      marker.point = rotated(ground_position - Vec2(m.x, m.y), -m.theta);
+      if (!at) marker.point.setZero();
+    }
+    return marker;
+  };
+  for (const auto& [name, index] : body_index_)
+    marker_index_[name] = compiled(name, std::nullopt, std::nullopt, 0.0);
+  for (const Marker& marker : model_.markers)
+    marker_index_[marker.name] = compiled(marker.body, marker.point, marker.at, marker.angle);
+}
+
+void SystemBuilder::compile_elements() {
+  for (std::size_t i = 0; i < model_.elements.size(); ++i) {
+    const Element& element = *model_.elements[i].element;
+    element_index_[element.name] = i;
+    system_->element_names.push_back(element.name);
+    system_->element_kinds.push_back(model_.elements[i].kind->name);
+  }
+  for (const int stage : {0, 1})
+    for (std::size_t i = 0; i < model_.elements.size(); ++i) {
+      if (model_.elements[i].kind->stage != stage) continue;
+      element_ = static_cast<int>(i);
+      model_.elements[i].kind->compile(*model_.elements[i].element, *this);
+    }
+}
+
+void SystemBuilder::finish() {
+  System& s = *system_;
+  for (FrictionUnit& unit : s.frictions) {
+    unit.watch = s.watch_count;
+    s.watch_count += k_friction_watches;
+  }
+  s.is_body_used.assign(s.bodies.size(), 0);
+  for (const auto& group : s.groups) group->mark_bodies(s.is_body_used);
+  for (const FrictionUnit& unit : s.frictions) unit.friction->mark_bodies(s.is_body_used);
+  s.links.start(s.body_count());
+  for (const auto& group : s.groups) group->enter_links(s.links);
+  s.force_link_count = s.links.size();
+  for (const RowSpec& row : s.rows) s.links.add(row.a, row.b);
+  for (const FrictionUnit& unit : s.frictions) {
+    const RowSpec& row = *unit.friction->rows({}); // the same two bodies at each of its places
+    s.links.add(row.a, row.b);
+  }
+  std::sort(s.breakpoints.begin(), s.breakpoints.end());
+  s.breakpoints.erase(std::unique(s.breakpoints.begin(), s.breakpoints.end()), s.breakpoints.end());
+}
+
+void SystemBuilder::add_body_channels() {
+  struct Coordinate {
+    const char* name;
+    const char* unit;
+    double Motion<double>::*member;
+  };
+  static constexpr Coordinate coordinates[] = {
+      {"x", "m", &Motion<double>::x},         {"y", "m", &Motion<double>::y},
+      {"theta", "rad", &Motion<double>::theta}, {"vx", "m/s", &Motion<double>::vx},
+      {"vy", "m/s", &Motion<double>::vy},     {"omega", "rad/s", &Motion<double>::omega}};
+  static constexpr const char* accelerations[] = {"ax", "ay", "alpha"};
+  for (int i = 1; i < system_->body_count(); ++i) {
+    const std::string& name = system_->bodies[i].name;
+    for (const Coordinate& c : coordinates)
+      system_->channels.push_back({name + "." + c.name, c.unit, "of the centre of gravity",
+                                   [i, member = c.member](const Snapshot& s) { return s.motion[i].*member; }});
+    for (int k = 0; k < 3; ++k)
+      system_->channels.push_back({name + "." + accelerations[k], k < 2 ? "m/s^2" : "rad/s^2",
+                                   "of the centre of gravity",
+                                   [i, k](const Snapshot& s) { return s.acceleration[3 * i + k]; }});
+  }
+}
+
+CompiledMarker SystemBuilder::marker(const std::string& name) const {
+  const auto found = marker_index_.find(name);
+  if (found == marker_index_.end())
+    throw ModelError(model_.elements[element_].element->where, "unknown marker '" + name + "'");
+  return found->second;
+}
+
+int SystemBuilder::body(const std::string& name) const {
+  const auto found = body_index_.find(name);
+  if (found == body_index_.end())
+    throw ModelError(model_.elements[element_].element->where, "unknown body '" + name + "'");
+  return found->second;
+}
+
+const Signal* SystemBuilder::signal(const std::string& name) {
+  if (name.empty()) return nullptr;
+  if (const auto found = signal_index_.find(name); found != signal_index_.end()) return found->second;
+  if (const Signal* built = signals_.build(name)) {
+    auto signal = std::make_unique<Signal>(*built);
+    for (const double t : signal->breakpoints())
+      if (t > 0.0) system_->breakpoints.push_back(t);
+    signal_index_[name] = signal.get();
+    system_->signals_.push_back(std::move(signal));
+    return signal_index_[name];
+  }
+  throw ModelError(model_.elements[element_].element->where, "unknown signal '" + name + "'");
+}
+
+Vec2 SystemBuilder::marker_position(const CompiledMarker& marker) const {
+  const Motion<double>& m = reference_[marker.body];
+  return Vec2(m.x, m.y) + rotated(marker.point, m.theta);
+}
+
+Vec2 SystemBuilder::direction(const CompiledMarker& marker, const Vec2& local) const {
+  return rotated(local.normalized(), marker.angle);
+}
+
+const ContactIndex* SystemBuilder::contact(const std::string& element) const {
+  const auto found = contact_index_.find(element);
+  return found == contact_index_.end() ? nullptr : &found->second;
+}
+
+const ElementEntry* SystemBuilder::element(const std::string& name) const {
+  const auto found = element_index_.find(name);
+  return found == element_index_.end() ? nullptr : &model_.elements[found->second];
+}
+
+int SystemBuilder::add_contact(int unit) {
+  contact_index_[system_->element_names[element_]] = {system_->contact_count, unit};
+  return system_->contact_count++;
+}
+
+int SystemBuilder::add_memory(double base, double base_rate) {
+  system_->initial_memory.push_back(base);
+  system_->initial_memory.push_back(base_rate);
+  return static_cast<int>(system_->initial_memory.size()) - 2;
+}
+
+void SystemBuilder::add_rows(std::vector<RowSpec> rows, bool is_rigid, int coordinate) {
+  const int first = static_cast<int>(system_->rows.size());
+  for (RowSpec& row : rows) {
+    row.element = element_;
+    if (row.drive) { // elements have refused those that jump within the model's own run
+      constexpr double k_ever = std::numeric_limits<double>::infinity();
+      const auto jump = row.drive->first_jump(row.level, std::nextafter(model_.simulation.end, 0.0), k_ever);
+      if (jump) system_->drives_end = std::min(system_->drives_end, jump->t);
+    }
+    system_->rows.push_back(row);
+  }
+  system_->row_blocks.push_back({first, static_cast<int>(rows.size()), is_rigid, coordinate, element_});
+}
+
+int SystemBuilder::add_friction(std::unique_ptr<FrictionElement> friction) {
+  const int row = system_->friction_row_count;
+  system_->friction_row_count += friction->dimension();
+  system_->frictions.push_back({std::move(friction), row, 0, element_});
+  return static_cast<int>(system_->frictions.size()) - 1;
+}
+
+Channel& SystemBuilder::add_channel(const std::string& name, const std::string& unit, const std::string& doc,
+                                    std::function<double(const Snapshot&)> value) {
+  return system_->channels.emplace_back(
+      Channel{system_->element_names[element_] + "." + name, unit, doc, std::move(value)});
+}
+
+void SystemBuilder::error(const std::string& message) {
+  const Element& element = *model_.elements[element_].element;
+  errors_.push_back({element.where, model_.elements[element_].kind->name + " '" + element.name +
+                                        "': " + message});
+}
+
+std::unique_ptr<System> compile(const Model& model) {
+  SystemBuilder builder(model);
+  builder.compile_bodies();
+  builder.add_body_channels();
+  builder.compile_elements();
+  builder.finish();
+  if (!builder.errors_.empty()) throw ModelError(builder.errors_);
+  return std::move(builder.system_);
+}
+
+} // namespace steplap

@@ -1,0 +1,231 @@
+// The compiled system: what a model becomes before it runs. Flat arrays, indices instead of names, and
+// only what the scene needs; const while running. What changes is in State, scratch is in Dynamics.
+#pragma once
+
+#include "mbd/model/model.h"
+#include "mbd/system/roles.h"
+#include "mbd/model/signal_network.h"
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <typeinfo>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace steplap {
+
+class System;
+
+/// Everything that changes during a run. Body 0 is the ground; q and v hold (x, y, θ) and its rate of
+/// each body's centre of gravity.
+struct State {
+  double t = 0.0;
+  std::vector<double> q, v;
+  std::vector<UnitMode> mode;           ///< per unit
+  std::vector<FrictionState> friction;  ///< per friction element
+  std::vector<double> memory;           ///< bases of rows
+  double dissipated = 0.0;              ///< J, since the start
+  double work = 0.0;                    ///< J, of loads and drives since the start
+};
+
+/// What a channel may look at: a state with the accelerations and reactions that belong to it.
+struct Snapshot {
+  double t = 0.0;
+  const Motion<double>* motion = nullptr;  ///< per body
+  const double* acceleration = nullptr;    ///< 3 per body
+  const Evaluation* evaluation = nullptr;  ///< contact forces, modes, friction states
+  const double* row_force = nullptr;       ///< multiplier of every bilateral row
+  const double* friction_force = nullptr;  ///< wrench of every friction element along its rows
+  const double* memory = nullptr;
+};
+
+/// Between which a value lies.
+struct ValueBounds {
+  double low = 0.0, high = 0.0;
+};
+
+struct Channel {
+  std::string name;
+  std::string unit;
+  std::string doc;
+  std::function<double(const Snapshot&)> value;
+  /// Of a value that costs much: bounds that cost little, for whoever only wants to know its extremes.
+  std::function<ValueBounds(const Snapshot&)> bounds = {};
+  bool has_extremes = true; ///< false: it passes through infinity
+};
+
+/// Mass properties and start of a body; index 0 is the ground.
+struct BodyData {
+  std::string name;
+  double mass = 0.0, inertia = 0.0;
+  Vec3 pose = Vec3::Zero();
+  Vec3 velocity = Vec3::Zero();
+};
+
+/// Rows that belong together: a joint's, or a drive's.
+struct RowBlock {
+  int first = 0, count = 0;
+  bool is_rigid = false;  ///< two axis rows at one point and the angle: holds a and b rigidly together
+  int coordinate = -1;    ///< 0, 1, 2: it drives x, y or θ of the centre of gravity of a, and nothing else
+  int element = 0;
+};
+
+/// A force element with modes.
+struct Unit {
+  const ForceGroup* group = nullptr;
+  int index = 0;       ///< in its group
+  int watch = 0, watch_count = 0;
+  int element = 0;
+};
+
+struct FrictionUnit {
+  std::unique_ptr<FrictionElement> friction;
+  int row = 0;         ///< first slot of its wrench in Snapshot::friction_force
+  int watch = 0;
+  int element = 0;
+};
+
+class System {
+public:
+  std::string title;
+  Vec2 gravity = Vec2::Zero();
+  std::vector<BodyData> bodies;
+  std::vector<std::string> element_names;
+  std::vector<std::string> element_kinds;
+  std::vector<std::unique_ptr<ForceGroup>> groups;
+  std::vector<RowSpec> rows; ///< bilateral and driven
+  std::vector<RowBlock> row_blocks;
+  LinkTable links;           ///< those of force elements first
+  int force_link_count = 0;
+  std::vector<Unit> units;
+  std::vector<FrictionUnit> frictions;
+  std::vector<Channel> channels;
+  std::vector<double> breakpoints; ///< of all signals in use, ascending
+  double drives_end = std::numeric_limits<double>::infinity(); ///< the first drive jumps there: no run may pass it, s
+  std::vector<double> initial_memory;
+  std::vector<char> is_body_used; ///< per body: some force element or friction refers to it
+  int contact_count = 0;
+  int watch_count = 0;
+  int friction_row_count = 0;
+
+  [[nodiscard]] int body_count() const { return static_cast<int>(bodies.size()); }
+  /// The reference pose and velocity, modes and anchors that belong to it.
+  [[nodiscard]] State initial_state() const;
+  /// Potential energy: gravity and all that is stored in elements.
+  [[nodiscard]] double potential_energy(const Motion<double>* motion) const;
+  [[nodiscard]] double kinetic_energy(const State& state) const;
+  /// Angular frequency of the fastest harmonic of all loads and drives between the breakpoints about t, rad/s; 0: none.
+  [[nodiscard]] double fastest_at(double t) const;
+  [[nodiscard]] const Channel* find_channel(const std::string& name) const;
+
+private:
+  friend class SystemBuilder;
+  std::vector<std::unique_ptr<Signal>> signals_;
+};
+
+/// Fills per-body motions from q and v; `motion` has one entry per body.
+void place_bodies(const std::vector<double>& q, const std::vector<double>& v,
+                  std::vector<Motion<double>>& motion);
+
+/// Bases of driven rows, so that the drives begin at the pose and velocity of `state`.
+void start_drives(const System& system, State& state);
+
+/// Where a marker ends up: a compiled body and a point and angle in its frame (from its centre of
+/// gravity).
+struct CompiledMarker {
+  int body = k_ground;
+  Vec2 point = Vec2::Zero();
+  double angle = 0.0;
+};
+
+/// Indices of a contact's normal force and of its unit.
+struct ContactIndex {
+  int force = 0, unit = 0;
+};
+
+/// Handed to ElementKind::compile: names in, indices out.
+class SystemBuilder {
+public:
+  explicit SystemBuilder(const Model& model);
+
+  // --- references -------------------------------------------------------------------------------
+  [[nodiscard]] CompiledMarker marker(const std::string& name) const;
+  [[nodiscard]] int body(const std::string& name) const;
+  /// Null for an empty name.
+  [[nodiscard]] const Signal* signal(const std::string& name);
+  [[nodiscard]] const Motion<double>& reference(int body) const { return reference_[body]; }
+  [[nodiscard]] Vec2 marker_position(const CompiledMarker& marker) const;
+  /// A direction given in a marker's axes, in the axes of its body, length 1.
+  [[nodiscard]] Vec2 direction(const CompiledMarker& marker, const Vec2& local) const;
+  /// A contact element compiled at an earlier stage; null if `element` is none.
+  [[nodiscard]] const ContactIndex* contact(const std::string& element) const;
+  [[nodiscard]] const ElementEntry* element(const std::string& name) const;
+  [[nodiscard]] const Model& model() const { return model_; }
+
+  // --- contributions ------------------------------------------------------------------------------
+  /// The group of type Group, made on first use; append to its `entries`.
+  template <class Group> Group& group();
+  /// Makes a unit of an entry: sets its mode and watch indices.
+  template <class Group> void add_unit(Group& group, int watch_count);
+  /// Index of a new normal force, registered under the current element's name; `unit` tells whether
+  /// it is pressed (mode 1).
+  int add_contact(int unit);
+  int add_memory(double base = 0.0, double base_rate = 0.0);
+  void add_rows(std::vector<RowSpec> rows, bool is_rigid = false, int coordinate = -1);
+  int add_friction(std::unique_ptr<FrictionElement> friction);
+  /// "<element>.<name>"; what is returned is good until the next one is added.
+  Channel& add_channel(const std::string& name, const std::string& unit, const std::string& doc,
+                       std::function<double(const Snapshot&)> value);
+  [[nodiscard]] int next_row() const { return static_cast<int>(system_->rows.size()); }
+  /// Slot in Snapshot::friction_force that the next friction element will get.
+  [[nodiscard]] int next_friction_row() const { return system_->friction_row_count; }
+  [[nodiscard]] int next_friction() const { return static_cast<int>(system_->frictions.size()); }
+  [[nodiscard]] int element_index() const { return element_; }
+  /// Notes an error at the current element: compile goes on and reports all of them.
+  void error(const std::string& message);
+
+private:
+  friend std::unique_ptr<System> compile(const Model& model);
+  void compile_bodies();
+  void compile_elements();
+  void finish();
+  void add_body_channels();
+
+  const Model& model_;
+  std::unique_ptr<System> system_;
+  std::vector<Motion<double>> reference_;
+  std::unordered_map<std::string, int> body_index_;
+  std::unordered_map<std::string, CompiledMarker> marker_index_;
+  SignalNetwork signals_;
+  std::unordered_map<std::string, const Signal*> signal_index_;
+  std::unordered_map<std::string, std::size_t> element_index_;
+  std::unordered_map<std::string, ContactIndex> contact_index_;
+  std::map<std::string, std::size_t> group_index_;
+  std::vector<Diagnostic> errors_;
+  int element_ = -1;
+};
+
+/// Compiles a model. Throws ModelError with all errors found.
+[[nodiscard]] std::unique_ptr<System> compile(const Model& model);
+
+// ---------------------------------------------------------------------------------------------
+
+template <class Group> Group& SystemBuilder::group() {
+  const auto [it, is_new] = group_index_.try_emplace(typeid(Group).name(), system_->groups.size());
+  if (is_new) system_->groups.push_back(std::make_unique<Group>());
+  return static_cast<Group&>(*system_->groups[it->second]);
+}
+
+template <class Group> void SystemBuilder::add_unit(Group& group, int watch_count) {
+  auto& entry = group.entries.back();
+  entry.unit = static_cast<int>(system_->units.size());
+  entry.watch = system_->watch_count;
+  system_->units.push_back({&group, static_cast<int>(group.entries.size()) - 1, entry.watch,
+                            watch_count, element_});
+  system_->watch_count += watch_count;
+}
+
+} // namespace steplap
