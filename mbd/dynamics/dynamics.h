@@ -33,6 +33,8 @@ struct ConstraintFailure : NumericalFailure {
 class Dynamics {
 public:
   explicit Dynamics(const System& system);
+  Dynamics(const Dynamics&) = delete; // what it evaluates points into it
+  Dynamics& operator=(const Dynamics&) = delete;
 
   /// Takes over modes, friction phases and anchors. `state` must outlive the use of this object or be
   /// set anew; poses are read only where a new layout has to be made.

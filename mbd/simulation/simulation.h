@@ -61,6 +61,8 @@ class Simulation {
 public:
   /// Starts at `initial`: poses and velocities are first moved onto the constraints.
   Simulation(const System& system, const State& initial, SimulationOptions options);
+  Simulation(const Simulation&) = delete; // its parts refer to each other
+  Simulation& operator=(const Simulation&) = delete;
 
   /// To options.end. Throws NumericalFailure (with the state kept in state()).
   void run();

@@ -90,6 +90,10 @@ struct FrictionUnit {
 
 class System {
 public:
+  System() = default;
+  System(const System&) = delete; // channels and rows refer to what it owns
+  System& operator=(const System&) = delete;
+
   std::string title;
   Vec2 gravity = Vec2::Zero();
   std::vector<BodyData> bodies;

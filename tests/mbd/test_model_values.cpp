@@ -101,6 +101,12 @@ bool says(const std::string& text, const std::string& part) { return text.find(p
 
 } // namespace
 
+// What refers to itself can be neither copied nor moved; a model and a state can.
+static_assert(!std::is_copy_constructible_v<System> && !std::is_move_constructible_v<System>);
+static_assert(!std::is_copy_constructible_v<Simulation> && !std::is_move_constructible_v<Simulation>);
+static_assert(!std::is_copy_constructible_v<Dynamics> && !std::is_move_constructible_v<Dynamics>);
+static_assert(std::is_copy_constructible_v<Model> && std::is_copy_constructible_v<State>);
+
 TEST_CASE("a copy of a model has elements, signals and tables of its own") {
   const Model model = read_given_model(std::string(STEPLAP_MODELS) + "/layouts/three_limb.toml", transformer_catalog());
   REQUIRE_FALSE(model.tables.empty());
