@@ -208,8 +208,8 @@ std::vector<double> changes(const Run& r, const std::string& element, double ste
   std::vector<double> times;
   bool was_stick = false;
   for (const Event& event : r.result.events) {
-    if (event.element != element || event.what == "changes foot") continue;
-    const bool is_stick = event.what == "sticks";
+    if (event.element != element || event.kind == EventKind::changes_foot) continue;
+    const bool is_stick = event.kind == EventKind::sticks;
     if (!is_stick && was_stick && event.t - times.back() <= 1.5 * step) times.pop_back();
     times.push_back(event.t);
     was_stick = is_stick;
