@@ -97,6 +97,8 @@ void EventHandler::start(State& state) {
       load(state, f);
   }
   modes_.decide(state);
+  const auto slips = [](const FrictionState& friction) { return friction.phase == FrictionPhase::slip; };
+  if (std::any_of(state.friction.begin(), state.friction.end(), slips)) evaluate(state); // decide() may end with a trial
   clear_fresh();
 }
 
