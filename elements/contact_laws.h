@@ -52,10 +52,10 @@ struct KelvinVoigtContact {
     if (mode == k_contact_pressed) return value - offset < 0.0 ? k_contact_released : k_contact_open;
     return slot == 0 ? k_contact_open : k_contact_pressed;
   }
-  static const char* transition_name(UnitMode from, UnitMode to) {
-    if (to == k_contact_open) return "opens";
-    if (from == k_contact_open) return "closes";
-    return to == k_contact_released ? "force reaches zero" : "force returns";
+  static EventKind transition(UnitMode from, UnitMode to) {
+    if (to == k_contact_open) return EventKind::opens;
+    if (from == k_contact_open) return EventKind::closes;
+    return to == k_contact_released ? EventKind::force_reaches_zero : EventKind::force_returns;
   }
 };
 
@@ -86,8 +86,8 @@ struct LiteralContact {
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int, double, double) const {
     return mode == k_contact_open ? k_contact_pressed : k_contact_open;
   }
-  static const char* transition_name(UnitMode, UnitMode to) {
-    return to == k_contact_open ? "opens" : "closes";
+  static EventKind transition(UnitMode, UnitMode to) {
+    return to == k_contact_open ? EventKind::opens : EventKind::closes;
   }
 };
 
@@ -127,8 +127,8 @@ struct HuntCrossleyContact {
     if (slot == 0) return k_contact_open;
     return mode == k_contact_pressed ? k_contact_released : k_contact_pressed;
   }
-  static const char* transition_name(UnitMode from, UnitMode to) {
-    return KelvinVoigtContact::transition_name(from, to);
+  static EventKind transition(UnitMode from, UnitMode to) {
+    return KelvinVoigtContact::transition(from, to);
   }
 
 private:

@@ -57,10 +57,10 @@ struct StopsLaw {
     const double v = is_up ? -value : value, r = is_up ? -rate : rate;
     return stop_mode(stop.next_mode(contact_mode(mode), mode == k_between ? 0 : slot, v, r), is_up);
   }
-  static const char* transition_name(UnitMode from, UnitMode to) {
-    if (to == k_between) return "leaves its stop";
-    if (from == k_between) return is_upper(to) ? "reaches its upper stop" : "reaches its lower stop";
-    return KelvinVoigtContact::transition_name(contact_mode(from), contact_mode(to));
+  static EventKind transition(UnitMode from, UnitMode to) {
+    if (to == k_between) return EventKind::leaves_stop;
+    if (from == k_between) return is_upper(to) ? EventKind::reaches_upper_stop : EventKind::reaches_lower_stop;
+    return KelvinVoigtContact::transition(contact_mode(from), contact_mode(to));
   }
 };
 

@@ -60,8 +60,8 @@ struct GapSpring {
     if (mode != 1) return 1;
     return slot == 0 ? 0 : 2;
   }
-  static const char* transition_name(UnitMode, UnitMode to) {
-    return to == 1 ? "enters its gap" : "closes its gap";
+  static EventKind transition(UnitMode, UnitMode to) {
+    return to == 1 ? EventKind::enters_gap : EventKind::closes_gap;
   }
 };
 
@@ -126,7 +126,6 @@ private:
 struct TabulatedSpring {
   static constexpr int k_watches = 4;
   static constexpr bool k_is_contact = false;
-  static constexpr bool k_has_only_kinks = true;
   PiecewiseLinear spring, damper;
   double free = 0.0, count = 1.0;
 
@@ -163,7 +162,7 @@ struct TabulatedSpring {
     return slot < 2 ? mode_of(spring.segment_beyond(s, is_above, value - free), d)
                     : mode_of(s, damper.segment_beyond(d, is_above, rate));
   }
-  static const char* transition_name(UnitMode, UnitMode) { return "passes a kink of its table"; }
+  static EventKind transition(UnitMode, UnitMode) { return EventKind::passes_kink; }
 };
 
 } // namespace steplap

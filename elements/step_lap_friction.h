@@ -87,9 +87,8 @@ public:
                                       int slot) const override;
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override;
   void change_place(const Evaluation& e, FrictionState& state) const override;
-  [[nodiscard]] const char* place_change_name(const FrictionState& from,
-                                              const FrictionState& to) const override {
-    return (to.foot & ~from.foot) != 0 ? "loses an interface" : "meets at an interface again";
+  [[nodiscard]] EventKind place_change(const FrictionState& from, const FrictionState& to) const override {
+    return (to.foot & ~from.foot) != 0 ? EventKind::loses_interface : EventKind::meets_interface;
   }
   [[nodiscard]] bool stops_when_apart() const override { return stops_when_apart_; }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState& state,

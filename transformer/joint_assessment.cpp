@@ -48,38 +48,53 @@ void read_extremes(const RunResult& result, JointAssessment& a) {
 void read_events(const std::vector<Event>& events, JointAssessment& result) {
   for (const Event& event : events) {
     if (event.element != result.joint) continue;
-    if (event.what.starts_with("slips")) {
+    if (is_slip(event.kind)) {
       result.has_slipped = true;
       if (!result.first_slip) result.first_slip = event.t;
     }
-    if (event.what.starts_with("comes apart")) result.has_come_apart = true;
+    if (event.kind == EventKind::comes_apart) result.has_come_apart = true;
   }
 }
 
-// One that slides from the first instant has no event of beginning to, nor one that a method without events let go.
+// Where time stepping goes over a storm, a joint that it lets go has no event.
 void read_modes(const RunResult& result, JointAssessment& a) {
   const ChannelRange* mode = find_range(result, a.joint + ".mode");
   const double slip = static_cast<double>(FrictionPhase::slip);
   if (!mode || !(mode->high.value >= slip)) return;
   a.has_slipped = true;
-  if (mode->first == slip) a.first_slip = 0.0; // where runs begin
   if (!a.first_slip) a.first_slip = mode->high.t;
   if (mode->high.value > slip) a.has_come_apart = true;
 }
 
-std::string verdict_of(const JointAssessment& a, bool has_interfaces) {
-  if (!has_interfaces) return "not assessed";
-  if (a.has_come_apart) return "came apart";
-  if (a.has_parted()) return "a corner parted";
-  if (a.has_slid_too_far()) return "slid too far";
-  if (a.has_left_range()) return "closed its clearance";
-  if (a.has_slipped) return "slipped";
-  if (!a.is_known()) return "not known";
-  if (a.is_monitored && a.smallest_margin < 1.0) return "would slip";
-  return a.smallest_margin < a.least_margin ? "little reserve" : "holds";
+JointVerdict verdict_of(const JointAssessment& a, bool has_interfaces) {
+  if (!has_interfaces) return JointVerdict::not_assessed;
+  if (a.has_come_apart) return JointVerdict::came_apart;
+  if (a.has_parted()) return JointVerdict::corner_parted;
+  if (a.has_slid_too_far()) return JointVerdict::slid_too_far;
+  if (a.has_left_range()) return JointVerdict::closed_clearance;
+  if (a.has_slipped) return JointVerdict::slipped;
+  if (!a.is_known()) return JointVerdict::not_known;
+  if (a.is_monitored && a.smallest_margin < 1.0) return JointVerdict::would_slip;
+  return a.smallest_margin < a.least_margin ? JointVerdict::little_reserve : JointVerdict::holds;
 }
 
 } // namespace
+
+const char* words_of(JointVerdict verdict) {
+  switch (verdict) {
+  case JointVerdict::not_assessed: return "not assessed";
+  case JointVerdict::came_apart: return "came apart";
+  case JointVerdict::corner_parted: return "a corner parted";
+  case JointVerdict::slid_too_far: return "slid too far";
+  case JointVerdict::closed_clearance: return "closed its clearance";
+  case JointVerdict::slipped: return "slipped";
+  case JointVerdict::not_known: return "not known";
+  case JointVerdict::would_slip: return "would slip";
+  case JointVerdict::little_reserve: return "little reserve";
+  case JointVerdict::holds: break;
+  }
+  return "holds";
+}
 
 bool JointAssessment::has_left_range() const { return clearance_left.value < -k_touching; }
 

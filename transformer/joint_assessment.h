@@ -5,11 +5,29 @@
 #include "mbd/model/model.h"
 #include "mbd/simulation/simulation.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace steplap {
+
+/// From the gravest down.
+enum class JointVerdict : std::uint8_t {
+  not_assessed,       ///< a joint without interfaces, which holds whatever it takes
+  came_apart,
+  corner_parted,
+  slid_too_far,
+  closed_clearance,
+  slipped,
+  not_known,          ///< no figures
+  would_slip,         ///< a monitored joint beyond its limit
+  little_reserve,     ///< less margin than the model asks for
+  holds
+};
+
+/// "a corner parted"
+[[nodiscard]] const char* words_of(JointVerdict verdict);
 
 struct JointAssessment {
   static constexpr double k_touching = 1e-9; ///< m: a clearance of zero is not closed by rounding
@@ -42,10 +60,7 @@ struct JointAssessment {
   }
   [[nodiscard]] bool is_known() const { return smallest_margin == smallest_margin; }
 
-  /// "came apart", "a corner parted", "slid too far", "closed its clearance", "slipped", "would slip" (a monitored
-  /// joint beyond its limit), "little reserve" (less margin than the model asks for), "holds", "not assessed" (a joint
-  /// without interfaces, which holds whatever it takes), "not known" (no figures).
-  std::string verdict;
+  JointVerdict verdict = JointVerdict::not_assessed;
 };
 
 /// One entry for every step_lap_joint of the model, in the model's order. Figures are not-a-number where the run did not

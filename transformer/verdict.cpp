@@ -92,26 +92,18 @@ CriterionResult judge_channel(const Criterion& c, const std::vector<ChannelRange
   return result;
 }
 
-// The first time that an event which is not wanted happened; what slides from the start has none of its own.
-CriterionResult judge_event(const Criterion& c, const System& system, const RunResult& run) {
+// The first time that an event which is not wanted happened.
+CriterionResult judge_event(const Criterion& c, const RunResult& run) {
   const std::string element = c.element.empty() ? "*" : c.element;
   const std::string whose = c.element.empty() ? "any element" : "'" + c.element + "'";
   CriterionResult result = result_for(c, "no '" + c.event + "' of " + whose, element, Verdict::hold);
-  const auto happen = [&](const std::string& where, double t) {
-    if (result.t && *result.t <= t) return;
-    result.outcome = result.consequence;
-    result.where = where;
-    result.t = t;
-  };
-  for (std::size_t f = 0; f < run.first_phases.size(); ++f) {
-    const std::string& name = system.element_names[system.frictions[f].element];
-    const bool is_meant = matches_pattern(name, element) &&
-                          (matches_pattern("slips", c.event) || matches_pattern("slips forward", c.event) ||
-                           matches_pattern("slips backward", c.event));
-    if (is_meant && run.first_phases[f] == FrictionPhase::slip) happen(name, 0.0);
-  }
-  for (const Event& e : run.events)
-    if (matches_pattern(e.element, element) && matches_pattern(e.what, c.event)) happen(e.element, e.t);
+  const EventKinds kinds = event_kinds_matching(c.event);
+  const auto is_meant = [&](const Event& e) { return kinds.test(static_cast<std::size_t>(e.kind)) && matches_pattern(e.element, element); };
+  const auto first = std::find_if(run.events.begin(), run.events.end(), is_meant);
+  if (first == run.events.end()) return result;
+  result.outcome = result.consequence;
+  result.where = first->element;
+  result.t = first->t;
   return result;
 }
 
@@ -134,15 +126,15 @@ CriterionResult judge_holding(const JointAssessment& joint) {
     result.t = joint.time_of_smallest;
   }
   if (joint.first_slip) result.t = joint.first_slip;
-  if (joint.verdict == "not assessed" || joint.verdict == "not known") result.outcome = Verdict::open;
-  else if (joint.verdict != "holds") result.outcome = Verdict::inspect;
+  if (joint.verdict == JointVerdict::not_assessed || joint.verdict == JointVerdict::not_known) result.outcome = Verdict::open;
+  else if (joint.verdict != JointVerdict::holds) result.outcome = Verdict::inspect;
   if (joint.has_come_apart) result.consequence = result.outcome = Verdict::reject;
   return result;
 }
 
 // Only of a joint whose sheets are known.
 void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& criteria) {
-  if (joint.verdict == "not assessed") return;
+  if (joint.verdict == JointVerdict::not_assessed) return;
   CriterionResult slid = joint_result(joint, "displacement of its corners, of the overlap's width <= " + limit_text(joint.most_slide));
   slid.consequence = Verdict::reject;
   slid.outcome = std::isnan(joint.slid_share.value) ? Verdict::open : Verdict::hold;
@@ -246,6 +238,18 @@ const char* name_of(Verdict verdict) {
   return "reject";
 }
 
+Verdict outcome_of(JointVerdict verdict) {
+  switch (verdict) {
+  case JointVerdict::holds: return Verdict::hold;
+  case JointVerdict::not_assessed:
+  case JointVerdict::not_known: return Verdict::open;
+  case JointVerdict::came_apart:
+  case JointVerdict::corner_parted:
+  case JointVerdict::slid_too_far: return Verdict::reject;
+  default: return Verdict::inspect;
+  }
+}
+
 Judgement judge(const Model& model, const System& system, const RunResult& result, const std::string& failure) {
   Judgement judgement;
   const std::vector<JointAssessment> joints = assess_joints(model, result);
@@ -254,7 +258,7 @@ Judgement judge(const Model& model, const System& system, const RunResult& resul
     judge_overlap(joint, judgement.criteria);
   }
   for (const Criterion& c : model.criteria)
-    judgement.criteria.push_back(c.event.empty() ? judge_channel(c, result.ranges) : judge_event(c, system, result));
+    judgement.criteria.push_back(c.event.empty() ? judge_channel(c, result.ranges) : judge_event(c, result));
   judgement.has_criteria = !judgement.criteria.empty();
   judgement.so_far = judgement.has_criteria ? Verdict::hold : Verdict::open;
   for (const CriterionResult& c : judgement.criteria)

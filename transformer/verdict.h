@@ -18,6 +18,8 @@ namespace steplap {
 enum class Verdict { hold, open, inspect, reject };
 
 [[nodiscard]] const char* name_of(Verdict verdict);
+/// Of a joint by itself.
+[[nodiscard]] Verdict outcome_of(JointVerdict verdict);
 
 struct CriterionResult {
   std::string name;        ///< of the acceptance entry, or of the joint

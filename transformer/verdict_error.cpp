@@ -43,7 +43,7 @@ void set_errors(CriterionResult& c, const System& system, const RunResult& run, 
   }
   if (!c.t || c.t_error) return;
   c.t_error = event_error(c.where, *c.t, run, estimate);
-  if (!c.t_error && *c.t == 0.0) c.t_error = 0.0; // it slides from the start
+  if (!c.t_error && *c.t == 0.0) c.t_error = 0.0; // of a joint that is only monitored: beyond its limit from the start
   if (c.t_error) return;
   const ChannelError* usage = find_error(c.where + ".u", system, estimate); // of a joint that is only monitored
   c.t_error = usage ? usage->first_above_one : k_unknown_error;
@@ -71,27 +71,18 @@ struct LoneSlip {
   bool is_mine = true;
 };
 
-bool is_slip(const Event& event) { return event.what.starts_with("slips"); }
-
-bool slides_at_start(const RunResult& run, std::size_t friction) {
-  return friction < run.first_phases.size() && run.first_phases[friction] == FrictionPhase::slip;
-}
-
-std::vector<LoneSlip> lone_slips(const System& system, const RunResult& run, const RunResult& finer) {
+std::vector<LoneSlip> lone_slips(const RunResult& run, const RunResult& finer) {
   std::vector<LoneSlip> found;
   const auto add = [&found](const LoneSlip& slip) {
     const auto same = std::find_if(found.begin(), found.end(), [&](const LoneSlip& other) { return other.element == slip.element; });
     if (same == found.end()) found.push_back(slip);
     else if (slip.t < same->t) *same = slip;
   };
-  for (std::size_t f = 0; f < system.frictions.size(); ++f)
-    if (slides_at_start(run, f) != slides_at_start(finer, f))
-      add({system.element_names[system.frictions[f].element], 0.0, slides_at_start(run, f)});
   const EventMatch match = match_events(run.events, finer.events);
   for (const std::size_t i : match.only_mine)
-    if (is_slip(run.events[i])) add({run.events[i].element, run.events[i].t, true});
+    if (is_slip(run.events[i].kind)) add({run.events[i].element, run.events[i].t, true});
   for (const std::size_t i : match.only_reference)
-    if (is_slip(finer.events[i])) add({finer.events[i].element, finer.events[i].t, false});
+    if (is_slip(finer.events[i].kind)) add({finer.events[i].element, finer.events[i].t, false});
   return found;
 }
 
@@ -136,7 +127,7 @@ bool changes_verdict(const std::string& element, const Judgement& judgement, con
 // A run and its finer run that tell different stories: which of them is right is not known.
 std::string doubt_about_slips(const Judgement& judgement, const Judgement& finer, const System& system, const RunResult& run,
                               const RunResult& finest) {
-  for (const LoneSlip& slip : lone_slips(system, run, finest)) {
+  for (const LoneSlip& slip : lone_slips(run, finest)) {
     if (!changes_verdict(slip.element, judgement, finer) && !changes_slide(slip.element, system, run, finest)) continue;
     char t[32];
     std::snprintf(t, sizeof t, "%.6g", slip.t);

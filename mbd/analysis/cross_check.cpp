@@ -253,7 +253,7 @@ private:
       for (const TimedEvent& other : y.events()) {
         if (other.element != event.element) continue;
         if (!std::isfinite(other.shift)) is_doubted |= std::abs(other.t - event.t) < 0.05 * base_.end;
-        if (other.what != event.what || std::abs(other.t - event.t) >= distance) continue;
+        if (other.kind != event.kind || other.is_at_start != event.is_at_start || std::abs(other.t - event.t) >= distance) continue;
         distance = std::abs(other.t - event.t);
         allowed = k_margin * (event.shift + (std::isfinite(other.shift) ? other.shift : 0.0));
       }
@@ -262,7 +262,7 @@ private:
       const double energy = std::max(x.friction_energy(event.element, event.t, event.lasts), y.friction_energy(event.element, event.t, event.lasts));
       const double ratio = std::min(std::min(distance, base_.end) / (allowed + near), energy / energy_allowed);
       if (!(ratio > worst.ratio)) continue;
-      worst.where = "'" + event.element + "' " + event.what;
+      worst.where = "'" + event.element + "' " + words_of(event.kind);
       worst.t = event.t;
       worst.ratio = ratio;
       worst.text = std::isfinite(distance) ? number_text(distance) + " s from the nearest, estimates allow " + number_text(allowed + near) + " s"

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <tuple>
 
 namespace steplap {
 
@@ -87,13 +88,13 @@ double middle_range(const std::vector<const RunResult*>& runs, std::size_t colum
   return ranges.empty() ? 0.0 : ranges[ranges.size() / 2];
 }
 
-using Key = std::pair<std::string, std::string>;
+using Key = std::tuple<std::string, EventKind, bool>; // the last: at the start?
 using Times = std::map<Key, std::vector<double>>;
 
 Times times_of(const RunResult& run) {
   Times times;
   for (const Event& event : run.events)
-    times[{event.element, event.what}].push_back(event.t);
+    times[{event.element, event.kind, event.is_at_start()}].push_back(event.t);
   return times;
 }
 
@@ -209,14 +210,16 @@ void MethodCurves::estimate_events(const EventFilter& is_counted) {
   for (const Event& event : levels_.back()->events)
     of_element[event.element].push_back(event.t);
   for (const auto& [key, times] : fine) {
+    const auto& [element, kind, is_at_start] = key;
+    const double within = is_at_start ? 0.0 : 2.0 * step_; // where it begins every run knows
     for (const double t : times) {
-      TimedEvent event{key.first, key.second, t, 2.0 * step_, INFINITY, INFINITY, !is_counted || is_counted({t, key.first, key.second})};
+      TimedEvent event{element, kind, is_at_start, t, within, INFINITY, INFINITY, !is_counted || is_counted({t, element, kind})};
       for (const Times& other : coarser)
-        event.shift = std::max(event.shift, 2.0 * step_ + shift_of(t, times, other, key));
+        event.shift = std::max(event.shift, within + shift_of(t, times, other, key));
       bool is_itself = true;
-      for (const double other : of_element[key.first]) {
+      for (const double other : of_element[element]) {
         if (other == t && is_itself) is_itself = false;
-        else event.alone = std::min(event.alone, std::abs(other - t));
+        else if (other > 0.0 || is_at_start) event.alone = std::min(event.alone, std::abs(other - t));
         if (other > t) event.lasts = std::min(event.lasts, other - t);
       }
       events_.push_back(event);

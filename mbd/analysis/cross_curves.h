@@ -26,7 +26,9 @@ struct ComparedChannel {
                                                              const std::vector<const RunResult*>& runs);
 
 struct TimedEvent {
-  std::string element, what;
+  std::string element;
+  EventKind kind = EventKind::none;
+  bool is_at_start = false;
   double t = 0.0;
   double shift = 0.0; ///< s: what its time is uncertain by; infinite where another setting has it not
   double alone = 0.0; ///< s: to the next change of the element, before or after: who looks coarser may see nothing of it

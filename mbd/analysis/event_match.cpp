@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace steplap {
@@ -16,11 +17,14 @@ constexpr double k_as_good_as_at = 1e-12;     // s, and of t
 
 using Places = std::vector<std::size_t>;
 
-std::map<std::pair<std::string, std::string>, std::pair<Places, Places>> by_name(const std::vector<Event>& mine,
-                                                                                 const std::vector<Event>& reference) {
-  std::map<std::pair<std::string, std::string>, std::pair<Places, Places>> lists;
-  for (std::size_t i = 0; i < mine.size(); ++i) lists[{mine[i].element, mine[i].what}].first.push_back(i);
-  for (std::size_t i = 0; i < reference.size(); ++i) lists[{reference[i].element, reference[i].what}].second.push_back(i);
+using Key = std::tuple<std::string, EventKind, bool>; // the last: at the start?
+
+Key key_of(const Event& event) { return {event.element, event.kind, event.is_at_start()}; }
+
+std::map<Key, std::pair<Places, Places>> by_key(const std::vector<Event>& mine, const std::vector<Event>& reference) {
+  std::map<Key, std::pair<Places, Places>> lists;
+  for (std::size_t i = 0; i < mine.size(); ++i) lists[key_of(mine[i])].first.push_back(i);
+  for (std::size_t i = 0; i < reference.size(); ++i) lists[key_of(reference[i])].second.push_back(i);
   return lists;
 }
 
@@ -77,7 +81,7 @@ void pair_up(const Places& mine, const Places& theirs, const std::vector<Event>&
 
 EventMatch match_events(const std::vector<Event>& mine, const std::vector<Event>& reference) {
   EventMatch match;
-  for (const auto& [name, lists] : by_name(mine, reference)) pair_up(lists.first, lists.second, mine, reference, match);
+  for (const auto& [key, lists] : by_key(mine, reference)) pair_up(lists.first, lists.second, mine, reference, match);
   std::sort(match.only_mine.begin(), match.only_mine.end());
   std::sort(match.only_reference.begin(), match.only_reference.end());
   return match;

@@ -1,7 +1,8 @@
 // The events of two runs of one system, paired: what happened in one of them is looked for in the other.
 //
 // Events pair if the same thing happened to the same element. Of each such list the shorter is laid against the longer
-// in order, so that the times differ by the least in total; what is left over has no partner.
+// in order, so that the times differ by the least in total; what is left over has no partner. What slides from the start
+// does so in both runs, or in one of them only: no slip that begins later is its partner.
 #pragma once
 
 #include "mbd/events/event_handler.h"

@@ -162,7 +162,8 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
     error.t_high += time;
     error.first_above_one += time;
   }
-  for (double& event : estimate.event_times) event += time;
+  for (std::size_t i = 0; i < run.events.size(); ++i)
+    if (!run.events[i].is_at_start()) estimate.event_times[i] += time;
   const RunStatistics& s = run.statistics;
   if (s.dissipated != 0.0) estimate.dissipated += tolerance * s.energy_scale + k_rounding * std::abs(s.dissipated);
   if (s.work != 0.0) estimate.work += tolerance * s.energy_scale + k_rounding * std::abs(s.work);
@@ -175,7 +176,7 @@ void note_unmatched(GlobalErrorEstimate& estimate, const RunResult& run, const E
   worst = {k_unknown_error, "", 0.0};
   for (std::size_t i = run.events.size(); i-- > 0;)
     if (std::isnan(estimate.event_times[i]) && (!is_counted || is_counted(run.events[i])))
-      worst = {k_unknown_error, "'" + run.events[i].element + "' " + run.events[i].what, run.events[i].t};
+      worst = {k_unknown_error, "'" + run.events[i].element + "' " + run.events[i].words(), run.events[i].t};
 }
 
 void keep_worst(RunDifference& worst, const RunDifference& other, double factor) {

@@ -167,7 +167,7 @@ RunDifference compare_runs(const System& system, const RunResult& run, const Run
     if (is_counted && !is_counted(event)) continue;
     keep_worst(d.worst[static_cast<std::size_t>(ErrorKind::event_time)],
                std::abs(mine_event.t - event.t) / (duration > 0.0 ? duration : 1.0),
-               "'" + event.element + "' " + event.what, event.t);
+               "'" + event.element + "' " + event.words(), event.t);
   }
   return d;
 }

@@ -14,6 +14,8 @@ constexpr double k_projection_tolerance = 1e-12; // m, rad
 
 } // namespace
 
+std::string Event::words() const { return detail.empty() ? words_of(kind) : words_of(kind) + (" " + detail); }
+
 EventHandler::EventHandler(const System& system, Dynamics& dynamics)
     : system_(system), dynamics_(dynamics), modes_(system, dynamics),
       unit_of_slot_(system.watch_count, -1), friction_of_slot_(system.watch_count, -1),
@@ -95,6 +97,8 @@ void EventHandler::start(State& state) {
       load(state, f);
   }
   modes_.decide(state);
+  const auto slips = [](const FrictionState& friction) { return friction.phase == FrictionPhase::slip; };
+  if (std::any_of(state.friction.begin(), state.friction.end(), slips)) evaluate(state); // decide() may end with a trial
   clear_fresh();
 }
 
@@ -112,8 +116,7 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
     state.mode[u] = to;
     is_any = true;
     for (int w = 0; w < unit.watch_count; ++w) fresh_[unit.watch + w] = 1;
-    events.push_back({state.t, system_.element_names[unit.element], unit.group->transition_name(from, to),
-                      unit.group->has_only_kinks()});
+    events.push_back({state.t, system_.element_names[unit.element], unit.group->transition(from, to)});
   }
   return is_any;
 }
@@ -160,6 +163,28 @@ bool EventHandler::is_same_direction(std::size_t f, const FrictionState& a, cons
   return !b.is_starting || (a.is_starting && std::equal(a.direction, a.direction + 3, b.direction));
 }
 
+EventKind EventHandler::slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const {
+  if (system_.frictions[f].friction->dimension() == 1) return now.sign > 0 ? EventKind::slips_forward : EventKind::slips_backward;
+  return old.phase == FrictionPhase::slip ? EventKind::slips_another_way : EventKind::slips;
+}
+
+// Is there any direction in which it takes a force to make it slide?
+bool EventHandler::has_capacity(const State& state, std::size_t f) const {
+  const FrictionElement& friction = *system_.frictions[f].friction;
+  for (int r = 0; r < friction.dimension(); ++r) {
+    double rate[3] = {0, 0, 0};
+    rate[r] = 1.0;
+    if (friction.support(dynamics_.evaluation(), state.friction[f], rate) > 0.0) return true;
+  }
+  return false;
+}
+
+void EventHandler::note_start(const State& state, std::vector<Event>& events) const {
+  for (std::size_t f = 0; f < state.friction.size(); ++f)
+    if (state.friction[f].phase == FrictionPhase::slip && has_capacity(state, f))
+      events.push_back({state.t, system_.element_names[system_.frictions[f].element], slip_kind(f, {}, state.friction[f])});
+}
+
 void EventHandler::note_friction(const State& before, const State& state, std::vector<Event>& events) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState& old = before.friction[f];
@@ -170,20 +195,16 @@ void EventHandler::note_friction(const State& before, const State& state, std::v
     for (int w = 0; w < k_friction_watches; ++w) fresh_[unit.watch + w] = 1;
     const std::string& name = system_.element_names[unit.element];
     if (old.foot != now.foot && now.phase != FrictionPhase::apart)
-      events.push_back({state.t, name, unit.friction->place_change_name(old, now)});
+      events.push_back({state.t, name, unit.friction->place_change(old, now)});
     if (old.phase == now.phase && is_same_slip) continue;
-    const char* what = "";
+    EventKind kind = EventKind::none;
     switch (now.phase) {
-    case FrictionPhase::free: what = "loses its normal force"; break;
-    case FrictionPhase::stick: what = "sticks"; break;
-    case FrictionPhase::slip:
-      if (unit.friction->dimension() == 3)
-        what = old.phase == FrictionPhase::slip ? "slips another way" : "slips";
-      else what = now.sign > 0 ? "slips forward" : "slips backward";
-      break;
-    case FrictionPhase::apart: what = "comes apart"; break;
+    case FrictionPhase::free: kind = EventKind::loses_normal_force; break;
+    case FrictionPhase::stick: kind = EventKind::sticks; break;
+    case FrictionPhase::slip: kind = slip_kind(f, old, now); break;
+    case FrictionPhase::apart: kind = EventKind::comes_apart; break;
     }
-    events.push_back({state.t, name, what});
+    events.push_back({state.t, name, kind});
     if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart())
       stop_reason_ = "'" + name + "' came apart";
     if (unit.friction->is_rigid()) dynamics_.forget_layouts();
@@ -203,7 +224,7 @@ void EventHandler::note_changes(const State& before, const State& state, std::ve
     const Unit& unit = system_.units[u];
     if (before.mode[u] != state.mode[u])
       events.push_back({state.t, system_.element_names[unit.element],
-                        unit.group->transition_name(before.mode[u], state.mode[u]), unit.group->has_only_kinks()});
+                        unit.group->transition(before.mode[u], state.mode[u])});
   }
   note_friction(before, state, events);
   clear_fresh();

@@ -2,7 +2,8 @@
 // modes that this may upset are decided anew together.
 #pragma once
 
-#include "mbd/friction/friction_modes.h"
+#include "mbd/event_kind.h"
+#include "mbd/friction_modes.h"
 
 #include <string>
 #include <vector>
@@ -13,8 +14,13 @@ namespace steplap {
 struct Event {
   double t = 0.0;
   std::string element;
-  std::string what; ///< "opens", "closes", "slips forward", "sticks", …
-  bool is_kink = false; ///< of a characteristic: no force jumps
+  EventKind kind = EventKind::none;
+  std::string detail = {}; ///< for people, behind the words of the kind: mostly nothing
+
+  /// As it is written, never compared: "slips forward".
+  [[nodiscard]] std::string words() const;
+  /// It slides from where runs begin: a time without error, and not that of a slip that begins later.
+  [[nodiscard]] bool is_at_start() const { return t == 0.0; }
 };
 
 class EventHandler {
@@ -23,6 +29,8 @@ public:
 
   /// Modes and phases at the start: contacts from their gaps, friction from the mode problem.
   void start(State& state);
+  /// Behind start(): notes what slides from there, if it could hold at all (friction of zero never does).
+  void note_start(const State& state, std::vector<Event>& events) const;
   /// `state` is at the event, `fired` the watch slots that fell below zero (none: a breakpoint of a
   /// signal, at which loads may jump). Changes modes, phases and anchors, notes what changed.
   void handle(State& state, const std::vector<int>& fired, std::vector<Event>& events);
@@ -47,6 +55,8 @@ private:
   void fire_friction(State& state, int f, int slot);
   void update_loading(State& state);
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
+  [[nodiscard]] bool has_capacity(const State& state, std::size_t f) const;
+  [[nodiscard]] EventKind slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const;
   void note_friction(const State& before, const State& state, std::vector<Event>& events);
   void forget_moved_layouts(const State& state);
   void load(State& state, int f);

@@ -1,5 +1,6 @@
 #include "mbd/io/presentation.h"
 
+#include "mbd/event_kind.h"
 #include "mbd/io/units.h"
 #include "mbd/base/number_text.h"
 #include "mbd/simulation/trajectory.h"
@@ -57,28 +58,39 @@ Quantity read_limit(const std::string& text, const std::string& unit) {
   return bare;
 }
 
-// Every word by which an event of a unit or a friction element can be called.
-void add_words_of(const System& system, const std::string& element, std::vector<std::string>& words) {
+// Every kind of event that a unit or a friction element can have.
+EventKinds event_kinds_of(const System& system, const std::string& element) {
+  EventKinds kinds;
+  const auto add = [&kinds](EventKind kind) { kinds.set(static_cast<std::size_t>(kind)); };
   const auto matches = [&](int index) { return matches_pattern(system.element_names[index], element); };
   constexpr std::uint8_t k_modes = 4;
   for (const Unit& unit : system.units)
     if (matches(unit.element))
       for (std::uint8_t from = 0; from < k_modes; ++from)
         for (std::uint8_t to = 0; to < k_modes; ++to)
-          if (from != to) words.emplace_back(unit.group->transition_name(from, to));
+          if (from != to) add(unit.group->transition(from, to));
   for (const FrictionUnit& unit : system.frictions) {
     if (!matches(unit.element)) continue;
-    words.insert(words.end(), {"sticks", "loses its normal force"});
-    if (unit.friction->dimension() == 3) words.insert(words.end(), {"slips", "slips another way", "comes apart"});
-    else words.insert(words.end(), {"slips forward", "slips backward"});
     FrictionState here, there;
     there.foot = 1;
-    words.emplace_back(unit.friction->place_change_name(here, there));
-    words.emplace_back(unit.friction->place_change_name(there, here));
+    for (const EventKind kind : {EventKind::sticks, EventKind::loses_normal_force, unit.friction->place_change(here, there),
+                                 unit.friction->place_change(there, here)})
+      add(kind);
+    if (unit.friction->dimension() == 3)
+      for (const EventKind kind : {EventKind::slips, EventKind::slips_another_way, EventKind::comes_apart}) add(kind);
+    else
+      for (const EventKind kind : {EventKind::slips_forward, EventKind::slips_backward}) add(kind);
   }
-  std::erase(words, "");
+  kinds.reset(static_cast<std::size_t>(EventKind::none));
+  return kinds;
+}
+
+std::vector<std::string> words_of(const EventKinds& kinds) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < kinds.size(); ++i)
+    if (kinds.test(i)) words.emplace_back(words_of(static_cast<EventKind>(i)));
   std::sort(words.begin(), words.end());
-  words.erase(std::unique(words.begin(), words.end()), words.end());
+  return words;
 }
 
 std::string list_of(const std::vector<std::string>& words) {
@@ -167,10 +179,9 @@ private:
   }
 
   void check_event(const Criterion& c) {
-    std::vector<std::string> words;
-    add_words_of(system_, c.element.empty() ? "*" : c.element, words);
-    if (std::any_of(words.begin(), words.end(), [&](const std::string& word) { return matches_pattern(word, c.event); }))
-      return;
+    const EventKinds kinds = event_kinds_of(system_, c.element.empty() ? "*" : c.element);
+    if ((kinds & event_kinds_matching(c.event)).any()) return;
+    const std::vector<std::string> words = words_of(kinds);
     const std::string whose = c.element.empty() ? "of the model" : "of '" + c.element + "'";
     if (words.empty()) return complain(c, "event", "nothing " + whose + " has events");
     complain(c, "event", "no event " + whose + " is called '" + c.event + "'" + did_you_mean(c.event, words) +

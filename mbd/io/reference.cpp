@@ -1,5 +1,6 @@
 #include "mbd/io/reference.h"
 
+#include "mbd/event_kind.h"
 #include "mbd/io/described.h"
 #include "mbd/base/number_text.h"
 
@@ -83,6 +84,15 @@ std::string markdown(const std::vector<Row>& rows) {
   return text;
 }
 
+std::string events_markdown() {
+  std::vector<Row> rows{{"event", "what happens"}};
+  for (std::size_t i = 1; i < k_event_kinds; ++i) {
+    const auto kind = static_cast<EventKind>(i);
+    rows.push_back({words_of(kind), doc_of(kind)});
+  }
+  return "\n## Events\nWhat `events.csv` and the criteria `event = \"…\"` of `[[acceptance]]` call what happens.\n\n" + markdown(rows);
+}
+
 } // namespace
 
 std::string kinds_text(const Catalogue& catalogue) {
@@ -107,7 +117,7 @@ std::string reference_markdown(const Catalogue& catalogue) {
       "may carry a unit, as in \"47 t\".\n";
   for (const Described& kind : describe(catalogue))
     text += "\n## " + heading(kind) + "\n" + kind.doc + "\n\n" + markdown(rows_of(kind));
-  return text;
+  return text + events_markdown();
 }
 
 } // namespace steplap

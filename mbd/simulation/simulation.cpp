@@ -58,12 +58,12 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   start_drives(system_, state_);
   dynamics_.set_time_limit(next_limit());
   handler_.start(state_);
+  handler_.note_start(state_, events_);
   // The poses as given meet the constraints to the digits of the file: now they do to rounding.
   dynamics_.set_state(state_);
   dynamics_.pack(state_, y_.data());
   dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
   dynamics_.unpack(state_.t, y_.data(), state_);
-  for (const FrictionState& friction : state_.friction) first_phases_.push_back(friction.phase);
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const FrictionElement& friction = *system.frictions[f].friction;
     if (friction.dimension() > 1 && !friction.never_slips()) joints_.push_back(static_cast<int>(f));
@@ -162,7 +162,7 @@ void Simulation::guard_against_chatter(double t) {
           << t << " s; the last ones:";
   const std::size_t shown = std::min<std::size_t>(events_.size(), 4);
   for (std::size_t i = events_.size() - shown; i < events_.size(); ++i)
-    message << " '" << events_[i].element << "' " << events_[i].what << ";";
+    message << " '" << events_[i].element << "' " << events_[i].words() << ";";
   throw NumericalFailure(message.str());
 }
 
@@ -203,12 +203,12 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
   const std::size_t known = events_.size();
   handler_.handle(state_, fired, events_);
   energy_.check_settled(state_.t, handler_.settled());
-  const auto is_kink = [](const Event& event) { return event.is_kink; };
+  const auto is_at_kink = [](const Event& event) { return is_kink(event.kind); };
   const auto first_new = events_.begin() + static_cast<std::ptrdiff_t>(known);
-  if (first_new != events_.end() && std::all_of(first_new, events_.end(), is_kink)) ++kinks_;
+  if (first_new != events_.end() && std::all_of(first_new, events_.end(), is_at_kink)) ++kinks_;
   if (options_.integrator == "auto" && handler_.stop_reason().empty())
     for (std::size_t i = known; i < events_.size(); ++i)
-      if (!events_[i].is_kink && storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
+      if (!is_kink(events_[i].kind) && storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
   if (!fired.empty()) guard_against_chatter(t);
   restart();
 }
@@ -221,9 +221,7 @@ void Simulation::step_through_storm(const std::string& element) {
   ++statistics_.storms;
   const double begin = state_.t;
   const double end = std::min(next_limit(), begin + k_storm_interval);
-  events_.push_back({begin, element, "changes " + std::to_string(EventStorm::k_limit) +
-                                         " times within 1 ms: time stepping for " +
-                                         std::to_string(1e3 * (end - begin)) + " ms"});
+  events_.push_back({begin, element, EventKind::storm, "for " + std::to_string(1e3 * (end - begin)) + " ms"});
   const long parts = stepping_->extra_parts();
   while (state_.t < end && stepping_->extra_parts() - parts < k_storm_parts) {
     double t1 = std::min(end, state_.t + options_.storm_step);
@@ -241,7 +239,7 @@ void Simulation::step_through_storm(const std::string& element) {
     if (is_sample) record_sample(t1);
   }
   handler_.settle_phases(state_);
-  events_.push_back({state_.t, element, "is followed event by event again"});
+  events_.push_back({state_.t, element, EventKind::storm_over});
   storm_.clear();
   events_at_once_ = 0;
   dynamics_.set_time_limit(next_limit());
@@ -362,7 +360,6 @@ RunResult Simulation::result() && {
   }
   RunResult result;
   if (extremes_) result.ranges = extremes_->ranges();
-  result.first_phases = std::move(first_phases_);
   result.statistics = statistics();
   result.trajectory = std::move(trajectory_);
   result.events = std::move(events_);

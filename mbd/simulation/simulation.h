@@ -49,7 +49,6 @@ struct RunStatistics {
 struct RunResult {
   std::unique_ptr<Trajectory> trajectory;
   std::vector<ChannelRange> ranges;        ///< of every channel of the system, if they were asked for
-  std::vector<FrictionPhase> first_phases; ///< of the friction elements, at the start
   std::vector<Event> events;
   RunStatistics statistics;
   State final_state;
@@ -106,7 +105,6 @@ private:
   std::unique_ptr<Integrator> integrator_;
   std::unique_ptr<Trajectory> trajectory_;
   std::unique_ptr<ExtremeFinder> extremes_; ///< null if they are not asked for
-  std::vector<FrictionPhase> first_phases_;
   std::vector<Event> events_;
   EventStorm storm_;
   std::unique_ptr<TimeStepping> stepping_; ///< made where a storm asks for it

@@ -6,8 +6,7 @@
 //   S force(S value, S rate, mode)           force along the measure's gradient
 //   double elastic_force(value, mode)        −dU/dvalue of the stored energy, smooth within a mode
 //   double energy(value)                     U
-//   and, if k_watches > 0: mode_at, next_mode, watch, transition_name;
-//   static constexpr bool k_has_only_kinks   true: its force is continuous across changes of mode.
+//   and, if k_watches > 0: mode_at, next_mode, watch, transition.
 // It dissipates (elastic_force − force)·rate.
 #pragma once
 
@@ -125,13 +124,9 @@ public:
     }
     return mode;
   }
-  [[nodiscard]] bool has_only_kinks() const override {
-    if constexpr (requires { Law::k_has_only_kinks; }) return Law::k_has_only_kinks;
-    return false;
-  }
-  [[nodiscard]] const char* transition_name(UnitMode from, UnitMode to) const override {
-    if constexpr (Law::k_watches > 0) return Law::transition_name(from, to);
-    return "";
+  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
+    if constexpr (Law::k_watches > 0) return Law::transition(from, to);
+    return EventKind::none;
   }
 
   /// Value and rate of one element's measure, and its force, for channels.

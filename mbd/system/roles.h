@@ -8,8 +8,9 @@
 // falls below zero.
 #pragma once
 
-#include "mbd/system/link.h"
-#include "mbd/system/row.h"
+#include "mbd/event_kind.h"
+#include "mbd/link.h"
+#include "mbd/row.h"
 
 #include <array>
 #include <cstdint>
@@ -103,12 +104,8 @@ public:
   [[nodiscard]] virtual UnitMode next_mode(int /*element*/, UnitMode mode, int /*slot*/, const Evaluation&) const {
     return mode;
   }
-  /// Changes of mode are kinks of a characteristic, which no force jumps at: many in a short time are no storm.
-  [[nodiscard]] virtual bool has_only_kinks() const { return false; }
-  /// What the change is called in the list of events ("closes", "opens", "force reaches zero").
-  [[nodiscard]] virtual const char* transition_name(UnitMode /*from*/, UnitMode /*to*/) const {
-    return "";
-  }
+  /// Which event the change is.
+  [[nodiscard]] virtual EventKind transition(UnitMode /*from*/, UnitMode /*to*/) const { return EventKind::none; }
 };
 
 /// Solution of one element's part of the mode problem.
@@ -186,9 +183,8 @@ public:
   [[nodiscard]] virtual double watch_place(const Evaluation&, const FrictionState&) const { return 1.0; }
   /// Changes the place, or the phase to apart, after watch_place fell below zero.
   virtual void change_place(const Evaluation&, FrictionState&) const {}
-  [[nodiscard]] virtual const char* place_change_name(const FrictionState& /*from*/,
-                                                      const FrictionState& /*to*/) const {
-    return "changes foot";
+  [[nodiscard]] virtual EventKind place_change(const FrictionState& /*from*/, const FrictionState& /*to*/) const {
+    return EventKind::changes_foot;
   }
   /// Does coming apart end the run?
   [[nodiscard]] virtual bool stops_when_apart() const { return false; }

@@ -22,7 +22,7 @@ Run run_in_mode(const std::string& file, const std::string& mode, const std::vec
 std::vector<std::string> story(const Run& r) {
   std::vector<std::string> lines;
   for (const steplap::Event& e : r.result.events)
-    if (e.element == "front joint" || e.element == "back joint") lines.push_back(e.element + " " + e.what);
+    if (e.element == "front joint" || e.element == "back joint") lines.push_back(e.element + " " + e.words());
   return lines;
 }
 

@@ -25,7 +25,7 @@ struct Run {
   [[nodiscard]] std::vector<double> times(const std::string& element, const std::string& what) const {
     std::vector<double> t;
     for (const steplap::Event& e : result.events)
-      if (e.element == element && e.what == what) t.push_back(e.t);
+      if (e.element == element && e.kind == steplap::event_kind_called(what).value()) t.push_back(e.t);
     return t;
   }
   [[nodiscard]] double relative_energy_residual() const {

@@ -24,7 +24,7 @@ double common_slip_error(const Finished& run, std::size_t count, double expected
   if (run.result.events.size() != count) return k_wrong;
   double worst = 0.0;
   for (const Event& event : run.result.events)
-    worst = event.what == "slips forward" ? std::max(worst, std::abs(event.t - expected)) : k_wrong;
+    worst = event.kind == EventKind::slips_forward ? std::max(worst, std::abs(event.t - expected)) : k_wrong;
   return worst;
 }
 

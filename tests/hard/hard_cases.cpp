@@ -13,7 +13,7 @@ std::vector<double> Finished::event_times(const std::string& element,
                                           const std::string& what) const {
   std::vector<double> times;
   for (const Event& event : result.events)
-    if (event.element == element && event.what == what) times.push_back(event.t);
+    if (event.element == element && event.kind == event_kind_called(what).value()) times.push_back(event.t);
   return times;
 }
 

@@ -122,12 +122,12 @@ Judged Truth::judged(const std::string& integrator, double setting) const {
   for (const EventPair& pair : own.pairs)
     event_known[pair.mine] = std::abs(truth_.events[pair.mine].t - second_.events[pair.reference].t);
   // The instant at which a contact's force passes to another foot is felt by nothing else, and known less well.
-  const auto is_felt = [&](const Event& event) { return !event.is_kink && event.what != "changes foot"; };
+  const auto is_felt = [&](const Event& event) { return !is_kink(event.kind) && event.kind != EventKind::changes_foot; };
   for (const EventPair& pair : match.pairs)
-    if (is_felt(run.events[pair.mine])) look_at(events, run.events[pair.mine].element + " " + run.events[pair.mine].what, run.events[pair.mine].t,
+    if (is_felt(run.events[pair.mine])) look_at(events, run.events[pair.mine].element + " " + run.events[pair.mine].words(), run.events[pair.mine].t,
             truth_.events[pair.reference].t, event_known[pair.reference], estimate.event_times[pair.mine], end);
   for (const std::size_t alone : match.only_mine)
-    if (is_felt(run.events[alone])) look_at(events, "no such: " + run.events[alone].element + " " + run.events[alone].what, 1.0, 0.0, 0.0, std::isnan(estimate.event_times[alone]) ? k_unknown_error : 1e-300, end);
+    if (is_felt(run.events[alone])) look_at(events, "no such: " + run.events[alone].element + " " + run.events[alone].words(), 1.0, 0.0, 0.0, std::isnan(estimate.event_times[alone]) ? k_unknown_error : 1e-300, end);
   const RunStatistics &s = run.statistics, &t = truth_.statistics, &u = second_.statistics;
   look_at(energies, "dissipated", s.dissipated, t.dissipated, std::abs(t.dissipated - u.dissipated), estimate.dissipated, t.energy_scale);
   look_at(energies, "work", s.work, t.work, std::abs(t.work - u.work), estimate.work, t.energy_scale);

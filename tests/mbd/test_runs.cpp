@@ -20,7 +20,7 @@ bool are_identical(const RunResult& a, const RunResult& b) {
       if (std::memcmp(&x, &y, sizeof x) != 0) return false;
     }
   for (std::size_t i = 0; i < a.events.size(); ++i)
-    if (a.events[i].t != b.events[i].t || a.events[i].what != b.events[i].what || a.events[i].element != b.events[i].element)
+    if (a.events[i].t != b.events[i].t || a.events[i].kind != b.events[i].kind || a.events[i].element != b.events[i].element)
       return false;
   return a.final_state.q == b.final_state.q && a.final_state.v == b.final_state.v;
 }

@@ -75,7 +75,7 @@ std::vector<Change> exact_changes(const Torque& torque, double hold, double end)
     if (sign == 0) sign = torque.at(high) > 0.0 ? 1 : -1;
     else sign = std::abs(torque.at(high)) > hold ? (torque.at(high) > 0.0 ? 1 : -1) : 0;
     since = t = high;
-    if (high > 1e-12) changes.push_back({high, sign}); // what slides from the start has no event of its own
+    changes.push_back({high, sign});
   }
   return changes;
 }
@@ -103,7 +103,7 @@ std::string wheel(const Torque& torque, double hold, double slow_speed, const st
 void check_changes(const Run& r, const std::vector<Change>& exact, double within) {
   std::vector<Change> found;
   for (const Event& event : r.result.events)
-    found.push_back({event.t, event.what == "sticks" ? 0 : event.what == "slips forward" ? 1 : -1});
+    found.push_back({event.t, event.kind == EventKind::sticks ? 0 : event.kind == EventKind::slips_forward ? 1 : -1});
   REQUIRE(found.size() == exact.size());
   for (std::size_t i = 0; i < exact.size(); ++i) {
     CHECK(found[i].sign == exact[i].sign);
@@ -181,7 +181,7 @@ TEST_CASE("held under loads: bursts, and a record with a single spike") {
     const std::vector<double> slips = r.event_times("bearing", "slips forward");
     REQUIRE(!slips.empty());
     CHECK(std::abs(slips.front() - first) < 1e-11);
-    CHECK(r.result.events.back().what == "sticks");
+    CHECK(r.result.events.back().kind == EventKind::sticks);
   }
 }
 

@@ -42,8 +42,8 @@ Observed observe(Condition condition, double friction_factor = 1.0) {
   o.bottom = o.run.series("bottom arresting.force");
   for (const Event& e : o.run.result.events) {
     if (e.element != "tank bottom") continue;
-    if (e.what.rfind("slips", 0) == 0) o.slips.push_back({e.t, 0.8});
-    if (e.what == "sticks") o.slips.back().end = e.t;
+    if (is_slip(e.kind)) o.slips.push_back({e.t, 0.8});
+    if (e.kind == EventKind::sticks) o.slips.back().end = e.t;
   }
   return o;
 }

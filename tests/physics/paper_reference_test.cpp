@@ -37,7 +37,7 @@ void check_channels(const Run& r, Condition condition, double tolerance) {
 struct Expected {
   double t;
   const char* element;
-  const char* what;
+  EventKind kind;
 };
 
 // The table of events, and the kinds that it does not list: the force-zero kinks of feet and blocks and
@@ -45,32 +45,32 @@ struct Expected {
 // decaying oscillation after the stop and move with it.
 std::vector<Expected> expected_events(Condition condition) {
   if (condition == Condition::interference)
-    return {{0.087731010, "tank bottom", "slips forward"}, {0, "front block", "force reaches zero"},
-            {0, "front block", "opens"},                   {0, "rear foot", "force reaches zero"},
-            {0.117362519, "rear foot", "opens"},           {0.128858040, "tank bottom", "sticks"},
-            {0.146934030, "rear foot", "closes"},          {0, "front block", "closes"},
-            {0.177926029, "tank bottom", "slips backward"}, {0.222288679, "tank bottom", "sticks"}};
-  return {{0.085142652, "tank bottom", "slips forward"}, {0.106601580, "rear foot", "force reaches zero"},
-          {0.106695207, "rear foot", "opens"},           {0, "rear block", "closes"},
-          {0.121825119, "tank bottom", "sticks"},        {0, "rear block", "force reaches zero"},
-          {0, "rear block", "opens"},                    {0.163733674, "rear foot", "closes"},
-          {0.174526638, "tank bottom", "slips backward"}, {0.185520080, "tank bottom", "sticks"},
-          {0.190738509, "tank bottom", "slips backward"}, {0, "front foot", "force reaches zero"},
-          {0.194969330, "front foot", "opens"},          {0.201341052, "front foot", "closes"},
-          {0, "front foot", "force reaches zero"},       {0.211802680, "front foot", "opens"},
-          {0.230884490, "tank bottom", "sticks"},        {0.237777207, "front foot", "closes"}};
+    return {{0.087731010, "tank bottom", EventKind::slips_forward}, {0, "front block", EventKind::force_reaches_zero},
+            {0, "front block", EventKind::opens},                   {0, "rear foot", EventKind::force_reaches_zero},
+            {0.117362519, "rear foot", EventKind::opens},           {0.128858040, "tank bottom", EventKind::sticks},
+            {0.146934030, "rear foot", EventKind::closes},          {0, "front block", EventKind::closes},
+            {0.177926029, "tank bottom", EventKind::slips_backward}, {0.222288679, "tank bottom", EventKind::sticks}};
+  return {{0.085142652, "tank bottom", EventKind::slips_forward}, {0.106601580, "rear foot", EventKind::force_reaches_zero},
+          {0.106695207, "rear foot", EventKind::opens},           {0, "rear block", EventKind::closes},
+          {0.121825119, "tank bottom", EventKind::sticks},        {0, "rear block", EventKind::force_reaches_zero},
+          {0, "rear block", EventKind::opens},                    {0.163733674, "rear foot", EventKind::closes},
+          {0.174526638, "tank bottom", EventKind::slips_backward}, {0.185520080, "tank bottom", EventKind::sticks},
+          {0.190738509, "tank bottom", EventKind::slips_backward}, {0, "front foot", EventKind::force_reaches_zero},
+          {0.194969330, "front foot", EventKind::opens},          {0.201341052, "front foot", EventKind::closes},
+          {0, "front foot", EventKind::force_reaches_zero},       {0.211802680, "front foot", EventKind::opens},
+          {0.230884490, "tank bottom", EventKind::sticks},        {0.237777207, "front foot", EventKind::closes}};
 }
 
 // A time of 0 in the table: the reference gives none, only that it happens there in the sequence.
 void check_events(const Run& r, Condition condition, double tolerance) {
   std::vector<Event> events = r.result.events;
-  std::erase_if(events, [](const Event& e) { return e.what == "changes foot"; });
+  std::erase_if(events, [](const Event& e) { return e.kind == EventKind::changes_foot; });
   const std::vector<Expected> expected = expected_events(condition);
   REQUIRE(events.size() == expected.size());
   for (std::size_t i = 0; i < events.size(); ++i) {
     CAPTURE(expected[i].t);
     CHECK(events[i].element == expected[i].element);
-    CHECK(events[i].what == expected[i].what);
+    CHECK(events[i].kind == expected[i].kind);
     if (expected[i].t > 0.0) CHECK(std::abs(events[i].t - expected[i].t) < tolerance);
   }
 }

@@ -29,7 +29,7 @@ struct Run {
   [[nodiscard]] std::vector<double> event_times(const std::string& element, const std::string& what = "") const {
     std::vector<double> times;
     for (const Event& event : result.events)
-      if (event.element == element && (what.empty() || event.what == what)) times.push_back(event.t);
+      if (event.element == element && (what.empty() || event.kind == event_kind_called(what).value())) times.push_back(event.t);
     return times;
   }
 };

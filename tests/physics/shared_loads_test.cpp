@@ -59,7 +59,7 @@ constexpr double k_onset = 3e-13;
 void slip_at(const Run& r, std::size_t count, double onset) {
   std::size_t found = 0;
   for (const Event& event : r.result.events) {
-    if (event.what.compare(0, 5, "slips") != 0) continue;
+    if (!is_slip(event.kind)) continue;
     ++found;
     CHECK(std::abs(event.t - onset) < k_onset);
   }

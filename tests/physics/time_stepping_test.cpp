@@ -203,13 +203,13 @@ std::vector<Case> cases() {
        {"beam.x", "crank1.0.theta"}}};
 }
 
-// Slips and sticks; a slip that turns round may stick for a step on its way, which is left out.
+// Slips and sticks behind the start; a slip that turns round may stick for a step on its way, which is left out.
 std::vector<double> changes(const Run& r, const std::string& element, double step) {
   std::vector<double> times;
   bool was_stick = false;
   for (const Event& event : r.result.events) {
-    if (event.element != element || event.what == "changes foot") continue;
-    const bool is_stick = event.what == "sticks";
+    if (event.element != element || event.kind == EventKind::changes_foot || event.is_at_start()) continue;
+    const bool is_stick = event.kind == EventKind::sticks;
     if (!is_stick && was_stick && event.t - times.back() <= 1.5 * step) times.pop_back();
     times.push_back(event.t);
     was_stick = is_stick;

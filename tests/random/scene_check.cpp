@@ -13,7 +13,7 @@ namespace {
 
 // A foot that changes at angles that cross slowly has no sharp time, and kinks of forces are the integrator's.
 bool is_friction_event(const Event& event) {
-  return event.what.rfind("slips", 0) == 0 || event.what.rfind("sticks", 0) == 0;
+  return is_slip(event.kind) || event.kind == EventKind::sticks;
 }
 
 std::string text_of(const Disagreement& d) {

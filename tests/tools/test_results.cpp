@@ -36,7 +36,7 @@ TEST_CASE("names in CSV headers are quoted where they must be") {
   text.replace(text.find("\"spring\""), 8, "'front, \"left\"'");
   const Run run = run_model(load_model(bench.write("a.toml", text)));
   CHECK(has(trajectory_csv(*run.result.trajectory), ",\"front, \"\"left\"\".force [N]\""));
-  CHECK(events_csv({{0.25, "a,b", "opens"}}) == "t [s],element,event\n0.25,\"a,b\",opens\n");
+  CHECK(events_csv({{0.25, "a,b", EventKind::opens}}) == "t [s],element,event\n0.25,\"a,b\",opens\n");
 }
 
 TEST_CASE("results are written as a whole or not at all") {

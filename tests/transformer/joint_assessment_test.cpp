@@ -41,7 +41,7 @@ TEST_CASE("joints that hold: margin is pressure over required pressure, nothing 
   REQUIRE(a.joints.size() == 2);
   for (const JointAssessment& joint : a.joints) {
     CAPTURE(joint.joint);
-    CHECK(joint.verdict == "holds");
+    CHECK(joint.verdict == JointVerdict::holds);
     CHECK_FALSE(joint.first_slip.has_value());
     // u = p_req / p and margin = 1/u, p = 0.1 MPa, each located by itself to 1e-6 of its range.
     CHECK(joint.smallest_margin == doctest::Approx(1e5 / joint.largest_required_pressure).epsilon(2.0 * ExtremeFinder::k_resolution));
@@ -55,9 +55,9 @@ TEST_CASE("joints that slide: first slip is the event's, slid distance and lost 
   REQUIRE(a.joints.size() == 2);
   for (const JointAssessment& joint : a.joints) {
     CAPTURE(joint.joint);
-    CHECK(joint.verdict == "slipped");
+    CHECK(joint.verdict == JointVerdict::slipped);
     const auto first = std::find_if(a.result.events.begin(), a.result.events.end(), [&](const Event& e) {
-      return e.element == joint.joint && e.what.starts_with("slips");
+      return e.element == joint.joint && is_slip(e.kind);
     });
     REQUIRE(first != a.result.events.end());
     CHECK(joint.first_slip == first->t);
@@ -70,7 +70,7 @@ TEST_CASE("joints that slide: first slip is the event's, slid distance and lost 
 TEST_CASE("a monitored joint beyond its limit would slip; a joint without interfaces is not assessed") {
   const Assessed monitored = assess("paper/weak_clamping.toml", "monitor", {});
   for (const JointAssessment& joint : monitored.joints) {
-    CHECK(joint.verdict == "would slip");
+    CHECK(joint.verdict == JointVerdict::would_slip);
     CHECK_FALSE(joint.has_slipped);
     CHECK(joint.smallest_margin < 1.0);
   }
@@ -78,7 +78,7 @@ TEST_CASE("a monitored joint beyond its limit would slip; a joint without interf
   std::erase_if(bare.model.elements,
                 [](const ElementEntry& entry) { return entry.kind->name == "step_lap_interface"; });
   for (const JointAssessment& joint : assess_joints(bare.model, bare.result))
-    CHECK(joint.verdict == "not assessed");
+    CHECK(joint.verdict == JointVerdict::not_assessed);
 }
 
 namespace {
@@ -145,7 +145,7 @@ TEST_CASE("area lost counts losses with the number of sheets, and a limb that cl
   // Capacity 0.25 · 1e5 Pa · 8e-3 m² · 400 = 80 kN; 90 kN slide it upwards by s = ½ 10 t² = 2 mm: the top gains, the
   // bottom loses 300 · 0.8 m · s. While it slides capacity falls as (100 − 300) 0.8 s …: s is read from the run.
   const JointAssessment joint = assess_text(sliding_limb(90e3, ""));
-  CHECK(joint.verdict == "slid too far"); // 0.1 of a width of 10 mm at most
+  CHECK(joint.verdict == JointVerdict::slid_too_far); // 0.1 of a width of 10 mm at most
   REQUIRE(joint.slid_y > 1.5e-3);
   CHECK(joint.area_lost == doctest::Approx(300 * 0.8 * joint.slid_y).epsilon(1e-9));
   const double width = 0.01 * 0.8 / 0.81;
@@ -157,8 +157,8 @@ TEST_CASE("area lost counts losses with the number of sheets, and a limb that cl
 
 TEST_CASE("what a joint bears is the model's to say") {
   // 60 of 80 kN: a margin of 4/3.
-  CHECK(assess_text(sliding_limb(60e3, "")).verdict == "holds");
-  CHECK(assess_text(sliding_limb(60e3, "least_margin = 1.3\n")).verdict == "holds");
-  CHECK(assess_text(sliding_limb(60e3, "least_margin = 1.4\n")).verdict == "little reserve");
-  CHECK(assess_text(sliding_limb(90e3, "most_slide = 0.5\n")).verdict == "closed its clearance");
+  CHECK(assess_text(sliding_limb(60e3, "")).verdict == JointVerdict::holds);
+  CHECK(assess_text(sliding_limb(60e3, "least_margin = 1.3\n")).verdict == JointVerdict::holds);
+  CHECK(assess_text(sliding_limb(60e3, "least_margin = 1.4\n")).verdict == JointVerdict::little_reserve);
+  CHECK(assess_text(sliding_limb(90e3, "most_slide = 0.5\n")).verdict == JointVerdict::closed_clearance);
 }

@@ -4,6 +4,7 @@
 #include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
 #include "transformer/verdict.h"
+#include "transformer/verdict_error.h"
 #include "tests/transformer/swing.h"
 
 #include <doctest/doctest.h>
@@ -165,6 +166,55 @@ const CriterionResult* find(const Judgement& judgement, const std::string& name,
 }
 
 } // namespace
+
+TEST_CASE("what slides from the start is seen by a criterion on events, the way it slides, at an exact time") {
+  const std::string scene = R"(
+title = "a block that slides"
+[simulation]
+end = 0.1
+integrator = "tsit5"
+[output]
+step = 0.05
+[[body]]
+name = "block"
+mass = 1
+inertia = 1
+velocity = [1, 0]
+[[element]]
+kind = "unilateral_contact"
+name = "sole"
+a = "block"
+b = "ground"
+normal = [0, 1]
+stiffness = 1e4
+preload = 9.81
+[[element]]
+kind = "coulomb_stick"
+name = "friction"
+contacts = ["sole"]
+static_friction = 0.3
+[[acceptance]]
+name = "stays"
+event = ")";
+  const auto judged = [&](const std::string& event, const char* friction) {
+    const Model model = parse_model(scene + event + "\"\n", "a.toml", transformer_catalog(),
+                                    {std::string("element.friction.static_friction=") + friction});
+    const auto system = compile(model);
+    const RunResult result = simulate(*system, system->initial_state(), options_of(model));
+    Judgement judgement = judge(model, *system, result, "");
+    weigh_errors(judgement, model, *system, result, estimate_global_error(*system, system->initial_state(), options_of(model), result));
+    return judgement.criteria.front();
+  };
+  for (const char* event : {"slips forward", "slips*"}) {
+    const CriterionResult c = judged(event, "0.3");
+    CHECK(c.outcome == Verdict::inspect);
+    CHECK(c.where == "friction");
+    CHECK(c.t == 0.0);
+    CHECK(c.t_error == 0.0);
+  }
+  CHECK(judged("slips backward", "0.3").outcome == Verdict::hold);
+  CHECK(judged("slips*", "0").outcome == Verdict::hold); // without friction there is nothing that could hold
+}
 
 TEST_CASE("a joint's verdict needs nothing of what is written") {
   // At 20 kPa the joints would need 27.6 kPa: monitored, with no channel of theirs written.

@@ -124,11 +124,24 @@ Json channel_json(const ResultChannel& channel, const std::vector<double>& times
   return json;
 }
 
+// What the page does with an event: its scripts read no words.
+const char* role_of(EventKind kind) {
+  if (is_slip(kind)) return "slip";
+  switch (kind) {
+  case EventKind::sticks: return "stick";
+  case EventKind::comes_apart: return "apart";
+  case EventKind::opens: return "open";
+  case EventKind::closes:
+  case EventKind::closes_gap: return "close";
+  default: return "";
+  }
+}
+
 Json events_json(const Results& run) {
   Json json = Json::array();
   for (std::size_t i = 0; i < std::min(run.events.size(), k_most_events); ++i) {
     const ResultEvent& event = run.events[i];
-    json.push_back({event.t, event.element, event.what, measured_time_text(event.t, event.error)});
+    json.push_back({event.t, event.element, event.words, measured_time_text(event.t, event.error), role_of(event.kind)});
   }
   return json;
 }

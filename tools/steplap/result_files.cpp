@@ -146,7 +146,7 @@ std::string events_csv(const std::vector<Event>& events, const std::vector<doubl
   std::string text = errors ? "t [s],element,event,error of t [s]\n" : "t [s],element,event\n";
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
-    text += number_text(event.t) + "," + csv_field(event.element) + "," + csv_field(event.what);
+    text += number_text(event.t) + "," + csv_field(event.element) + "," + csv_field(event.words());
     if (errors) text += "," + error_field((*errors)[i]);
     text += "\n";
   }

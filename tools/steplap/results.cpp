@@ -94,7 +94,7 @@ void read_events(const fs::path& file, Results& results) {
       const char* at = cell.data();
       return number_of(at, at + cell.size(), file, number);
     };
-    ResultEvent event{value(cells[0]), cells[1], cells[2]};
+    ResultEvent event{value(cells[0]), cells[1], cells[2], event_kind_of_entry(cells[2]).value_or(EventKind::none)};
     if (columns > 3) event.error = cells[3] == "unknown" ? std::numeric_limits<double>::quiet_NaN() : value(cells[3]);
     results.events.push_back(std::move(event));
   }

@@ -1,6 +1,8 @@
 // The folder of a run read back: what reports and plots are made from, nothing else.
 #pragma once
 
+#include "mbd/event_kind.h"
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +16,9 @@ struct ResultChannel {
 
 struct ResultEvent {
   double t = 0.0;
-  std::string element, what;
+  std::string element;
+  std::string words;                ///< as they stand in the file, to be shown
+  EventKind kind = EventKind::none; ///< what they mean; none: nothing that this program knows
   std::optional<double> error = {}; ///< s, of t, if it was estimated; not-a-number: unknown
 };
 

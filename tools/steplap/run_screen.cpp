@@ -61,7 +61,7 @@ void print_events(std::ostream& out, const FinishedRun& finished) {
     const Event& event = events[i];
     if (!is_main_event(event)) continue;
     if (shown++ < k_most_events_shown)
-      table.add_row({measured_time_text(event.t, finished.summary.event_error(i)), event.element, event.what});
+      table.add_row({measured_time_text(event.t, finished.summary.event_error(i)), event.element, event.words()});
   }
   out << table;
   if (shown > k_most_events_shown)
@@ -130,7 +130,7 @@ void print_joints(std::ostream& out, const FinishedRun& finished) {
     const auto error = [&e](double JointErrors::*which) { return e ? std::optional((*e).*which) : std::nullopt; };
     const double slid = portable::hypot(a.slid_x, a.slid_y);
     const auto slid_error = e ? std::optional(portable::hypot(e->slid_x, e->slid_y)) : std::nullopt;
-    table.add_row({a.joint, a.verdict, a.first_slip ? measured_time_text(*a.first_slip, error(&JointErrors::first_slip)) : "–",
+    table.add_row({a.joint, words_of(a.verdict), a.first_slip ? measured_time_text(*a.first_slip, error(&JointErrors::first_slip)) : "–",
                    measured_text(a.largest_required_pressure, error(&JointErrors::largest_required_pressure), "Pa"),
                    extreme_time_text(a.time_of_largest, error(&JointErrors::time_of_largest)),
                    small_margin_text(a.smallest_margin, error(&JointErrors::smallest_margin)),

@@ -132,7 +132,7 @@ FinishedRun run_one(const SimulateOptions& options,
   estimate_error(options, finished);
   finished.folder = options.folder_of(*loaded);
   for (const Event& event : finished.run.result.events)
-    log_detail("t = " + std::to_string(event.t) + " s: '" + event.element + "' " + event.what);
+    log_detail("t = " + std::to_string(event.t) + " s: '" + event.element + "' " + event.words());
   write_results(finished.folder, result_files(finished.run, finished.summary),
                 options.is_overwriting);
   if (!finished.run.failure.empty())

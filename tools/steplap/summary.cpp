@@ -41,7 +41,7 @@ RunSummary summarise(const Run& run) {
   RunSummary summary;
   summary.ranges = run.result.ranges;
   for (const Event& event : run.result.events)
-    ++summary.event_counts[event.what];
+    ++summary.event_counts[words_of(event.kind)];
   const RunStatistics& s = run.result.statistics;
   if (s.energy_exchanged > 0.0)
     summary.relative_energy_residual = s.energy_residual / s.energy_exchanged;
@@ -60,7 +60,7 @@ bool is_slide(const Channel& channel) {
 }
 
 bool is_main_event(const Event& event) {
-  return event.what != "changes foot" && event.what.rfind("force ", 0) != 0;
+  return is_main(event.kind);
 }
 
 } // namespace steplap

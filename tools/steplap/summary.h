@@ -15,8 +15,8 @@ namespace steplap {
 
 /// Pointers lead into the run's compiled system: valid as long as the run.
 struct RunSummary {
-  std::vector<ChannelRange> ranges;          ///< of all channels of the system, written or not (mbd/simulation/extremes.h)
-  std::map<std::string, long> event_counts;  ///< by what happened
+  std::vector<ChannelRange> ranges;          ///< of all channels of the system, written or not (mbd/extremes.h)
+  std::map<std::string, long> event_counts;  ///< by the words of the kind
   double relative_energy_residual = 0.0;     ///< of the energy exchanged
   std::optional<GlobalErrorEstimate> global_error; ///< unless there is none
   std::string no_estimate;                   ///< why: "left out with --no-estimate"
@@ -40,8 +40,7 @@ struct RunSummary {
 [[nodiscard]] bool is_reaction(const Channel& channel);
 /// A path slid in friction.
 [[nodiscard]] bool is_slide(const Channel& channel);
-/// Slips, sticks, lift-offs and touch-downs: what a reader looks for first. The rest (a change of the
-/// last contact foot, a kink of a contact's force) matters to the integrator.
+/// Of a kind that a reader looks for first (event_kind.h).
 [[nodiscard]] bool is_main_event(const Event& event);
 
 } // namespace steplap

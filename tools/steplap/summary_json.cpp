@@ -105,7 +105,8 @@ Json joints_json(const Run& run, const RunSummary& summary) {
   Json json = Json::object();
   for (const JointAssessment& a : assess_joints(run.loaded->model, run.result)) {
     Json& entry = json[a.joint];
-    entry = {{"verdict", a.verdict},
+    entry = {{"verdict", words_of(a.verdict)},
+                     {"outcome", name_of(outcome_of(a.verdict))},
                      {"slipped", a.has_slipped},
                      {"monitored", a.is_monitored},
                      {"first_slip", a.first_slip ? Json(*a.first_slip) : Json()},

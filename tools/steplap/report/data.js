@@ -51,11 +51,11 @@ steplap.data = (() => {
       if (!mode) return NaN;
       const i = Math.max(0, indexBefore(mode.times, t));
       let value = mode.value(i);
-      for (const [when, who, what] of this.events) {
+      for (const [when, who, , , role] of this.events) {
         if (who !== element || when <= mode.times[i] || when > t) continue;
-        if (what.startsWith('sticks')) value = 1;
-        if (what.startsWith('slips')) value = 2;
-        if (what.startsWith('comes apart')) value = 3;
+        if (role === 'stick') value = 1;
+        if (role === 'slip') value = 2;
+        if (role === 'apart') value = 3;
       }
       return value;
     }

@@ -159,7 +159,7 @@ steplap.Scene = (() => {
         this.marks.set(body.name, { shift: [0, 0], element: mark });
       }
       const joint = this.run.drawing.elements.find((e) => e.kind === 'step_lap_joint' && e.limb === body.name);
-      const since = joint && this.run.events.find((e) => e[1] === joint.name && /^(slips|comes apart)/.test(e[2]));
+      const since = joint && this.run.events.find((e) => e[1] === joint.name && (e[4] === 'slip' || e[4] === 'apart'));
       this.updaters.push((t, pose) => {
         const [x, y, angle] = pose(body.name), c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle);
         const [sx, sy] = this.toScreen([x, y]);

@@ -4,9 +4,9 @@ steplap.Plots = (() => {
   const colours = ['#0072b2', '#d55e00', '#007a5a', '#a8487c', '#e69f00', '#3a3a3a', '#56b4e9'];
   const dashes = [null, [8, 3], [3, 3], [10, 3, 2, 3]];
   const eventStyles = [
-    { test: /^(slips|comes apart)/, colour: '#d55e00', dash: [], name: 'slips' },
-    { test: /^sticks/, colour: '#007a5a', dash: [6, 3], name: 'sticks' },
-    { test: /^(opens|closes)/, colour: '#8a8a8a', dash: [2, 3], name: 'opens or closes' }];
+    { roles: ['slip', 'apart'], colour: '#d55e00', dash: [], name: 'slips' },
+    { roles: ['stick'], colour: '#007a5a', dash: [6, 3], name: 'sticks' },
+    { roles: ['open', 'close'], colour: '#8a8a8a', dash: [2, 3], name: 'opens or closes' }];
 
   // A figure for each plot of the models; without any, one for each kind of channel that says most.
   function figuresOf(runs) {
@@ -112,8 +112,8 @@ steplap.Plots = (() => {
     }
     marks(context, rect, g) {
       for (const run of this.runs)
-        for (const [t, , what] of run.events) {
-          const style = eventStyles.find((s) => s.test.test(what));
+        for (const [t, , , , role] of run.events) {
+          const style = eventStyles.find((s) => s.roles.includes(role));
           const x = style && g.toDomXCoord(t);
           if (!style || x < rect.x || x > rect.x + rect.w) continue;
           context.save();
@@ -139,8 +139,8 @@ steplap.Plots = (() => {
         text(this.tick(t), { x: x(t), y: top + h + 11, 'text-anchor': 'middle' });
       }
       for (const run of this.runs)
-        for (const [t, , what] of run.events) {
-          const style = eventStyles.find((s) => s.test.test(what));
+        for (const [t, , , , role] of run.events) {
+          const style = eventStyles.find((s) => s.roles.includes(role));
           if (style && t >= t0 && t <= t1) line(x(t), top, x(t), top + h, { stroke: style.colour, 'stroke-width': 0.6, 'stroke-dasharray': style.dash.join(' ') });
         }
       for (const s of this.series) {

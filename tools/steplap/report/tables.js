@@ -76,7 +76,7 @@ steplap.tables = (() => {
   function joints(run) {
     const list = Object.entries(run.summary.joints || {});
     if (!list.length) return [];
-    const rows = list.map(([name, j]) => [name, { text: j.verdict, class: j.verdict === 'holds' ? 'met' : ['came apart', 'a corner parted', 'slid too far'].includes(j.verdict) ? 'reject' : 'inspect' }, j.first_slip === null ? '–' : instant(j, 'first_slip'),
+    const rows = list.map(([name, j]) => [name, { text: j.verdict, class: { hold: 'met', reject: 'reject' }[j.outcome] || 'inspect' }, j.first_slip === null ? '–' : instant(j, 'first_slip'),
       known(j, 'smallest_margin', ''), known(j, 'largest_required_pressure', 'Pa'), known(j, 'slid_x', 'm'), known(j, 'slid_y', 'm'), known(j, 'slid_angle', 'rad'), known(j, 'area_lost', 'm^2', 4)]);
     return [make('h3', {}, 'Step-lap joints: least margin, largest pressure needed, slid distances at the end'), scroll(table(['', '', 'first slip', 'margin', 'needs', 'dx', 'dy', 'turn', 'area lost'], tidy(rows), [2, 3, 4, 5, 6, 7, 8]))];
   }
@@ -94,7 +94,7 @@ steplap.tables = (() => {
     if (!list.length) return [];
     const rows = list.map((e) => {
       const slide = extremesOf(run, `${e.name}.slide`), key = larger(slide);
-      const slips = run.events.filter((v) => v[1] === e.name && v[2].startsWith('slips')).length;
+      const slips = run.events.filter((v) => v[1] === e.name && v[4] === 'slip').length;
       return [e.name, slips ? `slipped ${slips} time${slips > 1 ? 's' : ''}` : 'held', known(slide, key, 'm'), instant(slide, `t_${key}`), known(slide, 'final', 'm')];
     });
     return [make('h3', {}, 'Friction'), scroll(table(['', '', 'largest slide', 'at', 'left at the end'], rows, [2, 3, 4]))];
@@ -107,7 +107,7 @@ steplap.tables = (() => {
     const rows = list.map((e) => {
       const force = extremesOf(run, `${e.name}.force`), key = larger(force);
       const limit = judged.find((c) => c.where === `${e.name}.force`);
-      const lifts = run.events.filter((v) => v[1] === e.name && v[2] === 'opens');
+      const lifts = run.events.filter((v) => v[1] === e.name && v[4] === 'open');
       return [e.name, known(force, key, 'N'), instant(force, `t_${key}`), limit ? number(limit.limit, 'N') : '–', lifts.length ? `${lifts.length} ×, first at ${written(lifts[0][3])}` : e.kind === 'unilateral_contact' ? 'never' : ''];
     });
     return [make('h3', {}, 'Springs, arresting devices, contacts'), scroll(table(['', 'largest force', 'at', 'allowed', 'lifts off'], rows, [1, 2, 3]))];
