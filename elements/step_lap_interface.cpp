@@ -21,16 +21,6 @@ Vec2 in_body(const Vec2& point, bool is_in_body_frame, const std::string& body,
   return rotated(ground - Vec2(m.x, m.y), -m.theta);
 }
 
-// Regular, and of the circle's area: n/2 r² sin(2π/n) = π d²/4.
-Ring round_hole(const Vec2& centre, double diameter, long sides) {
-  const double step = 2.0 * std::numbers::pi / static_cast<double>(sides);
-  const double radius = 0.5 * diameter * std::sqrt(step / portable::sin(step));
-  Ring ring;
-  for (long i = 0; i < sides; ++i)
-    ring.push_back(centre + radius * rotated({1.0, 0.0}, step * static_cast<double>(i)));
-  return ring;
-}
-
 /// One of the two sheets as the model file gives it.
 struct Sheet {
   const char* name;
@@ -95,6 +85,16 @@ void compile_interface(const Element& element, SystemBuilder& builder) {
 }
 
 } // namespace
+
+// n/2 r² sin(2π/n) = π d²/4.
+Ring round_hole(const Vec2& centre, double diameter, long sides) {
+  const double step = 2.0 * std::numbers::pi / static_cast<double>(sides);
+  const double radius = 0.5 * diameter * std::sqrt(step / portable::sin(step));
+  Ring ring;
+  for (long i = 0; i < sides; ++i)
+    ring.push_back(centre + radius * rotated({1.0, 0.0}, step * static_cast<double>(i)));
+  return ring;
+}
 
 SheetPair make_sheets(const StepLapInterface& e, const std::string& limb,
                       const std::string& active_part, const SystemBuilder& builder) {

@@ -26,6 +26,9 @@ struct StepLapInterface : Element {
   std::optional<double> clearance; ///< m, by which the limb may move towards the yoke before sheets butt
 };
 
+/// A round hole as it counts: a regular polygon of the circle's area.
+[[nodiscard]] Ring round_hole(const Vec2& centre, double diameter, long sides);
+
 /// The two sheets, each in its body's axes about its centre of gravity.
 struct SheetPair {
   Outline yoke, limb;

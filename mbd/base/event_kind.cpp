@@ -1,7 +1,7 @@
-#include "mbd/event_kind.h"
+#include "mbd/base/event_kind.h"
 
-#include "mbd/event_storm.h"
-#include "mbd/trajectory.h"
+#include "mbd/events/event_storm.h"
+#include "mbd/simulation/trajectory.h"
 
 #include <array>
 

@@ -2,8 +2,8 @@
 // modes that this may upset are decided anew together.
 #pragma once
 
-#include "mbd/event_kind.h"
-#include "mbd/friction_modes.h"
+#include "mbd/base/event_kind.h"
+#include "mbd/friction/friction_modes.h"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "mbd/io/presentation.h"
 
-#include "mbd/event_kind.h"
+#include "mbd/base/event_kind.h"
 #include "mbd/io/units.h"
 #include "mbd/base/number_text.h"
 #include "mbd/simulation/trajectory.h"

@@ -1,6 +1,6 @@
 #include "mbd/io/reference.h"
 
-#include "mbd/event_kind.h"
+#include "mbd/base/event_kind.h"
 #include "mbd/io/described.h"
 #include "mbd/base/number_text.h"
 

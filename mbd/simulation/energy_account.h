@@ -8,6 +8,8 @@
 
 #include "mbd/dynamics/dynamics.h"
 
+#include <algorithm>
+
 namespace steplap {
 
 class EnergyAccount {
@@ -17,7 +19,7 @@ public:
   /// At y, in the layout of `dynamics`.
   void note(Dynamics& dynamics, double t, const double* y);
   /// The same, at the end of a step of a method that follows the motion from event to event. Throws NumericalFailure
-  /// if the step made or lost more energy than its tolerance lets it.
+  /// if the step made or lost more energy than its tolerance lets it, or took some back that was dissipated.
   void check_step(Dynamics& dynamics, double t, const double* y);
   /// What setting to rest took at an event, J. Throws NumericalFailure if that was no rest.
   void check_settled(double t, double lost) const;
@@ -26,15 +28,28 @@ public:
   [[nodiscard]] double exchanged() const { return exchanged_; } ///< largest change of kinetic energy, dissipation, work, J
   /// What the residual is to be measured against, J.
   [[nodiscard]] double scale() const;
+  /// The largest energy that a step made or lost, of what its tolerance lets it (step_bound); 0 without a tolerance.
+  [[nodiscard]] double worst_step() const { return worst_step_; }
   /// What rounding of the energies themselves can leave, J.
   [[nodiscard]] double rounding() const { return k_rounding * largest_; }
 
   /// A run whose residual is a larger share of scale() than this is not to be trusted.
   static constexpr double k_untrusted = 1e-2;
+  /// What an accepted step of a method with error control makes or loses at most, J (docs/theory.md, "What a run says about
+  /// its own accuracy"): of a state of `dimension` numbers, `turned_over` up to its end, `of_floor` the energy of the motion
+  /// to which tolerances are absolute.
+  [[nodiscard]] static double step_bound(double tolerance, int dimension, double turned_over, double of_floor);
+  /// A step stops the run beyond so many times its bound.
+  static const double k_reserve;
 
 private:
   static constexpr double k_rounding = 1e-11;
-  double start_ = 0.0, kinetic_start_ = 0.0, floor_ = 0.0, allowed_ = 5e-2;
+  [[nodiscard]] double turned_over() const { return std::max(exchanged_, peak_kinetic_); }
+  void judge_step(const Dynamics& dynamics, double t, double made, double given_back);
+
+  double start_ = 0.0, kinetic_start_ = 0.0, floor_ = 0.0, tolerance_ = 0.0, size_ = 1.0;
+  double dissipated_ = 0.0, of_floor_ = 0.0, worst_step_ = 0.0;
+  int dimension_ = 0;
   double exchanged_ = 0.0, peak_about_centre_ = 0.0, peak_kinetic_ = 0.0, worst_ = 0.0, last_ = 0.0, largest_ = 0.0;
 };
 

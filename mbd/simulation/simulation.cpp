@@ -16,7 +16,6 @@ namespace {
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
 constexpr double k_storm_interval = 2e-3;  // s, that time stepping goes over
-constexpr long k_storm_parts = 10000;      // into which these are halved at most: events are the cheaper then
 constexpr long k_steps_between_looks = 1L << 16;
 // By how much a joint that holds may be beyond its limit, in shares of it: the mode problem knows wrenches to 1e-9 of the
 // capacities and finds events to rounding; what is a thousand times that is neither.
@@ -223,7 +222,7 @@ void Simulation::step_through_storm(const std::string& element) {
   const double end = std::min(next_limit(), begin + k_storm_interval);
   events_.push_back({begin, element, EventKind::storm, "for " + std::to_string(1e3 * (end - begin)) + " ms"});
   const long parts = stepping_->extra_parts();
-  while (state_.t < end && stepping_->extra_parts() - parts < k_storm_parts) {
+  while (state_.t < end && stepping_->extra_parts() - parts < options_.storm_parts) {
     double t1 = std::min(end, state_.t + options_.storm_step);
     const double due = static_cast<double>(sample_) * options_.output_step;
     const bool is_sample = options_.output_step > 0.0 && due > state_.t && due <= t1;
@@ -244,6 +243,7 @@ void Simulation::step_through_storm(const std::string& element) {
   events_at_once_ = 0;
   dynamics_.set_time_limit(next_limit());
   restart();
+  energy_.note(dynamics_, state_.t, y_.data()); // steps of the first order have no bound of their own
 }
 
 // `evaluations`: as many as there were when the step was made; none since means that `dynamics_` is at its end. (A method
@@ -345,6 +345,7 @@ RunStatistics Simulation::statistics() const {
   s.energy_residual = energy_.residual();
   s.energy_exchanged = energy_.exchanged();
   s.energy_scale = energy_.scale();
+  s.energy_worst_step = energy_.worst_step();
   s.energy_rounding = energy_.rounding();
   s.dissipated = state_.dissipated;
   s.work = state_.work;

@@ -26,6 +26,7 @@ struct SimulationOptions {
   std::vector<std::string> channels;       ///< patterns of those sampled; empty: all
   bool has_extremes = false;               ///< look for the extremes of all channels, sampled or not
   double storm_step = 1e-5;                ///< s, of time stepping through a storm of events
+  long storm_parts = 10000;                ///< into which these are halved at most: events are the cheaper then
   long max_events = 100000;
   std::function<void(double t)> progress;  ///< called now and then, if given
 };
@@ -41,6 +42,7 @@ struct RunStatistics {
   double energy_residual = 0.0;        ///< largest |E + dissipated − work − E₀| met, J
   double energy_exchanged = 0.0;       ///< largest change of kinetic energy, work, dissipation met at any step, J
   double energy_scale = 0.0;           ///< what the residual is measured against (EnergyAccount::scale), J
+  double energy_worst_step = 0.0;      ///< largest energy a step made or lost, of what its tolerance lets it
   double energy_rounding = 0.0;        ///< below this a residual is rounding of the energies, J
   double dissipated = 0.0, work = 0.0; ///< J
   double cpu_seconds = 0.0;            ///< of this thread, samples included

@@ -8,9 +8,9 @@
 // falls below zero.
 #pragma once
 
-#include "mbd/event_kind.h"
-#include "mbd/link.h"
-#include "mbd/row.h"
+#include "mbd/base/event_kind.h"
+#include "mbd/system/link.h"
+#include "mbd/system/row.h"
 
 #include <array>
 #include <cstdint>

@@ -43,6 +43,35 @@ title = "<u>title</u>"
 channels = ["<i>ball</i>.x"]
 """
 
+# Sheets of 2 × 2 m, the limb's moved by 0.5 m along x; a hole in each, of which a part lies in the other's.
+PIERCED = """gravity = [0, 0]
+[simulation]
+end = 0.01
+step = 1e-3
+[[body]]
+name = "yokes"
+fixed = true
+[[body]]
+name = "limb"
+mass = 1000
+inertia = 1000
+[[element]]
+kind = "step_lap_joint"
+name = "joint"
+limb = "limb"
+active_part = "yokes"
+[[element]]
+kind = "step_lap_interface"
+name = "corner"
+joint = "joint"
+yoke = [[-1, -1], [1, -1], [1, 1], [0, 0.8], [-1, 1]]
+limb = [[-0.5, -1], [1.5, -1], [1.5, 1], [-0.5, 1]]
+yoke_cutouts = [[[-0.4, -0.4], [0.2, -0.4], [0.2, 0.2], [-0.4, 0.2]]]
+limb_cutouts = [[[0, 0], [0, 0.5], [0.5, 0.5], [0.5, 0]], [[0.6, -0.6], [1.2, -0.6], [1.2, -0.3]]]
+pressure = "1 MPa"
+static_friction = 0.5
+"""
+
 
 def steplap(*arguments):
     subprocess.run([STEPLAP, *arguments], check=True, cwd=WORK.name)
@@ -73,6 +102,9 @@ class ReportTest(unittest.TestCase):
             file.write(HOSTILE)
         steplap("simulate", "hostile.toml", "-q", "-o", "out", "--report")
         steplap("simulate", os.path.join(MODELS, "benchmarks", "bouncing_mass.toml"), "-q", "-o", "out", "--report")
+        with open(os.path.join(WORK.name, "pierced.toml"), "w", encoding="utf-8") as file:
+            file.write(PIERCED)
+        steplap("simulate", "pierced.toml", "-q", "-o", "out", "--report")
         cls.browser = start_browser()
 
     @classmethod
@@ -242,6 +274,26 @@ class ReportTest(unittest.TestCase):
         self.run_js("steplap.page.show(arguments[0] + 2e-3)", first)
         states = [e.text for e in self.all("[data-joint='front joint'] .joint-state")]
         self.assertEqual(set(states), {"slips"})
+
+    def test_holes_of_the_sheets_are_seen(self):
+        self.open("out/pierced/report.html")
+        self.run_js("document.querySelector('.inset svg').scrollIntoView({block: 'center'})")
+        # What a reader sees on top at a place of the joint, of what is drawn there.
+        seen = lambda x, y: self.run_js("""
+            const svg = document.querySelector('.inset svg'), inset = steplap.page.insets[0], box = svg.getBoundingClientRect();
+            const [u, w] = inset.loop([[arguments[0], arguments[1]]]).slice(1, -1).split(' ').map(Number);
+            return document.elementsFromPoint(box.left + u * box.width / 246, box.top + w * box.height / 112)
+              .filter((e) => svg.contains(e) && e !== svg).map((e) => e.getAttribute('class'))""", x, y)
+        self.assertEqual(seen(-0.75, 0.0), ["yoke"])
+        self.assertEqual(seen(0.7, 0.7), ["overlap", "limb", "yoke"])
+        self.assertEqual(seen(-0.2, -0.2), ["limb"])  # through the yoke's hole
+        self.assertEqual(seen(0.4, 0.3), ["yoke"])  # through the limb's
+        self.assertEqual(seen(0.1, 0.1), [])  # through both
+        self.assertEqual(seen(0.9, -0.5), ["yoke"])
+        self.assertEqual(seen(1.1, -0.4), [])  # the limb's hole beyond the yoke
+        self.assertEqual(seen(0.0, 0.9), ["limb"])  # the yoke's notch: a concave sheet shows its overlap, too
+        if KEPT:
+            self.find(".inset").screenshot(os.path.join(KEPT, "pierced.png"))
 
     def test_the_verdicts_numbers_are_those_of_the_summary(self):
         self.open("paper.html")

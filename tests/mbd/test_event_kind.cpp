@@ -1,5 +1,5 @@
 // Kinds of events and their words: one table, and no code that reads the words anywhere else.
-#include "mbd/event_handler.h"
+#include "mbd/events/event_handler.h"
 
 #include <doctest/doctest.h>
 
@@ -155,7 +155,7 @@ TEST_CASE("no code reads the words of an event") {
       std::string line;
       for (int number = 1; std::getline(in, line); ++number, ++lines) {
         const std::string fault = is_script ? fault_of_script(line) : fault_of_code(line);
-        CHECK_MESSAGE(fault.empty(), path << ":" << number << ": " << fault << ": use EventKind (mbd/event_kind.h)");
+        CHECK_MESSAGE(fault.empty(), path << ":" << number << ": " << fault << ": use EventKind (mbd/base/event_kind.h)");
       }
     }
   CHECK(files > 150);

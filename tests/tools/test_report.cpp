@@ -201,6 +201,56 @@ b = "ground"
   CHECK(free["bodies"][0]["outline"][2][0].get<double>() == doctest::Approx(0.5 * std::sqrt(3.0)));
 }
 
+TEST_CASE("the drawing has the holes of sheets, round ones and cutouts, each in its body's axes") {
+  // The limb's centre of gravity is at (3, 4) and it is turned by a quarter: what is at (3, 4) + (a, b) on the ground is
+  // at (b, -a) in its axes.
+  const auto sheets = [](const std::string& more) {
+    return nlohmann::json::parse(drawing_json(parse_model(R"(
+simulation = { step = 1e-3 }
+[[body]]
+name = "yokes"
+fixed = true
+[[body]]
+name = "limb"
+mass = 1
+inertia = 1
+position = [3, 4]
+angle = "90 deg"
+[[element]]
+kind = "step_lap_joint"
+name = "joint"
+limb = "limb"
+active_part = "yokes"
+[[element]]
+kind = "step_lap_interface"
+name = "corner"
+joint = "joint"
+yoke = [[2, 3], [4, 3], [4, 5], [2, 5]]
+limb = [[2, 3], [4, 3], [4, 5], [2, 5]]
+pressure = 1
+static_friction = 0.5
+)" + more, "a.toml", program_catalogue())))["sheets"][0];
+  };
+  const auto ring_is = [](const nlohmann::json& ring, const std::vector<std::vector<double>>& wanted) {
+    REQUIRE(ring.size() == wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      for (const int c : {0, 1}) CHECK(std::abs(ring[i][c].get<double>() - wanted[i][c]) < 1e-14); // a few roundings of 5
+  };
+  const auto whole = sheets("");
+  CHECK(whole["yoke_holes"].empty());
+  CHECK(whole["limb_holes"].empty());
+  const auto pierced = sheets("yoke_cutouts = [[[2.5, 3.5], [3, 3.5], [3, 4]], [[3.5, 4.5], [3.75, 4.5], [3.5, 4.75]]]\n"
+                              "limb_cutouts = [[[3, 4], [3.5, 4], [3.5, 4.25], [3, 4.25]]]\n"
+                              "limb_holes = [[2.5, 4]]\nhole_diameter = 0.5\nhole_sides = 4\n");
+  REQUIRE(pierced["yoke_holes"].size() == 2);
+  ring_is(pierced["yoke_holes"][0], {{2.5, 3.5}, {3, 3.5}, {3, 4}});
+  ring_is(pierced["yoke_holes"][1], {{3.5, 4.5}, {3.75, 4.5}, {3.5, 4.75}});
+  REQUIRE(pierced["limb_holes"].size() == 2);
+  const double r = 0.5 * 0.5 * std::sqrt(0.5 * M_PI); // a square of the circle's area: 2 r² = π d²/4
+  ring_is(pierced["limb_holes"][0], {{r, 0.5}, {0, 0.5 + r}, {-r, 0.5}, {0, 0.5 - r}});
+  ring_is(pierced["limb_holes"][1], {{0, 0}, {0, -0.5}, {0.25, -0.5}, {0.25, 0}});
+}
+
 TEST_CASE("an element's drawing hint is read, checked and kept") {
   const Workbench bench;
   std::string text = k_oscillator;

@@ -179,6 +179,16 @@ private:
     return local;
   }
 
+  // Of one sheet: round holes, as the polygons that count, and cutouts.
+  [[nodiscard]] Json holes_json(const StepLapInterface& face, bool is_yoke, const std::string& owner) const {
+    Json json = Json::array();
+    for (const Vec2& centre : sheet(is_yoke ? face.yoke_holes : face.limb_holes, face.frame, owner))
+      json.push_back(outline_json(round_hole(centre, face.hole_diameter, face.hole_sides)));
+    for (const std::vector<Vec2>& cutout : is_yoke ? face.yoke_cutouts : face.limb_cutouts)
+      json.push_back(outline_json(sheet(cutout, face.frame, owner)));
+    return json;
+  }
+
   Json sheets_json() const {
     std::map<std::string, const StepLapJoint*> joints;
     for (const ElementEntry& entry : model_.elements)
@@ -194,7 +204,9 @@ private:
                       {"active_part", joint.active_part},
                       {"count", face->count},
                       {"yoke", outline_json(sheet(face->yoke, face->frame, joint.active_part))},
-                      {"limb_sheet", outline_json(sheet(face->limb, face->frame, joint.limb))}});
+                      {"limb_sheet", outline_json(sheet(face->limb, face->frame, joint.limb))},
+                      {"yoke_holes", holes_json(*face, true, joint.active_part)},
+                      {"limb_holes", holes_json(*face, false, joint.limb)}});
     }
     return json;
   }

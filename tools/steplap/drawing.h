@@ -13,7 +13,8 @@ namespace steplap {
 ///             is_outline_given; the ground is none of them
 ///   elements  name, kind, symbol, at [{body, point}], direction (in the axes of the last place's
 ///             body), contacts (names, of friction), limb and active_part (of step-lap joints)
-///   sheets    joint, limb, active_part, count, yoke, limb_sheet: outlines in their bodies
+///   sheets    joint, limb, active_part, count, yoke, limb_sheet: outlines in their bodies,
+///             yoke_holes, limb_holes: rings of every hole, round ones as polygons
 ///   plots     name, title, channels, bounds (patterns)
 ///   seen_from body that the drawing stands still with, "" = to be chosen
 /// A body without an outline gets one: the hull of the places where elements act on it, or a square of

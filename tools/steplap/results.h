@@ -1,7 +1,7 @@
 // The folder of a run read back: what reports and plots are made from, nothing else.
 #pragma once
 
-#include "mbd/event_kind.h"
+#include "mbd/base/event_kind.h"
 
 #include <optional>
 #include <string>

@@ -15,7 +15,7 @@ namespace steplap {
 
 /// Pointers lead into the run's compiled system: valid as long as the run.
 struct RunSummary {
-  std::vector<ChannelRange> ranges;          ///< of all channels of the system, written or not (mbd/extremes.h)
+  std::vector<ChannelRange> ranges;          ///< of all channels of the system, written or not (mbd/simulation/extremes.h)
   std::map<std::string, long> event_counts;  ///< by the words of the kind
   double relative_energy_residual = 0.0;     ///< of the energy exchanged
   std::optional<GlobalErrorEstimate> global_error; ///< unless there is none

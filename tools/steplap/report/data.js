@@ -115,4 +115,4 @@ steplap.make = (name, attributes = {}, ...children) => {
   element.append(...children.map((c) => (c instanceof Node ? c : String(c))));
   return element;
 };
-steplap.make.svg = new Set(['svg', 'g', 'path', 'polygon', 'line', 'circle', 'rect', 'text', 'title', 'tspan']);
+steplap.make.svg = new Set(['svg', 'g', 'path', 'polygon', 'line', 'circle', 'rect', 'text', 'title', 'tspan', 'clipPath']);

@@ -26,27 +26,37 @@ steplap.Inset = (() => {
     return rest;
   }
 
+  let insets = 0; // ids of clip paths are unique in the page
+  const evenodd = { 'fill-rule': 'evenodd', 'clip-rule': 'evenodd' }; // holes stay holes whichever way they run
+
   return class Inset {
     constructor(run, scene, sheet) {
       Object.assign(this, { run, scene, sheet });
       this.yoke = counterClockwise(sheet.yoke);
       this.limb = counterClockwise(sheet.limb_sheet);
-      this.isClipped = isConvex(this.yoke);
+      this.yokeHoles = sheet.yoke_holes || []; // results of older programs have none
+      this.limbHoles = sheet.limb_holes || [];
       const relativeReference = relative(scene.reference(sheet.active_part), scene.reference(sheet.limb));
       this.frame(relativeReference);
       this.svg = make('svg', { viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': `Sheets of ${sheet.name}` });
       this.parts = {};
-      for (const name of ['yoke', 'limb', 'overlap']) this.svg.append((this.parts[name] = make('path', { class: name })));
+      for (const name of ['yoke', 'limb', 'overlap']) this.svg.append((this.parts[name] = make('path', { class: name, ...evenodd })));
+      // What carries is the limb's sheet seen through the yoke's, with the holes of both, whatever their shapes.
+      const id = `yoke-sheet-${insets++}`;
+      this.parts.window = make('path', evenodd);
+      this.svg.prepend(make('clipPath', { id }, this.parts.window));
+      this.parts.overlap.setAttribute('clip-path', `url(#${id})`);
       this.state = make('strong', { class: 'joint-state' });
       this.figures = make('div', { class: 'joint-figures' });
       this.box = make('div', { class: 'inset', 'data-joint': sheet.joint }, make('div', {}, `${sheet.name}: `, this.state), this.svg, this.figures);
       this.margin = run.channel(`${sheet.joint}.margin`);
       this.pressure = run.channel(`${sheet.joint}.p_req`);
     }
-    overlap(pose) { return this.isClipped ? clipped(this.limb.map((p) => apply(pose, p)), this.yoke) : []; }
     // Axes along and across the overlap of the reference pose.
     frame(pose) {
-      const lap = this.overlap(pose), ring = lap.length > 2 ? lap : this.yoke;
+      const limb = this.limb.map((p) => apply(pose, p));
+      const lap = isConvex(this.yoke) ? clipped(limb, this.yoke) : isConvex(limb) ? clipped(this.yoke, limb) : [];
+      const ring = lap.length > 2 ? lap : this.yoke;
       let longest = [1, 0];
       ring.forEach((p, i) => { const d = minus(ring[(i + 1) % ring.length], p); if (length(d) > length(longest) || i === 0) longest = d; });
       this.along = unit(longest);
@@ -55,8 +65,8 @@ steplap.Inset = (() => {
       this.middle = [0.5 * (Math.min(...u) + Math.max(...u)), 0.5 * (Math.min(...w) + Math.max(...w))];
       this.scales = [(0.9 * width) / (Math.max(...u) - Math.min(...u)), (0.3 * height) / Math.max(Math.max(...w) - Math.min(...w), 1e-9)];
     }
-    path(ring) {
-      if (ring.length < 3) return 'M0 0';
+    path(rings) { return rings.map((ring) => this.loop(ring)).join(''); }
+    loop(ring) {
       return 'M' + ring.map((p) => {
         const u = p[0] * this.along[0] + p[1] * this.along[1] - this.middle[0], w = p[0] * this.across[0] + p[1] * this.across[1] - this.middle[1];
         return `${(width / 2 + u * this.scales[0]).toFixed(2)} ${(height / 2 - w * this.scales[1]).toFixed(2)}`;
@@ -65,9 +75,10 @@ steplap.Inset = (() => {
     show(t) {
       const { scene, sheet } = this;
       const pose = relative(scene.poseAt(sheet.active_part, t), scene.poseAt(sheet.limb, t));
-      this.parts.yoke.setAttribute('d', this.path(this.yoke));
-      this.parts.limb.setAttribute('d', this.path(this.limb.map((p) => apply(pose, p))));
-      this.parts.overlap.setAttribute('d', this.path(this.overlap(pose)));
+      const yoke = this.path([this.yoke, ...this.yokeHoles]);
+      const limb = this.path([this.limb, ...this.limbHoles].map((ring) => ring.map((p) => apply(pose, p))));
+      for (const name of ['yoke', 'window']) this.parts[name].setAttribute('d', yoke);
+      for (const name of ['limb', 'overlap']) this.parts[name].setAttribute('d', limb);
       const m = this.run.modeAt(sheet.joint, t);
       const states = { 1: ['sticks', 'sticks'], 2: ['slips', 'slips'], 3: ['has come apart', 'slips'] };
       const [text, kind] = states[m] || ['state not recorded', 'free'];

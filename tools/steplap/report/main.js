@@ -105,6 +105,6 @@
   fit();
   plots.build();
   show(0);
-  steplap.page = { scenes, plots, show, time: () => t };
+  steplap.page = { scenes, insets, plots, show, time: () => t };
   document.body.setAttribute('data-ready', 'true');
 })();
