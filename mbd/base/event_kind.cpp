@@ -1,7 +1,6 @@
 #include "mbd/base/event_kind.h"
 
-#include "mbd/events/event_storm.h"
-#include "mbd/simulation/trajectory.h"
+#include "mbd/base/name_pattern.h"
 
 #include <array>
 
@@ -47,7 +46,6 @@ constexpr bool is_in_order() {
   return true;
 }
 static_assert(is_in_order(), "the table has a line for each kind, in their order");
-static_assert(EventStorm::k_limit == 50 && EventStorm::k_window == 1e-3, "the words of a storm say so");
 
 const Entry& entry_of(EventKind kind) { return k_table[static_cast<std::size_t>(kind)]; }
 

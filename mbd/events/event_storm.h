@@ -26,6 +26,7 @@ public:
 
   static constexpr std::size_t k_limit = 50; ///< a bounce that dies out has some 40 above rounding
   static constexpr double k_window = 1e-3;   ///< s: no machine part goes to and fro 25 times in a millisecond
+  static_assert(k_limit == 50 && k_window == 1e-3, "the words of a storm (base/event_kind.cpp) say so");
 
 private:
   std::unordered_map<std::string, std::vector<double>> times_;

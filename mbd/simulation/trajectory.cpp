@@ -4,27 +4,6 @@
 
 namespace steplap {
 
-bool matches_pattern(const std::string& name, const std::string& pattern) {
-  // Greedy with one point to come back to: linear for patterns with few stars.
-  std::size_t n = 0, p = 0, star = std::string::npos, resume = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
-      ++n;
-      ++p;
-    } else if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      resume = n;
-    } else if (star != std::string::npos) {
-      p = star + 1;
-      n = ++resume;
-    } else {
-      return false;
-    }
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
-
 Trajectory::Trajectory(const System& system, const std::vector<std::string>& patterns) {
   for (const Channel& channel : system.channels) {
     bool is_wanted = patterns.empty();

@@ -1,6 +1,7 @@
 // What a run leaves behind: named channels at uniform times.
 #pragma once
 
+#include "mbd/base/name_pattern.h"
 #include "mbd/system/system.h"
 
 #include <string>
@@ -31,7 +32,5 @@ private:
   std::vector<double> times_, values_;
 };
 
-/// Does `name` match the pattern, * any text, ? any one character?
-[[nodiscard]] bool matches_pattern(const std::string& name, const std::string& pattern);
 
 } // namespace steplap
