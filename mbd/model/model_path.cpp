@@ -189,7 +189,7 @@ double number_of(const Model& model, const std::string& path) {
   const FieldValue value = value_of(model, path);
   if (const double* x = std::get_if<double>(&value)) return *x;
   if (const long* n = std::get_if<long>(&value)) return static_cast<double>(*n);
-  complain(path, std::string("is ") + text_of(value) + ", not a number");
+  complain(path, std::string("holds ") + text_of(value) + ", not a number");
 }
 
 } // namespace steplap

@@ -101,9 +101,10 @@ TEST_CASE("a mass on a belt sticks, slips and then only grazes the belt's speed"
     const Run r = run(on_belt(), settings);
     const std::vector<double> sticks = r.event_times("friction", "sticks"), slips = r.event_times("friction", "slips backward");
     REQUIRE(!sticks.empty());
-    REQUIRE(!slips.empty());
+    REQUIRE(slips.size() >= 2);
+    CHECK(slips[0] == 0.0); // the belt moves under it from the start
     CHECK(std::abs(sticks[0] - 0.0747188139815066) < 1e-11);
-    CHECK(std::abs(slips[0] - 0.182668443438953) < 5e-11); // 20 N/s: 1e-9 N of bound
+    CHECK(std::abs(slips[1] - 0.182668443438953) < 5e-11); // 20 N/s: 1e-9 N of bound
     CHECK(std::abs(r.last("mass.x") - 0.0314469318813080) < 1e-10);
     CHECK(std::abs(r.last("mass.vx") + 0.198980397472595) < 1e-10);
   }

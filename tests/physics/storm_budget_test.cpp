@@ -50,8 +50,8 @@ Storms storms_of(long parts) {
   storms.count = result.statistics.storms;
   double begin = 0.0;
   for (const Event& event : result.events) {
-    if (event.what.find("time stepping for") != std::string::npos) begin = event.t;
-    if (event.what == "is followed event by event again") storms.longest = std::max(storms.longest, event.t - begin);
+    if (event.kind == EventKind::storm) begin = event.t;
+    if (event.kind == EventKind::storm_over) storms.longest = std::max(storms.longest, event.t - begin);
   }
   return storms;
 }
