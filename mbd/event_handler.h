@@ -45,6 +45,7 @@ private:
   void meet_constraints(State& state);
   bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
   void fire_friction(State& state, int f, int slot);
+  void move_on(State& state, int f);
   void update_loading(State& state);
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   void note_friction(const State& before, const State& state, std::vector<Event>& events);
