@@ -61,7 +61,7 @@ void Dynamics::set_state(const State& state) {
     if (layout->key == key_) {
       layout_ = layout.get();
       place_edges();
-      if (!layout_->held_rows.empty()) layout_->schur.decide_rank(layout_->is_friction_row);
+      decide_rank();
       return;
     }
   layouts_.push_back(std::make_unique<Layout>(make_layout(system_, state)));
@@ -79,7 +79,12 @@ void Dynamics::set_state(const State& state) {
     target_rate_.resize(rows);
   }
   if (lock_target_.size() < layout_->locks.size()) lock_target_.resize(layout_->locks.size());
-  if (!layout_->held_rows.empty()) layout_->schur.decide_rank(layout_->is_friction_row);
+  decide_rank();
+}
+
+void Dynamics::decide_rank() {
+  is_rank_new_ = !layout_->held_rows.empty();
+  if (is_rank_new_) layout_->schur.decide_rank(layout_->is_friction_row);
 }
 
 void Dynamics::set_time_limit(double limit) {
@@ -361,7 +366,10 @@ void Dynamics::finish_power(const double* a) {
 void Dynamics::finish_watches() {
   const Layout& layout = *layout_;
   for (const HeldRow& held : layout.held_rows) friction_force_[held.friction_row] = right_side_[held.row];
-  if (layout.schur.is_singular() && !layout.sharing) [[unlikely]] find_sharing();
+  if (layout.schur.is_singular() && (!layout.sharing || is_rank_new_)) [[unlikely]] {
+    find_sharing();
+    is_rank_new_ = false;
+  }
   const LoadSharing* const shared = sharing(); // elements that share a load are watched at a step's ends
   for (const int f : layout.holding) {
     const FrictionUnit& unit = system_.frictions[f];

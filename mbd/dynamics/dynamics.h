@@ -150,6 +150,7 @@ private:
   void place_edges();
   void merged_wrenches(const double* dy);
   [[nodiscard]] double* joint_multipliers(const RigidEdge& edge);
+  void decide_rank();
   void find_sharing();
   [[nodiscard]] bool is_shared(int friction) const;
   void take_solved_friction();
@@ -168,6 +169,7 @@ private:
   LayoutKey key_; ///< of the present one
   Layout* layout_ = nullptr;
   bool is_factored_ = false;
+  bool is_rank_new_ = false; ///< which rows of friction the equations leave out is decided, or was, since set_state()
   bool is_merged_near_ = false; ///< some merged joint or group was near its limit when last watched
   bool was_merged_near_ = false; ///< or the time before: the other end of a step
   double time_cap_ = std::numeric_limits<double>::infinity();

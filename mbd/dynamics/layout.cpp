@@ -288,7 +288,7 @@ Layout make_layout(const System& system, const State& state) {
     row.j[1][2] = -1.0;
     for (int side = 0; side < 2; ++side) row.wj[side][2] = row.w[side][2] * row.j[side][2];
   }
-  for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0);
+  for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());
   layout.schur.analyze(layout.schur_rows);
   return layout;
 }

@@ -113,7 +113,7 @@ struct Layout {
   std::unique_ptr<LoadSharing> sharing; ///< null until rows have been met that depend on each other
   std::vector<double> reference;     ///< clusters' coordinates in the reference pose, for error scales
   std::vector<HeldRow> held_rows;    ///< of the elements in `holding`
-  std::vector<char> is_friction_row; ///< per active row: it holds friction
+  std::vector<char> is_friction_row; ///< per active row: it holds friction that can slip
   std::vector<int> driven_rows;      ///< active rows that move with time
   SchurSolver schur;
   std::vector<SchurRow> schur_rows;  ///< bodies filled in, numbers are scratch

@@ -12,9 +12,11 @@ namespace steplap {
 
 namespace {
 
-// What a row is beyond the others, of its length: a box that has turned by a microradian. The pivots of the constraint
-// equations are squares of it and leave rows out below 3e-7: whatever they leave out is found here.
-constexpr double k_dependent = 1e-6;
+// Joints depend on each other if what one is beyond the others is below this share of its length. Of friction the equations
+// decide (SchurSolver::k_dependent): rows that they keep are independent but where merged joints stand beside bilateral ones,
+// and depend on those exactly.
+constexpr double k_dependent = 1e-6, k_exactly_dependent = 1e-9;
+constexpr double k_out_of_balance = 1e-6; // of its terms: more than this a null vector does not move
 // Rows of a group move against each other: absolute, m/s and m/s², and of the terms that make up their motion; or are held
 // at places that are apart, m: less than what projection is content with (IntegratorSettings).
 constexpr double k_least_rate = 1e-12, k_least_acceleration = 1e-10, k_least_gap = 3e-13;
@@ -50,9 +52,9 @@ using Factor = Eigen::ColPivHouseholderQR<MatX>;
 
 // Eigen's own does not take matrices without rows or columns.
 struct RankFactor {
-  explicit RankFactor(const MatX& matrix) : rows(matrix.rows()), cols(matrix.cols()), qr(std::max<Eigen::Index>(rows, 1), std::max<Eigen::Index>(cols, 1)) {
+  explicit RankFactor(const MatX& matrix, double threshold = k_dependent) : rows(matrix.rows()), cols(matrix.cols()), qr(std::max<Eigen::Index>(rows, 1), std::max<Eigen::Index>(cols, 1)) {
     if (rows == 0 || cols == 0) return;
-    qr.setThreshold(k_dependent);
+    qr.setThreshold(threshold);
     qr.compute(matrix);
     rank = qr.rank();
   }
@@ -84,9 +86,40 @@ struct RankFactor {
     return found;
   }
 
+  // x of the columns that span what there is with matrix x = right, as nearly as can be.
+  [[nodiscard]] MatX solve(const MatX& right) const {
+    MatX found = MatX::Zero(cols, right.cols());
+    if (rank == 0 || right.cols() == 0) return found;
+    found.topRows(rank) = qr.matrixR().topLeftCorner(rank, rank).template triangularView<Eigen::Upper>().solve(
+        (qr.householderQ().transpose() * right).topRows(rank));
+    return qr.colsPermutation() * found;
+  }
+
   Eigen::Index rows, cols, rank = 0;
   Factor qr;
 };
+
+// Null vectors of `matrix` of which the columns in `left_out` depend on the others, as nearly as that may be.
+NullSpace null_space_of(const MatX& matrix, const std::vector<char>& left_out) {
+  std::vector<Eigen::Index> kept, out;
+  for (Eigen::Index c = 0; c < matrix.cols(); ++c) (left_out[c] != 0 ? out : kept).push_back(c);
+  const RankFactor factor(matrix(Eigen::all, kept), k_exactly_dependent);
+  const NullSpace exact = factor.null_space();
+  const Eigen::Index known = exact.vectors.cols(), count = known + static_cast<Eigen::Index>(out.size());
+  NullSpace found{MatX::Zero(matrix.cols(), count), {}};
+  const MatX others = factor.solve(-matrix(Eigen::all, out));
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    found.vectors.row(kept[k]).head(known) = exact.vectors.row(i);
+    found.vectors.row(kept[k]).tail(count - known) = (others.row(i).array().abs() < k_no_part).select(0.0, others.row(i));
+  }
+  for (const int pivot : exact.pivots) found.pivots.push_back(static_cast<int>(kept[pivot]));
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    found.vectors(out[k], known + static_cast<Eigen::Index>(k)) = 1.0;
+    found.pivots.push_back(static_cast<int>(out[k]));
+  }
+  return found;
+}
 
 int find_root(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -111,8 +144,8 @@ std::vector<LoadSharing::HeldRow> LoadSharing::held_rows(const State& state) con
   return rows;
 }
 
-LoadSharing::LoadSharing(const System& system, const State& state, const std::vector<Motion<double>>& motion)
-    : system_(system), group_of_(system.frictions.size(), -1) {
+LoadSharing::LoadSharing(const System& system, const State& state, const std::vector<Motion<double>>& motion, std::vector<char> left_out)
+    : system_(system), group_of_(system.frictions.size(), -1), left_out_(std::move(left_out)) {
   // Parts: bodies connected by rows; the ground connects nothing.
   const std::vector<HeldRow> rows = held_rows(state);
   std::vector<int> parent(system.bodies.size());
@@ -140,7 +173,9 @@ LoadSharing::LoadSharing(const System& system, const State& state, const std::ve
     const int bodies = size[find_root(parent, first.a != k_ground ? first.a : first.b)];
     if (!has_friction && bodies > k_most_bodies) continue;
     analyze(part, motion, body_index);
-    if (part.null.cols() > 0) parts_.push_back(std::move(part));
+    if (part.null.cols() == 0) continue;
+    part.off = off_balance(part, motion);
+    parts_.push_back(std::move(part));
   }
 }
 
@@ -178,8 +213,10 @@ void LoadSharing::analyze(Part& part, const std::vector<Motion<double>>& motion,
   NullSpace shared;
   if (bounded > 0) {
     MatX held = joints.complement().transpose() * gradient.rightCols(bounded);
-    held = (held.array().abs() < k_dependent).select(0.0, held);
-    shared = RankFactor(held).null_space();
+    held = (held.array().abs() < k_exactly_dependent).select(0.0, held);
+    std::vector<char> is_out;
+    for (Eigen::Index r = free; r < count; ++r) is_out.push_back(left_out_[part.rows[r].slot]);
+    shared = null_space_of(held, is_out);
   }
   const Eigen::Index k = shared.vectors.cols();
   part.shared_count = static_cast<int>(k);
@@ -246,28 +283,34 @@ void LoadSharing::make_groups(Part& part, const std::vector<int>& pivots, const 
   }
 }
 
-bool LoadSharing::holds_at(const std::vector<Motion<double>>& motion) const {
-  for (const Part& part : parts_) {
-    const Eigen::Index vectors = part.null.cols();
-    MatX sum = MatX::Zero(3 * static_cast<Eigen::Index>(system_.bodies.size()), vectors);
-    VecX size = VecX::Zero(vectors);
-    for (std::size_t r = 0; r < part.rows.size(); ++r) {
-      const RowSpec& spec = *part.rows[r].spec;
-      const RowGradient g = gradient_of(spec, motion);
-      const auto row = part.null.row(static_cast<Eigen::Index>(r));
-      for (const int side : {0, 1}) {
-        const int body = side == 0 ? spec.a : spec.b;
-        if (body == k_ground) continue;
-        for (int c = 0; c < 3; ++c) {
-          sum.row(3 * body + c) += g.side[side][c] * row;
-          size += std::abs(g.side[side][c]) * row.cwiseAbs().transpose();
-        }
+// Per null vector: what it moves, of the size of its terms.
+VecX LoadSharing::off_balance(const Part& part, const std::vector<Motion<double>>& motion) const {
+  const Eigen::Index vectors = part.null.cols();
+  MatX sum = MatX::Zero(3 * static_cast<Eigen::Index>(system_.bodies.size()), vectors);
+  VecX size = VecX::Zero(vectors);
+  for (std::size_t r = 0; r < part.rows.size(); ++r) {
+    const RowSpec& spec = *part.rows[r].spec;
+    const RowGradient g = gradient_of(spec, motion);
+    const auto row = part.null.row(static_cast<Eigen::Index>(r));
+    for (const int side : {0, 1}) {
+      const int body = side == 0 ? spec.a : spec.b;
+      if (body == k_ground) continue;
+      for (int c = 0; c < 3; ++c) {
+        sum.row(3 * body + c) += g.side[side][c] * row;
+        size += std::abs(g.side[side][c]) * row.cwiseAbs().transpose();
       }
     }
-    for (Eigen::Index j = 0; j < vectors; ++j)
-      if (sum.col(j).lpNorm<Eigen::Infinity>() > k_dependent * size[j]) return false;
   }
-  return true;
+  for (Eigen::Index j = 0; j < vectors; ++j) size[j] = size[j] > 0.0 ? sum.col(j).lpNorm<Eigen::Infinity>() / size[j] : 0.0;
+  return size;
+}
+
+// Rows that were found to depend nearly were out of balance from the first.
+bool LoadSharing::holds_at(const std::vector<Motion<double>>& motion, const std::vector<char>& left_out) const {
+  if (left_out != left_out_) return false;
+  return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+    return ((off_balance(part, motion) - part.off).array() <= k_out_of_balance).all();
+  });
 }
 
 namespace {

@@ -9,7 +9,9 @@
 //            (LeastUsage::settled); joints share with the least Σ A_rr λ_r², A_rr = J_r M⁻¹ J_rᵀ the acceleration
 //            that a multiplier gives alone.
 // Null vectors hold for a pose; while the bodies that take part do not move against each other they stay, and
-// whoever asks checks that (holds_at). Rank: rows scaled to length 1, what is beyond the others below 1e-9.
+// whoever asks checks that (holds_at). Which rows of friction depend on others is not decided here but where the equations
+// leave them out (SchurSolver): each row that is left out there has one null vector, and no other row of friction but those of
+// joints that are merged beside bilateral ones, which depend exactly.
 #pragma once
 
 #include "mbd/dynamics/least_usage.h"
@@ -35,16 +37,17 @@ struct Release {
 
 class LoadSharing {
 public:
-  /// With `motion` of all bodies, in the phases of `state`.
-  LoadSharing(const System& system, const State& state, const std::vector<Motion<double>>& motion);
+  /// With `motion` of all bodies, in the phases of `state`. `left_out`: per slot of Snapshot::friction_force, the row is not
+  /// in the equations.
+  LoadSharing(const System& system, const State& state, const std::vector<Motion<double>>& motion, std::vector<char> left_out);
 
   [[nodiscard]] const std::vector<SharingGroup>& groups() const { return groups_; }
   /// Does anything stick that can slip? If not, there will be no groups in any pose.
   [[nodiscard]] bool has_friction() const { return has_friction_; }
   /// Index of the group of a friction element; −1: its wrench is its own.
   [[nodiscard]] int group_of(int friction) const { return group_of_[friction]; }
-  /// Are the null vectors still null vectors?
-  [[nodiscard]] bool holds_at(const std::vector<Motion<double>>& motion) const;
+  /// Are the null vectors still null vectors, and all there are?
+  [[nodiscard]] bool holds_at(const std::vector<Motion<double>>& motion, const std::vector<char>& left_out) const;
 
   /// Can the elements of `group` stick together? Rows that depend on each other hold together only if what they are
   /// held at does too, Σ n_r (J_r v − target) = 0 and the same of accelerations for every null vector n: the feet of a
@@ -70,12 +73,14 @@ private:
     std::vector<HeldRow> rows; ///< bounded ones last
     int free_count = 0;        ///< rows that are not
     MatX null;                 ///< rows × vectors
+    VecX off;                  ///< per vector: what it moved in the pose that it was found in, of its terms
     int shared_count = 0;      ///< vectors that load friction
     MatX settle;               ///< of the others: coefficients that take multipliers of the free rows to the least
     std::vector<int> groups;   ///< of this part
     std::vector<std::vector<int>> columns; ///< per group: its vectors
   };
   void analyze(Part& part, const std::vector<Motion<double>>& motion, std::vector<int>& body_index);
+  [[nodiscard]] VecX off_balance(const Part& part, const std::vector<Motion<double>>& motion) const;
   void make_groups(Part& part, const std::vector<int>& pivots, const MatX& basis);
   [[nodiscard]] std::vector<HeldRow> held_rows(const State& state) const;
 
@@ -83,6 +88,7 @@ private:
   std::vector<Part> parts_;
   std::vector<SharingGroup> groups_;
   std::vector<int> group_of_;
+  std::vector<char> left_out_;
   bool has_friction_ = false;
 };
 

@@ -1,4 +1,5 @@
 #include "mbd/dynamics/schur.h"
+#include "mbd/base/types.h"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -22,6 +23,41 @@ struct Coupling {
 };
 
 constexpr int k_max_refinements = 4;
+// With all pivots above this no row is so near to others that it has to be asked which stay out: the square of
+// SchurSolver::k_dependent, and for a row that enters another's dependence with a hundredth.
+constexpr double k_doubtful_pivot = 1e-8;
+constexpr double k_stays_out = 2.0; // a row that was out, of k_dependent
+
+// A row's gradient in the masses' metric: its length squared is its entry of A.
+double weighted(const SchurRow& row, int side, int c) { return row.w[side][c] > 0.0 ? row.j[side][c] * std::sqrt(row.w[side][c]) : 0.0; }
+
+double squared_length(const SchurRow& row) {
+  double sum = 0.0;
+  for (int side = 0; side < 2; ++side)
+    if (row.body[side] >= 0)
+      for (int c = 0; c < 3; ++c) sum += weighted(row, side, c) * weighted(row, side, c);
+  return sum;
+}
+
+// Orthonormal vectors, each a row's part beyond those before.
+class Taken {
+public:
+  Taken(Eigen::Index dimension, Eigen::Index most) : basis_(dimension, std::min(dimension, most)) {}
+  void remove_from(VecX& row) const {
+    const auto taken = basis_.leftCols(count_);
+    for (int pass = 0; pass < 2; ++pass) row -= taken * (taken.transpose() * row); // the second takes what rounding left
+  }
+  // `row` is orthogonal to those taken. False if nothing can be beyond them any more.
+  bool take(const VecX& row) {
+    if (count_ == basis_.cols()) return false;
+    basis_.col(count_++) = row.normalized();
+    return true;
+  }
+
+private:
+  MatX basis_;
+  Eigen::Index count_ = 0;
+};
 
 int count_bodies(const std::vector<SchurRow>& rows) {
   int count = 0;
@@ -138,20 +174,70 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
 
 void SchurSolver::decide_rank(const std::vector<char>& is_friction) {
   can_stay_out_ = is_friction;
+  if (!out_.empty()) was_out_.swap(out_);
   out_.clear();
   is_rank_open_ = !is_friction.empty();
 }
 
-void SchurSolver::keep_rank() {
+void SchurSolver::keep_rank(const std::vector<SchurRow>& rows, double shift) {
   is_rank_open_ = false;
-  if (dependent_count_ == 0) return;
-  out_.assign(n_, 0);
-  for (int r = 0; r < n_; ++r) out_[r] = can_stay_out_[r] != 0 && is_dependent(r);
+  if (dependent_count_ == 0 && smallest_pivot_ >= k_doubtful_pivot) return was_out_.clear();
+  if (!is_in_doubt(rows)) { // what is out acts on nothing that can move
+    out_.assign(n_, 0);
+    for (int r = 0; r < n_; ++r) out_[r] = can_stay_out_[r] != 0 && is_dependent(r);
+    return;
+  }
+  out_ = dependent_friction(rows);
+  factor_as_is(rows, shift);
+}
+
+bool SchurSolver::is_in_doubt(const std::vector<SchurRow>& rows) const {
+  if (smallest_pivot_ < k_doubtful_pivot) return true;
+  for (int r = 0; r < n_; ++r)
+    if (is_dependent(r) && squared_length(rows[r]) > 0.0) return true;
+  return false;
+}
+
+std::vector<char> SchurSolver::dependent_friction(const std::vector<SchurRow>& rows) const {
+  struct Candidate {
+    int row;
+    double length, allowed; ///< allowed: of the length
+    VecX beyond;
+  };
+  Taken taken(3 * static_cast<Eigen::Index>(body_count_), n_);
+  std::vector<Candidate> candidates;
+  std::vector<char> out(n_, 0);
+  for (int r = 0; r < n_; ++r) {
+    VecX row = VecX::Zero(3 * static_cast<Eigen::Index>(body_count_));
+    for (int side = 0; side < 2; ++side)
+      if (rows[r].body[side] >= 0)
+        for (int c = 0; c < 3; ++c) row[3 * rows[r].body[side] + c] += weighted(rows[r], side, c);
+    const double length = row.norm();
+    if (can_stay_out_[r] != 0) {
+      out[r] = 1;
+      const bool was_out = !was_out_.empty() && was_out_[r] != 0;
+      if (length > 0.0) candidates.push_back({r, length, was_out ? k_stays_out * k_dependent : k_dependent, row});
+      continue;
+    }
+    taken.remove_from(row);
+    if (row.norm() > std::sqrt(k_pivot_tolerance) * length) taken.take(row);
+  }
+  for (Candidate& c : candidates) taken.remove_from(c.beyond);
+  while (!candidates.empty()) {
+    const auto farthest = std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+      return a.beyond.norm() / (a.allowed * a.length) < b.beyond.norm() / (b.allowed * b.length);
+    });
+    if (!(farthest->beyond.norm() > farthest->allowed * farthest->length) || !taken.take(farthest->beyond)) break;
+    out[farthest->row] = 0;
+    candidates.erase(farthest);
+    for (Candidate& c : candidates) taken.remove_from(c.beyond);
+  }
+  return out;
 }
 
 void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
   factor_as_is(rows, shift);
-  if (is_rank_open_) [[unlikely]] keep_rank();
+  if (is_rank_open_) [[unlikely]] keep_rank(rows, shift);
 }
 
 void SchurSolver::factor_as_is(const std::vector<SchurRow>& rows, double shift) {

@@ -6,6 +6,12 @@
 // diagonal marks a row as dependent on the earlier ones: its multiplier is set to zero and the row's
 // index is reported (redundant constraints; least-norm multipliers are found apart, on demand).
 //
+// Rows of friction that nearly depend on others (feet of a box that has turned by less than a microradian) would bear
+// forces that say nothing: the load over what is independent of a row, with an error of rounding over its square. Which of
+// them stay out is decided once for a set of modes, by orthogonalisation in the masses' metric: bilateral rows first, then
+// of the friction rows always the one that is farthest from those taken, until what is left is within k_dependent of its length.
+// What they are held at is not met then, and has to be watched (LoadSharing::discord).
+//
 // Near a singular position a pivot is small without being zero. A carries the square of the rows' own
 // condition, so elimination alone would lose twice the digits that the problem takes: there the solution is
 // refined against J W Jᵀ itself, factor by factor, whose rounding is that of the rows.
@@ -33,7 +39,8 @@ public:
   /// Numbers from the rows' j and wj, the diagonal raised by the fraction `shift` (damping). Allocates nothing.
   void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
   /// Rows that hold friction: which of them depend on others is decided by the next factorisation, and those stay out
-  /// of the later ones too, until asked again. Within a step a row would else come and go by the rounding of a pivot.
+  /// of the later ones too, until asked again. Within a step a row would else come and go by the rounding of a pivot;
+  /// asked again, a row that was out stays so up to twice the bound.
   void decide_rank(const std::vector<char>& is_friction);
   /// In place: x = A⁻¹ x. `rows`: those factored.
   void solve(const std::vector<SchurRow>& rows, double* x) const;
@@ -42,6 +49,8 @@ public:
   [[nodiscard]] bool is_small() const { return n_ <= k_max_dense; }
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
   [[nodiscard]] bool is_dependent(int row) const { return inverse_d_[position_[row]] == 0.0; }
+  /// Is it one of friction that was decided to stay out?
+  [[nodiscard]] bool is_left_out(int row) const { return !out_.empty() && out_[row] != 0; }
   /// Smallest pivot kept, relative to its diagonal, in the last factorisation: near 0 close to a singularity.
   /// A chain's falls as one over its length wherever it is: beyond k_usual_rows that is allowed for.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_ * length_; }
@@ -52,6 +61,8 @@ public:
   /// Below this one a solution is refined: the square root of what elimination can lose.
   static constexpr double k_refined_pivot = 1e-4;
   static constexpr double k_usual_rows = 50.0;
+  /// A row of friction depends on others if what it is beyond them is below this fraction of its length.
+  static constexpr double k_dependent = 1e-6;
 
 private:
   void factor_as_is(const std::vector<SchurRow>& rows, double shift);
@@ -80,12 +91,13 @@ private:
   double shift_ = 0.0;
   /// Is the row, whose pivot is `d` of `diagonal`, to be left out?
   [[nodiscard]] bool leaves_out(int row, double d, double diagonal) {
-    if (!out_.empty() && out_[row] != 0) return true;
-    return !(d > k_pivot_tolerance * diagonal);
+    return is_left_out(row) || !(d > k_pivot_tolerance * diagonal);
   }
-  void keep_rank();
+  void keep_rank(const std::vector<SchurRow>& rows, double shift);
+  [[nodiscard]] bool is_in_doubt(const std::vector<SchurRow>& rows) const;
+  [[nodiscard]] std::vector<char> dependent_friction(const std::vector<SchurRow>& rows) const;
 
-  std::vector<char> can_stay_out_, out_; ///< per row; empty: none
+  std::vector<char> can_stay_out_, out_, was_out_; ///< per row; empty: none
   bool is_rank_open_ = false;
   int dependent_count_ = 0;
   double smallest_pivot_ = 1.0;

@@ -3,6 +3,7 @@
 #include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace steplap {
 
@@ -10,8 +11,10 @@ namespace steplap {
 void Dynamics::find_sharing() {
   Layout& layout = *layout_;
   for (int i = 1; i < system_.body_count(); ++i) place_member(i);
-  if (layout.sharing && layout.sharing->holds_at(motion_)) return;
-  layout.sharing = std::make_unique<LoadSharing>(system_, *state_, motion_);
+  std::vector<char> left_out(system_.friction_row_count, 0);
+  for (const HeldRow& held : layout.held_rows) left_out[held.friction_row] = layout.schur.is_dependent(held.row) ? 1 : 0;
+  if (layout.sharing && layout.sharing->holds_at(motion_, left_out)) return;
+  layout.sharing = std::make_unique<LoadSharing>(system_, *state_, motion_, std::move(left_out));
   if (layout.sharing->has_friction()) layout.is_merged_watched = true;
 }
 

@@ -11,6 +11,13 @@ namespace {
 // above the rounding of a projected velocity, far below any motion.
 constexpr double k_rest_velocity = 1e-12;
 constexpr double k_projection_tolerance = 1e-12; // m, rad
+// Of the velocities that make up a relative one: what the instant of an event and projection leave of zero.
+constexpr double k_rest_share = 1e-9;
+
+// Velocity of a body's point, with what it turns by.
+double point_speed(const Motion<double>& m, const Pair<double>& lever, double couple) {
+  return std::abs(m.vx - m.omega * lever.y) + std::abs(m.vy + m.omega * lever.x) + std::abs(couple * m.omega);
+}
 
 } // namespace
 
@@ -128,6 +135,7 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
     if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
     unit.friction->change_place(dynamics_.evaluation(), friction);
     modes_.set_anchor(state, f);
+    if (unit.friction->dimension() == 1) move_on(state, f);
   } else if (friction.phase == FrictionPhase::stick) {
     friction.phase = FrictionPhase::slip;
     friction.has_slipped = friction.is_starting = true;
@@ -140,6 +148,25 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
     modes_.end_slip(state, f);
     friction.phase = FrictionPhase::stick; // or it reverses: the mode problem tells
   }
+}
+
+// Element f acts at another place, on another point of its bodies: where that moves friction slides as it does. What held at
+// the old place cannot hold there without a blow, and what slid may slide the other way.
+void EventHandler::move_on(State& state, int f) {
+  FrictionState& friction = state.friction[f];
+  const FrictionElement& element = *system_.frictions[f].friction;
+  const bool is_acting = friction.phase == FrictionPhase::stick || friction.phase == FrictionPhase::slip;
+  if (!is_acting || element.never_slips()) return;
+  const RowSpec& row = *element.rows(friction);
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  const auto m = evaluate_row<false>(row, motion.data());
+  const double speed = point_speed(motion[row.a], m.lever_a, m.couple) + point_speed(motion[row.b], m.lever_b, m.couple);
+  if (std::abs(m.rate) <= k_rest_velocity + k_rest_share * speed) return;
+  friction.phase = FrictionPhase::slip;
+  friction.has_slipped = true;
+  friction.is_starting = false;
+  element.aim(friction, &m.rate);
 }
 
 // Friction gains or loses its normal force with the contacts.
@@ -239,7 +266,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
   const bool is_contact_changed = switch_units(state, fired, events);
   bool is_any_at_rest = false;
   const LoadSharing* const sharing = dynamics_.sharing();
-  std::vector<char> is_released(sharing ? sharing->groups().size() : 0, 0);
+  std::vector<char> is_released(sharing ? sharing->groups().size() : 0, 0), has_fired(system_.frictions.size(), 0);
   for (const int slot : fired) {
     const int f = friction_of_slot_[slot];
     if (f < 0) continue;
@@ -249,6 +276,11 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
       if (!is_released[group]) modes_.release(state, group);
       is_released[group] = 1;
       continue;
+    }
+    // What both slots of an element say was said of the phase before: the first one changes it.
+    if (slot != system_.frictions[f].watch + 2) {
+      if (has_fired[f]) continue;
+      has_fired[f] = 1;
     }
     fire_friction(state, f, slot);
     is_any_at_rest = is_any_at_rest || state.friction[f].phase == FrictionPhase::stick;

@@ -11,8 +11,9 @@ namespace steplap {
 namespace {
 
 // Rows of A, scaled to a diagonal of 1, that are beyond the others by less than this depend on them.
-constexpr double k_dependent = 1e-11;
+constexpr double k_dependent = 1e-12; // a square: SchurSolver::k_dependent
 constexpr double k_rounding = 1e-13; // of the terms of g_i
+constexpr int k_most_steps = 2; // to the minimum of one set of free variables: what these leave is rounding
 
 class ActiveSet {
 public:
@@ -62,8 +63,15 @@ private:
     factor.compute(own);
     VecX direction = factor.solve(right);
     const VecX left = right - own * direction; // in the null space, if not rounding
-    bool is_endless = false;
-    for (Eigen::Index i = 0; i < m; ++i) is_endless = is_endless || pulls(free[i], left[i] / scale[i]);
+    // First to the minimum where there is one: as long as the way there is far, what is left is its rounding, too.
+    bool is_near = steps_to_minimum_ >= k_most_steps, is_endless = false, is_far = false;
+    for (Eigen::Index i = 0; i < m; ++i) {
+      is_far = is_far || pulls(free[i], (right[i] - left[i]) / scale[i]);
+      is_endless = is_endless || pulls(free[i], left[i] / scale[i]);
+    }
+    is_near = is_near || !is_far;
+    is_endless = is_endless && is_near;
+    if (is_near && !is_endless) return false;
     if (is_endless) direction = left;
     direction = direction.cwiseProduct(scale);
     double step = is_endless ? std::numeric_limits<double>::infinity() : 1.0;
@@ -78,22 +86,14 @@ private:
     }
     if (!std::isfinite(step)) return false;
     for (Eigen::Index i = 0; i < m; ++i) w_[free[i]] += step * direction[i];
-    if (first < 0) return is_progress(g);
+    if (first < 0) {
+      ++steps_to_minimum_;
+      return true;
+    }
+    steps_to_minimum_ = 0;
     w_[free[first]] = direction[first] > 0.0 ? c_[free[first]] : -c_[free[first]];
     at_bound_[free[first]] = direction[first] > 0.0 ? 1 : -1;
     return true;
-  }
-
-  // A minimum that is as near as rounding lets it be is one.
-  [[nodiscard]] bool is_progress(const VecX& before) const {
-    const VecX now = gradient();
-    double old_pull = 0.0, pull = 0.0;
-    for (Eigen::Index i = 0; i < n_; ++i)
-      if (at_bound_[i] == 0) {
-        old_pull = std::max(old_pull, std::abs(before[i]));
-        pull = std::max(pull, std::abs(now[i]));
-      }
-    return pull < 0.5 * old_pull;
   }
 
   // The variable at its bound that is pulled back inside most.
@@ -110,6 +110,7 @@ private:
     }
     if (worst < 0) return false;
     at_bound_[worst] = 0;
+    steps_to_minimum_ = 0;
     return true;
   }
 
@@ -117,6 +118,7 @@ private:
   const VecX &b_, &c_, &rounding_;
   Eigen::Index n_;
   VecX w_;
+  int steps_to_minimum_ = 0; ///< of the present set
   std::vector<signed char> at_bound_; ///< −1, 1: at the lower or upper bound; 0: free
 };
 

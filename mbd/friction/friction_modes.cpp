@@ -311,9 +311,22 @@ void FrictionModes::let_go_moving(State& state) {
   if (is_any) (void)violated(state);
 }
 
+// Rows that hold together at rest, and have crept apart since they were anchored by less than counts as motion: they hold
+// where they are.
+void FrictionModes::anchor_resting(State& state) const {
+  const LoadSharing* const sharing = dynamics_.sharing();
+  if (!sharing) return;
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    const bool is_discordant = state.friction[f].phase == FrictionPhase::stick && sharing->group_of(f) >= 0 &&
+                               dynamics_.watch()[system_.frictions[f].watch + 1] < 0.0;
+    if (is_discordant && is_at_rest(state, f)) set_anchor(state, f);
+  }
+}
+
 void FrictionModes::decide(State& state) {
   std::vector<int> candidates = violated(state);
   if (candidates.empty()) return;
+  anchor_resting(state);
   let_go_moving(state);
   candidates = violated(state);
   if (candidates.empty()) return;

@@ -43,6 +43,7 @@ public:
 private:
   [[nodiscard]] std::vector<int> violated(const State& state);
   void solve(State& state, const std::vector<int>& candidates);
+  void anchor_resting(State& state) const;
   void let_go_moving(State& state);
   void settle_candidates(State& state, std::vector<int> candidates);
   [[nodiscard]] bool release_overloaded(State& state) const;

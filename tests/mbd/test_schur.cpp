@@ -142,3 +142,63 @@ TEST_CASE("constraint equations: locked coordinates carry no compliance; a row o
   CHECK(solve(solver, p, VecX::Ones(1))[0] == 0.0);
   CHECK(solver.is_dependent(0));
 }
+
+namespace {
+
+// Feet of one body of 2 kg and 0.3 kg m² that stands on a level at a tilt: their slides differ by tilt times distance.
+std::vector<SchurRow> feet(const std::vector<double>& at, double tilt) {
+  std::vector<SchurRow> rows;
+  for (const double x : at) {
+    SchurRow row;
+    row.body[0] = 0;
+    const double w[3] = {0.5, 0.5, 1.0 / 0.3}, j[3] = {1.0, 0.0, 0.4 + tilt * x};
+    for (int c = 0; c < 3; ++c) {
+      row.w[0][c] = w[c];
+      row.j[0][c] = j[c];
+      row.wj[0][c] = w[c] * j[c];
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+int left_out(const SchurSolver& solver) {
+  int count = 0;
+  for (int r = 0; r < solver.size(); ++r) {
+    CHECK(solver.is_left_out(r) == solver.is_dependent(r));
+    count += solver.is_left_out(r) ? 1 : 0;
+  }
+  return count;
+}
+
+} // namespace
+
+// What a foot is beyond another one d away, of its length: tilt d sqrt(m J)/(J + m r²) = 1.25 tilt d here.
+TEST_CASE("constraint equations: which feet depend on others is told by what they are beyond them, in whatever order they come") {
+  for (const std::vector<double>& at : {std::vector<double>{-0.5, 0.0, 0.5}, {0.0, 0.5, -0.5}, {0.5, -0.5, 0.0}, {-0.5, 0.49, 0.5}})
+    for (const double tilt : {0.0, 1e-15, 1e-9, 4e-7, 1.5e-6, 1e-5, 1e-3}) {
+      CAPTURE(tilt);
+      SchurSolver solver;
+      const std::vector<SchurRow> rows = feet(at, tilt);
+      solver.analyze(rows);
+      solver.decide_rank({1, 1, 1});
+      solver.factor(rows);
+      CHECK(left_out(solver) == (tilt < 5e-7 ? 2 : 1)); // two feet hold two coordinates, if they hold more than one
+    }
+}
+
+TEST_CASE("constraint equations: asked again at nearly the same place, the same rows stay out") {
+  SchurSolver solver;
+  const std::vector<double> at = {-0.5, 0.5};
+  solver.analyze(feet(at, 0.0));
+  const auto decided = [&](double tilt) {
+    solver.decide_rank({1, 1});
+    solver.factor(feet(at, tilt));
+    return left_out(solver);
+  };
+  CHECK(decided(5e-7) == 1);
+  CHECK(decided(1e-6) == 1); // beyond the bound by a little
+  CHECK(decided(3e-6) == 0);
+  CHECK(decided(1e-6) == 0); // and from the other side
+  CHECK(decided(3e-7) == 1);
+}
