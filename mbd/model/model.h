@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -83,13 +84,19 @@ struct ElementKind {
   }
 };
 
+/// A copy of an object of that kind. Throws std::logic_error for a kind that does not say how: ElementKind::holds.
+template <class Kind, class Object> std::shared_ptr<Object> copied(const Kind& kind, const Object& object) {
+  if (!kind.copy) throw std::logic_error("the kind '" + kind.name + "' does not say what it holds: call holds<T>()");
+  return kind.copy(object);
+}
+
 /// An element of a kind; a copy has an element of its own.
 struct ElementEntry {
   const ElementKind* kind = nullptr;
   std::shared_ptr<Element> element;
 
   ElementEntry(const ElementKind* kind_, std::shared_ptr<Element> element_) : kind(kind_), element(std::move(element_)) {}
-  ElementEntry(const ElementEntry& other) : kind(other.kind), element(other.kind->copy(*other.element)) {}
+  ElementEntry(const ElementEntry& other) : kind(other.kind), element(copied(*other.kind, *other.element)) {}
   ElementEntry(ElementEntry&&) = default;
   ElementEntry& operator=(const ElementEntry& other) { return *this = ElementEntry(other); }
   ElementEntry& operator=(ElementEntry&&) = default;
@@ -102,7 +109,7 @@ struct SignalEntry {
   std::shared_ptr<SignalDefinition> definition;
 
   SignalEntry(const SignalKind* kind_, std::shared_ptr<SignalDefinition> definition_) : kind(kind_), definition(std::move(definition_)) {}
-  SignalEntry(const SignalEntry& other) : kind(other.kind), definition(other.kind->copy(*other.definition)) {}
+  SignalEntry(const SignalEntry& other) : kind(other.kind), definition(copied(*other.kind, *other.definition)) {}
   SignalEntry(SignalEntry&&) = default;
   SignalEntry& operator=(const SignalEntry& other) { return *this = SignalEntry(other); }
   SignalEntry& operator=(SignalEntry&&) = default;
@@ -195,7 +202,7 @@ struct TableEntry {
   std::shared_ptr<Element> table;
 
   TableEntry(const TableKind* kind_, std::shared_ptr<Element> table_) : kind(kind_), table(std::move(table_)) {}
-  TableEntry(const TableEntry& other) : kind(other.kind), table(other.kind->copy(*other.table)) {}
+  TableEntry(const TableEntry& other) : kind(other.kind), table(copied(*other.kind, *other.table)) {}
   TableEntry(TableEntry&&) = default;
   TableEntry& operator=(const TableEntry& other) { return *this = TableEntry(other); }
   TableEntry& operator=(TableEntry&&) = default;

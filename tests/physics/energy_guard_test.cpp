@@ -65,7 +65,7 @@ const ElementKind& faulty_kind() {
     k.fields.add("body", &Faulty::body).as(FieldType::body).required().doc("body");
     k.fields.add("told", &Faulty::told).doc("share");
     k.fields.add("push", &Faulty::push).doc("force");
-    k.create = [] { return std::shared_ptr<Element>(std::make_shared<Faulty>()); };
+    k.holds<Faulty>();
     k.compile = [](const Element& element, SystemBuilder& builder) {
       const auto& e = static_cast<const Faulty&>(element);
       builder.group<FaultyGroup>().entries.push_back({builder.body(e.body), e.told, e.push});
