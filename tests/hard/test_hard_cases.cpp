@@ -6,9 +6,22 @@
 
 using namespace steplap::hard;
 
+namespace {
+
+// Under the sanitizers each case is run by some of the methods in turn: that they are right is for the optimised build.
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::size_t k_every = 5;
+#else
+constexpr std::size_t k_every = 1;
+#endif
+
+} // namespace
+
 TEST_CASE("hard cases: every integrator gives the known answer") {
+  std::size_t turn = 0;
   for (const HardCase& hard_case : hard_cases())
     for (const std::string& integrator : integrators()) {
+      if (++turn % k_every != 0) continue;
 #ifdef __SANITIZE_ADDRESS__ // some 3e5 steps, each with a dozen evaluations
       if (hard_case.file == "belt_cycles" && is_first_order(integrator)) continue;
 #endif
