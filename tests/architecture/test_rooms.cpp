@@ -113,6 +113,20 @@ TEST_CASE("the circle of headers is found where there is one") {
   CHECK(circle_from("a", includes, way, done) == "b -> c -> b");
 }
 
+// Whoever uses the installed library needs the packages of no other.
+TEST_CASE("headers of the library include no other maker's than Eigen's") {
+  int headers = 0;
+  for (const Source& source : all_sources()) {
+    if (!source.path.ends_with(".h") || source.path.starts_with("tools/")) continue;
+    ++headers;
+    for (const std::string& name : source.foreign) { // those of the standard library have neither folder nor ending
+      const bool is_foreign = name.find_first_of("/.") != std::string::npos && !name.starts_with("Eigen/");
+      CHECK_MESSAGE(!is_foreign, source.path << " includes " << name);
+    }
+  }
+  CHECK(headers > 80);
+}
+
 TEST_CASE("a heavy header is known to one file") {
   for (const std::string& heavy : k_heavy) {
     std::vector<std::string> users;

@@ -1,9 +1,12 @@
 // Models as values: copies of their own, fields by paths, completed as from a file, and systems of one model with many
 // values, side by side.
+#include "elements/load.h"
+#include "elements/spring_damper.h"
 #include "mbd/analysis/assembly.h"
 #include "mbd/model/completion.h"
 #include "mbd/system/instance.h"
 #include "mbd/io/reader.h"
+#include "mbd/model/model_building.h"
 #include "mbd/model/model_path.h"
 #include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
@@ -213,9 +216,7 @@ TEST_CASE("a model made in code is completed as one from a file") {
   on_ground.at = Vec2(0.0, 0.0);
   on_ground.angle = 0.1;
   model.markers = {on_arm, on_ground};
-  for (const SignalKind* kind : catalogue.signals)
-    if (kind->name == "harmonics") model.signals.emplace_back(kind, kind->create());
-  model.signals.front().definition->name = "push";
+  add_signal(model, "harmonics", "push");
   for (const auto& [kind, name] : {std::pair("revolute", "pin"), {"spring_damper", "tie"}, {"load", "wind"}}) {
     const ElementKind* const k = catalogue.find_element(kind);
     model.elements.emplace_back(k, k->create()).element->name = name;
@@ -233,6 +234,21 @@ TEST_CASE("a model made in code is completed as one from a file") {
   const Model whole = completed(model);
   CHECK(are_same_bytes(run_of(*compile(whole), whole), run_of(*compile(from_file), from_file)));
   CHECK(model.markers.size() == 2); // what was given stays
+}
+
+TEST_CASE("entries made in code are of the kind that is named, or refused") {
+  Model model;
+  SpringDamper& tie = add_element<SpringDamper>(model, spring_damper_kind(), "tie");
+  tie.stiffness = 300.0;
+  for (int i = 0; i < 50; ++i) (void)add_element<Load>(model, load_kind(), "load " + std::to_string(i));
+  CHECK(&tie == model.elements.front().element.get()); // it stays where it is
+  CHECK(number_of(model, "element.tie.stiffness") == 300.0);
+  CHECK_THROWS_AS(add_element<Load>(model, spring_damper_kind(), "wrong"), std::bad_cast);
+  CHECK(model.elements.size() == 51);
+  add_signal(model, "haversine", "braking");
+  set_value(model, "signal.braking.peak", -5.9);
+  CHECK(number_of(model, "signal.braking.peak") == -5.9);
+  CHECK(says(message_of([&] { add_signal(model, "haversin", "x"); }), "no kind of signal 'haversin' (did you mean 'haversine'?)"));
 }
 
 TEST_CASE("systems of one model with different values run side by side as one after the other") {

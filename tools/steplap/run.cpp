@@ -1,11 +1,11 @@
 #include "tools/steplap/run.h"
 
 #include "mbd/analysis/assembly.h"
+#include "mbd/analysis/start.h"
 #include "mbd/io/reader.h"
 #include "mbd/io/presentation.h"
 #include "tools/steplap/catalogue.h"
 
-#include <algorithm>
 #include <filesystem>
 
 namespace steplap {
@@ -40,17 +40,11 @@ load_models(const std::vector<std::string>& paths, const std::vector<std::string
 }
 
 Equilibrium equilibrium_of(const LoadedModel& loaded) {
-  const State given = assembled_start(*loaded.system, loaded.assembled);
-  State still = given;
-  std::fill(still.v.begin(), still.v.end(), 0.0);
-  Equilibrium found = find_equilibrium(*loaded.system, still);
-  found.state.v = given.v;
-  return found;
+  return equilibrium_at_start(*loaded.system, loaded.assembled);
 }
 
 State initial_state_of(const LoadedModel& loaded) {
-  if (loaded.model.simulation.initial == "equilibrium") return equilibrium_of(loaded).state;
-  return assembled_start(*loaded.system, loaded.assembled);
+  return start_of(loaded.model, *loaded.system, loaded.assembled);
 }
 
 Run run_model(std::shared_ptr<const LoadedModel> loaded, std::function<void(double t)> progress) {

@@ -1,0 +1,55 @@
+// How far does the block slide on the vehicle that brakes, if the deck holds better or worse? One model, many values,
+// on all processors:
+//   friction_study braked_block.toml
+#include <steplap/mbd/analysis/start.h>
+#include <steplap/mbd/io/reader.h>
+#include <steplap/mbd/model/completion.h>
+#include <steplap/mbd/simulation/simulation.h>
+#include <steplap/mbd/system/instance.h>
+#include <steplap/transformer/catalog.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <thread>
+#include <vector>
+
+using namespace steplap;
+
+struct Sample {
+  double friction = 0.0;
+  double slide = 0.0; // m, forwards
+};
+
+// A system and a run of its own: nothing is shared but models, which nobody changes.
+double slide_with(double friction, const Model& given, const Model& whole) {
+  const auto system = instantiate(given, {{"element.deck friction.static_friction", friction}});
+  const RunResult run = simulate(*system, start_of(whole, *system), options_of(whole));
+  return run.trajectory->series("deck friction.slide").back();
+}
+
+int main(int argc, char** argv) try {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: friction_study braked_block.toml\n");
+    return 2;
+  }
+  const Model given = read_given_model(argv[1], transformer_catalog());
+  const Model whole = completed(given);
+
+  std::vector<Sample> samples;
+  for (int percent = 20; percent <= 70; percent += 2) samples.push_back({percent / 100.0});
+
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < samples.size(); i = next++)
+      samples[i].slide = slide_with(samples[i].friction, given, whole);
+  };
+  std::vector<std::thread> threads(std::max(1u, std::thread::hardware_concurrency()));
+  for (std::thread& thread : threads) thread = std::thread(work);
+  for (std::thread& thread : threads) thread.join();
+
+  for (const Sample& sample : samples) std::printf("friction %.2f  slides %7.2f mm\n", sample.friction, 1e3 * sample.slide);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
