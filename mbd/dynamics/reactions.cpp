@@ -1,0 +1,167 @@
+// Dynamics: what follows from accelerations: wrenches of joints inside clusters, the watch values of those that may give
+// way, and the reactions of all elements.
+#include "mbd/dynamics/dynamics.h"
+
+#include <algorithm>
+
+namespace steplap {
+
+void Dynamics::body_accelerations(const double* dy) {
+  const Layout& layout = *layout_;
+  const int n = coordinate_count();
+  for (int i = 1; i < system_.body_count(); ++i) {
+    const Placement& place = layout.placements[i];
+    const double* a = dy + n + 3 * place.cluster;
+    double* out = &acceleration_[3 * i];
+    std::copy(a, a + 3, out);
+    if (place.is_trivial) continue;
+    const Motion<double>& k = motion_[layout.clusters[place.cluster].motion];
+    const Pair<double> lever = to_ground(k, place.offset);
+    out[0] += -a[2] * lever.y - k.omega * k.omega * lever.x;
+    out[1] += a[2] * lever.x - k.omega * k.omega * lever.y;
+  }
+}
+
+double* Dynamics::joint_multipliers(const RigidEdge& edge) {
+  if (edge.block >= 0) return &row_force_[system_.row_blocks[edge.block].first];
+  return &friction_force_[system_.frictions[edge.friction].row];
+}
+
+// The joints inside clusters in their present places (rows of friction move to another foot, or anchor).
+void Dynamics::place_edges() {
+  Layout& layout = *layout_;
+  layout.edge_geometry.resize(layout.edges.size());
+  for (std::size_t e = 0; e < layout.edges.size(); ++e) {
+    const RigidEdge& edge = layout.edges[e];
+    const RowSpec* const rows =
+        edge.block >= 0 ? &system_.rows[system_.row_blocks[edge.block].first]
+                        : system_.frictions[edge.friction].friction->rows(state_->friction[edge.friction]);
+    const auto turned = [](const Placement& p, const Vec2& local) {
+      return Pair<double>{p.c * local.x() - p.s * local.y(), p.s * local.x() + p.c * local.y()};
+    };
+    const Vec2 lever = layout.placements[edge.child].offset - layout.placements[edge.parent].offset;
+    const Placement& a = layout.placements[rows[0].a];
+    const Placement& b = layout.placements[rows[0].b];
+    EdgeGeometry& geometry = layout.edge_geometry[e];
+    geometry.lever = {lever.x(), lever.y()};
+    for (int r = 0; r < 2; ++r) geometry.axis[r] = turned(b, rows[r].direction);
+    geometry.point = turned(a, rows[0].point_a);
+    geometry.is_child_a = rows[0].a == edge.child;
+  }
+}
+
+// Newton–Euler from the leaves of each merged cluster, in its axes: what an edge carries is what its subtree lacks.
+void Dynamics::merged_wrenches(const double* dy) {
+  const Layout& layout = *layout_;
+  const double* const acceleration = dy + coordinate_count();
+  const auto in_cluster = [](const Motion<double>& k, double x, double y) {
+    return Pair<double>{k.c * x + k.s * y, k.c * y - k.s * x};
+  };
+  for (const RigidEdge& edge : layout.edges) {
+    const BodyData& body = system_.bodies[edge.child];
+    const Placement& place = layout.placements[edge.child];
+    const Motion<double>& k = motion_[layout.clusters[place.cluster].motion];
+    const double* const a = acceleration + 3 * place.cluster;
+    const BodyForce& f = force_[edge.child];
+    // m (R a_c + α ẑ×r − ω² r − g) less the forces; R the same for all.
+    const Pair<double> at_centre = in_cluster(k, body.mass * (a[0] - system_.gravity.x()) - f.fx,
+                                              body.mass * (a[1] - system_.gravity.y()) - f.fy);
+    const double turning = body.mass * a[2], centripetal = body.mass * k.omega * k.omega;
+    const double x = place.offset.x(), y = place.offset.y();
+    wrench_[edge.child] = {at_centre.x - turning * y - centripetal * x, at_centre.y + turning * x - centripetal * y,
+                           body.inertia * a[2] - f.m};
+  }
+  for (const int r : layout.carried_rows) {
+    const RowSpec& spec = *layout.active[r].spec;
+    const auto m = evaluate_row<false>(spec, motion_.data());
+    const int body[2] = {spec.a, spec.b};
+    for (int side = 0; side < 2; ++side) {
+      if (!layout.is_carried[body[side]]) continue;
+      const double f = side == 0 ? -right_side_[r] : right_side_[r];
+      const Motion<double>& k = motion_[layout.clusters[layout.placements[body[side]].cluster].motion];
+      const Pair<double> force = in_cluster(k, f * m.direction.x, f * m.direction.y);
+      BodyForce& w = wrench_[body[side]];
+      w.fx += force.x;
+      w.fy += force.y;
+      w.m += f * (cross(side == 0 ? m.lever_a : m.lever_b, m.direction) + m.couple);
+    }
+  }
+  for (std::size_t e = 0; e < layout.edges.size(); ++e) {
+    const RigidEdge& edge = layout.edges[e];
+    const EdgeGeometry& geometry = layout.edge_geometry[e];
+    const BodyForce& on_child = wrench_[edge.child];
+    const Pair<double> force{on_child.fx, on_child.fy};
+    const double at_parent = on_child.m + cross(geometry.lever, force); // its couple about the parent's centre
+    if (layout.is_carried[edge.parent]) {
+      BodyForce& w = wrench_[edge.parent];
+      w.fx += force.x;
+      w.fy += force.y;
+      w.m += at_parent;
+    }
+    // Along the rows (two axes fixed in b, then the angle): the wrench on a about the joint's point.
+    const double sign = geometry.is_child_a ? 1.0 : -1.0;
+    double* const lambda = joint_multipliers(edge);
+    lambda[0] = sign * dot(force, geometry.axis[0]);
+    lambda[1] = sign * dot(force, geometry.axis[1]);
+    lambda[2] = sign * ((geometry.is_child_a ? on_child.m : at_parent) - cross(geometry.point, force));
+  }
+}
+
+void Dynamics::watch_merged(const double* dy) {
+  if (!layout_->is_merged_watched) return;
+  was_merged_near_ = is_merged_near_;
+  is_merged_near_ = watch_joints(dy);
+}
+
+void Dynamics::watch_merged_if_near(const double* dy, bool always) {
+  const bool has_groups = sharing() && !sharing()->groups().empty();
+  if (is_merged_near_ || was_merged_near_ || has_groups || (always && layout_->is_merged_watched)) (void)watch_joints(dy);
+}
+
+// Is any near its limit?
+bool Dynamics::watch_joints(const double* dy) {
+  if (layout_->sharing) {
+    take_solved_friction();
+    body_accelerations(dy); // for the discord of groups
+  }
+  merged_wrenches(dy);
+  bool is_near = watch_groups();
+  for (const int f : layout_->merged) {
+    if (is_shared(f)) continue;
+    const FrictionUnit& unit = system_.frictions[f];
+    double* watch = &watch_[unit.watch];
+    unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row], watch);
+    if (std::min(watch[0], watch[1]) < k_near_limit) is_near = true;
+  }
+  return is_near;
+}
+
+Snapshot Dynamics::snapshot(const double* dy) {
+  const Layout& layout = *layout_;
+  for (int i = 1; i < system_.body_count(); ++i) place_member(i); // also those not needed so far
+  if (layout.sharing) take_solved_friction();
+  body_accelerations(dy);
+  merged_wrenches(dy);
+  const int n = coordinate_count();
+  for (std::size_t r = 0; r < layout.active.size(); ++r)
+    if (layout.active[r].row >= 0) row_force_[layout.active[r].row] = right_side_[r];
+  for (const Lock& lock : layout.locks) row_force_[lock.row] = lock_reaction(lock, dy + n);
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
+    const FrictionPhase phase = state_->friction[f].phase;
+    if (phase == FrictionPhase::stick || phase == FrictionPhase::slip) continue;
+    const FrictionUnit& unit = system_.frictions[f];
+    std::fill_n(&friction_force_[unit.row], unit.friction->dimension(), 0.0);
+  }
+  settle_loads();
+  Snapshot s;
+  s.t = evaluation_.t;
+  s.motion = motion_.data();
+  s.acceleration = acceleration_.data();
+  s.evaluation = &evaluation_;
+  s.row_force = row_force_.data();
+  s.friction_force = friction_force_.data();
+  s.memory = state_->memory.data();
+  return s;
+}
+
+} // namespace steplap
