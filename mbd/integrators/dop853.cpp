@@ -8,10 +8,6 @@ namespace steplap {
 
 namespace {
 
-// The stages that are looked at for events, 0.118, 0.333, 0.25, 0.6 and 0.857 of a step: the others lie near these, and
-// the first two are approximations of a low order.
-constexpr bool is_watched(std::size_t stage) { return stage == 3 || stage == 5 || stage == 6 || stage == 9 || stage == 10; }
-
 class Dop853 final : public ExplicitPair {
 public:
   Dop853(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
@@ -47,7 +43,7 @@ protected:
     using namespace dop853;
     is_dense_ready_ = false;
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (stage<a, I + 1, is_watched(I + 1)>(dynamics, c[I + 1]), ...);
+      (stage<a, I + 1>(dynamics, c[I + 1]), ...);
     }(std::make_index_sequence<11>{});
     combine<a, 12, 12>(y0_.data(), h_, k_.data(), stride_, n_, y1_.data());
     weighted_sum<e5, 12>(k_.data(), stride_, n_, scratch_.data());
@@ -61,9 +57,9 @@ protected:
 private:
   void prepare_dense(Dynamics& dynamics) {
     using namespace dop853;
-    stage<a, 13, false>(dynamics, c[13]);
-    stage<a, 14, false>(dynamics, c[14]);
-    stage<a, 15, false>(dynamics, c[15]);
+    stage<a, 13>(dynamics, c[13]);
+    stage<a, 14>(dynamics, c[14]);
+    stage<a, 15>(dynamics, c[15]);
     double* r = r_.data();
     const int m = stride_;
     for (int i = 0; i < n_; ++i) {

@@ -24,11 +24,11 @@ protected:
   virtual double try_step(Dynamics& dynamics) = 0;
   void on_restart(Dynamics& dynamics) override;
 
-  template <const auto& Rows, std::size_t Row, bool IsWatched = true>
+  template <const auto& Rows, std::size_t Row>
   void stage(Dynamics& dynamics, double c) {
     combine<Rows, Row, Row>(y0_.data(), h_, k_.data(), stride_, n_, scratch_.data());
     dynamics.rates(t0_ + c * h_, scratch_.data(), k(Row));
-    if constexpr (IsWatched) note_stage_watches(dynamics, k(Row), c);
+    note_stage_watches(dynamics, k(Row), c);
   }
   /// h ‖k_i − k_j‖/‖y_i − y_j‖ of two stages at the step's end: the fastest rate in the steps' direction
   /// (Hairer, Wanner, Solving ODEs II, IV.2). `difference`: y_i − y_j.
