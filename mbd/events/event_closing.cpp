@@ -48,7 +48,6 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
     // A kink or a pole inside the bracket cannot stall the search for long.
     if (is_closed) theta = first_secant();
     else if (aim_.is_settled && looks < k_free_looks) theta = is_below ? aim_.root - aim_.reach : aim_.root + aim_.reach;
-    else if (looks == 0 && width == 1.0) theta = look_by_stages(integrator.watch_nodes());
     else if (since_halved < k_patience && looks < k_free_looks) theta = next_look(theta);
     else aim_ = at_first;
     const double edge = std::min(0.5 * width, 0.5 * spacing);
@@ -68,16 +67,6 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
     since_halved = high_.theta - low_.theta < 0.5 * halved ? 0 : since_halved + 1;
     if (since_halved == 0) halved = high_.theta - low_.theta;
   }
-}
-
-// The bracket is the whole step: its stages tell more than its ends.
-double EventFinder::look_by_stages(const WatchNodes& nodes) {
-  double theta = 1.0;
-  for (const int slot : fired_)
-    theta = std::min(theta, nodes.first_fall(slot, low_.watch[slot], high_.watch[slot]));
-  aim_.root = theta;
-  aim_.looks = 1;
-  return theta;
 }
 
 double EventFinder::first_secant() const {

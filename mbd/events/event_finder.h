@@ -67,7 +67,6 @@ private:
   // --- event_closing.cpp
   void close_in(Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] double next_look(double middle);
-  [[nodiscard]] double look_by_stages(const WatchNodes& nodes);
   [[nodiscard]] double first_secant() const;
 
   void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look);

@@ -1,7 +1,5 @@
 #include "mbd/integrators/watch_nodes.h"
 
-#include "mbd/math/root_estimate.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +10,6 @@ namespace {
 
 // A kink between two places shows in the differences at both as half of what would bound it there; and as much again.
 constexpr double k_curvature_safety = 4.0;
-constexpr double k_first_look = 1e-6; // of the step: stages are not known better
 
 // Least of chord − ½ M s (g − s) over 0 < s < g for values a, b at its ends: positive?
 bool is_positive_between(double a, double b, double g, double m) {
@@ -117,20 +114,6 @@ bool WatchNodes::crosses_once(int slot) const {
     is_negative = is_negative || w < 0.0;
   }
   return true;
-}
-
-double WatchNodes::first_fall(int slot, double watch0, double watch1) const {
-  const int last = count_ + 1;
-  const auto place = [&](int j) { return j == 0 ? 0.0 : j == last ? 1.0 : theta_[order_[j - 1]]; };
-  const auto value = [&](int j) {
-    return j == 0 ? watch0 : j == last ? watch1 : values_[static_cast<std::size_t>(order_[j - 1]) * slots_ + slot];
-  };
-  int j = 0;
-  while (j < last && !(value(j) >= 0.0 && value(j + 1) < 0.0)) ++j;
-  if (j == last) return std::numeric_limits<double>::quiet_NaN();
-  RootEstimate cubic;
-  for (int i = std::max(j - 1, 0); i <= std::min(j + 2, last); ++i) cubic.add(place(i), value(i));
-  return cubic.root(place(j), place(j + 1), k_first_look);
 }
 
 } // namespace steplap

@@ -38,9 +38,6 @@ public:
   [[nodiscard]] bool is_surely_positive(int slot, const WatchEnd& start, const WatchEnd& end) const;
   /// Does it change its sign just once, if it is positive at the start and negative at the end?
   [[nodiscard]] bool crosses_once(int slot) const;
-  /// About where it first falls below zero, by the cubic through the places around; NaN if it does not. Stages are
-  /// approximations of the motion: this is where to look first.
-  [[nodiscard]] double first_fall(int slot, double watch0, double watch1) const;
 
 private:
   void widen(const double* watch);
