@@ -1,6 +1,7 @@
 #include "mbd/dynamics/linearization.h"
 
 #include "mbd/math/dual.h"
+#include "mbd/system/law_group.h"
 
 #include <Eigen/LU>
 
@@ -18,23 +19,7 @@ constexpr double k_relative_step = 6e-6;
 constexpr double k_pose_step = 1e-7;  // m, rad: sheets are metres long
 constexpr double k_least_rate = 1e-9; // m/s, rad/s
 
-// Motion of a cluster with its pose at derivative indices first…first+2, velocity at 6+first….
-Motion<D12> seeded(const Motion<double>& m, int first) {
-  Motion<D12> s;
-  s.x = D12::variable(m.x, first);
-  s.y = D12::variable(m.y, first + 1);
-  s.theta = D12::variable(m.theta, first + 2);
-  s.c = D12(m.c);
-  s.c.d[first + 2] = -m.s;
-  s.s = D12(m.s);
-  s.s.d[first + 2] = m.c;
-  s.vx = D12::variable(m.vx, 6 + first);
-  s.vy = D12::variable(m.vy, 6 + first + 1);
-  s.omega = D12::variable(m.omega, 6 + first + 2);
-  return s;
-}
-
-// A member of that cluster.
+// A body on the cluster that moves as k.
 Motion<D12> placed(const Motion<D12>& k, const Placement& place) {
   if (place.is_trivial) return k;
   Motion<D12> m;
