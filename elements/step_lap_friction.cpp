@@ -63,9 +63,14 @@ struct StepLapFriction::Fit {
   /// What a joint that stays at its pose is asked many times.
   void prepare() {
     if (has_capacity || patch.empty()) return;
-    patch.prepare();
     capacity = steplap::capacity(patch);
     has_capacity = true;
+  }
+
+  /// For whoever the bounds by the capacity do not satisfy: many a joint that holds never comes to that.
+  const Patch& tabulated() {
+    patch.prepare();
+    return patch;
   }
 };
 
@@ -194,22 +199,21 @@ void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, con
   const UsageBounds bounds = usage_bounds(f.capacity, w);
   if (bounds.upper <= k_surely_holds) watch[0] = 1.0 - bounds.upper;
   else if (bounds.lower >= k_surely_slips) watch[0] = 1.0 - bounds.lower;
-  else watch[0] = 1.0 + k_bound_slack - required(f.patch, w, e.t).u;
+  else watch[0] = 1.0 + k_bound_slack - required(f.tabulated(), w, e.t).u;
 }
 
 double StepLapFriction::support(const Evaluation& e, const FrictionState&, const double* rate) const {
   Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
-  f.prepare();
-  return evaluate_gradient(f.patch, Vec3(rate[0], rate[1], rate[2])).h;
+  return evaluate_gradient(f.tabulated(), Vec3(rate[0], rate[1], rate[2])).h;
 }
 
 // u = W·ν/h(ν) with its maximiser ν: its gradient is ν/h.
 double StepLapFriction::gauge(const Evaluation& e, const FrictionState&, const double* wrench, double* normal) const {
   Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
-  f.prepare();
-  const RequiredPressure need = required(f.patch, Vec3(wrench[0], wrench[1], wrench[2]), e.t);
+  const Patch& patch = f.tabulated();
+  const RequiredPressure need = required(patch, Vec3(wrench[0], wrench[1], wrench[2]), e.t);
   Vec3 n = need.direction;
-  if (need.u > 0.0) n /= evaluate_gradient(f.patch, n).h;
+  if (need.u > 0.0) n /= evaluate_gradient(patch, n).h;
   Vec3::Map(normal) = n;
   return need.u;
 }
@@ -222,7 +226,9 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y &&
                        own.asked_at.theta == pose.theta;
   if (is_same) return own.answer;
-  own.answer = required(fit(s.evaluation->scratch, pose, GripLaw::holding).patch, w, s.t);
+  Fit& f = fit(s.evaluation->scratch, pose, GripLaw::holding);
+  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
+  own.answer = required(is_stuck ? f.tabulated() : f.patch, w, s.t);
   own.asked = w;
   own.asked_at = pose;
   return own.answer;
@@ -256,10 +262,10 @@ double StepLapFriction::area(const Snapshot& s) const {
 FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionState&, const double* a,
                                            const double* b, bool is_kinetic) const {
   const GripLaw law = is_kinetic ? GripLaw::sliding : GripLaw::holding;
-  const Fit& f = fit(e.scratch, anchor(e.memory), law);
+  Fit& f = fit(e.scratch, anchor(e.memory), law);
   const Mat3 mobility = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a);
   const AdmissibleWrench w =
-      admissible_wrench(f.patch, 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));
+      admissible_wrench(f.tabulated(), 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));
   insist(w.residual, k_block_residual, name_, e.t, "whether it sticks, and the wrench on its limb,");
   FrictionBlock block;
   block.is_inside = !w.slips;
@@ -293,9 +299,9 @@ double StepLapFriction::end_speed(const Evaluation& e) const {
 }
 
 void StepLapFriction::begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const {
-  const Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
+  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
   state.stage = 0;
-  set_direction(state, -required(f.patch, Vec3(wrench[0], wrench[1], wrench[2]), e.t).direction);
+  set_direction(state, -required(f.tabulated(), Vec3(wrench[0], wrench[1], wrench[2]), e.t).direction);
 }
 
 void StepLapFriction::aim(FrictionState& state, const double* rate) const {

@@ -77,8 +77,12 @@ void compile_interface(const Element& element, SystemBuilder& builder) {
   // Each on its own, so that the message can say which of the two.
   for (const bool is_yoke : {true, false}) try {
       const Sheet sheet = is_yoke ? yoke_of(e) : limb_of(e);
-      check_sheet(e, sheet);
-      static_cast<void>(make_sheet(e, sheet, is_yoke ? joint->active_part : joint->limb, builder));
+      try {
+        static_cast<void>(make_sheet(e, sheet, is_yoke ? joint->active_part : joint->limb, builder));
+      } catch (const PolygonError&) {
+        check_sheet(e, sheet); // says it in the words of the file
+        throw;
+      }
     } catch (const PolygonError& error) {
       builder.error(std::string(is_yoke ? "'yoke'" : "'limb'") + ": " + error.what());
     }

@@ -446,6 +446,7 @@ const TableKind& core_kind() {
     add_stack(k.fields);
     add_friction(k.fields);
     k.holds<Core>();
+    k.reads_masses = k.reads_elements = false; // of elements names, and outlines of sheets
     k.apply = [](const Element& table, Model& model) {
       CoreBuilder(static_cast<const Core&>(table), model).build();
     };

@@ -229,6 +229,7 @@ const TableKind& plot_kind() {
     k.fields.add("channels", &Plot::channels).required().doc("channels drawn, patterns with * and ?");
     k.fields.add("bounds", &Plot::bounds).doc("channels drawn dashed at plus and minus their value");
     k.holds<Plot>();
+    k.reads_masses = k.reads_elements = false;
     k.apply = [](const Element& table, Model& model) { add_named("plot", static_cast<const Plot&>(table), model.plots); };
     return k;
   }();
@@ -252,6 +253,7 @@ const TableKind& acceptance_kind() {
     f.add("consequence", &T::consequence).one_of({"inspect", "reject"}).doc("if the criterion is not met");
     f.add("reason", &T::reason).doc("why, or by which document");
     k.holds<T>();
+    k.reads_masses = k.reads_elements = false;
     k.apply = [](const Element& table, Model& model) {
       T criterion = static_cast<const T&>(table);
       check_criterion(criterion);

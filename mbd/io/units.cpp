@@ -173,6 +173,29 @@ std::string example(const std::string& unit) {
   return unit.empty() || unit == "*" ? "'0.5'" : "'0.5 " + unit + "'";
 }
 
+// Reading UDUNITS' database takes longer than the rest of a start: what nearly all model files are written in stands
+// here, to the bit what the database makes of it (a test compares them).
+struct UsualUnit {
+  const char* given;
+  const char* wanted;
+  double factor;
+};
+constexpr UsualUnit k_usual_units[] = {
+    {"mm", "m", 0.001},        {"m", "m", 1.0},           {"cm", "m", 0.01},        {"t", "kg", 1000.0},
+    {"kg", "kg", 1.0},         {"s", "s", 1.0},           {"ms", "s", 0.001},       {"km/h", "m/s", 1000.0 / 3600.0},
+    {"m/s", "m/s", 1.0},       {"gravity", "m/s^2", 9.80665}, {"N", "N", 1.0},      {"kN", "N", 1000.0},
+    {"MN", "N", 1e6},          {"N/m", "N/m", 1.0},       {"kN/m", "N/m", 1000.0},  {"MN/m", "N/m", 1e6},
+    {"GN/m", "N/m", 1e9},      {"N s/m", "N s/m", 1.0},   {"kN s/m", "N s/m", 1000.0}, {"MPa", "Pa", 1e6},
+    {"kPa", "Pa", 1000.0},     {"Pa", "Pa", 1.0},         {"rad/s", "rad/s", 1.0},  {"Hz", "Hz", 1.0},
+    {"gravity", "*", 9.80665}, {"m/s^2", "*", 1.0},       {"m/s", "*", 1.0},        {"km/h", "*", 1000.0 / 3600.0},
+    {"mm", "*", 0.001},        {"m", "*", 1.0},           {"kN", "*", 1000.0},      {"N", "*", 1.0}};
+
+const UsualUnit* find_usual(const std::string& given, const std::string& wanted) {
+  for (const UsualUnit& usual : k_usual_units)
+    if (given == usual.given && wanted == usual.wanted) return &usual;
+  return nullptr;
+}
+
 Quantity without_unit(double value, const std::string& text, const std::string& unit) {
   if (unit.empty() || unit == "*") return {value, ""};
   return {0.0, "'" + text + "' names no unit: write " + text + " without quotes for " + unit +
@@ -181,7 +204,13 @@ Quantity without_unit(double value, const std::string& text, const std::string& 
 
 } // namespace
 
-Quantity parse_quantity(const std::string& original, const std::string& unit) {
+std::vector<std::pair<std::string, std::string>> usual_units() {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const UsualUnit& usual : k_usual_units) pairs.emplace_back(usual.given, usual.wanted);
+  return pairs;
+}
+
+Quantity parse_quantity(const std::string& original, const std::string& unit, UnitSource source) {
   const std::string text = trimmed(original);
   const char* begin = text.c_str() + (text.rfind('+', 0) == 0 ? 1 : 0);
   const char* end = text.c_str() + text.size();
@@ -195,6 +224,10 @@ Quantity parse_quantity(const std::string& original, const std::string& unit) {
   const std::string given = trimmed(std::string(rest, end));
   if (given.empty()) return without_unit(number, text, unit);
 
+  if (const UsualUnit* usual = source == UnitSource::usual_first ? find_usual(given, unit) : nullptr) {
+    const double value = usual->factor * number;
+    return std::isfinite(value) ? Quantity{value, ""} : Quantity{0.0, "'" + text + "' is not finite"};
+  }
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   static UnitSystem system;

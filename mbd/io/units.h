@@ -5,6 +5,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace steplap {
 
@@ -14,10 +16,17 @@ struct Quantity {
   std::string problem;
 };
 
+/// Where a unit is looked up: among the few that nearly all files use first, or in UDUNITS' database alone.
+enum class UnitSource { usual_first, database };
+
 /// Reads "number unit". `unit` is what the field is kept in (SI, UDUNITS spelling, "" =
 /// dimensionless); "*" takes any unit and gives the value in SI base units. Angles count as
 /// dimensionless, except that "rad/s" or "rpm" for a unit of "Hz" is divided by 2π, and "Hz" for an
 /// angular velocity is refused. Throws ModelError if the unit database is missing. Thread-safe.
-[[nodiscard]] Quantity parse_quantity(const std::string& text, const std::string& unit);
+[[nodiscard]] Quantity parse_quantity(const std::string& text, const std::string& unit,
+                                      UnitSource source = UnitSource::usual_first);
+
+/// The pairs (unit as written, unit of the field) that need no database.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> usual_units();
 
 } // namespace steplap

@@ -188,6 +188,8 @@ struct TableKind {
   std::shared_ptr<Element> (*create)() = nullptr;
   std::shared_ptr<Element> (*copy)(const Element& table) = nullptr;
   void (*apply)(const Element& table, Model& model) = nullptr; ///< throws ModelError
+  /// Does apply() look at bodies' masses and inertias, at plain numbers of elements? If not, they can be changed afterwards.
+  bool reads_masses = true, reads_elements = true;
 
   /// Its tables are of type T.
   template <class T> void holds() {

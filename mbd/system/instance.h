@@ -3,6 +3,7 @@
 
 #include "mbd/system/system.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,5 +16,24 @@ using ModelValues = std::vector<std::pair<std::string, double>>;
 /// A system of `given` with `values`, which does not refer to the model; `given` stays as it is. Reads no text and no
 /// file. Throws ModelError for what is wrong with a path, a value or the model. May be called from several threads.
 [[nodiscard]] std::unique_ptr<System> instantiate(const Model& given, const ModelValues& values);
+
+/// The same model with other values many times: what does not hang on the values is done once. Refers to nothing but its
+/// own copies; one object per thread.
+class Variants {
+public:
+  /// `given` as in instantiate(); `paths` of the numbers that vary; `channels`: those that its systems have, null: all.
+  /// Throws ModelError for what is wrong with a path or the model.
+  Variants(const Model& given, std::vector<std::string> paths, const std::vector<std::string>* channels = nullptr);
+
+  /// The system that instantiate(given, …) gives, byte for byte but for the channels left out. `values`: one per path, in SI.
+  /// Throws ModelError for a value that is out of range, or makes no model with the others.
+  [[nodiscard]] std::unique_ptr<System> make(const std::vector<double>& values);
+
+private:
+  Model given_, completed_;
+  std::vector<std::string> paths_;
+  std::optional<std::vector<std::string>> channels_;
+  bool is_direct_ = true; ///< no path leads to what completion reads: values go into the completed model
+};
 
 } // namespace steplap

@@ -88,7 +88,8 @@ const Channel* System::find_channel(const std::string& name) const {
 
 // --- SystemBuilder ------------------------------------------------------------------------------
 
-SystemBuilder::SystemBuilder(const Model& model) : model_(model), system_(new System), signals_(model) {
+SystemBuilder::SystemBuilder(const Model& model, const std::vector<std::string>* wanted)
+    : model_(model), system_(new System), signals_(model), wanted_(wanted) {
   system_->title = model.header.title;
   system_->gravity = model.header.gravity;
 }
@@ -193,10 +194,10 @@ void SystemBuilder::add_body_channels() {
   for (int i = 1; i < system_->body_count(); ++i) {
     const std::string& name = system_->bodies[i].name;
     for (const Coordinate& c : coordinates)
-      system_->channels.push_back({name + "." + c.name, c.unit, "of the centre of gravity",
+      if (wants_channel(name, c.name)) system_->channels.push_back({name + "." + c.name, c.unit, "of the centre of gravity",
                                    [i, member = c.member](const Snapshot& s) { return s.motion[i].*member; }});
     for (int k = 0; k < 3; ++k)
-      system_->channels.push_back({name + "." + accelerations[k], k < 2 ? "m/s^2" : "rad/s^2",
+      if (wants_channel(name, accelerations[k])) system_->channels.push_back({name + "." + accelerations[k], k < 2 ? "m/s^2" : "rad/s^2",
                                    "of the centre of gravity",
                                    [i, k](const Snapshot& s) { return s.acceleration[3 * i + k]; }});
   }
@@ -281,10 +282,18 @@ int SystemBuilder::add_friction(std::unique_ptr<FrictionElement> friction) {
   return static_cast<int>(system_->frictions.size()) - 1;
 }
 
-Channel& SystemBuilder::add_channel(const std::string& name, const std::string& unit, const std::string& doc,
-                                    std::function<double(const Snapshot&)> value) {
-  return system_->channels.emplace_back(
-      Channel{system_->element_names[element_] + "." + name, unit, doc, std::move(value)});
+bool SystemBuilder::wants_channel(std::string_view owner, std::string_view name) const {
+  if (!wanted_) return true;
+  return std::any_of(wanted_->begin(), wanted_->end(), [&](std::string_view w) {
+    return w.size() == owner.size() + 1 + name.size() && w.starts_with(owner) && w[owner.size()] == '.' && w.ends_with(name);
+  });
+}
+
+Channel& SystemBuilder::enter_channel(std::string_view name, std::string_view unit, std::string_view doc,
+                                      std::function<double(const Snapshot&)> value) {
+  std::string whole = system_->element_names[element_];
+  whole.append(1, '.').append(name);
+  return system_->channels.emplace_back(Channel{std::move(whole), std::string(unit), std::string(doc), std::move(value)});
 }
 
 void SystemBuilder::error(const std::string& message) {
@@ -293,8 +302,8 @@ void SystemBuilder::error(const std::string& message) {
                                         "': " + message});
 }
 
-std::unique_ptr<System> compile(const Model& model) {
-  SystemBuilder builder(model);
+std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted) {
+  SystemBuilder builder(model, wanted);
   builder.compile_bodies();
   builder.add_body_channels();
   builder.compile_elements();

@@ -12,6 +12,7 @@
 #include <typeinfo>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -153,7 +154,8 @@ struct ContactIndex {
 /// Handed to ElementKind::compile: names in, indices out.
 class SystemBuilder {
 public:
-  explicit SystemBuilder(const Model& model);
+  /// Of the channels, those named in `wanted`; null: all.
+  SystemBuilder(const Model& model, const std::vector<std::string>* wanted);
 
   // --- references -------------------------------------------------------------------------------
   [[nodiscard]] CompiledMarker marker(const std::string& name) const;
@@ -180,9 +182,9 @@ public:
   int add_memory(double base = 0.0, double base_rate = 0.0);
   void add_rows(std::vector<RowSpec> rows, bool is_rigid = false, int coordinate = -1);
   int add_friction(std::unique_ptr<FrictionElement> friction);
-  /// "<element>.<name>"; what is returned is good until the next one is added.
-  Channel& add_channel(const std::string& name, const std::string& unit, const std::string& doc,
-                       std::function<double(const Snapshot&)> value);
+  /// "<element>.<name>"; what is returned is good until the next one is added. A channel that nobody wants is not made:
+  /// what is returned then is forgotten.
+  template <class Value> Channel& add_channel(std::string_view name, std::string_view unit, std::string_view doc, Value&& value);
   [[nodiscard]] int next_row() const { return static_cast<int>(system_->rows.size()); }
   /// Slot in Snapshot::friction_force that the next friction element will get.
   [[nodiscard]] int next_friction_row() const { return system_->friction_row_count; }
@@ -192,7 +194,10 @@ public:
   void error(const std::string& message);
 
 private:
-  friend std::unique_ptr<System> compile(const Model& model);
+  friend std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted);
+  [[nodiscard]] bool wants_channel(std::string_view owner, std::string_view name) const;
+  Channel& enter_channel(std::string_view name, std::string_view unit, std::string_view doc,
+                         std::function<double(const Snapshot&)> value);
   void compile_bodies();
   void compile_elements();
   void finish();
@@ -210,10 +215,13 @@ private:
   std::map<std::string, std::size_t> group_index_;
   std::vector<Diagnostic> errors_;
   int element_ = -1;
+  const std::vector<std::string>* wanted_;
+  Channel unwanted_;
 };
 
-/// Compiles a model. Throws ModelError with all errors found.
-[[nodiscard]] std::unique_ptr<System> compile(const Model& model);
+/// Compiles a completed model. Of the channels, only those named in `wanted` are made; null: all. Throws ModelError with
+/// all errors found.
+[[nodiscard]] std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted = nullptr);
 
 // ---------------------------------------------------------------------------------------------
 
@@ -221,6 +229,12 @@ template <class Group> Group& SystemBuilder::group() {
   const auto [it, is_new] = group_index_.try_emplace(typeid(Group).name(), system_->groups.size());
   if (is_new) system_->groups.push_back(std::make_unique<Group>());
   return static_cast<Group&>(*system_->groups[it->second]);
+}
+
+template <class Value>
+Channel& SystemBuilder::add_channel(std::string_view name, std::string_view unit, std::string_view doc, Value&& value) {
+  if (!wants_channel(system_->element_names[element_], name)) return unwanted_;
+  return enter_channel(name, unit, doc, std::forward<Value>(value));
 }
 
 template <class Group> void SystemBuilder::add_unit(Group& group, int watch_count) {

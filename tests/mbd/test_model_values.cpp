@@ -14,6 +14,7 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <filesystem>
 #include <thread>
 
 using namespace steplap;
@@ -249,6 +250,85 @@ TEST_CASE("entries made in code are of the kind that is named, or refused") {
   set_value(model, "signal.braking.peak", -5.9);
   CHECK(number_of(model, "signal.braking.peak") == -5.9);
   CHECK(says(message_of([&] { add_signal(model, "haversin", "x"); }), "no kind of signal 'haversin' (did you mean 'haversine'?)"));
+}
+
+namespace {
+
+// The paths of all plain numbers of bodies, elements and signals.
+std::vector<std::string> numbers_of(const Model& model) {
+  std::vector<std::string> paths;
+  const auto take = [&](const std::string& start, const FieldTable& fields, const void* object) {
+    for (const Field& field : fields.fields()) {
+      if (field.type == FieldType::vec2 && std::holds_alternative<Vec2>(field.get(object)))
+        for (const char* component : {".0", ".1"}) paths.push_back(start + field.name + component);
+      if (field.type == FieldType::number && std::holds_alternative<double>(field.get(object))) paths.push_back(start + field.name);
+    }
+  };
+  for (const Body& body : model.bodies) take("body." + body.name + ".", Body::fields(), &body);
+  for (const ElementEntry& e : model.elements) take("element." + e.element->name + ".", e.kind->fields, e.element.get());
+  for (const SignalEntry& e : model.signals) take("signal." + e.definition->name + ".", e.kind->fields, e.definition.get());
+  for (const TableEntry& e : model.tables) take(e.kind->name + "." + e.table->name + ".", e.kind->fields, e.table.get());
+  paths.insert(paths.end(), {"gravity.0", "simulation.end", "output.step"});
+  return paths;
+}
+
+// What a system does at its start: the first rates, and all channels there.
+std::vector<double> start_values(const System& system) {
+  State state = system.initial_state();
+  start_drives(system, state);
+  Dynamics dynamics(system);
+  dynamics.set_state(state);
+  std::vector<double> y(dynamics.dimension()), dy(dynamics.dimension());
+  dynamics.pack(state, y.data());
+  dynamics.rates(1e-3, y.data(), dy.data());
+  const Snapshot snapshot = dynamics.snapshot(dy.data());
+  std::vector<double> values = y;
+  values.insert(values.end(), dy.begin(), dy.end());
+  for (const Channel& channel : system.channels) values.push_back(channel.value(snapshot));
+  return values;
+}
+
+} // namespace
+
+// Whatever number of whatever model: put into the completed model, or given and completed again, is one system.
+TEST_CASE("variants of a model are what instantiate makes, number by number") {
+  for (const char* name : {"paper/interference", "layouts/three_limb", "benchmarks/andrews", "benchmarks/robot_arm", "benchmarks/chain_10"}) {
+    const std::string file = std::string(STEPLAP_MODELS) + "/" + name + ".toml";
+    if (!std::filesystem::exists(file)) FAIL(file);
+    const Model given = read_given_model(file, transformer_catalog());
+    for (const std::string& path : numbers_of(given)) {
+      CAPTURE(path);
+      const double before = number_of(given, path), value = before == 0.0 ? 1e-3 : 1.001 * before;
+      std::unique_ptr<System> one, other;
+      const std::string wrong = message_of([&] { one = instantiate(given, {{path, value}}); });
+      const std::string as_wrong = message_of([&] { other = Variants(given, {path}).make({value}); });
+      CHECK(wrong.empty() == as_wrong.empty());
+      if (!one || !other) continue;
+      const std::vector<double> a = start_values(*one), b = start_values(*other);
+      REQUIRE(a.size() == b.size());
+      CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+    }
+  }
+}
+
+TEST_CASE("variants have the channels that are asked for, and say what is wrong") {
+  const Model given = read_given_model(k_paper, transformer_catalog());
+  const std::vector<std::string> wanted = {"upper tank.ax", "upper tank.theta"};
+  Variants some(given, {"body.upper tank.mass"}, &wanted);
+  const auto few = some.make({21e3}), all = Variants(given, {"body.upper tank.mass"}).make({21e3});
+  REQUIRE(few->channels.size() == 2);
+  for (const std::string& name : wanted) CHECK(few->find_channel(name) != nullptr);
+  CHECK(all->channels.size() > 100);
+  CHECK(says(message_of([&] { (void)some.make({-1.0}); }), "must be greater than 0 kg"));
+  const auto masses = [](const System& system) {
+    std::vector<double> list;
+    for (const BodyData& body : system.bodies) list.push_back(body.mass);
+    return list;
+  };
+  CHECK(masses(*some.make({21e3})) == masses(*few)); // a failed one leaves no trace
+  CHECK_THROWS_AS((void)some.make({}), std::invalid_argument);
+  CHECK(says(message_of([&] { Variants(given, {"body.uper tank.mass"}); }), "did you mean 'upper tank'?"));
+  CHECK(says(message_of([&] { Variants(given, {"title"}); }), "not a number"));
 }
 
 TEST_CASE("systems of one model with different values run side by side as one after the other") {

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cstring>
 #include <numbers>
 
 using steplap::parse_quantity;
@@ -68,4 +69,21 @@ TEST_CASE("what is wrong is said") {
   CHECK(problem("nan m", "m") == "'nan m' is not finite");
   CHECK(problem("1e308 km", "m") == "'1e308 km' is not finite");
   CHECK(problem("", "m") == "'' is not a number with a unit, such as '0.5 m'");
+}
+
+// They stand in two places so that most files start without reading a database: to the bit.
+TEST_CASE("the usual units are what the database makes of them") {
+  REQUIRE(steplap::usual_units().size() > 10);
+  for (const auto& [given, wanted] : steplap::usual_units())
+    for (const char* number : {"1", "0.1", "47", "-3.7", "1e-300", "2.2250738585072014e-305", "123456789.12345678", "7e290"}) {
+      CAPTURE(given);
+      CAPTURE(number);
+      const std::string text = std::string(number) + " " + given;
+      const steplap::Quantity usual = parse_quantity(text, wanted), full = parse_quantity(text, wanted, steplap::UnitSource::database);
+      CHECK(usual.problem.empty());
+      CHECK(full.problem.empty());
+      CHECK(std::memcmp(&usual.value, &full.value, sizeof(double)) == 0);
+    }
+  CHECK_FALSE(parse_quantity("2e308 km/h", "m/s").problem.empty());
+  CHECK(parse_quantity("1e308 GN/m", "N/m").problem == parse_quantity("1e308 GN/m", "N/m", steplap::UnitSource::database).problem);
 }
