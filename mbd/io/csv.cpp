@@ -164,7 +164,9 @@ std::string csv_field(const std::string& text) {
   return result + "\"";
 }
 
-CsvText::CsvText(std::span<const std::string> names) {
+CsvText::CsvText(std::span<const std::string> names, std::size_t rows) {
+  constexpr std::size_t k_usual_length = 20; // of a number and its comma
+  text_.reserve(rows * names.size() * k_usual_length);
   for (const std::string& name : names)
     text_ += (text_.empty() ? "" : ",") + csv_field(name);
   text_ += '\n';

@@ -10,6 +10,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace steplap {
@@ -32,11 +33,13 @@ struct CsvTable {
 /// Comma-separated text, shortest digits that read back as the same numbers, "\n" after each row.
 class CsvText {
 public:
-  explicit CsvText(std::span<const std::string> names);
+  /// `rows`: how many will come, if known: room is made for them at once.
+  explicit CsvText(std::span<const std::string> names, std::size_t rows = 0);
   void add_row(std::span<const double> values);
   /// A line that readers skip; begins with #.
   void add_comment(const std::string& line) { text_ += line + "\n"; }
-  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] const std::string& text() const& { return text_; }
+  [[nodiscard]] std::string text() && { return std::move(text_); }
 
 private:
   std::string text_;

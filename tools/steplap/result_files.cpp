@@ -126,7 +126,7 @@ std::string trajectory_csv(const Trajectory& trajectory, const std::vector<doubl
   std::vector<std::string> header{"t [s]"};
   for (const Channel* channel : trajectory.channels())
     header.push_back(channel->name + (channel->unit.empty() ? "" : " [" + channel->unit + "]"));
-  CsvText csv(header);
+  CsvText csv(header, trajectory.size());
   if (!errors.empty()) {
     std::string comment = "# error estimate";
     for (const double error : errors) comment += "," + error_field(error);
@@ -139,7 +139,7 @@ std::string trajectory_csv(const Trajectory& trajectory, const std::vector<doubl
       values[column] = trajectory.value(row, column - 1);
     csv.add_row(values);
   }
-  return csv.text();
+  return std::move(csv).text();
 }
 
 std::string events_csv(const std::vector<Event>& events, const std::vector<double>* errors) {
