@@ -1,9 +1,6 @@
 #include "mbd/analysis/freedom.h"
 
-#include "mbd/math/portable_math.h"
-
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseQR>
+#include "mbd/dynamics/schur.h"
 
 #include <cmath>
 #include <map>
@@ -12,62 +9,104 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_dependent = 1e-9;
+// A row has part in a dependency if its coefficient there, rows at length 1, is above this: rounding leaves less.
+constexpr double k_part = 1e-6;
 
-using Matrix = Eigen::SparseMatrix<double>;
-
-// Gradient of a row as a column, bodies without the ground.
-void add_column(const RowSpec& row, const std::vector<Motion<double>>& motion, int column,
-                std::vector<Eigen::Triplet<double>>& entries) {
-  const MeasureValue<double> m = evaluate_row<false>(row, motion.data());
-  const Pair<double>& d = m.direction;
-  const double gradient[6] = {d.x,  d.y,  cross(m.lever_a, d) + m.couple,
-                              -d.x, -d.y, -cross(m.lever_b, d) - m.couple};
-  double norm = 0.0;
-  for (const double g : gradient)
-    norm = portable::hypot(norm, g);
-  if (norm == 0.0) return;
-  for (int k = 0; k < 6; ++k) {
-    const int body = k < 3 ? row.a : row.b;
-    if (body != k_ground) entries.emplace_back(3 * (body - 1) + k % 3, column, gradient[k] / norm);
+class Rows {
+public:
+  explicit Rows(const System& system) : system_(system) {
+    const State state = system.initial_state();
+    place_bodies(state.q, state.v, motion_);
   }
-}
 
-using Factor = Eigen::SparseQR<Matrix, Eigen::COLAMDOrdering<int>>;
+  void add(const RowSpec& spec) {
+    const MeasureValue<double> m = evaluate_row<false>(spec, motion_.data());
+    const Pair<double>& d = m.direction;
+    SchurRow& row = rows_.emplace_back();
+    const double gradient[2][3] = {{d.x, d.y, cross(m.lever_a, d) + m.couple}, {-d.x, -d.y, -cross(m.lever_b, d) - m.couple}};
+    const int body[2] = {spec.a, spec.b};
+    for (int side = 0; side < 2; ++side) {
+      if (body[side] == k_ground || body[0] == body[1]) continue;
+      const BodyData& of = system_.bodies[body[side]];
+      row.body[side] = body[side] - 1;
+      for (int c = 0; c < 3; ++c) {
+        row.w[side][c] = 1.0 / (c < 2 ? of.mass : of.inertia);
+        row.j[side][c] = gradient[side][c];
+        row.wj[side][c] = row.w[side][c] * gradient[side][c];
+      }
+    }
+  }
 
-// Rank of the matrix with these columns; the columns found dependent, in the order of the rows.
-int rank_of(const std::vector<const RowSpec*>& rows, const std::vector<Motion<double>>& motion,
-            std::vector<int>* dependent) {
-  if (rows.empty() || motion.size() < 2) return 0;
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    add_column(*rows[i], motion, static_cast<int>(i), entries);
-  Matrix matrix(3 * (static_cast<Eigen::Index>(motion.size()) - 1),
-                static_cast<Eigen::Index>(rows.size()));
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  Factor factor;
-  factor.setPivotThreshold(k_dependent);
-  factor.compute(matrix);
-  const auto rank = static_cast<int>(factor.rank());
-  if (dependent)
-    for (Eigen::Index i = rank; i < matrix.cols(); ++i)
-      dependent->push_back(factor.colsPermutation().indices()[i]);
-  return rank;
-}
+  void factor() {
+    if (rows_.empty()) return;
+    solver_ = {};
+    solver_.analyze(rows_);
+    solver_.factor(rows_);
+  }
 
-// Rows that can be left out without loss, by element: what they carry, others could carry as well.
-std::vector<SharedReaction> sharing(const std::vector<const RowSpec*>& rows, std::size_t joint_rows,
-                                    const std::vector<int>& elements, const std::vector<Motion<double>>& motion,
-                                    int rank) {
-  if (rank == static_cast<int>(rows.size())) return {};
+  [[nodiscard]] int size() const { return static_cast<int>(rows_.size()); }
+
+  [[nodiscard]] std::vector<int> dependent() const {
+    std::vector<int> list;
+    for (int i = 0; i < size(); ++i)
+      if (solver_.is_dependent(i)) list.push_back(i);
+    return list;
+  }
+
+  // Rows that others could replace: those with a part in some dependency J_dᵀ = Σ c J_rᵀ. All dependencies are solved for
+  // at once, each times a factor of its own: parts that cancel in one such sum do not in the other.
+  [[nodiscard]] std::vector<char> find_shared(const std::vector<int>& dependent) const {
+    std::vector<char> is_shared(rows_.size(), 0);
+    for (const int d : dependent) is_shared[d] = 1;
+    if (dependent.empty()) return is_shared;
+    for (const double turn : {0.6180339887498949, 0.4142135623730950}) {
+      std::vector<double> factor(rows_.size(), 0.0);
+      for (std::size_t k = 0; k < dependent.size(); ++k) {
+        const double x = turn * static_cast<double>(k + 1);
+        factor[dependent[k]] = (0.5 + x - std::floor(x)) / length(dependent[k]);
+      }
+      std::vector<double> part = gram(factor);
+      for (const int d : dependent) part[d] = 0.0;
+      solver_.solve(rows_, part.data());
+      for (std::size_t r = 0; r < rows_.size(); ++r)
+        if (std::abs(part[r]) * length(static_cast<int>(r)) > k_part) is_shared[r] = 1;
+    }
+    return is_shared;
+  }
+
+private:
+  [[nodiscard]] double length(int r) const {
+    double sum = 0.0;
+    for (int side = 0; side < 2; ++side)
+      for (int c = 0; c < 3; ++c) sum += rows_[r].wj[side][c] * rows_[r].j[side][c];
+    return std::sqrt(sum);
+  }
+
+  // J W Jᵀ x
+  [[nodiscard]] std::vector<double> gram(const std::vector<double>& x) const {
+    std::vector<double> response(3 * system_.bodies.size(), 0.0), result(rows_.size(), 0.0);
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      for (int side = 0; side < 2; ++side)
+        for (int c = 0; c < 3 && rows_[r].body[side] >= 0; ++c) response[3 * rows_[r].body[side] + c] += rows_[r].wj[side][c] * x[r];
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      for (int side = 0; side < 2; ++side)
+        for (int c = 0; c < 3 && rows_[r].body[side] >= 0; ++c) result[r] += rows_[r].j[side][c] * response[3 * rows_[r].body[side] + c];
+    return result;
+  }
+
+  const System& system_;
+  std::vector<Motion<double>> motion_;
+  std::vector<SchurRow> rows_;
+  SchurSolver solver_;
+};
+
+// By element; of joints and drives, the first `joint_rows`, also which rows.
+std::vector<SharedReaction> reactions_of(const System& system, const std::vector<char>& is_shared, const std::vector<int>& elements) {
   std::map<int, std::vector<std::string>> found;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (i >= joint_rows && found.count(elements[i]) > 0) continue;
-    std::vector<const RowSpec*> others = rows;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    if (rank_of(others, motion, nullptr) != rank) continue;
+  for (std::size_t i = 0; i < is_shared.size(); ++i) {
+    if (!is_shared[i]) continue;
     std::vector<std::string>& quantities = found[elements[i]];
-    if (i < joint_rows) quantities.emplace_back(rows[i]->quantity);
+    if (i < system.rows.size()) quantities.emplace_back(system.rows[i].quantity);
   }
   std::vector<SharedReaction> result;
   for (auto& [element, quantities] : found) result.push_back({element, std::move(quantities)});
@@ -77,29 +116,33 @@ std::vector<SharedReaction> sharing(const std::vector<const RowSpec*>& rows, std
 } // namespace
 
 Freedom count_freedom(const System& system) {
-  const State state = system.initial_state();
-  std::vector<Motion<double>> motion;
-  place_bodies(state.q, state.v, motion);
   Freedom freedom;
   freedom.coordinates = 3 * (system.body_count() - 1);
   freedom.rows = static_cast<int>(system.rows.size());
-  std::vector<const RowSpec*> rows;
+  Rows rows(system);
   std::vector<int> elements;
   for (const RowSpec& row : system.rows) {
-    rows.push_back(&row);
+    rows.add(row);
     elements.push_back(row.element);
   }
-  freedom.rank = rank_of(rows, motion, &freedom.dependent_rows);
-  freedom.shared = sharing(rows, rows.size(), elements, motion, freedom.rank);
-  for (const FrictionUnit& unit : system.frictions) {
-    const RowSpec* first = unit.friction->rows(FrictionState{});
+  rows.factor();
+  freedom.dependent_rows = rows.dependent();
+  freedom.rank = rows.size() - static_cast<int>(freedom.dependent_rows.size());
+  freedom.shared = reactions_of(system, rows.find_shared(freedom.dependent_rows), elements);
+  if (system.frictions.empty()) {
+    freedom.rank_sticking = freedom.rank;
+    freedom.shared_sticking = freedom.shared;
+    return freedom;
+  }
+  for (const FrictionUnit& unit : system.frictions)
     for (int r = 0; r < unit.friction->dimension(); ++r) {
-      rows.push_back(first + r);
+      rows.add(unit.friction->rows(FrictionState{})[r]);
       elements.push_back(unit.element);
     }
-  }
-  freedom.rank_sticking = rank_of(rows, motion, nullptr);
-  freedom.shared_sticking = sharing(rows, system.rows.size(), elements, motion, freedom.rank_sticking);
+  rows.factor();
+  const std::vector<int> dependent = rows.dependent();
+  freedom.rank_sticking = rows.size() - static_cast<int>(dependent.size());
+  freedom.shared_sticking = reactions_of(system, rows.find_shared(dependent), elements);
   return freedom;
 }
 
