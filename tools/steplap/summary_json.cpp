@@ -66,11 +66,18 @@ Json global_error_json(const GlobalErrorEstimate& estimate) {
   return json;
 }
 
+// A new entry of an object that has none of that name: operator[] would search through all that are there.
+Json& append(Json& object, const std::string& name) {
+  auto& entries = object.get_ref<Json::object_t&>();
+  entries.emplace_back(name, Json());
+  return entries.back().second;
+}
+
 Json extremes_json(const RunSummary& summary) {
   Json json = Json::object();
   const auto time = [](const Extreme& extreme) { return std::isnan(extreme.value) ? Json() : Json(extreme.t); };
   for (const ChannelRange& range : summary.ranges) {
-    Json& entry = json[range.channel->name];
+    Json& entry = append(json, range.channel->name);
     entry = {{"unit", range.channel->unit},
              {"min", number_json(range.low.value)},
              {"t_min", time(range.low)},
@@ -104,7 +111,7 @@ void add_errors(Json& entry, const JointAssessment& a, const JointErrors& e) {
 Json joints_json(const Run& run, const RunSummary& summary) {
   Json json = Json::object();
   for (const JointAssessment& a : assess_joints(run.loaded->model, run.result)) {
-    Json& entry = json[a.joint];
+    Json& entry = append(json, a.joint);
     entry = {{"verdict", words_of(a.verdict)},
                      {"outcome", name_of(outcome_of(a.verdict))},
                      {"slipped", a.has_slipped},
@@ -155,14 +162,16 @@ Json state_json(const System& system, const State& state, const RunSummary& summ
   for (std::size_t i = 1; i < system.bodies.size(); ++i) {
     const double* q = &state.q[3 * i];
     const double* v = &state.v[3 * i];
-    bodies[system.bodies[i].name] = {{"x", q[0]},  {"y", q[1]},  {"theta", q[2]},
-                                     {"vx", v[0]}, {"vy", v[1]}, {"omega", v[2]}};
+    append(bodies, system.bodies[i].name) = {{"x", q[0]},  {"y", q[1]},  {"theta", q[2]},
+                                             {"vx", v[0]}, {"vy", v[1]}, {"omega", v[2]}};
     if (!summary.global_error) continue;
+    Json error = Json::object();
     for (const char* part : {"x", "y", "theta", "vx", "vy", "omega"})
       if (const auto range = ranges.find(system.bodies[i].name + "." + part); range != ranges.end())
-        add_error(errors[system.bodies[i].name], part, summary.error_of(*range->second, &ChannelError::final));
+        add_error(error, part, summary.error_of(*range->second, &ChannelError::final));
+    if (!error.empty()) append(errors, system.bodies[i].name) = std::move(error);
   }
-  Json json{{"t", state.t}, {"bodies", bodies}};
+  Json json{{"t", state.t}, {"bodies", std::move(bodies)}};
   if (summary.global_error) json["errors"] = std::move(errors);
   return json;
 }
