@@ -3,6 +3,7 @@
 #include "mbd/simulation/trajectory.h"
 #include "tools/steplap/command.h"
 #include "tools/steplap/measured_text.h"
+#include "tools/steplap/ordered_json.h"
 #include "tools/steplap/thinning.h"
 #include "tools/steplap/version.h"
 
@@ -15,6 +16,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <unordered_set>
 
 namespace steplap {
 
@@ -50,7 +52,7 @@ std::string sha256(const std::string& text) {
 }
 
 Json parsed(const Results& run, const std::string& text, const char* file) {
-  Json json = Json::parse(text, nullptr, false);
+  Json json = parse_ordered(text);
   if (json.is_discarded())
     throw UsageError("'" + run.folder + "/" + file + "' is not as steplap wrote it: run the model again");
   return json;
@@ -178,10 +180,12 @@ void add_texts(Json& summary) {
 
 // Extremes of channels that the page does not hold would outweigh everything else in large models.
 void keep_extremes(Json& summary, const Results& run, const std::vector<std::size_t>& kept) {
-  std::vector<bool> is_kept(run.channels.size(), false);
-  for (const std::size_t i : kept) is_kept[i] = true;
-  for (std::size_t i = 0; i < is_kept.size(); ++i)
-    if (!is_kept[i]) summary["extremes"].erase(run.channels[i].name);
+  std::unordered_set<std::string> names;
+  for (const std::size_t i : kept) names.insert(run.channels[i].name);
+  Json extremes = Json::object();
+  for (auto& [name, entry] : summary["extremes"].items())
+    if (names.count(name) > 0) append(extremes, name) = std::move(entry);
+  summary["extremes"] = std::move(extremes);
   summary.erase("final_state");
 }
 

@@ -1,4 +1,5 @@
 #include "tools/steplap/result_files.h"
+#include "tools/steplap/ordered_json.h"
 #include "tools/steplap/version.h"
 #include "transformer/joint_assessment.h"
 
@@ -64,13 +65,6 @@ Json global_error_json(const GlobalErrorEstimate& estimate) {
   json["unmatched_events"] = estimate.error.unmatched_events;
   json["evaluations_of_finer_runs"] = estimate.cost.evaluations;
   return json;
-}
-
-// A new entry of an object that has none of that name: operator[] would search through all that are there.
-Json& append(Json& object, const std::string& name) {
-  auto& entries = object.get_ref<Json::object_t&>();
-  entries.emplace_back(name, Json());
-  return entries.back().second;
 }
 
 Json extremes_json(const RunSummary& summary) {
