@@ -217,7 +217,6 @@ bool is_adaptive(const System& system, const std::string& integrator) {
 
 std::vector<SimulationOptions> finer_options(const System& system, const SimulationOptions& options) {
   SimulationOptions finer = options;
-  finer.progress = {};
   finer.storm_step = k_finer_step * options.storm_step;
   if (is_adaptive(system, options.integrator)) {
     finer.settings.tolerance = std::max(k_least_tolerance, k_finer_tolerance * options.settings.tolerance);

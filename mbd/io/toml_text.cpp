@@ -119,9 +119,74 @@ Node from_toml(const toml::node& source, const std::string* file) {
   return node;
 }
 
+// Tables within tables are taken apart by recursion, the parser's own and ours. It bounds brackets, but a key of thirty
+// thousand parts, "a.a.a…", makes as many tables: such keys are found before. Text in quotes and comments may hold
+// any number of points.
+class DottedKeys {
+public:
+  DottedKeys(const std::string& text, const std::string& file) : text_(text), file_(file) {}
+
+  void check() {
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '#') skip_to("\n");
+      else if (starts("\"\"\"") || starts("'''")) skip_quoted(3);
+      else if (c == '"' || c == '\'') skip_quoted(1);
+      else {
+        if (c == '\n') start_line();
+        if (c == '.') count();
+        if (c == '=' || c == ',' || c == '[' || c == ']' || c == '{' || c == '}') parts_ = 1;
+        ++at_;
+      }
+    }
+  }
+
+private:
+  static constexpr int k_most_parts = 256; // as many as the parser allows brackets
+
+  [[nodiscard]] bool starts(const char* mark) const { return text_.compare(at_, 3, mark) == 0; }
+
+  void start_line() {
+    ++line_;
+    line_start_ = at_ + 1;
+    parts_ = 1;
+  }
+
+  void count() {
+    if (++parts_ <= k_most_parts) return;
+    throw ModelError(Location{file_, line_, static_cast<int>(at_ - line_start_) + 1},
+                     "a key of more than " + std::to_string(k_most_parts) + " parts: tables are not nested so deeply");
+  }
+
+  void skip_to(const char* end) {
+    const std::size_t found = text_.find(end, at_);
+    at_ = found == std::string::npos ? text_.size() : found;
+  }
+
+  // From an opening mark of that many quotes past the closing one.
+  void skip_quoted(std::size_t quotes) {
+    const char quote = text_[at_];
+    const std::string mark(quotes, quote);
+    for (at_ += quotes; at_ < text_.size() && text_.compare(at_, quotes, mark) != 0; ++at_) {
+      if (quote == '"' && text_[at_] == '\\') ++at_;
+      else if (text_[at_] == '\n') {
+        if (quotes == 1) return; // not closed: the parser says so
+        start_line();
+      }
+    }
+    at_ = std::min(at_ + quotes, text_.size());
+  }
+
+  const std::string& text_;
+  const std::string& file_;
+  std::size_t at_ = 0, line_start_ = 0;
+  int line_ = 1, parts_ = 1;
+};
+
 } // namespace
 
 Node parse_toml(const std::string& text, const std::string* file) {
+  DottedKeys(text, *file).check();
   try {
     return from_toml(toml::parse(text, *file), file);
   } catch (const toml::parse_error& error) {

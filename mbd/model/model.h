@@ -136,6 +136,7 @@ struct SimulationSettings {
 struct OutputSettings {
   double step = 1e-3;                ///< s
   std::vector<std::string> channels; ///< patterns with * and ?; empty = all
+  double most_numbers = 1e8;         ///< rows times channels, beyond which a run is not begun: about 2 GB of text
   std::string seen_from;             ///< body that drawings stand still with; "" = chosen by the drawing
   Location where;
 

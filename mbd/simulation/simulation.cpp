@@ -258,6 +258,8 @@ bool Simulation::advance() {
   if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
   const double limit = next_limit();
   integrator_->step(dynamics_, limit);
+  constexpr long k_now_and_then = 64; // steps: also where no sample is due for long
+  if (options_.progress && integrator_->steps() % k_now_and_then == 0) options_.progress(state_.t);
   const long evaluations = dynamics_.evaluations();
   guard_against_crawl();
   if (integrator_->stepped_state()) return pass_stepped();

@@ -121,7 +121,8 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
   table.add_row({"run", run_text(model)});
   const Trajectory channels(*loaded.system, model.output.channels);
   table.add_row({"output", std::to_string(channels.channels().size()) + " channels every " +
-                               number_text(model.output.step) + " s"});
+                               number_text(model.output.step) + " s, " +
+                               number_text(std::floor(model.simulation.end / model.output.step) + 1.0) + " rows"});
   out << table;
   print_assembly(out, loaded);
   for (const std::string& warning : warnings_about(loaded))

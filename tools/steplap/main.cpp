@@ -1,4 +1,5 @@
 #include "tools/steplap/command_line.h"
+#include "tools/steplap/interruption.h"
 
 #include <unistd.h>
 
@@ -6,5 +7,8 @@
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  return steplap::run_command_line(arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
+  const int code = steplap::run_command_line(arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
+  std::cout.flush();
+  steplap::end_by_noted_signal();
+  return code;
 }

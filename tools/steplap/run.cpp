@@ -5,10 +5,32 @@
 #include "mbd/io/reader.h"
 #include "mbd/io/presentation.h"
 #include "tools/steplap/catalogue.h"
+#include "tools/steplap/interruption.h"
 
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 namespace steplap {
+
+namespace {
+
+// A step given in the wrong unit would fill memory and disk.
+void refuse_endless_output(const Model& model, const System& system) {
+  const double numbers = trajectory_numbers(model, system);
+  if (!(numbers > model.output.most_numbers)) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "the trajectory would have %.3g numbers (%.3g GB of memory, some %.3g GB of text), more than the %.3g of 'most_numbers'",
+                numbers, 8e-9 * numbers, 20e-9 * numbers, model.output.most_numbers);
+  throw ModelError(model.output.where, std::string(text) + ": choose a larger 'step', fewer 'channels', or raise 'most_numbers' of [output]");
+}
+
+} // namespace
+
+double trajectory_numbers(const Model& model, const System& system) {
+  const Trajectory trajectory(system, model.output.channels);
+  return (std::floor(model.simulation.end / model.output.step) + 1.0) * (1.0 + static_cast<double>(trajectory.channels().size()));
+}
 
 std::shared_ptr<const LoadedModel> load_model(const std::string& path,
                                               const std::vector<std::string>& overrides) {
@@ -19,6 +41,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path,
   loaded->model = read_model(path, program_catalogue(), overrides);
   loaded->text = effective_model_text(path, program_catalogue(), overrides);
   loaded->system = compile(loaded->model);
+  refuse_endless_output(loaded->model, *loaded->system);
   loaded->plots_left_out = check_presentation(loaded->model, *loaded->system);
   loaded->assembled = assemble(loaded->model, *loaded->system); // joints that cannot be met are the model's error
   return loaded;
@@ -49,7 +72,10 @@ State initial_state_of(const LoadedModel& loaded) {
 
 Run run_model(std::shared_ptr<const LoadedModel> loaded, std::function<void(double t)> progress) {
   SimulationOptions options = options_of(loaded->model);
-  options.progress = std::move(progress);
+  options.progress = [progress = std::move(progress)](double t) {
+    if (progress) progress(t);
+    stop_if_interrupted(t);
+  };
   Simulation simulation(*loaded->system, initial_state_of(*loaded), std::move(options));
   Run run;
   run.loaded = std::move(loaded);

@@ -22,7 +22,10 @@ struct LoadedModel {
   State assembled; ///< given poses and velocities moved onto the joints
 };
 
-/// Throws ModelError with all that is wrong with the model.
+/// How many numbers the trajectory of a run will hold, times included.
+[[nodiscard]] double trajectory_numbers(const Model& model, const System& system);
+
+/// Throws ModelError with all that is wrong with the model, and for a trajectory beyond `most_numbers` of [output].
 [[nodiscard]] std::shared_ptr<const LoadedModel>
 load_model(const std::string& path, const std::vector<std::string>& overrides = {});
 /// All of them, or a ModelError with what is wrong with any of them.

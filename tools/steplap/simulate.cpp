@@ -2,6 +2,7 @@
 
 #include "mbd/analysis/assembly.h"
 #include "mbd/model/validate.h"
+#include "tools/steplap/interruption.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/progress.h"
 #include "tools/steplap/report.h"
@@ -70,9 +71,10 @@ void check_folders(const SimulateOptions& options, const Models& models) {
 void make_estimate(FinishedRun& finished) {
   const LoadedModel& loaded = *finished.run.loaded;
   const RunResult& result = finished.run.result;
+  SimulationOptions as_run = options_of(loaded.model);
+  as_run.progress = stop_if_interrupted;
   try {
-    finished.summary.global_error = estimate_global_error(*loaded.system, initial_state_of(loaded), options_of(loaded.model),
-                                                          result, is_main_event);
+    finished.summary.global_error = estimate_global_error(*loaded.system, initial_state_of(loaded), as_run, result, is_main_event);
     weigh_errors(finished.summary.judgement, loaded.model, *loaded.system, result, *finished.summary.global_error);
   } catch (const NumericalFailure& failure) {
     finished.summary.no_estimate = std::string("the finer run failed: ") + failure.what();
@@ -87,7 +89,7 @@ void estimate_error(const SimulateOptions& options, FinishedRun& finished) {
   constexpr double k_little = 1.0; // s
   const LoadedModel& loaded = *finished.run.loaded;
   std::string& why_not = finished.summary.no_estimate;
-  if (!finished.run.failure.empty()) {
+  if (!finished.run.failure.empty() || noted_signal() != 0) {
     why_not = "the run broke off";
     return;
   }
@@ -156,9 +158,11 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
   const Models models = load_models(options.models, options.all_overrides());
   check_step(options, models);
   check_folders(options, models);
+  const InterruptionGuard guard;
   std::vector<FinishedRun> runs;
   ExitCode code = ExitCode::done;
   for (const auto& loaded : models) {
+    if (noted_signal() != 0) break;
     try {
       runs.push_back(run_one(options, loaded, console));
       if (!runs.back().run.failure.empty()) code = ExitCode::numerical_failure;
@@ -204,8 +208,8 @@ Command simulate_command() {
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --set body.tank.mass="48 t"
 Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv,
 summary.json and model.toml. All numbers stand with their estimated error, where that takes less than about
-a second of computing; else it is said what it would take. If the computation fails, what there is is saved as partial_* and the
-exit code is 4.
+a second of computing; else it is said what it would take. If the computation fails, or Ctrl-C (SIGINT, SIGTERM, SIGHUP) stops it, what there is is saved
+as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends it at once.
 )";
   command.options = {
       {"MODEL", &o->models, "FILE", "model files (TOML)", true},

@@ -1,0 +1,66 @@
+#include "tools/steplap/interruption.h"
+
+#include "mbd/base/diagnostics.h"
+#include "mbd/base/number_text.h"
+
+#include <array>
+#include <csignal>
+#include <string>
+
+namespace steplap {
+
+namespace {
+
+constexpr std::array k_signals = {SIGINT, SIGTERM, SIGHUP};
+
+volatile std::sig_atomic_t noted = 0;
+std::array<struct sigaction, k_signals.size()> before{};
+
+extern "C" void note_signal(int signal) {
+  if (noted != 0) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+    return;
+  }
+  noted = signal;
+}
+
+const char* name_of_signal(int signal) {
+  switch (signal) {
+  case SIGINT: return "SIGINT";
+  case SIGTERM: return "SIGTERM";
+  default: return "SIGHUP";
+  }
+}
+
+} // namespace
+
+InterruptionGuard::InterruptionGuard() {
+  struct sigaction action {};
+  action.sa_handler = note_signal;
+  sigemptyset(&action.sa_mask);
+  for (std::size_t i = 0; i < k_signals.size(); ++i) {
+    sigaction(k_signals[i], nullptr, &before[i]);
+    // nohup has SIGHUP ignored, and a shell SIGINT of what it runs behind: that is how it stays.
+    if (before[i].sa_handler != SIG_IGN) sigaction(k_signals[i], &action, nullptr);
+  }
+}
+
+InterruptionGuard::~InterruptionGuard() {
+  for (std::size_t i = 0; i < k_signals.size(); ++i) sigaction(k_signals[i], &before[i], nullptr);
+}
+
+int noted_signal() { return noted; }
+
+void stop_if_interrupted(double t) {
+  if (noted == 0) return;
+  throw NumericalFailure(std::string("stopped by ") + name_of_signal(noted) + " at t = " + number_text(t) + " s.");
+}
+
+void end_by_noted_signal() {
+  if (noted == 0) return;
+  std::signal(noted, SIG_DFL);
+  std::raise(noted);
+}
+
+} // namespace steplap

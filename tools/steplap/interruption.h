@@ -1,0 +1,23 @@
+// A run that is stopped from outside, by Ctrl-C or by whoever ends the session, is saved as far as it came.
+#pragma once
+
+namespace steplap {
+
+/// While one of these lives, the first SIGINT, SIGTERM or SIGHUP is noted instead of ending the program; a second one ends
+/// it at once.
+class InterruptionGuard {
+public:
+  InterruptionGuard();
+  InterruptionGuard(const InterruptionGuard&) = delete;
+  InterruptionGuard& operator=(const InterruptionGuard&) = delete;
+  ~InterruptionGuard();
+};
+
+/// The signal noted, 0 if there was none.
+[[nodiscard]] int noted_signal();
+/// Throws NumericalFailure, which says so, if one was noted; `t`: how far the run is, s.
+void stop_if_interrupted(double t);
+/// Ends the program by the signal noted, as if nobody had minded it: so that a shell's loop ends, too. Nothing if none was.
+void end_by_noted_signal();
+
+} // namespace steplap
