@@ -8,8 +8,8 @@ void StageSystem::set(const Linearization& linearization, const Layout& layout) 
   m_ = linearization.rows();
   is_dense_ = n_ + m_ <= k_max_dense;
   is_redundant_.assign(m_, 0);
-  if (layout.schur.is_singular())
-    for (int r = 0; r < m_; ++r) is_redundant_[r] = layout.schur.is_dependent(r) ? 1 : 0;
+  if (layout.is_singular())
+    for (int r = 0; r < m_; ++r) is_redundant_[r] = layout.is_dependent(r) ? 1 : 0;
   right_.resize(n_ + m_);
   solution_.resize(n_ + m_);
   moved_.resize(n_);
