@@ -257,7 +257,7 @@ void number_coordinates(const System& system, Layout& layout) {
     Mechanism& m = layout.mechanisms[i];
     const int end = i + 1 < layout.mechanisms.size() ? layout.mechanisms[i + 1].first_cluster : layout.cluster_count();
     m.first_coordinate = next;
-    m.close(end - m.first_cluster, system.gravity);
+    m.close(end - m.first_cluster, system.gravity, layout.schur_rows.data() + m.first_row);
     for (int k = 0; k < m.size(); ++k) layout.scales.push_back({m.is_place(k), m.reach(k)});
     next += m.size();
   }

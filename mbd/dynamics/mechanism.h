@@ -22,6 +22,7 @@
 #include "mbd/system/motion.h"
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace steplap {
@@ -38,15 +39,17 @@ struct Member {
   double mass = 0.0, inertia = 0.0;
   Pair<double> pin;        ///< from its parent's pin, in the parent's axes; a place of the ground
   Pair<double> centre;     ///< from its pin, in its axes
-
-  // Found by Mechanism::close.
-  double mass_below = 0.0; ///< its own and that of all that hang on it
-  double turning = 0.0;    ///< M_ee
-  Pair<double> moment;     ///< p
 };
+
+struct MechanismWork;
 
 class Mechanism {
 public:
+  Mechanism();
+  ~Mechanism();
+  Mechanism(Mechanism&&) noexcept;
+  Mechanism& operator=(Mechanism&&) noexcept;
+
   static constexpr int k_most = 16; ///< coordinates, and rows
 
   // --- made by the layout ---------------------------------------------------------------------------
@@ -54,10 +57,12 @@ public:
   int first_coordinate = 0;    ///< in the packed coordinates
   int first_cluster = 0;
   int first_row = 0, row_count = 0; ///< of the layout's active rows
-  /// Constants of the members, coordinates of which member; sizes. Members and rows must be known.
-  void close(int cluster_count, const Vec2& gravity);
+  /// Constants of the members, coordinates, sizes. Members, first_cluster and its rows, of which the bodies are filled in,
+  /// must be known.
+  void close(int cluster_count, const Vec2& gravity, const SchurRow* rows);
 
   [[nodiscard]] int size() const { return n_; }
+  [[nodiscard]] int cluster_count() const { return static_cast<int>(member_of_.size()); }
   /// How far at most anything that coordinate i turns is from its pin, m; 0 for a place.
   [[nodiscard]] double reach(int i) const { return reach_[i]; }
   [[nodiscard]] bool is_place(int i) const { return is_place_[i] != 0; }
@@ -88,9 +93,9 @@ public:
   void pin_forces(const double* cluster_a, const BodyForce* force, const SchurRow* rows, const double* lambda,
                   std::vector<Pair<double>>& on_member) const;
   /// From the pin of the member that it hangs on to its own, and from there to its centre, ground axes.
-  [[nodiscard]] Pair<double> arm(int member) const { return moving_[member].arm; }
-  [[nodiscard]] Pair<double> lever(int member) const { return moving_[member].lever; }
-  [[nodiscard]] double spin(int member) const { return moving_[member].omega; }
+  [[nodiscard]] Pair<double> arm(int member) const;
+  [[nodiscard]] Pair<double> lever(int member) const;
+  [[nodiscard]] double spin(int member) const;
   [[nodiscard]] int member_of(int cluster) const { return member_of_[cluster - first_cluster]; }
 
   // --- rows: as of SchurSolver ----------------------------------------------------------------------
@@ -105,43 +110,26 @@ public:
   void add_response(const double* lambda, double* change) const;
   void decide_rank(const char* is_friction);
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
-  [[nodiscard]] bool is_dependent(int row) const { return inverse_d_[row] == 0.0; }
+  [[nodiscard]] bool is_dependent(int row) const;
   [[nodiscard]] bool is_left_out(int row) const { return !out_.empty() && out_[row] != 0; }
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
-  [[nodiscard]] const double* gradient(int row) const { return &gradient_[static_cast<std::size_t>(row) * n_]; }
+  [[nodiscard]] const double* gradient(int row) const;
 
 private:
-  struct Moving {
-    double c = 1.0, s = 0.0, omega = 0.0;
-    Pair<double> o, v, bias; ///< of its pin
-    Pair<double> arm, lever, moment;
-  };
-  void turn_member(std::size_t i, const double* q, const double* v, Moving* all) const;
-  void whiten(double* x) const;
-  void factor_as_is(const SchurRow* rows, double shift);
-  void keep_rank(const SchurRow* rows, double shift);
-  void eliminate(double* x) const;
-  void refine(double* x) const;
+  void find_patterns(const SchurRow* rows);
+  void factor_as_is(double shift);
+  void keep_rank(double shift);
 
   int n_ = 0;
-  Pair<double> gravity_;
-  std::vector<Moving> moving_;
-  mutable std::vector<Moving> packed_; ///< scratch of pack and unpack, which leave the pose placed as it is
   std::vector<int> member_of_; ///< of its clusters
-  std::vector<unsigned> path_; ///< per member: coordinates that move it
-  std::array<int, k_most> up_{}; ///< the coordinate next above
+  std::vector<unsigned> path_; ///< per member: coordinates that move it, by bits
   std::array<double, k_most> reach_{};
   std::array<char, k_most> is_place_{};
-  std::array<double, k_most * k_most> mass_{}; ///< L below the diagonal
-  std::array<double, k_most> inverse_mass_{};  ///< of D
-  std::array<double, k_most> placed_q_{}, placed_v_{};
-
-  std::vector<double> gradient_, white_; ///< rows × n: J, and L⁻ᵀ Jᵀ
-  std::vector<double> factor_, inverse_d_, own_; ///< own_: J_c W J_cᵀ of each row
-  std::vector<char> can_stay_out_, out_, was_out_;
+  std::vector<char> can_stay_out_, out_, was_out_; ///< per row, as in SchurSolver
   bool is_rank_open_ = false;
   int dependent_count_ = 0;
-  double smallest_pivot_ = 1.0, shift_ = 0.0;
+  double smallest_pivot_ = 1.0;
+  std::unique_ptr<MechanismWork> work_; ///< what an evaluation changes, and its constants side by side
 };
 
 } // namespace steplap

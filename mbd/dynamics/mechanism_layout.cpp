@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace steplap {
 
@@ -119,7 +120,7 @@ private:
     if (island.size() > static_cast<std::size_t>(Mechanism::k_most)) return; // each has a coordinate at least
     for (const int k : island)
       if (is_driven_[k] != 0) return;
-    tree_ = {};
+    tree_ = Mechanism();
     used_.clear();
     reached_.clear();
     for (const int k : island)
@@ -136,7 +137,7 @@ private:
     tree_.row_count = rows;
     for (const int k : island) found_.mechanism_of[k] = static_cast<int>(found_.mechanisms.size());
     for (const int block : used_) found_.is_pin[block] = 1;
-    found_.mechanisms.push_back(tree_);
+    found_.mechanisms.push_back(std::move(tree_));
   }
 
   void hang_on_ground(int h, int cluster, bool by_rod) {
