@@ -56,7 +56,7 @@ void Dynamics::set_state(const State& state) {
   is_merged_near_ = was_merged_near_ = false;
   placed_time_ = lock_time_ = std::numeric_limits<double>::quiet_NaN();
   std::fill(watch_.begin(), watch_.end(), 1.0);
-  layout_key(state, key_);
+  layout_key(state, choice_, key_);
   for (const auto& layout : layouts_)
     if (layout->key == key_) {
       layout_ = layout.get();
@@ -64,7 +64,7 @@ void Dynamics::set_state(const State& state) {
       decide_rank();
       return;
     }
-  layouts_.push_back(std::make_unique<Layout>(make_layout(system_, state)));
+  layouts_.push_back(std::make_unique<Layout>(make_layout(system_, state, choice_)));
   layout_ = layouts_.back().get();
   place_edges();
   std::vector<double> packed(dimension());
@@ -78,13 +78,16 @@ void Dynamics::set_state(const State& state) {
     row_rate_.resize(rows);
     target_rate_.resize(rows);
   }
+  if (layout_->has_mechanisms()) cluster_a_.resize(3 * layout_->clusters.size());
   if (lock_target_.size() < layout_->locks.size()) lock_target_.resize(layout_->locks.size());
   decide_rank();
 }
 
 void Dynamics::decide_rank() {
   is_rank_new_ = !layout_->held_rows.empty();
-  if (is_rank_new_) layout_->schur.decide_rank(layout_->is_friction_row);
+  if (!is_rank_new_) return;
+  layout_->schur.decide_rank(layout_->is_friction_row);
+  for (Mechanism& m : layout_->mechanisms) m.decide_rank(layout_->is_friction_row.data() + m.first_row);
 }
 
 void Dynamics::set_time_limit(double limit) {
@@ -107,8 +110,9 @@ void Dynamics::place(double t, const double* q, const double* v) {
   const Layout& layout = *layout_;
   placed_time_ = t;
   Motion<double>* const motion = motion_.data();
-  for (const int slot : layout.slots) {
-    Motion<double>& m = motion[slot];
+  for (Mechanism& m : layout_->mechanisms) m.place(q + m.first_coordinate, v + m.first_coordinate, motion);
+  for (int k = 0; k < layout.absolute_count; ++k) {
+    Motion<double>& m = motion[layout.slots[k]];
     m.x = q[0];
     m.y = q[1];
     m.vx = v[0];
@@ -134,7 +138,9 @@ void Dynamics::place(double t, const double* q, const double* v) {
 bool Dynamics::is_placed(double t, const double* y) const {
   if (t != placed_time_) return false;
   const double* const v = y + coordinate_count();
-  for (std::size_t k = 0; k < layout_->slots.size(); ++k) {
+  for (const Mechanism& m : layout_->mechanisms)
+    if (!m.is_at(y + m.first_coordinate, v + m.first_coordinate)) return false;
+  for (int k = 0; k < layout_->absolute_count; ++k) {
     const Motion<double>& m = motion_[layout_->slots[k]];
     const double* const qk = y + 3 * k;
     const double* const vk = v + 3 * k;
@@ -283,6 +289,12 @@ void Dynamics::evaluate_rows() {
     row_value_[r] = off_target(*layout_->active[r].spec, m.value, target.value);
     row_rate_[r] = m.rate - target.rate;
   }
+  reduce_rows();
+}
+
+// Gradients of the rows of mechanisms by their coordinates.
+void Dynamics::reduce_rows() {
+  for (Mechanism& m : layout_->mechanisms) m.reduce_rows(layout_->schur_rows.data() + m.first_row);
 }
 
 // Row r at the placed motion, as load_row does it; returns γ − J a.
@@ -313,20 +325,36 @@ STEPLAP_INLINE double Dynamics::pull(std::size_t r, const double* a) {
   return right;
 }
 
-// J (a_f + W Jᵀλ) = γ; leaves λ in right_side_ and adds W Jᵀλ to a.
+// J (a_f + W Jᵀλ) = γ; leaves λ in right_side_ and adds W Jᵀλ to a. In mechanisms the same with M⁻¹ Jᵀλ.
 void Dynamics::solve_constraints(double* a) {
   Layout& layout = *layout_;
-  const std::size_t count = layout.active.size();
-  if (count == 0) return;
+  const auto count = static_cast<std::size_t>(layout.schur.size());
   double* const right = right_side_.data();
   for (std::size_t r = 0; r < count; ++r) right[r] = pull(r, a);
+  for (Mechanism& m : layout.mechanisms) {
+    m.factor_mass();
+    m.accelerate(force_.data(), a + m.first_coordinate);
+    if (m.row_count == 0) continue;
+    m.expand(a + m.first_coordinate, cluster_a_.data());
+    for (int r = m.first_row; r < m.first_row + m.row_count; ++r) right[r] = pull(r, cluster_a_.data());
+  }
+  if (layout.active.empty()) return;
   for (const int r : layout.driven_rows) {
     const SignalJet target = row_target(*layout.active[r].spec, state_->memory.data(), evaluation_.t);
     right[r] += target.acceleration;
     target_rate_[r] = target.rate;
   }
-  layout.schur.factor(layout.schur_rows);
   is_factored_ = true;
+  for (Mechanism& m : layout.mechanisms) {
+    if (m.row_count == 0) continue;
+    const SchurRow* const rows = layout.schur_rows.data() + m.first_row;
+    m.reduce_rows(rows);
+    m.factor_rows(rows, 0.0);
+    m.solve_rows(right + m.first_row);
+    m.add_response(right + m.first_row, a + m.first_coordinate);
+  }
+  if (count == 0) return;
+  layout.schur.factor(layout.schur_rows);
   layout.schur.solve(layout.schur_rows, right);
   for (std::size_t r = 0; r < count; ++r) {
     const SchurRow& row = layout.schur_rows[r];
@@ -366,7 +394,7 @@ void Dynamics::finish_power(const double* a) {
 void Dynamics::finish_watches() {
   const Layout& layout = *layout_;
   for (const HeldRow& held : layout.held_rows) friction_force_[held.friction_row] = right_side_[held.row];
-  if (layout.schur.is_singular() && (!layout.sharing || is_rank_new_)) [[unlikely]] {
+  if (layout.is_singular() && (!layout.sharing || is_rank_new_)) [[unlikely]] {
     find_sharing();
     is_rank_new_ = false;
   }
@@ -387,8 +415,9 @@ void Dynamics::finish_watches() {
 void Dynamics::rates(double t, const double* y, double* dy) {
   rates_at(t, y, dy);
   if (layout_->active.empty()) return;
-  lowest_pivot_ = std::min(lowest_pivot_, layout_->schur.smallest_pivot());
-  if (layout_->schur.smallest_pivot() < k_placed_pivot) [[unlikely]]
+  const double pivot = layout_->smallest_pivot();
+  lowest_pivot_ = std::min(lowest_pivot_, pivot);
+  if (pivot < k_placed_pivot) [[unlikely]]
     rates_nearby(t, y, dy);
 }
 
@@ -408,8 +437,8 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   const double* weight = layout.weight.data();
   const double* w = layout.inverse_mass.data();
   double* out = a;
-  for (const int slot : layout.slots) {
-    const BodyForce& f = force_[slot];
+  for (int k = 0; k < layout.absolute_count; ++k) {
+    const BodyForce& f = force_[layout.slots[k]];
     out[0] = w[0] * (weight[0] + f.fx);
     out[1] = w[1] * (weight[1] + f.fy);
     out[2] = w[2] * (weight[2] + f.m);

@@ -1,8 +1,9 @@
 // Equations of motion of a compiled system in its present modes.
 //
 //   M a = Q(q, v, t) + Jᵀλ,  J a = γ            (27), (29)–(31) with the corrections of physics.md §1
-// in the coordinates of a layout's clusters. The packed vector y holds the clusters' (x, y, θ), their
-// rates, and two integrals of power: energy dissipated and work done by loads and drives.
+// in the coordinates of a layout: x, y and θ of clusters, or joint coordinates of small islands (mechanism.h). The
+// packed vector y holds the coordinates, their rates, and two integrals of power: energy dissipated and work done by
+// loads and drives.
 //
 // One object per thread: it owns all scratch memory; rates() and project() allocate nothing.
 #pragma once
@@ -36,6 +37,9 @@ public:
   Dynamics(const Dynamics&) = delete; // what it evaluates points into it
   Dynamics& operator=(const Dynamics&) = delete;
 
+  /// What describes islands for which there is a choice; counts from the next set_state() on. Absolute unless asked.
+  void use_coordinates(Coordinates coordinates) { choice_ = coordinates; }
+  [[nodiscard]] Coordinates coordinates() const { return choice_; }
   /// Takes over modes, friction phases and anchors. `state` must outlive the use of this object or be
   /// set anew; poses are read only where a new layout has to be made.
   void set_state(const State& state);
@@ -51,10 +55,14 @@ public:
   /// As last set.
   [[nodiscard]] const State& state() const { return *state_; }
   [[nodiscard]] const Layout& layout() const { return *layout_; }
-  [[nodiscard]] int dimension() const { return 6 * layout_->cluster_count() + 2; }
-  [[nodiscard]] int coordinate_count() const { return 3 * layout_->cluster_count(); }
+  [[nodiscard]] int dimension() const { return 2 * layout_->coordinate_count + 2; }
+  [[nodiscard]] int coordinate_count() const { return layout_->coordinate_count; }
   void pack(const State& state, double* y) const;
   void unpack(double t, const double* y, State& state) const;
+
+  /// Rates of the clusters, 3 each, at y; their accelerations with dy of the last rates(). Good until asked again.
+  [[nodiscard]] const double* cluster_rates(const double* y);
+  [[nodiscard]] const double* cluster_accelerations(const double* dy);
 
   /// dy/dt. Also leaves watch values, multipliers and forces for the functions below.
   void rates(double t, const double* y, double* dy);
@@ -90,7 +98,7 @@ public:
   /// The loads that sticking elements share in more than one way, as last solved by watch_merged(); null where
   /// every wrench is its element's own.
   [[nodiscard]] const LoadSharing* sharing() const;
-  /// Per rate of a cluster (3 each) what velocity errors must be small against for the slip laws' sake, infinite
+  /// Per rate of a coordinate what velocity errors must be small against for the slip laws' sake, infinite
   /// where none asks for it; false if that is everywhere.
   [[nodiscard]] bool slip_scales(double* scale) const;
   /// The fastest decay that a slip law gives to changes of velocity, 1/s (an upper bound).
@@ -129,6 +137,7 @@ private:
   template <bool WithBias> MeasureValue<double> load_row(std::size_t r);
   double pull(std::size_t r, const double* a);
   void evaluate_rows();
+  void reduce_rows();
   MeasureValue<double> load_candidate(const RowSpec& spec, SchurRow& row) const;
   void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
   [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
@@ -148,6 +157,12 @@ private:
   void add_response(double* change);
   void body_accelerations(const double* dy);
   void place_edges();
+  void find_pin_forces(const double* cluster_a);
+  void add_carried(const RowSpec& spec, double lambda);
+  [[nodiscard]] double place_rounding(const double* y) const;
+  [[nodiscard]] double rate_rounding(const double* y) const;
+  [[nodiscard]] double kept_change(std::size_t row, const double* change) const;
+  struct CandidateRow;
   void merged_wrenches(const double* dy);
   [[nodiscard]] double* joint_multipliers(const RigidEdge& edge);
   void decide_rank();
@@ -167,6 +182,7 @@ private:
   const State* state_ = nullptr;
   std::vector<std::unique_ptr<Layout>> layouts_;
   LayoutKey key_; ///< of the present one
+  Coordinates choice_ = Coordinates::absolute;
   Layout* layout_ = nullptr;
   bool is_factored_ = false;
   bool is_rank_new_ = false; ///< which rows of friction the equations leave out is decided, or was, since set_state()
@@ -186,6 +202,9 @@ private:
   double placed_time_ = std::numeric_limits<double>::quiet_NaN(); ///< of motion_
   double lowest_pivot_ = 1.0;
   std::vector<double> placed_;          ///< state of rates_nearby
+  mutable std::vector<double> cluster_q_, cluster_v_; ///< 3 per cluster, where some are in mechanisms
+  std::vector<double> cluster_a_;
+  std::vector<Pair<double>> pin_force_; ///< scratch of find_pin_forces
   std::vector<double> right_side_;      ///< then multipliers of active rows
   std::vector<double> row_value_, row_rate_, target_rate_;
   std::vector<double> acceleration_;    ///< 3 per body

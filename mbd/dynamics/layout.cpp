@@ -1,5 +1,6 @@
 #include "mbd/dynamics/layout.h"
 
+#include "mbd/dynamics/mechanism_layout.h"
 #include "mbd/math/portable_math.h"
 
 #include <algorithm>
@@ -162,10 +163,11 @@ void add_active(Layout& layout, const ActiveRow& row) {
 }
 
 // Bilateral rows: locks where a drive prescribes one coordinate of a body that is alone, else rows.
-void add_bilateral(const System& system, const std::vector<char>& is_block_merged, Layout& layout) {
+void want_bilateral(const System& system, const std::vector<char>& is_block_merged, const std::vector<char>& is_pin,
+                    Layout& layout, std::vector<ActiveRow>& wanted) {
   for (int i = 0; i < static_cast<int>(system.row_blocks.size()); ++i) {
     const RowBlock& block = system.row_blocks[i];
-    if (is_block_merged[i]) continue;
+    if (is_block_merged[i] || is_pin[i] != 0) continue;
     const RowSpec& first = system.rows[block.first];
     const Placement& place = layout.placements[first.a];
     if (place.cluster >= 0 && place.cluster == layout.placements[first.b].cluster) {
@@ -180,12 +182,12 @@ void add_bilateral(const System& system, const std::vector<char>& is_block_merge
       continue;
     }
     for (int r = block.first; r < block.first + block.count; ++r)
-      add_active(layout, {&system.rows[r], r, -1, 0});
+      wanted.push_back({&system.rows[r], r, -1, 0});
   }
 }
 
-void add_frictions(const System& system, const State& state,
-                   const std::vector<char>& is_friction_merged, Layout& layout) {
+void want_frictions(const System& system, const State& state, const std::vector<char>& is_friction_merged, Layout& layout,
+                    std::vector<ActiveRow>& wanted) {
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
     if (is_friction_merged[f]) {
       layout.merged.push_back(f);
@@ -193,14 +195,74 @@ void add_frictions(const System& system, const State& state,
     } else if (is_stuck(state, f)) {
       layout.holding.push_back(f);
       const FrictionElement& friction = *system.frictions[f].friction;
-      for (int r = 0; r < friction.dimension(); ++r) {
-        layout.held_rows.push_back({static_cast<int>(layout.active.size()), system.frictions[f].row + r});
-        add_active(layout, {friction.rows(state.friction[f]) + r, -1, f, r});
-      }
+      for (int r = 0; r < friction.dimension(); ++r) wanted.push_back({friction.rows(state.friction[f]) + r, -1, f, r});
     } else if (state.friction[f].phase == FrictionPhase::slip) {
       layout.sliding.push_back(f);
     }
   }
+}
+
+// Those of absolute clusters, then those of each mechanism, else in their order.
+void add_rows(const System& system, std::vector<ActiveRow> wanted, Layout& layout) {
+  const auto place_of = [&layout](const ActiveRow& row) {
+    const int cluster = std::max(layout.placements[row.spec->a].cluster, layout.placements[row.spec->b].cluster);
+    return cluster < layout.absolute_count ? -1 : layout.mechanism_of_cluster(cluster).first_cluster;
+  };
+  if (layout.has_mechanisms())
+    std::stable_sort(wanted.begin(), wanted.end(),
+                     [&](const ActiveRow& a, const ActiveRow& b) { return place_of(a) < place_of(b); });
+  for (const ActiveRow& row : wanted) {
+    if (row.friction >= 0)
+      layout.held_rows.push_back({static_cast<int>(layout.active.size()), system.frictions[row.friction].row + row.friction_row});
+    add_active(layout, row);
+  }
+  const auto is_of = [&place_of](const Mechanism& m) {
+    return [&m, &place_of](const ActiveRow& row) { return place_of(row) == m.first_cluster; };
+  };
+  for (Mechanism& m : layout.mechanisms) {
+    const auto first = std::find_if(layout.active.begin(), layout.active.end(), is_of(m));
+    m.first_row = static_cast<int>(first - layout.active.begin());
+    m.row_count = static_cast<int>(std::count_if(first, layout.active.end(), is_of(m)));
+  }
+}
+
+// Clusters of mechanisms behind the others, each mechanism's together.
+void take_joint_coordinates(JointCoordinates found, Layout& layout) {
+  std::vector<int> order, place(layout.clusters.size());
+  for (int in = -1; in < static_cast<int>(found.mechanisms.size()); ++in) {
+    if (in >= 0) found.mechanisms[in].first_cluster = static_cast<int>(order.size());
+    for (int k = 0; k < layout.cluster_count(); ++k)
+      if (found.mechanism_of[k] == in) order.push_back(k);
+    if (in < 0) layout.absolute_count = static_cast<int>(order.size());
+  }
+  const std::vector<Cluster> clusters = layout.clusters;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    place[order[i]] = static_cast<int>(i);
+    layout.clusters[i] = clusters[order[i]];
+    layout.slots[i] = clusters[order[i]].motion;
+  }
+  for (Placement& p : layout.placements)
+    if (p.cluster >= 0) p.cluster = place[p.cluster];
+  for (Mechanism& m : found.mechanisms)
+    for (Member& member : m.members)
+      if (member.cluster >= 0) member.cluster = place[member.cluster];
+  layout.mechanisms = std::move(found.mechanisms);
+}
+
+// Coordinates of the absolute clusters and of the mechanisms behind them.
+void number_coordinates(const System& system, Layout& layout) {
+  int next = 3 * layout.absolute_count;
+  for (int i = 0; i < next; ++i) layout.scales.push_back({i % 3 < 2, 0.0});
+  for (std::size_t i = 0; i < layout.mechanisms.size(); ++i) {
+    Mechanism& m = layout.mechanisms[i];
+    const int end = i + 1 < layout.mechanisms.size() ? layout.mechanisms[i + 1].first_cluster : layout.cluster_count();
+    m.first_coordinate = next;
+    m.close(end - m.first_cluster, system.gravity, layout.schur_rows.data() + m.first_row);
+    for (int k = 0; k < m.size(); ++k) layout.scales.push_back({m.is_place(k), m.reach(k)});
+    next += m.size();
+  }
+  layout.coordinate_count = next;
+  layout.inverse_mass.resize(next, 1.0);
 }
 
 // Links of force elements are needed always, those of rows while they hold.
@@ -221,6 +283,15 @@ void find_links(const System& system, const State& state, Layout& layout) {
       layout.links.push_back({system.links.slot(i), system.links[i].a, system.links[i].b});
 }
 
+// One row of each pin or rod by which a member of a mechanism hangs.
+std::vector<const RowSpec*> pin_rows(const System& system, const Layout& layout) {
+  std::vector<const RowSpec*> rows;
+  for (const Mechanism& mechanism : layout.mechanisms)
+    for (const Member& m : mechanism.members)
+      if (m.block >= 0) rows.push_back(&system.rows[system.row_blocks[m.block].first]);
+  return rows;
+}
+
 void find_riding(const System& system, const State& state, Layout& layout) {
   std::vector<char> is_needed = system.is_body_used;
   for (const ActiveRow& row : layout.active) is_needed[row.spec->a] = is_needed[row.spec->b] = 1;
@@ -228,28 +299,28 @@ void find_riding(const System& system, const State& state, Layout& layout) {
     const RowSpec* rows = system.frictions[f].friction->rows(state.friction[f]);
     is_needed[rows[0].a] = is_needed[rows[0].b] = 1;
   }
+  if (layout.is_carried_by_pins)
+    for (const RowSpec* row : pin_rows(system, layout)) is_needed[row->a] = is_needed[row->b] = 1;
   for (int i = 1; i < system.body_count(); ++i)
     if (is_needed[i] && !layout.placements[i].is_trivial) layout.riding.push_back(i);
 }
 
 } // namespace
 
-void layout_key(const State& state, LayoutKey& key) {
-  key.resize(state.friction.size());
-  for (std::size_t i = 0; i < key.size(); ++i)
+void layout_key(const State& state, Coordinates coordinates, LayoutKey& key) {
+  key.resize(state.friction.size() + 1);
+  key.back() = static_cast<std::uint64_t>(coordinates);
+  for (std::size_t i = 0; i + 1 < key.size(); ++i)
     key[i] = static_cast<std::uint64_t>(state.friction[i].phase) << 32 | state.friction[i].foot;
 }
 
-Layout make_layout(const System& system, const State& state) {
+Layout make_layout(const System& system, const State& state, Coordinates coordinates) {
   Layout layout;
-  layout_key(state, layout.key);
+  layout_key(state, coordinates, layout.key);
   const std::vector<RigidJoint> joints = rigid_joints(system, state);
   std::vector<int> parent;
   const std::vector<char> is_merged = merge(system, joints, parent);
   make_clusters(system, state, parent, layout);
-  layout.is_carried.assign(system.bodies.size(), 0);
-  if (std::find(is_merged.begin(), is_merged.end(), 1) != is_merged.end())
-    order_edges(joints, is_merged, system.body_count(), layout);
   std::vector<char> is_block_merged(system.row_blocks.size(), 0);
   std::vector<char> is_friction_merged(system.frictions.size(), 0);
   for (std::size_t i = 0; i < joints.size(); ++i)
@@ -257,8 +328,22 @@ Layout make_layout(const System& system, const State& state) {
       if (joints[i].block >= 0) is_block_merged[joints[i].block] = 1;
       if (joints[i].friction >= 0) is_friction_merged[joints[i].friction] = 1;
     }
-  add_bilateral(system, is_block_merged, layout);
-  add_frictions(system, state, is_friction_merged, layout);
+  layout.absolute_count = layout.cluster_count();
+  std::vector<char> is_pin(system.row_blocks.size(), 0);
+  if (coordinates != Coordinates::absolute) {
+    JointCoordinates found = find_joint_coordinates(system, state, layout, is_block_merged, is_friction_merged);
+    is_pin = found.is_pin;
+    if (!found.mechanisms.empty()) take_joint_coordinates(std::move(found), layout);
+  }
+  layout.is_carried.assign(system.bodies.size(), 0);
+  if (std::find(is_merged.begin(), is_merged.end(), 1) != is_merged.end())
+    order_edges(joints, is_merged, system.body_count(), layout);
+  std::vector<ActiveRow> wanted;
+  want_bilateral(system, is_block_merged, is_pin, layout, wanted);
+  want_frictions(system, state, is_friction_merged, layout, wanted);
+  add_rows(system, std::move(wanted), layout);
+  for (const RowSpec* row : pin_rows(system, layout))
+    if (layout.is_carried[row->a] || layout.is_carried[row->b]) layout.is_carried_by_pins = true;
   find_riding(system, state, layout);
   find_links(system, state, layout);
   for (std::size_t r = 0; r < layout.active.size(); ++r) {
@@ -266,11 +351,13 @@ Layout make_layout(const System& system, const State& state) {
     if (layout.is_carried[spec.a] || layout.is_carried[spec.b])
       layout.carried_rows.push_back(static_cast<int>(r));
   }
-  for (const Cluster& cluster : layout.clusters) {
+  for (int k = 0; k < layout.absolute_count; ++k) {
+    const Cluster& cluster = layout.clusters[k];
     layout.weight.insert(layout.weight.end(),
                          {cluster.mass * system.gravity.x(), cluster.mass * system.gravity.y(), 0.0});
     layout.inverse_mass.insert(layout.inverse_mass.end(), cluster.w, cluster.w + 3);
   }
+  number_coordinates(system, layout);
   for (Lock& lock : layout.locks)
     for (int r = 0; r < static_cast<int>(layout.active.size()); ++r)
       for (int side = 0; side < 2; ++side)
@@ -289,7 +376,9 @@ Layout make_layout(const System& system, const State& state) {
     for (int side = 0; side < 2; ++side) row.wj[side][2] = row.w[side][2] * row.j[side][2];
   }
   for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());
-  layout.schur.analyze(layout.schur_rows);
+  int absolute_rows = static_cast<int>(layout.active.size());
+  for (const Mechanism& m : layout.mechanisms) absolute_rows -= m.row_count;
+  layout.schur.analyze(layout.schur_rows, absolute_rows);
   return layout;
 }
 

@@ -3,16 +3,24 @@
 // Bodies held rigidly together (welds, sticking step-lap joints) are merged into *clusters* that are
 // integrated as one body about their common centre of gravity; a coordinate that a drive prescribes is
 // locked (infinite mass); what remains are rows. A layout is found once for a set of modes.
+//
+// Coordinates are the clusters' own, x, y and θ of each, or, in small islands with pins, joint coordinates (mechanism.h).
+// Clusters and active rows are numbered so that those in absolute coordinates come first; coordinates likewise.
 #pragma once
 
 #include "mbd/dynamics/load_sharing.h"
+#include "mbd/dynamics/mechanism.h"
 #include "mbd/dynamics/schur.h"
 #include "mbd/system/system.h"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
 namespace steplap {
+
+/// What describes islands for which there is a choice; `automatic`: joint coordinates where they pay.
+enum class Coordinates : unsigned char { automatic, joint, absolute };
 
 /// Several bodies moving as one; coordinates are those of its centre of gravity.
 struct Cluster {
@@ -85,24 +93,36 @@ struct EdgeGeometry {
   bool is_child_a = false; ///< the child is the rows' body a
 };
 
-/// Phases and places of friction, by which layouts are told apart.
+/// A coordinate as error scales see it.
+struct CoordinateScale {
+  bool is_place = true; ///< m, else rad
+  double reach = 0.0;   ///< m: how far what an angle turns, beside its own body, is from its pin
+};
+
+/// Phases and places of friction, and the choice of coordinates, by which layouts are told apart.
 using LayoutKey = std::vector<std::uint64_t>;
 
 struct Layout {
   LayoutKey key;
   std::vector<Cluster> clusters;
+  int absolute_count = 0;            ///< clusters in absolute coordinates, the first ones
+  std::vector<Mechanism> mechanisms; ///< of the others
+  int coordinate_count = 0;
+  std::vector<CoordinateScale> scales; ///< per coordinate
   std::vector<Placement> placements; ///< per body
   std::vector<int> riding;           ///< bodies that elements act on, whose motion is not their cluster's
   std::vector<int> slots;            ///< of the clusters' motions and forces
   int slot_count = 0;                ///< those in use: bodies, links, clusters of several bodies
 
-  std::vector<ActiveRow> active;
+  std::vector<ActiveRow> active;     ///< of clusters in absolute coordinates first, then of each mechanism
   std::vector<Lock> locks;
-  std::vector<double> weight, inverse_mass; ///< per cluster coordinate: m g and W
+  std::vector<double> weight; ///< m g, per coordinate of the absolute clusters
+  std::vector<double> inverse_mass; ///< W of those; 1 for a joint coordinate
   std::vector<RigidEdge> edges;
   std::vector<EdgeGeometry> edge_geometry; ///< per edge, in the present phases
   std::vector<char> is_carried;      ///< per body: child of an edge, whose wrench balance is wanted
   std::vector<int> carried_rows;     ///< active rows that act on such a body
+  bool is_carried_by_pins = false;   ///< pins of mechanisms do
   std::vector<int> redundant_blocks; ///< rigid blocks inside one cluster that close a loop
   std::vector<ActiveLink> links;
   std::vector<int> sliding;          ///< friction elements in phase slip
@@ -111,19 +131,51 @@ struct Layout {
   std::vector<int> merged;           ///< friction elements in phase stick that are merged
   bool is_merged_watched = false;    ///< some of those can slip, or sticking elements share a load
   std::unique_ptr<LoadSharing> sharing; ///< null until rows have been met that depend on each other
-  std::vector<double> reference;     ///< clusters' coordinates in the reference pose, for error scales
+  std::vector<double> reference;     ///< coordinates in the reference pose, for error scales
   std::vector<HeldRow> held_rows;    ///< of the elements in `holding`
   std::vector<char> is_friction_row; ///< per active row: it holds friction that can slip
   std::vector<int> driven_rows;      ///< active rows that move with time
-  SchurSolver schur;
-  std::vector<SchurRow> schur_rows;  ///< bodies filled in, numbers are scratch
+  SchurSolver schur;                 ///< of the rows between absolute clusters
+  std::vector<SchurRow> schur_rows;  ///< per active row: bodies filled in, numbers are scratch
 
   [[nodiscard]] int cluster_count() const { return static_cast<int>(clusters.size()); }
+  [[nodiscard]] bool has_mechanisms() const { return !mechanisms.empty(); }
+  /// The mechanism of a cluster or row that is not absolute.
+  [[nodiscard]] const Mechanism& mechanism_of_cluster(int cluster) const {
+    return *std::find_if(mechanisms.rbegin(), mechanisms.rend(), [cluster](const Mechanism& m) { return m.first_cluster <= cluster; });
+  }
+  [[nodiscard]] const Mechanism& mechanism_of_row(int row) const {
+    return *std::find_if(mechanisms.rbegin(), mechanisms.rend(),
+                         [row](const Mechanism& m) { return m.row_count > 0 && m.first_row <= row; });
+  }
+
+  // Of all constraint equations, as SchurSolver says of its own.
+  [[nodiscard]] bool is_singular() const {
+    bool is_any = schur.is_singular();
+    for (const Mechanism& m : mechanisms) is_any = is_any || m.is_singular();
+    return is_any;
+  }
+  [[nodiscard]] double smallest_pivot() const {
+    double least = schur.smallest_pivot();
+    for (const Mechanism& m : mechanisms) least = std::min(least, m.smallest_pivot());
+    return least;
+  }
+  [[nodiscard]] bool is_dependent(int row) const {
+    if (row < schur.size()) return schur.is_dependent(row);
+    const Mechanism& m = mechanism_of_row(row);
+    return m.is_dependent(row - m.first_row);
+  }
+  [[nodiscard]] bool is_left_out(int row) const {
+    if (row < schur.size()) return schur.is_left_out(row);
+    const Mechanism& m = mechanism_of_row(row);
+    return m.is_left_out(row - m.first_row);
+  }
 };
 
-void layout_key(const State& state, LayoutKey& key);
+void layout_key(const State& state, Coordinates coordinates, LayoutKey& key);
 
 /// The layout for the friction phases and the poses in `state`.
-[[nodiscard]] Layout make_layout(const System& system, const State& state);
+[[nodiscard]] Layout make_layout(const System& system, const State& state,
+                                 Coordinates coordinates = Coordinates::absolute);
 
 } // namespace steplap

@@ -93,7 +93,7 @@ DualRow differentiate(const RowSpec& spec, const Layout& layout, const std::vect
 } // namespace
 
 void Linearization::put(std::vector<Triplet>& entries, int row, int column, double value) {
-  if ((*inverse_mass_)[column] > 0.0) entries.emplace_back(row, column, value);
+  if (column >= 3 * layout_->absolute_count || (*inverse_mass_)[column] > 0.0) entries.emplace_back(row, column, value);
 }
 
 void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
@@ -104,14 +104,15 @@ void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
   inverse_mass_ = &layout_->inverse_mass;
   dy_.resize(dynamics.dimension());
   dynamics.rates(t, y, dy_.data());
-  acceleration_ = dy_.data() + n_;
-  for (auto* entries : {&stiffness_, &damping_, &gradient_, &bias_q_, &bias_v_}) entries->clear();
+  acceleration_ = dynamics.cluster_accelerations(dy_.data());
+  for (auto* entries : {&stiffness_, &damping_, &gradient_, &bias_q_, &bias_v_, &response_}) entries->clear();
   parts_.clear();
   for (const auto& group : dynamics.system().groups) group->add_jacobian(dynamics.evaluation(), parts_);
   for (const PairJacobian& part : parts_) add_forces(part);
   for (std::size_t r = 0; r < layout_->active.size(); ++r) add_row(r);
   for (const int f : layout_->sliding) add_sliding(f);
   add_transport();
+  if (layout_->has_mechanisms()) reduce();
 }
 
 // ∂(force on a body)/∂(motion of a body), both moved to their clusters' coordinates.
@@ -198,7 +199,12 @@ void Linearization::acceleration_by_state(MatX& by_pose, MatX& by_velocity) cons
   by_pose = w.asDiagonal() * dense(stiffness_, n_);
   by_velocity = w.asDiagonal() * dense(damping_, n_);
   if (m_ == 0) return;
-  const MatX j = dense(gradient_, m_), wj = w.asDiagonal() * j.transpose();
+  const MatX j = dense(gradient_, m_);
+  MatX wj = w.asDiagonal() * j.transpose();
+  if (!response_.empty()) {
+    wj.setZero();
+    for (const Triplet& e : response_) wj(e.row(), e.col()) += e.value();
+  }
   const Eigen::FullPivLU<MatX> schur(j * wj); // rank-revealing: redundant rows
   by_pose += wj * schur.solve(dense(bias_q_, m_) - j * by_pose);
   by_velocity += wj * schur.solve(dense(bias_v_, m_) - j * by_velocity);

@@ -1,4 +1,4 @@
-// The equations of motion linearised at a state, in the coordinates of the present layout's clusters.
+// The equations of motion linearised at a state, in the coordinates of the present layout.
 //
 // With the generalised forces Q(q, v, t), the multipliers λ of the layout's active rows and J their
 // gradients, M a = Q + Jᵀλ, J a = γ (27), a small change of state changes the accelerations by
@@ -9,6 +9,11 @@
 // along its rows is differenced by the relative velocity, the relative pose and the normal forces of its
 // own pair of bodies, one at a time; all that follows from geometry is exact there too. (Coulomb's law
 // depends on the normal forces alone, linearly: exact up to rounding.)
+//
+// In mechanisms (mechanism.h) M is not diagonal: there K and D are given as M⁻¹K and M⁻¹D, with inverse masses of 1, and M⁻¹Jᵀ
+// apart. They follow from those of the clusters, T being their velocities by the coordinates' rates, by
+//   δv = T δṡ + (∂(T ṡ)/∂s) δs,   K_s = Tᵀ(K T + D ∂(T ṡ)/∂s − m ∂a/∂s) + (∂Tᵀ/∂s)(Q + Jᵀλ − m a),   D_s = Tᵀ(D T − m ∂a/∂ṡ)
+// with a = T s̈ + b at constant s̈: all in closed form, since a coordinate turns but its own member's vectors.
 //
 // Locked coordinates (drives) do not follow the state: their columns are left out, their rows have zero
 // inverse mass. Modes are those of the state; the linearisation holds while no watch value crosses zero.
@@ -28,15 +33,16 @@ public:
   /// come in the same order for every state of one layout, so that a sparse pattern can be kept.
   void evaluate(Dynamics& dynamics, double t, const double* y);
 
-  [[nodiscard]] int coordinates() const { return n_; } ///< of the clusters: x, y, θ of each
+  [[nodiscard]] int coordinates() const { return n_; } ///< of the layout
   [[nodiscard]] int rows() const { return m_; }        ///< active constraint rows
-  /// Inverse masses and inertias, 1/kg and 1/(kg m²); zero where locked. n entries.
+  /// Inverse masses and inertias, 1/kg and 1/(kg m²); zero where locked, 1 in mechanisms. n entries.
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return *inverse_mass_; }
 
   // Sparse: duplicates add up. SI units, rad.
   [[nodiscard]] const std::vector<Triplet>& stiffness() const { return stiffness_; } ///< K, n × n
   [[nodiscard]] const std::vector<Triplet>& damping() const { return damping_; }     ///< D, n × n
   [[nodiscard]] const std::vector<Triplet>& gradient() const { return gradient_; }   ///< J, m × n
+  [[nodiscard]] const std::vector<Triplet>& response() const { return response_; }   ///< M⁻¹ Jᵀ, n × m; empty without mechanisms
   [[nodiscard]] const std::vector<Triplet>& bias_by_pose() const { return bias_q_; } ///< G_q, m × n
   [[nodiscard]] const std::vector<Triplet>& bias_by_velocity() const { return bias_v_; } ///< G_v, m × n
 
@@ -49,6 +55,11 @@ private:
   void add_forces(const PairJacobian& part);
   void add_transport();
   void add_row(std::size_t r);
+  void reduce();
+  void find_levers();
+  void reduce_forces(const Mechanism& m);
+  void add_inertia(const Mechanism& m, const Member& member);
+  void reduce_rows();
   void add_sliding(int friction);
   void add_body_block(int row_body, int column_body, const Mat3& by_pose, const Mat3& by_velocity);
   void put(std::vector<Triplet>& entries, int row, int column, double value);
@@ -56,11 +67,30 @@ private:
   Dynamics* dynamics_ = nullptr;
   const Layout* layout_ = nullptr;
   int n_ = 0, m_ = 0;
-  const double* acceleration_ = nullptr; ///< n
+  const double* acceleration_ = nullptr; ///< 3 per cluster
   const std::vector<double>* inverse_mass_ = nullptr;
   std::vector<double> dy_;
   std::vector<PairJacobian> parts_;
-  std::vector<Triplet> stiffness_, damping_, gradient_, bias_q_, bias_v_;
+  std::vector<Triplet> stiffness_, damping_, gradient_, bias_q_, bias_v_, response_;
+  /// A coordinate of a mechanism that moves a cluster.
+  struct Lever {
+    int coordinate = 0;
+    int axis = -1;         ///< of a place: 0 x, 1 y
+    bool is_own = false;   ///< it is the cluster's angle
+    double omega = 0.0, alpha = 0.0;
+    Pair<double> arm;      ///< what it turns
+  };
+  /// By what a cluster's coordinate changes: its rate by that of a lever's coordinate, its rate and its acceleration by the
+  /// coordinate, its acceleration by the rate.
+  struct LeverRates {
+    double rate, rate_by_pose, acceleration_by_pose, acceleration_by_rate;
+  };
+  [[nodiscard]] static LeverRates rates_of(const Lever& lever, int c);
+  template <class F> void for_levers(int at, const F& f) const;
+  std::vector<std::vector<Lever>> levers_; ///< per cluster; empty: absolute
+  std::vector<Triplet> kept_gradient_, kept_pose_, kept_rate_; ///< scratch of reduce
+  MatX by_pose_, by_rate_;                 ///< of one mechanism
+  std::vector<char> is_touched_;           ///< per coordinate: they have entries there
   std::vector<Motion<double>> motion_;   ///< scratch of the slip law's differences
   std::vector<double> normal_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace steplap {
 
@@ -49,55 +50,92 @@ void Dynamics::slip_motion(int f, const double* dy, double* rate, double* accele
   const RowSpec* specs = friction.rows(state_->friction[f]);
   for (const int body : {specs[0].a, specs[0].b})
     if (body != k_ground) place_member(body);
+  const double* const a = cluster_accelerations(dy);
   for (int r = 0; r < friction.dimension(); ++r) {
     SchurRow row;
     const auto m = load_candidate(specs[r], row);
-    const AlongRow along = along_row(row, m.bias, dy + coordinate_count());
+    const AlongRow along = along_row(row, m.bias, a);
     rate[r] = m.rate;
     acceleration[r] = along.acceleration;
     rounding[r] = k_least_acceleration + k_rounded_share * along.terms;
   }
 }
 
+// A candidate's row in the coordinates of a layout: by clusters, or where a side is in a mechanism, by its coordinates. A row
+// between two clusters of one mechanism is all in the first side's.
+struct Dynamics::CandidateRow {
+  SchurRow row;
+  const Mechanism* mechanism[2] = {nullptr, nullptr};
+  double gradient[2][Mechanism::k_most] = {}; ///< J
+  double response[2][Mechanism::k_most] = {}; ///< M⁻¹ Jᵀ
+
+  void reduce(const Layout& layout) {
+    for (int side = 0; side < 2; ++side) {
+      if (row.body[side] < layout.absolute_count) continue;
+      mechanism[side] = &layout.mechanism_of_cluster(row.body[side]);
+      SchurRow half = row;
+      if (side == 1 && mechanism[0] == mechanism[1]) { // with the first
+        mechanism[1] = nullptr;
+        row.body[1] = -1;
+        continue;
+      }
+      if (const int other = row.body[1 - side]; other >= 0 &&
+          (other < layout.absolute_count || &layout.mechanism_of_cluster(other) != mechanism[side])) half.body[1 - side] = -1;
+      mechanism[side]->reduce(half, gradient[side]);
+      std::copy_n(gradient[side], Mechanism::k_most, response[side]);
+      mechanism[side]->solve_mass(response[side]);
+    }
+  }
+  [[nodiscard]] double along(const double* a) const {
+    double sum = 0.0;
+    for (int side = 0; side < 2; ++side) {
+      if (row.body[side] < 0) continue;
+      if (const Mechanism* m = mechanism[side])
+        for (int i = 0; i < m->size(); ++i) sum += gradient[side][i] * a[m->first_coordinate + i];
+      else
+        for (int k = 0; k < 3; ++k) sum += row.j[side][k] * a[3 * row.body[side] + k];
+    }
+    return sum;
+  }
+  void add_response(double f, double* a) const {
+    for (int side = 0; side < 2; ++side) {
+      if (row.body[side] < 0) continue;
+      if (const Mechanism* m = mechanism[side])
+        for (int i = 0; i < m->size(); ++i) a[m->first_coordinate + i] += f * response[side][i];
+      else
+        for (int k = 0; k < 3; ++k) a[3 * row.body[side] + k] += f * row.wj[side][k];
+    }
+  }
+};
+
 void Dynamics::respond(Candidates& candidates, const double* dy) {
   Layout& layout = *layout_;
   const std::size_t n = candidates.rows.size();
-  const int coordinates = coordinate_count();
   candidates.compliance.assign(n * n, 0.0);
   candidates.acceleration.assign(n, 0.0);
   candidates.rounding.assign(n, 0.0);
   for (int i = 1; i < system_.body_count(); ++i) place_member(i);
-  std::vector<SchurRow> rows(n);
-  std::vector<double> response(coordinates), lambda(layout.active.size());
+  std::vector<CandidateRow> rows(n);
+  std::vector<double> response(coordinate_count());
+  const double* const a = cluster_accelerations(dy);
   for (std::size_t c = 0; c < n; ++c) {
-    const auto m = load_candidate(*candidates.rows[c], rows[c]);
-    const AlongRow along = along_row(rows[c], m.bias, dy + coordinates);
+    const auto m = load_candidate(*candidates.rows[c], rows[c].row);
+    const AlongRow along = along_row(rows[c].row, m.bias, a);
     candidates.acceleration[c] = along.acceleration;
     candidates.rounding[c] = k_least_acceleration + k_rounded_share * along.terms;
+    rows[c].reduce(layout);
   }
-  const auto along = [&](const SchurRow& row, const std::vector<double>& a) {
-    double sum = 0.0;
-    for (int side = 0; side < 2; ++side)
-      if (row.body[side] >= 0)
-        for (int k = 0; k < 3; ++k) sum += row.j[side][k] * a[3 * row.body[side] + k];
-    return sum;
-  };
-  const auto add_response = [&](const SchurRow& row, double f) {
-    for (int side = 0; side < 2; ++side)
-      if (row.body[side] >= 0)
-        for (int k = 0; k < 3; ++k) response[3 * row.body[side] + k] += f * row.wj[side][k];
-  };
+  const std::vector<double> multipliers = right_side_; // of the last rates(), which others read
   for (std::size_t c = 0; c < n; ++c) {
     std::fill(response.begin(), response.end(), 0.0);
-    add_response(rows[c], 1.0);
+    rows[c].add_response(1.0, response.data());
     if (!layout.active.empty()) {
-      for (std::size_t r = 0; r < layout.active.size(); ++r)
-        lambda[r] = -along(layout.schur_rows[r], response);
-      layout.schur.solve(layout.schur_rows, lambda.data());
-      for (std::size_t r = 0; r < layout.active.size(); ++r) add_response(layout.schur_rows[r], lambda[r]);
+      for (std::size_t r = 0; r < layout.active.size(); ++r) right_side_[r] = -kept_change(r, response.data());
+      add_response(response.data());
     }
-    for (std::size_t d = 0; d < n; ++d) candidates.compliance[d * n + c] = along(rows[d], response);
+    for (std::size_t d = 0; d < n; ++d) candidates.compliance[d * n + c] = rows[d].along(response.data());
   }
+  right_side_ = multipliers;
 }
 
 } // namespace steplap

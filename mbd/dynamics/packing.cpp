@@ -5,14 +5,24 @@
 
 namespace steplap {
 
+// Coordinates of clusters; those in mechanisms of their own by way of `all_q`, `all_v`, 3 for each cluster.
 void Dynamics::pack(const State& state, double* y) const {
   const int n = coordinate_count();
   std::fill(y, y + 2 * n, 0.0);
+  double* all_q = y;
+  double* all_v = y + n;
+  if (layout_->has_mechanisms()) {
+    const std::size_t count = 3 * layout_->clusters.size();
+    cluster_q_.assign(count, 0.0);
+    cluster_v_.assign(count, 0.0);
+    all_q = cluster_q_.data();
+    all_v = cluster_v_.data();
+  }
   for (std::size_t i = 1; i < layout_->placements.size(); ++i) {
     const Placement& place = layout_->placements[i];
     const Cluster& cluster = layout_->clusters[place.cluster];
-    double* q = y + 3 * place.cluster;
-    double* v = q + n;
+    double* q = all_q + 3 * place.cluster;
+    double* v = all_v + 3 * place.cluster;
     const double* bq = &state.q[3 * i];
     const double* bv = &state.v[3 * i];
     if (place.is_alone) {
@@ -32,6 +42,11 @@ void Dynamics::pack(const State& state, double* y) const {
              system_.bodies[i].mass * (lever.x() * bv[1] - lever.y() * bv[0])) / cluster.inertia;
   }
   // Angular momentum was taken about the cluster's centre, where Σ m lever = 0: no correction is due.
+  if (layout_->has_mechanisms()) {
+    std::copy_n(all_q, 3 * layout_->absolute_count, y);
+    std::copy_n(all_v, 3 * layout_->absolute_count, y + n);
+    for (Mechanism& m : layout_->mechanisms) m.pack(all_q, all_v, y + m.first_coordinate, y + n + m.first_coordinate);
+  }
   y[2 * n] = state.dissipated;
   y[2 * n + 1] = state.work;
 }
@@ -39,10 +54,23 @@ void Dynamics::pack(const State& state, double* y) const {
 void Dynamics::unpack(double t, const double* y, State& state) const {
   const int n = coordinate_count();
   state.t = t;
+  const double* all_q = y;
+  const double* all_v = y + n;
+  if (layout_->has_mechanisms()) {
+    const std::size_t absolute = 3 * static_cast<std::size_t>(layout_->absolute_count);
+    cluster_q_.resize(3 * layout_->clusters.size());
+    cluster_v_.resize(cluster_q_.size());
+    std::copy_n(y, absolute, cluster_q_.begin());
+    std::copy_n(y + n, absolute, cluster_v_.begin());
+    all_q = cluster_q_.data();
+    all_v = cluster_v_.data();
+    for (Mechanism& m : layout_->mechanisms)
+      m.unpack(y + m.first_coordinate, y + n + m.first_coordinate, cluster_q_.data(), cluster_v_.data());
+  }
   for (std::size_t i = 1; i < layout_->placements.size(); ++i) {
     const Placement& place = layout_->placements[i];
-    const double* q = y + 3 * place.cluster;
-    const double* v = q + n;
+    const double* q = all_q + 3 * place.cluster;
+    const double* v = all_v + 3 * place.cluster;
     double* bq = &state.q[3 * i];
     double* bv = &state.v[3 * i];
     std::copy(q, q + 3, bq);
@@ -57,6 +85,25 @@ void Dynamics::unpack(double t, const double* y, State& state) const {
   }
   state.dissipated = y[2 * n];
   state.work = y[2 * n + 1];
+}
+
+const double* Dynamics::cluster_rates(const double* y) {
+  const int n = coordinate_count();
+  if (!layout_->has_mechanisms()) return y + n;
+  cluster_q_.resize(3 * layout_->clusters.size());
+  cluster_v_.resize(cluster_q_.size());
+  std::copy_n(y + n, 3 * layout_->absolute_count, cluster_v_.begin());
+  for (const Mechanism& m : layout_->mechanisms)
+    m.unpack(y + m.first_coordinate, y + n + m.first_coordinate, cluster_q_.data(), cluster_v_.data());
+  return cluster_v_.data();
+}
+
+const double* Dynamics::cluster_accelerations(const double* dy) {
+  const double* const a = dy + coordinate_count();
+  if (!layout_->has_mechanisms()) return a;
+  std::copy_n(a, 3 * layout_->absolute_count, cluster_a_.begin());
+  for (const Mechanism& m : layout_->mechanisms) m.expand(a + m.first_coordinate, cluster_a_.data());
+  return cluster_a_.data();
 }
 
 } // namespace steplap

@@ -26,19 +26,33 @@ constexpr double k_chord_pivot = 1e-2;
 constexpr double k_rounded_terms = 32.0;
 // Of the fastest rate (or 1 m/s): more than this left of a velocity residual is no rounding.
 constexpr double k_rate_left = 1e-6;
-double position_rounding(const double* q, int n) {
-  double size = 0.0;
-  for (int i = 0; i < n; ++i) size = std::max(size, std::abs(q[i]));
-  return k_rounded_terms * std::numeric_limits<double>::epsilon() * size;
-}
 // A projection "as closely as rounding allows" aims at this share of that, and is not content with the first
 // iteration that no longer helps.
 constexpr double k_close = 1.0 / 16.0;
-int patience_for(double tolerance, const double* y, int n) {
-  return tolerance <= k_close * position_rounding(y, n) ? 3 : 0;
-}
+int patience_for(double tolerance, double rounding) { return tolerance <= k_close * rounding ? 3 : 0; }
 
 } // namespace
+
+// Of positions with the coordinates y, and of rates; places of what is in mechanisms are those of the last evaluation.
+double Dynamics::place_rounding(const double* y) const {
+  double size = 0.0;
+  for (int i = 0; i < coordinate_count(); ++i) size = std::max(size, std::abs(y[i]));
+  for (int k = layout_->absolute_count; k < layout_->cluster_count(); ++k) {
+    const Motion<double>& m = motion_[layout_->slots[k]];
+    size = std::max({size, std::abs(m.x), std::abs(m.y)});
+  }
+  return k_rounded_terms * std::numeric_limits<double>::epsilon() * size;
+}
+
+double Dynamics::rate_rounding(const double* y) const {
+  double size = 0.0;
+  for (int i = 0; i < coordinate_count(); ++i) size = std::max(size, std::abs(y[coordinate_count() + i]));
+  for (int k = layout_->absolute_count; k < layout_->cluster_count(); ++k) {
+    const Motion<double>& m = motion_[layout_->slots[k]];
+    size = std::max({size, std::abs(m.vx), std::abs(m.vy)});
+  }
+  return k_rounded_terms * std::numeric_limits<double>::epsilon() * size;
+}
 
 Residual Dynamics::constraint_values(double t, const double* y) {
   t = std::min(t, time_cap_);
@@ -48,7 +62,7 @@ Residual Dynamics::constraint_values(double t, const double* y) {
   Residual residual;
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
     // What friction that shares its rows with others is off by is a watch value (LoadSharing::discord).
-    if (layout_->schur.is_left_out(static_cast<int>(r))) continue;
+    if (layout_->is_left_out(static_cast<int>(r))) continue;
     residual.position = std::max(residual.position, std::abs(row_value_[r]));
     residual.velocity = std::max(residual.velocity, std::abs(row_rate_[r]));
   }
@@ -86,7 +100,12 @@ void Dynamics::fail_velocities(double t) const {
 }
 
 void Dynamics::factor_rows(double shift) {
-  layout_->schur.factor(layout_->schur_rows, shift);
+  Layout& layout = *layout_;
+  layout.schur.factor(layout.schur_rows, shift);
+  for (Mechanism& m : layout.mechanisms) {
+    m.factor_mass();
+    m.factor_rows(layout.schur_rows.data() + m.first_row, shift);
+  }
   is_factored_ = true;
 }
 
@@ -94,31 +113,45 @@ void Dynamics::factor_rows(double shift) {
 void Dynamics::add_response(double* change) {
   const Layout& layout = *layout_;
   layout.schur.solve(layout.schur_rows, right_side_.data());
-  for (std::size_t r = 0; r < layout.active.size(); ++r)
+  for (std::size_t r = 0; r < static_cast<std::size_t>(layout.schur.size()); ++r)
     for (int side = 0; side < 2; ++side) {
       const SchurRow& row = layout.schur_rows[r];
       if (row.body[side] < 0) continue;
       for (int c = 0; c < 3; ++c)
         change[3 * row.body[side] + c] += row.wj[side][c] * right_side_[r];
     }
+  for (const Mechanism& m : layout.mechanisms) {
+    if (m.row_count == 0) continue;
+    double* const lambda = right_side_.data() + m.first_row;
+    m.solve_rows(lambda);
+    m.add_response(lambda, change + m.first_coordinate);
+  }
 }
 
 bool Dynamics::is_near_singular() const {
-  return !layout_->active.empty() && is_factored_ && layout_->schur.smallest_pivot() < k_removal_pivot;
+  return !layout_->active.empty() && is_factored_ && layout_->smallest_pivot() < k_removal_pivot;
+}
+
+// J change, along a row.
+double Dynamics::kept_change(std::size_t r, const double* change) const {
+  const Layout& layout = *layout_;
+  if (r >= static_cast<std::size_t>(layout.schur.size())) {
+    const Mechanism& m = layout.mechanism_of_row(static_cast<int>(r));
+    return m.along(static_cast<int>(r) - m.first_row, change + m.first_coordinate);
+  }
+  const SchurRow& row = layout.schur_rows[r];
+  double sum = 0.0;
+  for (int side = 0; side < 2; ++side)
+    if (row.body[side] >= 0)
+      for (int c = 0; c < 3; ++c) sum += row.j[side][c] * change[3 * row.body[side] + c];
+  return sum;
 }
 
 void Dynamics::keep_allowed(double* change) {
   const Layout& layout = *layout_;
   if (layout.active.empty()) return;
   if (!is_factored_) factor_rows();
-  for (std::size_t r = 0; r < layout.active.size(); ++r) {
-    const SchurRow& row = layout.schur_rows[r];
-    double sum = 0.0;
-    for (int side = 0; side < 2; ++side)
-      if (row.body[side] >= 0)
-        for (int c = 0; c < 3; ++c) sum -= row.j[side][c] * change[3 * row.body[side] + c];
-    right_side_[r] = sum;
-  }
+  for (std::size_t r = 0; r < layout.active.size(); ++r) right_side_[r] = -kept_change(r, change);
   add_response(change);
 }
 
@@ -139,22 +172,23 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
   }
   if (layout.active.empty()) return {};
   // Kilometres from the origin a position is not known to a picometre.
-  double farthest = 0.0;
-  for (int i = 0; i < n; ++i)
-    if (i % 3 != 2) farthest = std::max(farthest, std::abs(y[i]));
-  const double least = 8.0 * std::numeric_limits<double>::epsilon() * farthest;
   const bool is_close = tolerance == 0.0;
   const Residual first = constraint_values(t, y);
+  double farthest = 0.0;
+  for (const int slot : layout.slots) farthest = std::max({farthest, std::abs(motion_[slot].x), std::abs(motion_[slot].y)});
+  const double least = 8.0 * std::numeric_limits<double>::epsilon() * farthest;
   Residual now = first;
-  if (!reach_positions(t, y, is_close ? k_close * position_rounding(y, n) : std::max(tolerance, least), now))
+  if (!reach_positions(t, y, is_close ? k_close * place_rounding(y) : std::max(tolerance, least), now))
     fail_projection(t);
-  reach_velocities(t, y, now, is_close ? k_close * position_rounding(y + n, n) : std::max(tolerance, least));
+  reach_velocities(t, y, now, is_close ? k_close * rate_rounding(y) : std::max(tolerance, least));
   return first;
 }
 
 void Dynamics::close_velocities(double t, double* y) {
-  double* const rates = y + coordinate_count();
-  if (!layout_->active.empty()) reach_velocities(t, y, constraint_values(t, y), k_close * position_rounding(rates, coordinate_count()));
+  if (!layout_->active.empty()) {
+    const Residual now = constraint_values(t, y);
+    reach_velocities(t, y, now, k_close * rate_rounding(y));
+  }
 }
 
 // The factorisation of the step's last evaluation serves while it converges fast. Near a singular position it
@@ -163,19 +197,19 @@ void Dynamics::close_velocities(double t, double* y) {
 // (2005) 23, for Levenberg–Marquardt with this choice).
 bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& now) {
   Layout& layout = *layout_;
-  int patience = patience_for(tolerance, y, coordinate_count());
+  int patience = patience_for(tolerance, place_rounding(y));
   for (int iteration = 0; now.position > tolerance; ++iteration) {
     if (iteration == k_max_projection_iterations || !std::isfinite(now.position)) return false;
-    if (is_factored_ && layout.schur.smallest_pivot() < k_chord_pivot) is_factored_ = false;
+    if (is_factored_ && layout.smallest_pivot() < k_chord_pivot) is_factored_ = false;
     if (!is_factored_ || iteration % k_iterations_per_factorization == k_iterations_per_factorization - 1) {
       factor_rows();
-      if (layout.schur.smallest_pivot() < k_chord_pivot) factor_rows(std::min(now.position, k_largest_damping));
+      if (layout.smallest_pivot() < k_chord_pivot) factor_rows(std::min(now.position, k_largest_damping));
     }
     const double before = now.position;
     move_by(row_value_, y);
     now = constraint_values(t, y);
     if (now.position > k_chord_worth * before) is_factored_ = false;
-    if (now.position >= 0.5 * before && now.position <= position_rounding(y, coordinate_count()) && --patience < 0)
+    if (now.position >= 0.5 * before && now.position <= place_rounding(y) && --patience < 0)
       break;
   }
   return true;
@@ -184,12 +218,12 @@ bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& 
 // The velocities that the constraints allow differ from those at hand by the solution of a linear system: with a
 // few rows that are far from a singularity one step leaves rounding, and is not looked at again.
 void Dynamics::reach_velocities(double t, double* y, Residual now, double tolerance) {
-  int patience = patience_for(tolerance, y + coordinate_count(), coordinate_count());
+  int patience = patience_for(tolerance, rate_rounding(y));
   for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
     factor_rows();
     const double before = now.velocity;
     move_by(row_rate_, y + coordinate_count());
-    if (layout_->schur.is_small() && !layout_->schur.is_near_singular() && !layout_->schur.is_singular()) return;
+    if (layout_->schur.is_small() && layout_->smallest_pivot() >= SchurSolver::k_refined_pivot && !layout_->is_singular()) return;
     now = constraint_values(t, y);
     if (now.velocity >= 0.5 * before && --patience < 0) break; // rounding of fast motions
   }
@@ -208,15 +242,14 @@ void Dynamics::move_by(const std::vector<double>& residual, double* target) {
 // distance from there: accelerations grow beyond all bounds unless it lies on the constraints. The rates of
 // the nearest state that does are as smooth, and the same where a step begins and ends.
 void Dynamics::rates_nearby(double t, const double* y, double* dy) {
-  const int n = coordinate_count();
   std::copy(y, y + dimension(), placed_.begin());
   Residual off = constraint_values(t, y);
-  if (off.position <= position_rounding(y, n) && off.velocity <= position_rounding(y + n, n)) {
+  if (off.position <= place_rounding(y) && off.velocity <= rate_rounding(y)) {
     rates_at(t, y, dy);
     return;
   }
-  const bool is_placed = reach_positions(t, placed_.data(), position_rounding(y, n), off);
-  if (is_placed) reach_velocities(t, placed_.data(), off, position_rounding(y + n, n));
+  const bool is_placed = reach_positions(t, placed_.data(), place_rounding(y), off);
+  if (is_placed) reach_velocities(t, placed_.data(), off, rate_rounding(y));
   rates_at(t, is_placed ? placed_.data() : y, dy);
 }
 

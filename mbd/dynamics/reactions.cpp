@@ -3,15 +3,16 @@
 #include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace steplap {
 
 void Dynamics::body_accelerations(const double* dy) {
   const Layout& layout = *layout_;
-  const int n = coordinate_count();
+  const double* const accelerations = cluster_accelerations(dy);
   for (int i = 1; i < system_.body_count(); ++i) {
     const Placement& place = layout.placements[i];
-    const double* a = dy + n + 3 * place.cluster;
+    const double* a = accelerations + 3 * place.cluster;
     double* out = &acceleration_[3 * i];
     std::copy(a, a + 3, out);
     if (place.is_trivial) continue;
@@ -50,10 +51,53 @@ void Dynamics::place_edges() {
   }
 }
 
+// Takes what a row bears from the wrench balance of the members of clusters that it acts on.
+void Dynamics::add_carried(const RowSpec& spec, double lambda) {
+  const Layout& layout = *layout_;
+  const int body[2] = {spec.a, spec.b};
+  if (!layout.is_carried[body[0]] && !layout.is_carried[body[1]]) return;
+  const auto m = evaluate_row<false>(spec, motion_.data());
+  for (int side = 0; side < 2; ++side) {
+    if (!layout.is_carried[body[side]]) continue;
+    const double f = side == 0 ? -lambda : lambda;
+    const Motion<double>& k = motion_[layout.clusters[layout.placements[body[side]].cluster].motion];
+    const double fx = f * m.direction.x, fy = f * m.direction.y;
+    BodyForce& w = wrench_[body[side]];
+    w.fx += k.c * fx + k.s * fy;
+    w.fy += k.c * fy - k.s * fx;
+    w.m += f * (cross(side == 0 ? m.lever_a : m.lever_b, m.direction) + m.couple);
+  }
+}
+
+// Multipliers of the pins and rods of mechanisms, which are no rows of theirs: what hangs on them lacks so much.
+void Dynamics::find_pin_forces(const double* cluster_a) {
+  const Layout& layout = *layout_;
+  for (const Mechanism& mechanism : layout.mechanisms) {
+    mechanism.pin_forces(cluster_a, force_.data(), layout.schur_rows.data() + mechanism.first_row,
+                         right_side_.data() + mechanism.first_row, pin_force_);
+    for (std::size_t i = 0; i < mechanism.members.size(); ++i) {
+      const Member& m = mechanism.members[i];
+      if (m.block < 0) continue;
+      const RowBlock& block = system_.row_blocks[m.block];
+      const Pair<double> force = pin_force_[i];
+      if (m.is_rod_end) { // along the rod, whose end stays where it is whichever of the two bodies a is
+        const Pair<double> along = mechanism.arm(static_cast<int>(i));
+        row_force_[block.first] = dot(force, along) / std::sqrt(dot(along, along));
+        continue;
+      }
+      for (int r = block.first; r < block.first + block.count; ++r) {
+        const RowSpec& spec = system_.rows[r];
+        const double on_a = dot(force, to_ground(motion_[spec.b], spec.direction));
+        row_force_[r] = layout.placements[spec.a].cluster == m.cluster ? on_a : -on_a;
+      }
+    }
+  }
+}
+
 // Newton–Euler from the leaves of each merged cluster, in its axes: what an edge carries is what its subtree lacks.
 void Dynamics::merged_wrenches(const double* dy) {
   const Layout& layout = *layout_;
-  const double* const acceleration = dy + coordinate_count();
+  const double* const acceleration = cluster_accelerations(dy);
   const auto in_cluster = [](const Motion<double>& k, double x, double y) {
     return Pair<double>{k.c * x + k.s * y, k.c * y - k.s * x};
   };
@@ -71,20 +115,15 @@ void Dynamics::merged_wrenches(const double* dy) {
     wrench_[edge.child] = {at_centre.x - turning * y - centripetal * x, at_centre.y + turning * x - centripetal * y,
                            body.inertia * a[2] - f.m};
   }
-  for (const int r : layout.carried_rows) {
-    const RowSpec& spec = *layout.active[r].spec;
-    const auto m = evaluate_row<false>(spec, motion_.data());
-    const int body[2] = {spec.a, spec.b};
-    for (int side = 0; side < 2; ++side) {
-      if (!layout.is_carried[body[side]]) continue;
-      const double f = side == 0 ? -right_side_[r] : right_side_[r];
-      const Motion<double>& k = motion_[layout.clusters[layout.placements[body[side]].cluster].motion];
-      const Pair<double> force = in_cluster(k, f * m.direction.x, f * m.direction.y);
-      BodyForce& w = wrench_[body[side]];
-      w.fx += force.x;
-      w.fy += force.y;
-      w.m += f * (cross(side == 0 ? m.lever_a : m.lever_b, m.direction) + m.couple);
-    }
+  for (const int r : layout.carried_rows) add_carried(*layout.active[r].spec, right_side_[r]);
+  if (layout.is_carried_by_pins) {
+    find_pin_forces(acceleration);
+    for (const Mechanism& mechanism : layout.mechanisms)
+      for (const Member& m : mechanism.members) {
+        if (m.block < 0) continue;
+        const RowBlock& block = system_.row_blocks[m.block];
+        for (int r = block.first; r < block.first + block.count; ++r) add_carried(system_.rows[r], row_force_[r]);
+      }
   }
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {
     const RigidEdge& edge = layout.edges[e];
@@ -142,6 +181,7 @@ Snapshot Dynamics::snapshot(const double* dy) {
   if (layout.sharing) take_solved_friction();
   body_accelerations(dy);
   merged_wrenches(dy);
+  if (layout.has_mechanisms()) find_pin_forces(cluster_accelerations(dy));
   const int n = coordinate_count();
   for (std::size_t r = 0; r < layout.active.size(); ++r)
     if (layout.active[r].row >= 0) row_force_[layout.active[r].row] = right_side_[r];

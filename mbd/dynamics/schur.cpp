@@ -1,5 +1,6 @@
 #include "mbd/dynamics/schur.h"
 #include "mbd/base/types.h"
+#include "mbd/dynamics/dependent_rows.h"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace steplap {
@@ -26,7 +28,6 @@ constexpr int k_max_refinements = 4;
 // With all pivots above this no row is so near to others that it has to be asked which stay out: the square of
 // SchurSolver::k_dependent, and for a row that enters another's dependence with a hundredth.
 constexpr double k_doubtful_pivot = 1e-8;
-constexpr double k_stays_out = 2.0; // a row that was out, of k_dependent
 
 // A row's gradient in the masses' metric: its length squared is its entry of A.
 double weighted(const SchurRow& row, int side, int c) { return row.w[side][c] > 0.0 ? row.j[side][c] * std::sqrt(row.w[side][c]) : 0.0; }
@@ -39,35 +40,15 @@ double squared_length(const SchurRow& row) {
   return sum;
 }
 
-// Orthonormal vectors, each a row's part beyond those before.
-class Taken {
-public:
-  Taken(Eigen::Index dimension, Eigen::Index most) : basis_(dimension, std::min(dimension, most)) {}
-  void remove_from(VecX& row) const {
-    const auto taken = basis_.leftCols(count_);
-    for (int pass = 0; pass < 2; ++pass) row -= taken * (taken.transpose() * row); // the second takes what rounding left
-  }
-  // `row` is orthogonal to those taken. False if nothing can be beyond them any more.
-  bool take(const VecX& row) {
-    if (count_ == basis_.cols()) return false;
-    basis_.col(count_++) = row.normalized();
-    return true;
-  }
-
-private:
-  MatX basis_;
-  Eigen::Index count_ = 0;
-};
-
-int count_bodies(const std::vector<SchurRow>& rows) {
+int count_bodies(const std::vector<SchurRow>& rows, int n) {
   int count = 0;
-  for (const SchurRow& row : rows) count = std::max({count, row.body[0] + 1, row.body[1] + 1});
+  for (const SchurRow& row : std::span(rows).first(n)) count = std::max({count, row.body[0] + 1, row.body[1] + 1});
   return count;
 }
 
-std::vector<Coupling> couplings(const std::vector<SchurRow>& rows, int body_count) {
+std::vector<Coupling> couplings(const std::vector<SchurRow>& rows, int n, int body_count) {
   std::vector<std::vector<std::pair<int, unsigned char>>> at_body(body_count);
-  for (int i = 0; i < static_cast<int>(rows.size()); ++i)
+  for (int i = 0; i < n; ++i)
     for (unsigned char side = 0; side < 2; ++side)
       if (rows[i].body[side] >= 0) at_body[rows[i].body[side]].push_back({i, side});
   std::vector<Coupling> result;
@@ -93,11 +74,11 @@ std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled
 
 } // namespace
 
-void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
-  n_ = static_cast<int>(rows.size());
+void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count) {
+  n_ = count;
   length_ = std::max(1.0, n_ / k_usual_rows);
-  body_count_ = count_bodies(rows);
-  const std::vector<Coupling> coupled = couplings(rows, body_count_);
+  body_count_ = count_bodies(rows, n_);
+  const std::vector<Coupling> coupled = couplings(rows, n_, body_count_);
   right_.assign(n_, 0.0);
   correction_.assign(n_, 0.0);
   response_.assign(3 * static_cast<std::size_t>(body_count_), 0.0);
@@ -143,7 +124,7 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
 
   // Elimination tree and the pattern of each row of L (T. A. Davis, Direct Methods for Sparse Linear
   // Systems, §4.1): row k of L is the union of the paths from each i with A(i, k) ≠ 0 up to k.
-  std::vector<int> parent(n_, -1), mark(n_, -1), count(n_, 0);
+  std::vector<int> parent(n_, -1), mark(n_, -1), length(n_, 0);
   pattern_begin_.assign(1, 0);
   pattern_.clear();
   for (int k = 0; k < n_; ++k) {
@@ -153,13 +134,13 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows) {
         if (parent[i] < 0) parent[i] = k;
         mark[i] = k;
         pattern_.push_back(i);
-        ++count[i];
+        ++length[i];
       }
     std::sort(pattern_.begin() + pattern_begin_.back(), pattern_.end());
     pattern_begin_.push_back(static_cast<int>(pattern_.size()));
   }
   column_begin_.assign(1, 0);
-  for (int k = 0; k < n_; ++k) column_begin_.push_back(column_begin_[k] + count[k]);
+  for (int k = 0; k < n_; ++k) column_begin_.push_back(column_begin_[k] + length[k]);
   column_row_.assign(column_begin_.back(), 0);
   std::vector<int> next(column_begin_.begin(), column_begin_.end() - 1);
   for (int k = 0; k < n_; ++k)
@@ -199,40 +180,15 @@ bool SchurSolver::is_in_doubt(const std::vector<SchurRow>& rows) const {
 }
 
 std::vector<char> SchurSolver::dependent_friction(const std::vector<SchurRow>& rows) const {
-  struct Candidate {
-    int row;
-    double length, allowed; ///< allowed: of the length
-    VecX beyond;
-  };
-  Taken taken(3 * static_cast<Eigen::Index>(body_count_), n_);
-  std::vector<Candidate> candidates;
-  std::vector<char> out(n_, 0);
+  std::vector<WeightedRow> in_masses(n_);
   for (int r = 0; r < n_; ++r) {
-    VecX row = VecX::Zero(3 * static_cast<Eigen::Index>(body_count_));
+    VecX& row = in_masses[r].row = VecX::Zero(3 * static_cast<Eigen::Index>(body_count_));
     for (int side = 0; side < 2; ++side)
       if (rows[r].body[side] >= 0)
         for (int c = 0; c < 3; ++c) row[3 * rows[r].body[side] + c] += weighted(rows[r], side, c);
-    const double length = row.norm();
-    if (can_stay_out_[r] != 0) {
-      out[r] = 1;
-      const bool was_out = !was_out_.empty() && was_out_[r] != 0;
-      if (length > 0.0) candidates.push_back({r, length, was_out ? k_stays_out * k_dependent : k_dependent, row});
-      continue;
-    }
-    taken.remove_from(row);
-    if (row.norm() > std::sqrt(k_pivot_tolerance) * length) taken.take(row);
+    in_masses[r].length = row.norm();
   }
-  for (Candidate& c : candidates) taken.remove_from(c.beyond);
-  while (!candidates.empty()) {
-    const auto farthest = std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-      return a.beyond.norm() / (a.allowed * a.length) < b.beyond.norm() / (b.allowed * b.length);
-    });
-    if (!(farthest->beyond.norm() > farthest->allowed * farthest->length) || !taken.take(farthest->beyond)) break;
-    out[farthest->row] = 0;
-    candidates.erase(farthest);
-    for (Candidate& c : candidates) taken.remove_from(c.beyond);
-  }
-  return out;
+  return dependent_rows(in_masses, can_stay_out_.data(), was_out_);
 }
 
 void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {

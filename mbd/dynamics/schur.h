@@ -34,8 +34,9 @@ struct SchurRow {
 
 class SchurSolver {
 public:
-  /// Pattern from the rows' bodies. Body −1 couples nothing.
-  void analyze(const std::vector<SchurRow>& rows);
+  /// Pattern from the bodies of the first `count` rows, which are all that it solves. Body −1 couples nothing.
+  void analyze(const std::vector<SchurRow>& rows, int count);
+  void analyze(const std::vector<SchurRow>& rows) { analyze(rows, static_cast<int>(rows.size())); }
   /// Numbers from the rows' j and wj, the diagonal raised by the fraction `shift` (damping). Allocates nothing.
   void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
   /// Rows that hold friction: which of them depend on others is decided by the next factorisation, and those stay out

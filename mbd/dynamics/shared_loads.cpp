@@ -12,7 +12,7 @@ void Dynamics::find_sharing() {
   Layout& layout = *layout_;
   for (int i = 1; i < system_.body_count(); ++i) place_member(i);
   std::vector<char> left_out(system_.friction_row_count, 0);
-  for (const HeldRow& held : layout.held_rows) left_out[held.friction_row] = layout.schur.is_dependent(held.row) ? 1 : 0;
+  for (const HeldRow& held : layout.held_rows) left_out[held.friction_row] = layout.is_dependent(held.row) ? 1 : 0;
   if (layout.sharing && layout.sharing->holds_at(motion_, left_out)) return;
   layout.sharing = std::make_unique<LoadSharing>(system_, *state_, motion_, std::move(left_out));
   if (layout.sharing->has_friction()) layout.is_merged_watched = true;
@@ -20,7 +20,7 @@ void Dynamics::find_sharing() {
 
 const LoadSharing* Dynamics::sharing() const {
   const Layout& layout = *layout_;
-  return layout.schur.is_singular() ? layout.sharing.get() : nullptr;
+  return layout.is_singular() ? layout.sharing.get() : nullptr;
 }
 
 bool Dynamics::is_shared(int friction) const {
@@ -60,7 +60,7 @@ bool Dynamics::watch_groups() {
 
 void Dynamics::settle_loads() {
   const Layout& layout = *layout_;
-  if (!layout.schur.is_singular() && layout.redundant_blocks.empty()) return;
+  if (!layout.is_singular() && layout.redundant_blocks.empty()) return;
   for (const int i : layout.redundant_blocks) {
     const RowBlock& block = system_.row_blocks[i];
     std::fill_n(&row_force_[block.first], block.count, 0.0);

@@ -9,6 +9,20 @@
 
 namespace steplap {
 
+namespace {
+
+// Coordinates that move a cluster of a mechanism: by how much each at most moves the place of slip.
+void narrow_scales(const Layout& layout, int cluster, const SlipScale& found, double lever, double* scale) {
+  const Mechanism& m = layout.mechanism_of_cluster(cluster);
+  for (int i = 0; i < m.size(); ++i) {
+    if ((m.moved_by(cluster) >> i & 1U) == 0) continue;
+    double& of_coordinate = scale[m.first_coordinate + i];
+    of_coordinate = std::min(of_coordinate, m.is_place(i) ? found.speed : found.speed / (lever + m.reach(i)));
+  }
+}
+
+} // namespace
+
 void Dynamics::sliding_rates(std::size_t i, double* rate) const {
   const FrictionUnit& unit = system_.frictions[layout_->sliding[i]];
   const RowSpec* rows = unit.friction->rows(state_->friction[layout_->sliding[i]]);
@@ -34,6 +48,10 @@ bool Dynamics::slip_scales(double* scale) const {
       const Motion<double>& centre = motion_[layout_->clusters[cluster].motion];
       const double lever =
           found.lever + portable::hypot(motion_[row.a].x - centre.x, motion_[row.a].y - centre.y);
+      if (cluster >= layout_->absolute_count) {
+        narrow_scales(*layout_, cluster, found, lever, scale);
+        continue;
+      }
       double* const of_cluster = scale + 3 * cluster;
       for (int c = 0; c < 3; ++c)
         of_cluster[c] = std::min(of_cluster[c], c < 2 ? found.speed : found.speed / lever);

@@ -39,7 +39,7 @@ bool ExplicitPair::end_step(Dynamics& dynamics) {
   ++steps_;
   // The first step's end tells what is usual here.
   const bool is_first = highest_pivot_ == 1.0;
-  start_pivot_ = dynamics.layout().schur.smallest_pivot();
+  start_pivot_ = dynamics.layout().smallest_pivot();
   highest_pivot_ = is_first ? start_pivot_ : std::max(highest_pivot_, start_pivot_);
   return true;
 }

@@ -105,28 +105,29 @@ void Integrator::note_stage_watches(Dynamics& dynamics, const double* dy, double
   nodes_.add(theta, dynamics.watch().data());
 }
 
-void Integrator::update_weights(const Dynamics& dynamics) {
+void Integrator::update_weights(Dynamics& dynamics) {
   const Layout& layout = dynamics.layout();
   const int m = dynamics.coordinate_count();
   const double tolerance = settings_.tolerance;
-  for (int k = 0; k < layout.cluster_count(); ++k)
-    for (int c = 0; c < 3; ++c) {
-      const int i = 3 * k + c;
-      const bool is_locked = layout.clusters[k].w[c] == 0.0;
-      const double size = c < 2 ? k_displacement_floor * length_scale_ : k_displacement_floor;
-      const double displacement = std::abs(y0_[i] - layout.reference[i]);
-      weight_[i] = is_locked ? 0.0 : 1.0 / (tolerance * (size + displacement));
-      weight_[m + i] =
-          is_locked ? 0.0 : 1.0 / (tolerance * (k_rate_floor * size + std::abs(y0_[m + i])));
-    }
+  for (int i = 0; i < m; ++i) {
+    const CoordinateScale& scale = layout.scales[i];
+    const bool is_locked = layout.inverse_mass[i] == 0.0;
+    double size = scale.is_place ? k_displacement_floor * length_scale_ : k_displacement_floor;
+    // What an angle of a mechanism turns is known as well as a place would be.
+    if (scale.reach > length_scale_) size *= length_scale_ / scale.reach;
+    const double displacement = std::abs(y0_[i] - layout.reference[i]);
+    weight_[i] = is_locked ? 0.0 : 1.0 / (tolerance * (size + displacement));
+    weight_[m + i] =
+        is_locked ? 0.0 : 1.0 / (tolerance * (k_rate_floor * size + std::abs(y0_[m + i])));
+  }
   if (has_slip_scale0_)
     for (int i = 0; i < m; ++i)
       if (weight_[m + i] > 0.0) weight_[m + i] = std::max(weight_[m + i], 1.0 / (k_slip_share * slip_scale0_[i]));
   // Dissipated energy and work: relative to the energy there is, was turned over, or would be in the floor's motion.
   const double floor_rate = k_rate_floor * k_displacement_floor * length_scale_;
   double energy = std::abs(y0_[2 * m]) + std::abs(y0_[2 * m + 1]);
-  for (int k = 0; k < layout.cluster_count(); ++k) {
-    const double* v = y0_.data() + m + 3 * k;
+  const double* v = dynamics.cluster_rates(y0_.data());
+  for (int k = 0; k < layout.cluster_count(); ++k, v += 3) {
     const Cluster& cluster = layout.clusters[k];
     energy += 0.5 * cluster.mass * (v[0] * v[0] + v[1] * v[1] + floor_rate * floor_rate) + 0.5 * cluster.inertia * v[2] * v[2];
   }

@@ -105,7 +105,7 @@ protected:
     return std::min(h, longest_step_);
   }
   /// Weights of the error norm: 1/(tolerance · scale) per coordinate, 0 where locked.
-  void update_weights(const Dynamics& dynamics);
+  void update_weights(Dynamics& dynamics);
   [[nodiscard]] double error_norm(const double* error) const;
   /// The same without most of what the projection will take away, near singular positions of the joints.
   /// A share stays: the directions turn within a step. Changes `error`; the last evaluation must have been

@@ -118,7 +118,7 @@ double SingularCrossing::distance(Dynamics& dynamics, const Step& step, double t
   for (int l = 0; l < 2 * m; ++l) y[l] += tau * step.rate0[l];
   for (int l = 0; l < m; ++l) y[l] += 0.5 * tau * tau * step.rate0[m + l];
   dynamics.rates(step.t0 + tau, y, y + stride_);
-  return std::sqrt(dynamics.layout().schur.smallest_pivot());
+  return std::sqrt(dynamics.layout().smallest_pivot());
 }
 
 // The distance falls and grows linearly on either side of the position: walks until it grows, with strides that

@@ -30,7 +30,7 @@ public:
 private:
   [[nodiscard]] bool is_near() const {
     const Layout& layout = dynamics_.layout();
-    return !layout.active.empty() && layout.schur.smallest_pivot() < k_end_pivot;
+    return !layout.active.empty() && layout.smallest_pivot() < k_end_pivot;
   }
 
   // Squares of distances, rad².

@@ -8,8 +8,8 @@ void StageSystem::set(const Linearization& linearization, const Layout& layout) 
   m_ = linearization.rows();
   is_dense_ = n_ + m_ <= k_max_dense;
   is_redundant_.assign(m_, 0);
-  if (layout.schur.is_singular())
-    for (int r = 0; r < m_; ++r) is_redundant_[r] = layout.schur.is_dependent(r) ? 1 : 0;
+  if (layout.is_singular())
+    for (int r = 0; r < m_; ++r) is_redundant_[r] = layout.is_dependent(r) ? 1 : 0;
   right_.resize(n_ + m_);
   solution_.resize(n_ + m_);
   moved_.resize(n_);
@@ -23,10 +23,12 @@ template <class Put> void StageSystem::assemble(double g, const Put& put) const 
   const auto put_row = [&](const Linearization::Triplet& e, double value) {
     put(n_ + e.row(), e.col(), is_redundant_[e.row()] ? 0.0 : value);
   };
+  const bool is_diagonal = linearization_->response().empty();
   for (const auto& e : linearization_->gradient()) {
     put_row(e, e.value());
-    put(e.col(), n_ + e.row(), is_redundant_[e.row()] ? 0.0 : -w[e.col()] * e.value());
+    if (is_diagonal) put(e.col(), n_ + e.row(), is_redundant_[e.row()] ? 0.0 : -w[e.col()] * e.value());
   }
+  for (const auto& e : linearization_->response()) put(e.row(), n_ + e.col(), is_redundant_[e.col()] ? 0.0 : -e.value());
   for (const auto& e : linearization_->bias_by_pose()) put_row(e, -g * g * e.value());
   for (const auto& e : linearization_->bias_by_velocity()) put_row(e, -g * e.value());
   for (int r = 0; r < m_; ++r) put(n_ + r, n_ + r, is_redundant_[r] ? 1.0 : 0.0);

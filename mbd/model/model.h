@@ -124,6 +124,7 @@ struct SimulationSettings {
   std::string integrator = "auto";
   std::optional<double> step;           ///< s, fixed step methods
   std::optional<double> tolerance;      ///< relative, adaptive methods
+  std::string coordinates = "automatic"; ///< of small islands with pins: "automatic", "joint" or "absolute"
   std::string initial = "as_given";     ///< "as_given" or "equilibrium"
   Vec2 velocity = Vec2::Zero();         ///< m/s, added to every body's initial velocity
   double projection_tolerance = 1e-12;  ///< largest constraint residual left after a step, m or rad

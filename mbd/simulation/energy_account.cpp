@@ -30,9 +30,9 @@ struct Kinetic {
 };
 
 /// `size`: L, the largest radius of gyration, m.
-Kinetic kinetic_energy(const Dynamics& dynamics, const double* y, double size) {
+Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
   const Layout& layout = dynamics.layout();
-  const double* v = y + dynamics.coordinate_count();
+  const double* v = dynamics.cluster_rates(y);
   Kinetic sum;
   double mass = 0.0, px = 0.0, py = 0.0;
   for (int k = 0; k < layout.cluster_count(); ++k, v += 3) {

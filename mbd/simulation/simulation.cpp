@@ -38,6 +38,7 @@ SimulationOptions options_of(const Model& model) {
   options.settings.step = s.step.value_or(0.0);
   options.settings.tolerance = s.tolerance.value_or(1e-8);
   options.settings.projection_tolerance = s.projection_tolerance;
+  if (s.coordinates != "automatic") options.coordinates = s.coordinates == "joint" ? Coordinates::joint : Coordinates::absolute;
   options.output_step = model.output.step;
   options.channels = model.output.channels;
   options.has_extremes = true;
@@ -63,6 +64,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   dynamics_.pack(state_, y_.data());
   dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
   dynamics_.unpack(state_.t, y_.data(), state_);
+  dynamics_.use_coordinates(chosen_coordinates());
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const FrictionElement& friction = *system.frictions[f].friction;
     if (friction.dimension() > 1 && !friction.never_slips()) joints_.push_back(static_cast<int>(f));
@@ -72,6 +74,11 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   restart();
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
   if (options_.output_step > 0.0) record_sample(state_.t);
+}
+
+// Time stepping is linear in absolute coordinates.
+Coordinates Simulation::chosen_coordinates() const {
+  return options_.integrator == "moreau" ? Coordinates::absolute : options_.coordinates;
 }
 
 double Simulation::next_limit() const {
@@ -221,6 +228,7 @@ void Simulation::step_through_storm(const std::string& element) {
   const double begin = state_.t;
   const double end = std::min(next_limit(), begin + k_storm_interval);
   events_.push_back({begin, element, EventKind::storm, "for " + std::to_string(1e3 * (end - begin)) + " ms"});
+  dynamics_.use_coordinates(Coordinates::absolute);
   const long parts = stepping_->extra_parts();
   while (state_.t < end && stepping_->extra_parts() - parts < options_.storm_parts) {
     double t1 = std::min(end, state_.t + options_.storm_step);
@@ -237,6 +245,7 @@ void Simulation::step_through_storm(const std::string& element) {
     }
     if (is_sample) record_sample(t1);
   }
+  dynamics_.use_coordinates(chosen_coordinates());
   handler_.settle_phases(state_);
   events_.push_back({state_.t, element, EventKind::storm_over});
   storm_.clear();

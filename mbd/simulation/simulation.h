@@ -22,6 +22,7 @@ struct SimulationOptions {
   double end = 1.0;
   std::string integrator = "rk4";
   IntegratorSettings settings;
+  Coordinates coordinates = Coordinates::automatic; ///< moreau: always absolute
   double output_step = 0.0;                ///< s; 0: no samples
   std::vector<std::string> channels;       ///< patterns of those sampled; empty: all
   bool has_extremes = false;               ///< look for the extremes of all channels, sampled or not
@@ -96,6 +97,7 @@ private:
   void guard_against_crawl();
   [[noreturn]] void fail_infinite(double t) const;
   [[nodiscard]] double next_limit() const;
+  [[nodiscard]] Coordinates chosen_coordinates() const;
   void approach_limit();
 
   const System& system_;

@@ -1,0 +1,279 @@
+#include "mbd/dynamics/mechanism_work.h"
+
+#include "mbd/math/portable_math.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+using Link = MechanismWork::Link;
+
+Pair<double> turned(double c, double s, const Pair<double>& p) { return {c * p.x - s * p.y, s * p.x + c * p.y}; }
+double length(const Pair<double>& p) { return portable::hypot(p.x, p.y); }
+STEPLAP_INLINE void add(Pair<double>& to, const Pair<double>& p) {
+  to.x += p.x;
+  to.y += p.y;
+}
+
+void read_motion(const Link& now, double theta, double* q, double* v) {
+  q[0] = now.o.x + now.lever.x;
+  q[1] = now.o.y + now.lever.y;
+  q[2] = theta;
+  v[0] = now.v.x - now.omega * now.lever.y;
+  v[1] = now.v.y + now.omega * now.lever.x;
+  v[2] = now.omega;
+}
+
+} // namespace
+
+Mechanism::Mechanism() = default;
+Mechanism::~Mechanism() = default;
+Mechanism::Mechanism(Mechanism&&) noexcept = default;
+Mechanism& Mechanism::operator=(Mechanism&&) noexcept = default;
+
+Pair<double> Mechanism::arm(int member) const { return work_->links[member].arm; }
+Pair<double> Mechanism::lever(int member) const { return work_->links[member].lever; }
+double Mechanism::spin(int member) const { return work_->links[member].omega; }
+
+// --- constants --------------------------------------------------------------------------------------
+
+void Mechanism::close(int cluster_count, const Vec2& gravity, const SchurRow* rows) {
+  work_ = std::make_unique<MechanismWork>();
+  MechanismWork& w = *work_;
+  w.gravity = {gravity.x(), gravity.y()};
+  member_of_.assign(cluster_count, -1);
+  path_.assign(members.size(), 0U);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    Member& m = members[i];
+    if (m.cluster >= 0) member_of_[m.cluster - first_cluster] = static_cast<int>(i);
+    int above = m.parent >= 0 ? members[m.parent].coordinate : -1;
+    if (m.parent >= 0) path_[i] = path_[m.parent];
+    for (int k = m.is_free ? 2 : 0; k >= 0; --k) {
+      is_place_[n_] = k > 0 ? 1 : 0;
+      w.up[n_] = static_cast<std::int8_t>(above);
+      path_[i] |= 1U << n_;
+      above = n_++;
+    }
+    m.coordinate = above;
+  }
+  w.n = n_;
+  for (int i = 0; i < n_; ++i) w.all[i] = static_cast<std::uint8_t>(n_ - 1 - i);
+  for (const Member& m : members) {
+    Link link;
+    link.parent = m.parent;
+    link.coordinate = m.coordinate;
+    link.slot = m.slot;
+    link.cluster = m.cluster;
+    link.is_free = m.is_free;
+    link.mass = link.mass_below = m.mass;
+    link.turning = m.inertia + m.mass * dot(m.centre, m.centre);
+    link.pin = m.pin;
+    link.centre = m.centre;
+    link.moment = m.mass * m.centre;
+    if (m.parent < 0 && !m.is_free) link.o = m.pin;
+    w.links.push_back(link);
+  }
+  // Inward; `beyond`: how far what hangs on a member can be from its pin.
+  std::vector<double> beyond(members.size(), 0.0);
+  for (std::size_t i = members.size(); i-- > 0;) {
+    const Link& link = w.links[i];
+    reach_[link.coordinate] = std::max(beyond[i], length(link.centre));
+    if (link.parent < 0) continue;
+    Link& above = w.links[link.parent];
+    above.mass_below += link.mass_below;
+    above.turning += link.mass_below * dot(link.pin, link.pin);
+    add(above.moment, link.mass_below * link.pin);
+    beyond[link.parent] = std::max(beyond[link.parent], length(link.pin) + reach_[link.coordinate]);
+  }
+  w.packed = w.links;
+  find_patterns(rows);
+}
+
+// --- poses ------------------------------------------------------------------------------------------
+
+void Mechanism::place(const double* q, const double* v, Motion<double>* motion) {
+  MechanismWork& w = *work_;
+  for (int i = 0; i < n_; ++i) {
+    w.placed_q[i] = q[i];
+    w.placed_v[i] = v[i];
+  }
+  Link* const links = w.links.data();
+  Link* const end = links + w.links.size();
+  for (Link* now = links; now != end; ++now) {
+    MechanismWork::turn(*now, links, q, v);
+    if (now->slot < 0) continue;
+    Motion<double>& out = motion[now->slot];
+    out.x = now->o.x + now->lever.x;
+    out.y = now->o.y + now->lever.y;
+    out.theta = q[now->coordinate];
+    out.c = now->c;
+    out.s = now->s;
+    out.vx = now->v.x - now->omega * now->lever.y;
+    out.vy = now->v.y + now->omega * now->lever.x;
+    out.omega = now->omega;
+  }
+}
+
+bool Mechanism::is_at(const double* q, const double* v) const {
+  return std::equal(q, q + n_, work_->placed_q.begin()) && std::equal(v, v + n_, work_->placed_v.begin());
+}
+
+void Mechanism::unpack(const double* q, const double* v, double* cluster_q, double* cluster_v) const {
+  Link* const links = work_->packed.data();
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    Link& now = links[i];
+    MechanismWork::turn(now, links, q, v);
+    if (now.cluster < 0) continue;
+    read_motion(now, q[now.coordinate], cluster_q + 3 * members[i].cluster, cluster_v + 3 * members[i].cluster);
+  }
+}
+
+// A rod points from its own pin to that of its end.
+void Mechanism::pack(const double* cluster_q, const double* cluster_v, double* q, double* v) const {
+  Link* const links = work_->packed.data();
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Member& m = members[i];
+    const int k = m.coordinate;
+    if (m.cluster >= 0) {
+      for (int c = m.is_free ? 2 : 0; c >= 0; --c) {
+        q[k - c] = cluster_q[3 * m.cluster + 2 - c];
+        v[k - c] = cluster_v[3 * m.cluster + 2 - c];
+      }
+    } else {
+      q[k] = v[k] = 0.0;
+      MechanismWork::turn(links[i], links, q, v); // for the place of its pin
+      const Member& end = members[i + 1];
+      const double* const bq = cluster_q + 3 * end.cluster;
+      const double* const bv = cluster_v + 3 * end.cluster;
+      Motion<double> turn;
+      set_angle(turn, bq[2]);
+      const Pair<double> lever = turned(turn.c, turn.s, end.centre), o = links[i].o, vo = links[i].v;
+      const Pair<double> along{bq[0] - lever.x - o.x, bq[1] - lever.y - o.y};
+      const Pair<double> rate{bv[0] + bv[2] * lever.y - vo.x, bv[1] - bv[2] * lever.x - vo.y};
+      q[k] = portable::atan2(along.y, along.x);
+      v[k] = cross(along, rate) / dot(along, along);
+    }
+    MechanismWork::turn(links[i], links, q, v);
+  }
+}
+
+// --- forces and accelerations -----------------------------------------------------------------------
+
+void Mechanism::factor_mass() {
+  MechanismWork& w = *work_;
+  double* const h = w.mass.data();
+  constexpr int k = k_most;
+  Link* const links = w.links.data();
+  for (std::size_t i = 0; i < w.links.size(); ++i) {
+    Link& m = links[i];
+    const Pair<double> moment = m.turned_moment = turned(m.c, m.s, m.moment);
+    double* const row = h + m.coordinate * k;
+    row[m.coordinate] = m.turning;
+    const Link* at = &m;
+    for (; at->parent >= 0; at = links + at->parent) row[links[at->parent].coordinate] = dot(at->arm, moment);
+    if (!at->is_free) continue;
+    const int x = at->coordinate - 2, y = x + 1;
+    row[x] = -moment.y;
+    row[y] = moment.x;
+    h[x * k + x] = h[y * k + y] = at->mass_below;
+    h[y * k + x] = 0.0;
+  }
+  for (int r = n_ - 1; r >= 0; --r) {
+    double* const row = h + r * k;
+    const double inverse = w.inverse_d[r] = 1.0 / row[r];
+    for (int i = w.up[r]; i >= 0; i = w.up[i]) {
+      const double a = row[i] * inverse;
+      double* const other = h + i * k;
+      for (int j = i; j >= 0; j = w.up[j]) other[j] -= a * row[j];
+      row[i] = a;
+    }
+  }
+}
+
+void Mechanism::solve_mass(double* x) const {
+  const MechanismWork& w = *work_;
+  w.whiten(x, w.all.data(), n_);
+  for (int i = 0; i < n_; ++i) {
+    const double* const row = w.mass.data() + i * k_most;
+    double sum = x[i] * w.inverse_d[i];
+    for (int j = w.up[i]; j >= 0; j = w.up[j]) sum -= row[j] * x[j];
+    x[i] = sum;
+  }
+}
+
+void Mechanism::accelerate(const BodyForce* force, double* s) const {
+  MechanismWork& w = *work_;
+  Link* const links = w.links.data();
+  Link* const end = links + w.links.size();
+  for (Link* now = links; now != end; ++now) {
+    now->force = {};
+    now->couple = 0.0;
+    if (now->slot < 0) continue;
+    const BodyForce& f = force[now->slot];
+    const double w2 = now->omega * now->omega;
+    now->force = {f.fx + now->mass * (w.gravity.x - now->bias.x + w2 * now->lever.x),
+                  f.fy + now->mass * (w.gravity.y - now->bias.y + w2 * now->lever.y)};
+    now->couple = f.m + cross(now->lever, now->force);
+  }
+  for (Link* now = end; now-- != links;) {
+    s[now->coordinate] = now->couple;
+    if (now->is_free) {
+      s[now->coordinate - 2] = now->force.x;
+      s[now->coordinate - 1] = now->force.y;
+    } else if (now->parent >= 0) {
+      Link& above = links[now->parent];
+      add(above.force, now->force);
+      above.couple += cross(now->arm, now->force);
+    }
+  }
+  solve_mass(s);
+}
+
+void Mechanism::expand(const double* s, double* cluster_a) const {
+  MechanismWork& w = *work_;
+  Link* const links = w.links.data();
+  Link* const end = links + w.links.size();
+  for (Link* now = links; now != end; ++now) { // `force`: the acceleration of its pin
+    if (now->parent >= 0) {
+      const Link& above = links[now->parent];
+      const double alpha = s[above.coordinate], w2 = above.omega * above.omega;
+      now->force = {above.force.x - alpha * now->arm.y - w2 * now->arm.x, above.force.y + alpha * now->arm.x - w2 * now->arm.y};
+    } else if (now->is_free) {
+      now->force = {s[now->coordinate - 2], s[now->coordinate - 1]};
+    } else {
+      now->force = {};
+    }
+    if (now->cluster < 0) continue;
+    const double alpha = s[now->coordinate], w2 = now->omega * now->omega;
+    double* const a = cluster_a + 3 * members[now - links].cluster;
+    a[0] = now->force.x - alpha * now->lever.y - w2 * now->lever.x;
+    a[1] = now->force.y + alpha * now->lever.x - w2 * now->lever.y;
+    a[2] = alpha;
+  }
+}
+
+void Mechanism::pin_forces(const double* cluster_a, const BodyForce* force, const SchurRow* rows, const double* lambda,
+                           std::vector<Pair<double>>& on_member) const {
+  const Pair<double> gravity = work_->gravity;
+  on_member.assign(members.size(), {});
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Member& m = members[i];
+    if (m.cluster < 0) continue;
+    const double* const a = cluster_a + 3 * m.cluster;
+    const BodyForce& f = force[m.slot];
+    on_member[i] = {m.mass * (a[0] - gravity.x) - f.fx, m.mass * (a[1] - gravity.y) - f.fy};
+  }
+  for (int r = 0; r < row_count; ++r)
+    for (int side = 0; side < 2; ++side) {
+      if (rows[r].body[side] < 0) continue;
+      const double* const j = rows[r].j[side];
+      add(on_member[member_of(rows[r].body[side])], {-lambda[r] * j[0], -lambda[r] * j[1]});
+    }
+  for (std::size_t i = members.size(); i-- > 0;)
+    if (members[i].parent >= 0) add(on_member[members[i].parent], on_member[i]);
+}
+
+} // namespace steplap

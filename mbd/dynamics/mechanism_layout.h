@@ -1,0 +1,23 @@
+// Which islands of a layout are described by joint coordinates, and how their members hang on one another.
+//
+// An island is what joints, drives and sticking friction connect. It becomes a mechanism (mechanism.h) if pins or
+// distance joints leave it fewer coordinates than its bodies have, and it has few. A member hangs on what is nearest to the
+// ground, so that paths are short.
+#pragma once
+
+#include "mbd/dynamics/layout.h"
+
+namespace steplap {
+
+struct JointCoordinates {
+  std::vector<Mechanism> mechanisms; ///< members by the clusters' present numbers; rows not known yet
+  std::vector<int> mechanism_of;     ///< per cluster, −1: none
+  std::vector<char> is_pin;          ///< per row block: a member hangs by it
+};
+
+/// `is_block_merged`, `is_friction_merged`: held inside clusters.
+[[nodiscard]] JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout,
+                                                      const std::vector<char>& is_block_merged,
+                                                      const std::vector<char>& is_friction_merged);
+
+} // namespace steplap
