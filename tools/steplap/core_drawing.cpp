@@ -189,7 +189,7 @@ void Drawing::draw_section() {
     while (steel < end) {
       const bool is_cut = next < ducts.size() && ducts[next].place < end;
       const double to = is_cut ? std::max(steel, ducts[next].place) : end;
-      panel.rectangle(-0.5 * p.width, 0.5 * p.width, drawn, drawn + to - steel, fill(k_limb));
+      if (to - steel > 1e-9) panel.rectangle(-0.5 * p.width, 0.5 * p.width, drawn, drawn + to - steel, fill(k_limb));
       drawn += to - steel;
       steel = to;
       if (is_cut) drawn += ducts[next++].width;
