@@ -85,6 +85,9 @@ void add_friction(FieldTable& f) {
                                                                              "different");
   f.add("bottom_kinetic_friction", &T::bottom_kinetic_friction).positive().doc("at the bottom corners, if "
                                                                                "different");
+  f.add("pressure_shares", &T::pressure_shares)
+      .positive()
+      .doc("of each packet: its pressure over 'pressure' (or 'bottom_pressure'); where packets meet the mean of both; default: all 1");
   f.add("mode", &T::mode).one_of({"slip", "monitor"}).doc("of the joints added, see step_lap_joint");
   f.add("on_apart", &T::on_apart).one_of({"stop", "continue"}).doc("of the joints added, see step_lap_joint");
   f.add("least_margin", &T::least_margin).at_least(1.0).doc("of the joints added, see step_lap_joint");

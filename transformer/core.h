@@ -23,6 +23,7 @@ struct Core : TableObject {
   std::optional<double> limb_width, yoke_height, stack_depth; ///< m, of a core of one packet
   std::vector<Vec2> packets;         ///< width of the limb's sheets and depth of each, front to back, m
   std::vector<double> yoke_heights;  ///< of each packet, m
+  std::vector<double> pressure_shares; ///< of each packet, of `pressure`; none: all 1
   std::string yoke_steps = "both";   ///< where yokes of several packets are stepped: "both", "window", "outside"
   std::vector<Vec2> ducts;           ///< place in the stack, width, m
   std::vector<Vec2> bolt_holes;      ///< from where the axes of limb and yoke cross: outwards, away from the window, m

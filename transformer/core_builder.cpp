@@ -33,10 +33,10 @@ public:
     const CoreGeometry geometry(core_);
     try {
       for (std::size_t i = 0; i < limbs_.size(); ++i) add_joint(i, geometry);
+      for (std::size_t i = 0; i < limbs_.size(); ++i) give_steel(i, geometry);
     } catch (const PolygonError& wrong) {
       error(wrong.what(), "bolt_holes");
     }
-    for (std::size_t i = 0; i < limbs_.size(); ++i) give_steel(i, geometry);
     stop_if_wrong();
     draw_limbs(geometry);
     draw_active_part(geometry);
@@ -50,6 +50,11 @@ private:
   void stop_if_wrong() {
     if (!problems_.empty()) throw ModelError(std::move(problems_));
   }
+  [[nodiscard]] double widest() const {
+    double width = core_.limb_width.value_or(0.0);
+    for (const Vec2& packet : core_.packets) width = std::max(width, packet.x());
+    return width;
+  }
   [[nodiscard]] const char* list_of(std::size_t limb) const { return core_.is_middle(limb) ? "middle_limbs" : "limbs"; }
   [[nodiscard]] const Element* find_element(const std::string& name) const;
   [[nodiscard]] const Body& limb(std::size_t i) const { return *model_.find_body(limbs_[i]); }
@@ -57,6 +62,7 @@ private:
 
   void check_names();
   void check_limb(std::size_t i, const Body& active_part);
+  void check_distance(std::size_t i, std::size_t j, const Body& active_part);
   void check_joint(const std::string& name, const std::string& limb);
   void check_settings(const StepLapJoint& joint);
   [[nodiscard]] bool is_given(const std::string& field) const { return core_.places.count(field) > 0; }
@@ -93,6 +99,7 @@ void CoreBuilder::check_names() {
     check_limb(i, *active_part);
     for (std::size_t j = 0; j < i; ++j)
       if (limbs_[j] == limbs_[i]) error("names limb '" + limbs_[i] + "' twice", list_of(i));
+      else check_distance(i, j, *active_part);
   }
   if (!core_.joints.empty() && core_.joints.size() != limbs_.size())
     return error("'joints' must name one joint for each of the " + std::to_string(limbs_.size()) +
@@ -109,12 +116,21 @@ void CoreBuilder::check_limb(std::size_t i, const Body& active_part) {
     return error("limb '" + name + "' is no body" + did_you_mean(name, known), list_of(i));
   }
   if (limb == &active_part) return error("limb '" + name + "' is the active part itself", list_of(i));
-  double width = core_.limb_width.value_or(0.0);
-  for (const Vec2& packet : core_.packets) width = std::max(width, packet.x());
-  if (!core_.is_middle(i) && std::abs(middle_of_limb(core_, *limb, active_part).x()) < 0.5 * width)
+  if (!core_.is_middle(i) && std::abs(middle_of_limb(core_, *limb, active_part).x()) < 0.5 * widest())
     error("limb '" + name + "' stands in the middle of the active part: only outer limbs, at least half a "
           "limb's width ahead of its centre of gravity or behind it, have mitred corners; name it in "
           "'middle_limbs'", "limbs");
+}
+
+// Limbs of one core cannot stand in each other.
+void CoreBuilder::check_distance(std::size_t i, std::size_t j, const Body& active_part) {
+  const Body *a = model_.find_body(limbs_[i]), *b = model_.find_body(limbs_[j]);
+  if (!a || !b || a == b || a == &active_part || b == &active_part) return;
+  const double apart = std::abs(middle_of_limb(core_, *a, active_part).x() - middle_of_limb(core_, *b, active_part).x());
+  if (apart < widest())
+    error("limbs '" + a->name + "' and '" + b->name + "' stand " + number_text(apart) + " m apart ('position' of the bodies), less than a limb is wide, " +
+              number_text(widest()) + " m ('" + (core_.packets.empty() ? "limb_width" : "packets") + "')",
+          core_.packets.empty() ? "limb_width" : "packets");
 }
 
 void CoreBuilder::check_joint(const std::string& name, const std::string& limb) {
@@ -182,7 +198,7 @@ void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const L
   if (!core_.has_strips()) e->across = rotated(corner.frame.across, turn);
   e->count = lap.count;
   e->clearance = core_.clearance;
-  e->pressure = corner.is_top ? core_.pressure : core_.bottom_pressure.value_or(core_.pressure);
+  e->pressure = lap.pressure * (corner.is_top ? core_.pressure : core_.bottom_pressure.value_or(core_.pressure));
   e->static_friction = corner.is_top ? core_.static_friction : core_.bottom_static_friction.value_or(core_.static_friction);
   e->kinetic_friction = !corner.is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction
                                                                         : core_.kinetic_friction;

@@ -53,6 +53,7 @@ private:
   void check_stack();
   void check_strips();
   void check_holes();
+  void check_places_of_holes();
   void check_angles();
   void check_angle(std::size_t packet, bool is_middle);
   void check_books();
@@ -70,6 +71,7 @@ void DimensionCheck::check_section() {
     need(core_.limb_width.has_value(), "limb_width", "width of a limb's sheets; in m; or 'packets' for a stepped section");
     need(core_.yoke_height.has_value(), "yoke_height", "height of a yoke's sheets; in m; or 'yoke_heights' besides 'packets'");
     if (!core_.yoke_heights.empty()) error("'yoke_heights' is for 'packets', and none are given", "yoke_heights");
+    if (!core_.pressure_shares.empty()) error("'pressure_shares' is for 'packets', and none are given", "pressure_shares");
   } else {
     for (const char* field : {"limb_width", "yoke_height", "stack_depth"})
       if ((field == std::string("limb_width") && core_.limb_width) || (field == std::string("yoke_height") && core_.yoke_height) ||
@@ -79,6 +81,10 @@ void DimensionCheck::check_section() {
       error("'yoke_heights' must give one height for each of the " + std::to_string(core_.packets.size()) + " packets, got " +
                 std::to_string(core_.yoke_heights.size()) + "; round yokes have the limb's widths",
             core_.yoke_heights.empty() ? "packets" : "yoke_heights");
+    if (!core_.pressure_shares.empty() && core_.pressure_shares.size() != core_.packets.size())
+      error("'pressure_shares' must give one share for each of the " + std::to_string(core_.packets.size()) + " packets, got " +
+                std::to_string(core_.pressure_shares.size()),
+            "pressure_shares");
     if (core_.is_counted())
       error("'packets' and '" + std::string(core_.overlap ? "overlap" : "interfaces") +
                 "' exclude each other: counted overlaps are those of one packet",
@@ -161,6 +167,7 @@ void DimensionCheck::check_holes() {
                                    : "'bolt_holes' needs 'bolt_hole_diameter'",
           core_.bolt_holes.empty() ? "bolt_hole_diameter" : "bolt_holes");
   if (core_.bolt_holes.empty()) return;
+  check_places_of_holes();
   if (core_.has_strips()) error("'bolt_holes' need real sheets, and 'sheet_outlines' is \"strips\"", "bolt_holes");
   for (std::size_t i = 0; i < core_.bolt_holes.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -169,6 +176,21 @@ void DimensionCheck::check_holes() {
                   metres((core_.bolt_holes[i] - core_.bolt_holes[j]).norm()) + " apart, 'bolt_hole_diameter' " +
                   metres(*core_.bolt_hole_diameter),
               "bolt_holes");
+}
+
+// A hole that no sheet has is a slip of the pen.
+void DimensionCheck::check_places_of_holes() {
+  const Stack stack = stack_of(core_);
+  double width = 0.0, height = 0.0;
+  for (const Packet& p : stack.packets) {
+    width = std::max(width, p.width);
+    height = std::max(height, p.yoke_height);
+  }
+  for (std::size_t i = 0; i < core_.bolt_holes.size(); ++i)
+    if (const Vec2& hole = core_.bolt_holes[i]; std::abs(hole.x()) >= 0.5 * width && std::abs(hole.y()) >= 0.5 * height)
+      error("bolt hole " + std::to_string(i + 1) + " at (" + metres(hole.x()) + ", " + metres(hole.y()) + ") lies outside a limb of " +
+                metres(width) + " and a yoke of " + metres(height) + ": places are from where their axes cross",
+            "bolt_holes");
 }
 
 void DimensionCheck::check_angles() {

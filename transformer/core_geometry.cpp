@@ -3,6 +3,7 @@
 #include "elements/patch/exact_polygon.h"
 #include "elements/patch/overlap.h"
 #include "elements/step_lap_interface.h"
+#include "mbd/base/number_text.h"
 #include "mbd/math/portable_math.h"
 
 #include <algorithm>
@@ -66,9 +67,10 @@ struct CoreGeometry::End {
 Stack stack_of(const Core& core) {
   Stack stack;
   for (std::size_t i = 0; i < core.packets.size(); ++i)
-    stack.packets.push_back({core.packets[i].x(), i < core.yoke_heights.size() ? core.yoke_heights[i] : 0.0, core.packets[i].y()});
+    stack.packets.push_back({core.packets[i].x(), i < core.yoke_heights.size() ? core.yoke_heights[i] : 0.0, core.packets[i].y(),
+                             i < core.pressure_shares.size() ? core.pressure_shares[i] : 1.0});
   if (stack.packets.empty())
-    stack.packets.push_back({core.limb_width.value_or(0.0), core.yoke_height.value_or(0.0), core.stack_depth.value_or(0.0)});
+    stack.packets.push_back({core.limb_width.value_or(0.0), core.yoke_height.value_or(0.0), core.stack_depth.value_or(0.0), 1.0});
   for (const Vec2& duct : core.ducts) stack.ducts.push_back({duct.x(), duct.y()});
   stack.stacking_factor = core.stacking_factor.value_or(1.0);
   stack.sheet_thickness = core.sheet_thickness.value_or(0.0);
@@ -142,7 +144,8 @@ Polygon CoreGeometry::punched(const std::vector<Vec2>& ring, double side, std::i
       if (place != Place::across) continue;
       const Region left = exact_difference(sheet, round);
       if (left.size() != 1)
-        throw PolygonError("a bolt hole of " + std::to_string(diameter * 1e3) + " mm cuts a sheet in two");
+        throw PolygonError("the bolt hole at (" + number_text(hole.x()) + " m, " + number_text(hole.y()) + " m), 'bolt_hole_diameter' " +
+                           number_text(diameter) + " m, cuts a sheet in two");
       sheet = left.front();
     }
   for (Ring& hole : inside) sheet.holes.push_back(std::move(hole));
@@ -205,6 +208,7 @@ void CoreGeometry::add_built(const End& end, std::vector<Lap>& laps) const {
                  : is_one_packet            ? "packet " + one + ", " + k
                                             : "packets " + one + " and " + two + ", " + k;
     found.count = static_cast<double>(count);
+    found.pressure = 0.5 * (stack_.packets[yoke.packet].pressure + stack_.packets[limb.packet].pressure);
     laps.push_back(std::move(found));
   };
   for (const LayerPair& pair : layer_pairs(stack_)) {
@@ -245,6 +249,7 @@ void CoreGeometry::merge(const End& end, std::size_t packet, std::vector<Lap>& l
   }
   mean.name = own;
   mean.count = count;
+  mean.pressure = stack_.packets[packet].pressure;
   laps.push_back(std::move(mean));
 }
 

@@ -18,6 +18,7 @@ struct Lap {
   double inner = 0.0, outer = 0.0; ///< m, across the mitre: limb sheet beyond the one, yoke sheet before the other
   double count = 0.0; ///< of such interfaces in the stack
   double area = 0.0;  ///< m², of one
+  double pressure = 1.0; ///< share of the corner's
 };
 
 /// One mitre: an outer limb has one at either end, a middle limb two.

@@ -119,7 +119,9 @@ double depth_of(const Stack& stack) {
 std::size_t likeness(const Stack& stack, std::size_t packet) {
   const Packet& own = stack.packets[packet];
   for (std::size_t p = 0; p < packet; ++p)
-    if (stack.packets[p].width == own.width && stack.packets[p].yoke_height == own.yoke_height) return p;
+    if (const Packet& other = stack.packets[p];
+        other.width == own.width && other.yoke_height == own.yoke_height && other.pressure == own.pressure)
+      return p;
   return packet;
 }
 

@@ -18,6 +18,7 @@ struct Packet {
   double width = 0.0;       ///< of the limb's sheets, m
   double yoke_height = 0.0; ///< of the yoke's, m
   double depth = 0.0;       ///< of steel and insulation, m
+  double pressure = 1.0;    ///< share of the corner's clamping pressure
 };
 
 struct Duct {
@@ -35,7 +36,7 @@ struct Stack {
 
 /// Sheets of one outline: the packet that they are like, and the line at which they are cut.
 struct LayerShape {
-  std::size_t packet = 0; ///< the first of its width and yoke height
+  std::size_t packet = 0; ///< the first of its width, yoke height and pressure
   long position = 0;
   friend bool operator<(const LayerShape& a, const LayerShape& b) {
     return a.packet != b.packet ? a.packet < b.packet : a.position < b.position;
@@ -65,7 +66,7 @@ struct LayerCount {
 [[nodiscard]] long sheets_before(const Stack& stack, const Duct& duct);
 /// Of steel, insulation and ducts.
 [[nodiscard]] double depth_of(const Stack& stack);
-/// The first packet of the same width and yoke height.
+/// The first packet of the same width, yoke height and pressure.
 [[nodiscard]] std::size_t likeness(const Stack& stack, std::size_t packet);
 
 /// All pairs of layers that touch, each kind once, those of one packet first.

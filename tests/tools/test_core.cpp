@@ -48,6 +48,17 @@ TEST_CASE("core draws elevation, section, corner and book") {
   CHECK(steplap_does({"core", k_layout, "--svg", bench.at("no/such/folder.svg")}).code == 2);
 }
 
+TEST_CASE("a report shows the core's drawing") {
+  const Workbench bench;
+  const Outcome run = steplap_does({"simulate", k_layout, "--set", "simulation.end=0.01", "--set", "output.step=1e-3", "-o", bench.at("out"), "--no-estimate"});
+  REQUIRE((run.code == 0 || run.code == 5));
+  CHECK(has(text_of(bench.at("out/three_limb/drawing.json")), "\"cores\":[{\"name\":\"core\",\"svg\":\"<svg xmlns="));
+  CHECK(steplap_does({"report", bench.at("out/three_limb"), "-o", bench.at("page.html")}).code == 0);
+  const std::string page = text_of(bench.at("page.html"));
+  CHECK(has(page, "id=\"cores\""));
+  CHECK(has(page, "Book across the mitre"));
+}
+
 TEST_CASE("core of what has none, or by a wrong name, is refused") {
   const Outcome none = steplap_does({"core", STEPLAP_MODELS "/layouts/joint_apart.toml"});
   CHECK(none.code == 2);

@@ -22,7 +22,7 @@ constexpr double k_thickness = 0.3e-3, k_density = 7650.0;
 
 struct Case {
   std::vector<Vec2> packets; ///< width, depth
-  std::vector<double> yokes;
+  std::vector<double> yokes, shares; ///< shares of the pressure: none, or one a packet
   std::string yoke_steps = "both", book = "saw_tooth", direction = "across";
   double core_height = 2.4, pitch = 5e-3, clearance = 0.6e-3, notch = 0.25 * std::numbers::pi;
   double mitre = 0.0; ///< 0: from corner to corner
@@ -122,8 +122,9 @@ public:
     for (const double level : {1.0, -1.0})
       for (std::size_t i = 0; i + 1 < sheets_.size(); ++i) {
         if (is_parted(i + 1)) continue;
-        add(sum, limb(i, level), yoke(i + 1, level, reach), move, turn, pivot);
-        add(sum, limb(i + 1, level), yoke(i, level, reach), move, turn, pivot);
+        const double share = 0.5 * (share_of(i) + share_of(i + 1));
+        add(sum, share, limb(i, level), yoke(i + 1, level, reach), move, turn, pivot);
+        add(sum, share, limb(i + 1, level), yoke(i, level, reach), move, turn, pivot);
       }
     return sum;
   }
@@ -160,6 +161,7 @@ private:
       for (long k = n - 1; k >= 0; --k) order.push_back(k);
     return order[static_cast<std::size_t>(layer) % order.size()];
   }
+  [[nodiscard]] double share_of(std::size_t sheet) const { return c_.shares.empty() ? 1.0 : c_.shares[sheets_[sheet].packet]; }
   [[nodiscard]] bool is_parted(std::size_t sheet) const {
     for (const double duct : c_.ducts)
       if (static_cast<std::size_t>(std::lround(duct / k_thickness)) == sheet) return true;
@@ -210,7 +212,7 @@ private:
   }
 
   // limb ∩ yoke = (limb ∩ strip) − (limb ∩ strip ∩ notch), each less the holes of either, what both holes take once.
-  void add(Sum& sum, const Sheet& limb, const Sheet& yoke, const Vec2& move, double turn, const Vec2& pivot) const {
+  void add(Sum& sum, double share, const Sheet& limb, const Sheet& yoke, const Vec2& move, double turn, const Vec2& pivot) const {
     const auto moved = [&](const Convex& lines) {
       Convex out;
       for (const Line& l : lines) {
@@ -223,7 +225,7 @@ private:
     for (const bool is_notch : {false, true}) {
       const Convex here = both(both(outline, yoke.outline), is_notch ? yoke.notch : Convex{});
       if (ring_of(here).size() < 3) continue;
-      const double sign = is_notch ? -1 : 1;
+      const double sign = is_notch ? -share : share;
       sum.add(ring_of(here), sign);
       for (const Convex& a : limb.holes) {
         const Convex hole = moved(a);
@@ -268,6 +270,7 @@ std::string core_text(const Case& c) {
   if (c.mitre > 0) out << "mitre_angle = " << c.mitre << "\n";
   std::vector<Vec2> ducts;
   for (const double duct : c.ducts) ducts.emplace_back(duct, 4e-3);
+  if (!c.shares.empty()) out << "pressure_shares = " << list(c.shares) << "\n";
   if (!ducts.empty()) out << "ducts = " << list(ducts) << "\n";
   if (!c.holes.empty()) out << "bolt_holes = " << list(c.holes) << "\nbolt_hole_diameter = " << c.hole << "\n";
   return out.str();
@@ -373,6 +376,7 @@ TEST_CASE("stepped sections with ducts: packets, and where they meet") {
     }
     for (int k = 0; k < 3; ++k) c.ducts.push_back(static_cast<double>(2 + dice.one_of(std::lround(depth / k_thickness) - 4)) * k_thickness);
     c.ducts.push_back(c.packets[0].y()); // between two packets
+    if (i % 3 == 1) c.shares = {0.8, 0.9, 1.2, 0.9, 0.7};
     c.is_middle = i % 4 == 3;
     c.side = i % 2 ? 1.0 : -1.0;
     compare(c);

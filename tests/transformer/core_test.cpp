@@ -425,6 +425,36 @@ TEST_CASE("impossible cores are refused, with what would be right") {
   CHECK(has(refusal(built, {"core.core.stack_depth=1 mm"}), "3 sheets"));
   CHECK(has(refusal(built, {"core.core.step_pitch=0.2"}), "a book that reaches 0.8 m across the mitre is wider than the sheets"));
   CHECK(has(refusal(counted + "limb_wdth = 3\n"), "did you mean 'limb_width'?"));
+  CHECK(has(refusal(counted, {"body.back limb.position=[0.9,1.95]"}),
+            "limbs 'back limb' and 'front limb' stand 0.35 m apart ('position' of the bodies), less than a limb is wide, 0.5 m ('limb_width')"));
+}
+
+TEST_CASE("stepped sections, ducts and holes that cannot be are refused, with the field and its line") {
+  std::string shape = k_shape;
+  for (const char* field : {"limb_width = 0.5\n", "yoke_height = 0.5\n"}) shape.erase(shape.find(field), std::string(field).size());
+  std::string built = k_built;
+  built.erase(built.find("stack_depth"), built.find('\n') + 1);
+  const std::string packets = "packets = [[0.4, 0.05], [0.5, 0.4], [0.4, 0.05]]\nyoke_heights = [0.4, 0.5, 0.4]\n";
+  const std::string stepped = shape + built + packets;
+  const std::vector<std::string> steel = {"body.front limb.mass=5000", "body.back limb.mass=5000", "body.front limb.inertia=3400",
+                                          "body.back limb.inertia=3400"};
+  CHECK(refusal(stepped, steel) == "");
+  const auto with = [&](const std::string& more) { return refusal(stepped + more, steel); };
+  CHECK(has(refusal(shape + built), "needs 'limb_width' (width of a limb's sheets; in m; or 'packets'"));
+  CHECK(has(with("limb_width = 0.5\n"), ": error: core 'core': 'limb_width' and 'packets' say the same"));
+  CHECK(has(with("stack_depth = 0.5\n"), "'stack_depth' and 'packets' say the same"));
+  CHECK(has(refusal(stepped, {"core.core.yoke_heights=[0.4,0.5]"}), "one height for each of the 3 packets, got 2"));
+  CHECK(has(with("pressure_shares = [1.0]\n"), "one share for each of the 3 packets, got 1"));
+  CHECK(has(refusal(stepped, {"core.core.packets=[[0.4,0.0],[0.5,0.4],[0.4,0.05]]"}), "must be greater than 0"));
+  CHECK(has(refusal(stepped, {"core.core.packets=[[0.4,0.001],[0.5,0.4],[0.4,0.05]]"}), "a packet of 3 sheets"));
+  CHECK(has(with("ducts = [[0.6, 0.006]]\n"), "a duct at 0.6 m lies outside the stack of 0.5 m"));
+  CHECK(has(with("ducts = [[0.1, 0.0]]\n"), "a width above 0 m"));
+  CHECK(has(with("bolt_holes = [[0.0, 0.0]]\n"), "'bolt_holes' needs 'bolt_hole_diameter'"));
+  CHECK(has(with("bolt_hole_diameter = 0.02\n"), "'bolt_hole_diameter' needs 'bolt_holes'"));
+  CHECK(has(with("bolt_holes = [[0.3, 0.3]]\nbolt_hole_diameter = 0.02\n"), "bolt hole 1 at (0.3 m, 0.3 m) lies outside a limb"));
+  CHECK(has(with("bolt_holes = [[0.0, 0.0], [0.0, 0.02]]\nbolt_hole_diameter = 0.02\n"), "bolt holes 1 and 2 run into each other"));
+  CHECK(has(with("bolt_holes = [[0.19, 0.19]]\nbolt_hole_diameter = 0.12\n"), "cuts a sheet in two"));
+  CHECK(has(refusal(k_shape + k_counted + "yoke_heights = [0.5]\n"), "'yoke_heights' is for 'packets'"));
 }
 
 TEST_CASE("all that is wrong with a core is said at once") {

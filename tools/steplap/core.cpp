@@ -93,18 +93,19 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
   table.add_row({"corner", "kinds", "interfaces", "overlap, mean", "area", "capacity"});
   double all = 0.0, capacity = 0.0;
   for (const CoreCorner& corner : geometry.corners(core.is_middle(limb), side_of_limb(core, body, part), reach)) {
-    double count = 0.0, area = 0.0, width = 0.0;
+    double count = 0.0, area = 0.0, width = 0.0, pressed = 0.0; // area times share of the pressure
     for (const Lap& lap : corner.laps) {
       count += lap.count;
       area += lap.count * lap.area;
+      pressed += lap.count * lap.area * lap.pressure;
       width += lap.count * (lap.outer - lap.inner);
     }
     const double pressure = corner.is_top ? core.pressure : core.bottom_pressure.value_or(core.pressure);
     const double friction = corner.is_top ? core.static_friction : core.bottom_static_friction.value_or(core.static_friction);
     table.add_row({corner.place, std::to_string(corner.laps.size()), whole(count), metres(width / count), quantity_text(area, "m²"),
-                   quantity_text(area * pressure * friction, "N")});
+                   quantity_text(pressed * pressure * friction, "N")});
     all += area;
-    capacity += area * pressure * friction;
+    capacity += pressed * pressure * friction;
   }
   table.add_row({"together", "", "", "", quantity_text(all, "m²"), quantity_text(capacity, "N")});
   out << table;
