@@ -74,6 +74,7 @@ void compile_interface(const Element& element, SystemBuilder& builder) {
     return builder.error("'kinetic_friction' must not exceed 'static_friction'");
   if (!(e.yoke_holes.empty() && e.limb_holes.empty()) && !(e.hole_diameter > 0.0))
     return builder.error("has holes: 'hole_diameter' must be more than 0 m");
+  if (e.across && !(e.across->norm() > 0.0)) return builder.error("'across' must not be [0, 0]");
   // Each on its own, so that the message can say which of the two.
   for (const bool is_yoke : {true, false}) try {
       const Sheet sheet = is_yoke ? yoke_of(e) : limb_of(e);
@@ -109,6 +110,9 @@ SheetPair make_sheets(const StepLapInterface& e, const std::string& limb,
   pair.kinetic_traction = e.count * e.pressure * e.kinetic_friction.value_or(e.static_friction);
   pair.count = e.count;
   pair.clearance = e.clearance;
+  const Body* part = builder.model().find_body(active_part);
+  if (e.across)
+    pair.across = e.frame == "body" || !part ? e.across->normalized() : rotated(e.across->normalized(), -part->angle);
   return pair;
 }
 
@@ -140,6 +144,8 @@ const ElementKind& step_lap_interface_kind() {
     f.add("clearance", &T::clearance).in("m").not_negative().doc(
         "by which the limb may move towards the yoke, across the overlap, before the sheets of a layer butt; not given: "
         "not known, and not looked at");
+    f.add("across", &T::across).doc("direction from the yoke to the limb, in which a limb moves away from the yoke; axes by "
+                                    "'frame'; default: from the middle of one sheet to that of the other");
     k.holds<T>();
     k.compile = compile_interface;
     return k;

@@ -24,6 +24,7 @@ struct StepLapInterface : Element {
   std::optional<double> kinetic_friction;
   double count = 1.0;             ///< of equal interfaces
   std::optional<double> clearance; ///< m, by which the limb may move towards the yoke before sheets butt
+  std::optional<Vec2> across; ///< direction from the yoke to the limb, as `frame`; none: between the sheets' middles
 };
 
 /// A round hole as it counts: a regular polygon of the circle's area.
@@ -35,6 +36,7 @@ struct SheetPair {
   double static_traction = 0.0, kinetic_traction = 0.0; ///< count · μ · p, N/m²
   double count = 1.0;
   std::optional<double> clearance; ///< m
+  std::optional<Vec2> across; ///< from the yoke to the limb, of length 1, in the active part's axes
 };
 
 /// Throws PolygonError for outlines that are none.

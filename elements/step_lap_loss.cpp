@@ -39,6 +39,7 @@ OverlapReference::OverlapReference(const std::vector<SheetPair>& sheets, const P
   OverlapWorkspace workspace;
   Region region;
   std::vector<Vec2> middle(sheets.size(), Vec2::Zero());
+  std::vector<double> around(sheets.size(), 0.0);
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     const SheetPair& s = sheets[i];
     Overlap& o = overlaps_.emplace_back();
@@ -46,35 +47,41 @@ OverlapReference::OverlapReference(const std::vector<SheetPair>& sheets, const P
     intersect_exactly(s.yoke, s.limb, reference, workspace, region);
     if (region.empty()) continue;
     o.area = area(region);
-    double around = 0.0;
     for (const Polygon& piece : region) {
-      around += perimeter(piece.outer);
+      around[i] += s.count * perimeter(piece.outer);
       o.in_part.insert(o.in_part.end(), piece.outer.begin(), piece.outer.end());
     }
-    o.width = 2.0 * o.area / around;
     for (const Vec2& p : o.in_part) o.in_limb.push_back(unplaced(p, reference));
-    o.across = placed(centroid(s.limb.polygon), reference) - centroid(s.yoke.polygon);
+    o.across = s.across.value_or(placed(centroid(s.limb.polygon), reference) - centroid(s.yoke.polygon));
     if (const double length = o.across.norm(); length > 0.0) o.across /= length;
     middle[i] = centroid(region);
   }
-  // Bands of one corner: the middle of one lies on the limb sheet of the other.
+  // Bands of one corner: the middle of one lies on the limb sheet of the other, and that of one on the yoke sheet of
+  // the other. Limb sheets alone would not tell one side of a T-joint's point from the other.
   for (std::size_t i = 0; i < sheets.size(); ++i)
     for (std::size_t j = 0; j < i && overlaps_[i].corner == i; ++j) {
       const bool is_over = overlaps_[i].area > 0.0 && overlaps_[j].area > 0.0 &&
                            (contains(sheets[i].limb.polygon.outer, unplaced(middle[j], reference)) ||
-                            contains(sheets[j].limb.polygon.outer, unplaced(middle[i], reference)));
+                            contains(sheets[j].limb.polygon.outer, unplaced(middle[i], reference))) &&
+                           (contains(sheets[i].yoke.polygon.outer, middle[j]) ||
+                            contains(sheets[j].yoke.polygon.outer, middle[i]));
       if (is_over) overlaps_[i].corner = overlaps_[j].corner;
     }
   std::vector<std::size_t> number(sheets.size(), sheets.size());
+  std::vector<double> corner_around;
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     std::size_t& corner = number[overlaps_[i].corner];
     if (corner == sheets.size()) {
       corner = corner_area_.size();
       corner_area_.push_back(0.0);
+      corner_around.push_back(0.0);
     }
     overlaps_[i].corner = corner;
     corner_area_[corner] += sheets[i].count * overlaps_[i].area;
+    corner_around[corner] += around[i];
   }
+  for (std::size_t corner = 0; corner < corner_area_.size(); ++corner)
+    corner_width_.push_back(corner_around[corner] > 0.0 ? 2.0 * corner_area_[corner] / corner_around[corner] : 0.0);
 }
 
 OverlapLoss OverlapReference::loss_at(const std::vector<SheetPair>& sheets, const Pose& pose,
@@ -96,7 +103,7 @@ OverlapLoss OverlapReference::loss_at(const std::vector<SheetPair>& sheets, cons
         moved = std::max(moved, move.norm());
         closed = std::max(closed, -o.across.dot(move));
       }
-      if (o.width > 0.0) loss.slid_share = std::max(loss.slid_share, moved / o.width);
+      loss.slid_share = std::max(loss.slid_share, moved / corner_width_[corner]);
       if (sheets[i].clearance) loss.clearance_left = std::min(loss.clearance_left, *sheets[i].clearance - closed);
     }
     loss.overlap_left = std::min(loss.overlap_left, left / corner_area_[corner]);

@@ -1,10 +1,11 @@
 // What sliding has done to the overlaps of a step-lap joint, against those of its reference pose.
 //
-// Interfaces whose overlaps lie over each other (the bands of a book at one corner of a core, or one side of a
+// Interfaces whose sheets lie over each other (the bands of a book at one corner of a core, or one side of a
 // T-joint's point) make up a *corner*. A corner's displacement is the largest of its overlaps' vertices, fixed
 // in the limb and seen from the active part; the width of a strip b × l is taken as 2 area/perimeter,
-// b l/(b + l), which is b but for b/l. *Across* an overlap is from the middle of the yoke sheet to that of
-// the limb sheet: the limb closes its clearance by moving against it.
+// b l/(b + l), which is b but for b/l, that of a corner as 2 Σ area/Σ perimeter over all its interfaces. *Across*
+// an overlap is as the interface says, else from the middle of the yoke sheet to that of the limb sheet: the limb
+// closes its clearance by moving against it.
 #pragma once
 
 #include "elements/step_lap_interface.h"
@@ -31,13 +32,14 @@ public:
 
 private:
   struct Overlap {
-    double area = 0.0, width = 0.0;
+    double area = 0.0;
     Vec2 across = Vec2::Zero();            ///< active part's axes, length 1
     std::vector<Vec2> in_part, in_limb;    ///< vertices of the overlap, in either body's axes
     std::size_t corner = 0;
   };
   std::vector<Overlap> overlaps_;    ///< as the sheets
   std::vector<double> corner_area_;  ///< m², with the numbers of interfaces
+  std::vector<double> corner_width_; ///< m
 };
 
 } // namespace steplap

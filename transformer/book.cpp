@@ -1,40 +1,34 @@
 #include "transformer/book.h"
 
-#include <cmath>
-
 namespace steplap {
 
-long sheets_in(const Book& book) {
-  // A depth made as a whole number of sheets must not lose one to rounding.
-  return std::lround(std::floor(book.stack_depth * book.stacking_factor / book.sheet_thickness + 1e-9));
+long period_of(const Book& book) {
+  switch (book.kind) {
+  case BookKind::saw_tooth: return book.steps;
+  case BookKind::zig_zag: return 2 * (book.steps - 1);
+  case BookKind::zig_zag_doubled: return 2 * book.steps;
+  }
+  return book.steps;
 }
 
-long interfaces_in(const Book& book) {
-  const long layers = sheets_in(book) / book.sheets_per_layer;
-  return layers > 1 ? layers - 1 : 0;
+long position_of(const Book& book, long layer) {
+  const long period = period_of(book), place = layer % period;
+  if (place < book.steps) return place;
+  return book.kind == BookKind::zig_zag ? period - place : period - 1 - place;
+}
+
+double line_at(const Book& book, long position) {
+  return (static_cast<double>(position) - 0.5 * static_cast<double>(book.steps - 1)) * book.pitch;
 }
 
 double mean_overlap(const Book& book) {
-  const double n = static_cast<double>(book.steps);
-  return 2.0 * (n - 1.0) / n * book.step_pitch - book.clearance;
-}
-
-std::vector<LapBand> mean_band(const Book& book) {
-  const double half = 0.5 * mean_overlap(book);
-  return {{-half, half, static_cast<double>(interfaces_in(book))}};
-}
-
-std::vector<LapBand> each_band(const Book& book) {
-  const double count = static_cast<double>(interfaces_in(book)) / static_cast<double>(book.steps);
-  const double half_gap = 0.5 * book.clearance;
-  const auto line = [&](long k) {
-    return (static_cast<double>(k) - 0.5 * static_cast<double>(book.steps - 1)) * book.step_pitch;
-  };
-  std::vector<LapBand> bands;
-  for (long k = 0; k + 1 < book.steps; ++k)
-    bands.push_back({line(k) + half_gap, line(k + 1) - half_gap, count});
-  bands.push_back({line(0) + half_gap, line(book.steps - 1) - half_gap, count});
-  return bands;
+  const double n = static_cast<double>(book.steps), s = book.pitch, g = book.clearance;
+  switch (book.kind) {
+  case BookKind::saw_tooth: return 2.0 * (n - 1.0) / n * s - g;
+  case BookKind::zig_zag: return s - g;
+  case BookKind::zig_zag_doubled: return (n - 1.0) / n * (s - g);
+  }
+  return 0.0;
 }
 
 } // namespace steplap

@@ -1,14 +1,12 @@
 // [[core]]: the step-lap joints between the limbs of a core and its yokes, from the core's dimensions.
 //
-// For each limb named there is one step_lap_joint, and at its top and bottom corner one
-// step_lap_interface for each band of overlap (book.h), its sheets in ground coordinates of the reference
-// pose:
-//   limb sheet 0 ≤ s ≤ l, inner ≤ q ≤ tongue, fixed in the limb;
-//   yoke sheet −margin ≤ s ≤ l + margin, −tongue ≤ q ≤ outer, fixed in the active part
-// (s, q along and across the mitre, l its length: corner.h). The limb's centre is its centre of gravity.
+// For each limb named there is one step_lap_joint, and at each of its corners one step_lap_interface for each
+// kind of pair of neighbouring layers whose sheets overlap there (stack.h), with the outlines of these sheets
+// (corner.h) in ground coordinates of the reference pose, and their number. The origin of a limb's body frame
+// is the middle of the limb: on its axis, at half the core's height. Its centre of gravity, and its mass and
+// inertia unless they are given, are those of its sheets.
 // An outer limb has one mitre at either end, a middle limb ends in a point between two (T-joint).
-// Assumes rectangular yokes and limbs of one sheet width (a core of several packets is several [[core]]
-// tables that name the same joints), pressure uniform over a corner. Source and assumptions: docs/core.md.
+// Assumes rectangular packets, and pressure uniform over a corner. What is assumed, and its source: docs/core.md.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -21,21 +19,31 @@ struct Core : TableObject {
   std::vector<std::string> middle_limbs; ///< bodies of the limbs between
   std::vector<std::string> joints; ///< one for each limb, outer ones first; default "<limb> joint"
 
-  double limb_width = 0.0, core_height = 0.0, yoke_height = 0.0; ///< m
+  double core_height = 0.0; ///< m, of the packet with the highest yokes
+  std::optional<double> limb_width, yoke_height, stack_depth; ///< m, of a core of one packet
+  std::vector<Vec2> packets;         ///< width of the limb's sheets and depth of each, front to back, m
+  std::vector<double> yoke_heights;  ///< of each packet, m
+  std::vector<double> pressure_shares; ///< of each packet, of `pressure`; none: all 1
+  std::string yoke_steps = "both";   ///< where yokes of several packets are stepped: "both", "window", "outside"
+  std::vector<Vec2> ducts;           ///< place in the stack, width, m
+  std::vector<Vec2> bolt_holes;      ///< from where the axes of limb and yoke cross: outwards, away from the window, m
+  std::optional<double> bolt_hole_diameter; ///< m
   std::optional<double> mitre_angle; ///< rad against the yoke; default: from corner to corner
   std::optional<double> notch_angle; ///< rad, of either side of a T-joint's point against the yoke; default 45°
-  double tongue = 0.05;              ///< m, sheet on either side of the middle of the mitre
-  double margin = 0.02;              ///< m, of the yoke sheet beyond the limb's at both ends of the mitre
 
   // Overlaps: either counted and measured, …
   std::optional<double> overlap, interfaces; ///< m; number a corner
+  std::string sheet_outlines = "real";       ///< "real" or "strips": square ends, as in the paper
+  std::optional<double> tongue, margin;      ///< m, of strips: sheet on either side of the middle of the mitre; of the
+                                             ///< yoke sheet beyond the limb's at both ends of it
   // … or as the stack is built.
-  std::optional<double> stack_depth, sheet_thickness, step_pitch; ///< m
-  std::optional<long> steps;
-  double stacking_factor = 0.96;
-  long sheets_per_layer = 1;
-  double clearance = 0.0;    ///< m; judged only where it is given
-  std::string bands = "mean"; ///< "mean" or "each"
+  std::optional<double> sheet_thickness, stacking_factor, step_pitch, clearance; ///< m, 1, m, m
+  std::optional<long> steps, sheets_per_layer;
+  std::string pitch_direction, book; ///< no default: each may double what the joint bears
+  std::string bands = "each";        ///< "each" or "mean"
+
+  double density = 7650.0; ///< kg/m³, of the sheets
+  std::string centre_of_gravity = "of_the_sheets"; ///< or "as_given" by the body
 
   double pressure = 0.0; ///< Pa
   double static_friction = 0.0;
@@ -44,6 +52,13 @@ struct Core : TableObject {
 
   std::string mode = "slip", on_apart = "stop"; ///< of the joints added
   std::optional<double> least_margin, most_slide; ///< of the joints added
+
+  [[nodiscard]] bool is_counted() const { return overlap || interfaces; }
+  [[nodiscard]] bool has_strips() const { return sheet_outlines == "strips"; }
+  [[nodiscard]] bool is_middle(std::size_t limb) const { return limb >= limbs.size(); }
+  /// Outer limbs, then middle ones.
+  [[nodiscard]] std::vector<std::string> all_limbs() const;
+  [[nodiscard]] std::string joint_name(std::size_t limb) const;
 };
 
 [[nodiscard]] const TableKind& core_kind();

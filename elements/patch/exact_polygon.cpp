@@ -99,6 +99,16 @@ Ring rounded(const ExactRing& ring) {
   return out;
 }
 
+Region rounded(const std::vector<ExactPolygon>& pieces) {
+  Region out;
+  for (const ExactPolygon& piece : pieces) {
+    Polygon polygon{rounded(piece.outer_boundary()), {}};
+    for (auto hole = piece.holes_begin(); hole != piece.holes_end(); ++hole) polygon.holes.push_back(rounded(*hole));
+    out.push_back(std::move(polygon));
+  }
+  return out;
+}
+
 /// Marks for each finite triangle whether it is inside: crossing an edge of a ring changes it.
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
     Predicates, CGAL::Default, CGAL::No_constraint_intersection_requiring_constructions_tag>;
@@ -142,20 +152,25 @@ bool is_inside(const Vec2& p, const Ring& ring) {
 }
 
 Region exact_intersection(const Polygon& a, const Polygon& b, const Pose& b_in_a) {
-  Region out;
   try {
     std::vector<ExactPolygon> pieces;
     CGAL::intersection(exact_polygon(a, {}), exact_polygon(b, b_in_a), std::back_inserter(pieces));
-    for (const ExactPolygon& piece : pieces) {
-      Polygon polygon{rounded(piece.outer_boundary()), {}};
-      for (auto hole = piece.holes_begin(); hole != piece.holes_end(); ++hole)
-        polygon.holes.push_back(rounded(*hole));
-      out.push_back(std::move(polygon));
-    }
+    return rounded(pieces);
   } catch (const std::exception& e) {
     throw PolygonError(std::string("the overlap of two polygons could not be found: ") + e.what());
   }
-  return out;
+}
+
+Region exact_difference(const Polygon& a, const Ring& hole) {
+  try {
+    ExactRing taken = exact_ring(hole, {});
+    if (taken.is_clockwise_oriented()) taken.reverse_orientation();
+    std::vector<ExactPolygon> pieces;
+    CGAL::difference(exact_polygon(a, {}), taken, std::back_inserter(pieces));
+    return rounded(pieces);
+  } catch (const std::exception& e) {
+    throw PolygonError(std::string("a hole could not be taken out of a polygon: ") + e.what());
+  }
 }
 
 std::vector<std::array<std::size_t, 3>> triangulated(const Polygon& polygon) {

@@ -29,6 +29,9 @@ struct Pose {
 /// and vertices without area give nothing. Throws PolygonError should the exact kernel refuse.
 [[nodiscard]] Region exact_intersection(const Polygon& a, const Polygon& b, const Pose& b_in_a);
 
+/// What of `a` lies outside the hole (either sense), as above.
+[[nodiscard]] Region exact_difference(const Polygon& a, const Ring& hole);
+
 /// Triangles (counter-clockwise) that make up the polygon: numbers of its vertices, counted through
 /// the outer ring and the holes.
 [[nodiscard]] std::vector<std::array<std::size_t, 3>> triangulated(const Polygon& polygon);

@@ -37,6 +37,8 @@ const Kind* find_kind(const std::vector<const Kind*>& kinds, const std::string& 
   return nullptr;
 }
 
+bool is_mass(const Field& field) { return field.name == "mass" || field.name == "inertia"; }
+
 // What is known of an entry of Model::tables.
 struct TableSource {
   std::vector<GivenField> given;
@@ -94,6 +96,7 @@ private:
   TableReading reading(std::string subject, std::string owner = "");
   std::string add_inline_marker(const Node& table, const Field& field, const std::string& owner);
   void complete_model();
+  void report_missing_masses(bool is_certain);
   std::optional<Location> locate(Section section, std::size_t index, const std::string& field);
   std::optional<Location> place_of(const std::vector<GivenField>& fields, const std::string& name,
                                    const Location& object) const;
@@ -173,7 +176,7 @@ void Reader::read_bodies() {
     const Node* fixed = entry.find("fixed");
     body.fixed = fixed && fixed->type == Node::Type::boolean && std::get<bool>(fixed->scalar);
     TableReading r = reading(subject_text("body", entry_name(entry)));
-    r.is_excused = [&body](const Field& field) { return is_excused(body, field); };
+    r.is_excused = [](const Field& field) { return is_mass(field); }; // tables may give it: report_missing_masses()
     given(Section::body).push_back(read_fields(entry, Body::fields(), &body, r, problems_));
   }
 }
@@ -335,7 +338,23 @@ void Reader::complete_model() {
     return place_of(tables_[table].given, field, model_.tables[table].table->where);
   };
   places.is_table_usable = [this](std::size_t table) { return tables_[table].is_usable; };
+  const std::size_t before = problems_.size();
   if (!complete(model_, places, problems_)) excuse_empty_scene();
+  // A table that could not be applied might have given them.
+  report_missing_masses(model_.tables.empty() || problems_.size() == before);
+}
+
+void Reader::report_missing_masses(bool is_certain) {
+  for (std::size_t i = 0; i < model_.bodies.size(); ++i)
+    for (const Field& field : Body::fields().fields()) {
+      const Body& body = model_.bodies[i];
+      if (!is_mass(field) || is_excused(body, field) || std::get<double>(field.get(&body)) != 0.0) continue;
+      std::vector<GivenField>& given_fields = given(Section::body)[i];
+      if (std::any_of(given_fields.begin(), given_fields.end(), [&](const GivenField& g) { return g.field->name == field.name; }))
+        continue;
+      given_fields.push_back({&field, nullptr, false});
+      if (is_certain) add(body.where, missing_field_message(field, subject_text("body", body.name)));
+    }
 }
 
 // The place of a field; of the whole object, if the file does not give the field.

@@ -25,12 +25,19 @@ void add_body_markers(Model& model) {
   for (const TableEntry& entry : model.tables) add_for(entry.kind->fields, entry.table.get());
 }
 
-// Markers without a place go to their body's centre of gravity.
-void place_markers(Model& model) {
+// Those without a place: they go to their body's centre of gravity.
+std::vector<std::size_t> unplaced_markers(const Model& model) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < model.markers.size(); ++i)
+    if (!model.markers[i].point && !model.markers[i].at) found.push_back(i);
+  return found;
+}
+
+void place_at_centres(Model& model, const std::vector<std::size_t>& markers) {
   std::unordered_map<std::string, const Body*> bodies;
   for (const Body& body : model.bodies) bodies.emplace(body.name, &body);
-  for (Marker& marker : model.markers) {
-    if (marker.point || marker.at) continue;
+  for (const std::size_t i : markers) {
+    Marker& marker = model.markers[i];
     const auto body = bodies.find(marker.body);
     marker.point = body == bodies.end() ? Vec2(Vec2::Zero()) : body->second->cg;
   }
@@ -89,10 +96,13 @@ FieldLocator own_places(const Model& model) {
 
 bool complete(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
   add_body_markers(model);
-  place_markers(model);
+  const std::vector<std::size_t> at_centres = unplaced_markers(model);
+  place_at_centres(model, at_centres);
   place_by_joints(model, places.given ? places.given : given_in_code(model),
                   places.locate ? places.locate : own_places(model), problems);
-  return apply_tables(model, places, problems);
+  const bool is_every_table_applied = apply_tables(model, places, problems);
+  place_at_centres(model, at_centres); // tables may have moved a centre of gravity
+  return is_every_table_applied;
 }
 
 Model completed(const Model& given) {

@@ -2,6 +2,7 @@
 
 #include "tools/steplap/accuracy.h"
 #include "tools/steplap/check.h"
+#include "tools/steplap/core.h"
 #include "tools/steplap/elements.h"
 #include "tools/steplap/equilibrium.h"
 #include "tools/steplap/joint.h"
@@ -22,6 +23,7 @@ std::vector<Command> all_commands() {
   commands.push_back(equilibrium_command());
   commands.push_back(modes_command());
   commands.push_back(joint_command());
+  commands.push_back(core_command());
   commands.push_back(accuracy_command());
   commands.push_back(elements_command());
   commands.push_back(schema_command());

@@ -2,6 +2,7 @@
 
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
+#include "tools/steplap/core_drawing.h"
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -87,10 +88,18 @@ public:
             {"elements", std::move(elements)},
             {"sheets", sheets_json()},
             {"plots", plots_json()},
+            {"cores", cores_json()},
             {"seen_from", model_.output.seen_from}};
   }
 
 private:
+  [[nodiscard]] Json cores_json() const {
+    Json cores = Json::array();
+    for (const TableEntry& entry : model_.tables)
+      if (const auto* core = dynamic_cast<const Core*>(entry.table.get()))
+        cores.push_back({{"name", core->name}, {"svg", core_svg(*core, model_)}});
+    return cores;
+  }
   [[nodiscard]] const Body* body(const std::string& name) const {
     const auto found = bodies_.find(name);
     return found == bodies_.end() ? nullptr : found->second;

@@ -15,6 +15,7 @@ namespace steplap {
 ///             body), contacts (names, of friction), limb and active_part (of step-lap joints)
 ///   sheets    joint, limb, active_part, count, yoke, limb_sheet: outlines in their bodies,
 ///             yoke_holes, limb_holes: rings of every hole, round ones as polygons
+///   cores     name, svg: each [[core]] as core_drawing.h draws it
 ///   plots     name, title, channels, bounds (patterns)
 ///   seen_from body that the drawing stands still with, "" = to be chosen
 /// A body without an outline gets one: the hull of the places where elements act on it, or a square of

@@ -7,6 +7,7 @@
 #include "mbd/model/signal_network.h"
 #include "mbd/model/validate.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/plausible.h"
 
 #include <algorithm>
 #include <cmath>
@@ -147,6 +148,7 @@ std::vector<std::string> warnings_about(const LoadedModel& loaded) {
   if (s.step && !s.tolerance && !has_fixed_step(s.integrator))
     warnings.push_back("'step' of [simulation] is not used: '" + s.integrator +
                        "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"");
+  for (std::string& message : implausible_cores(model)) warnings.push_back(std::move(message));
   warn_of_shared_reactions(*loaded.system, warnings);
   const Trajectory written(*loaded.system, model.output.channels);
   if (written.channels().empty())

@@ -1,4 +1,4 @@
-// What is allowed in a model, but hardly meant: signals that nothing uses, bodies that nothing holds.
+// What is allowed in a model, but hardly meant: signals that nothing uses, bodies that nothing holds, cores unlike any.
 #pragma once
 
 #include "tools/steplap/run.h"

@@ -13,6 +13,11 @@
   steplap.tables.extremes(runs);
   steplap.tables.models(runs);
 
+  // Each core once, however many runs share it; as an image, so that its style stays its own.
+  const cores = new Map(runs.flatMap((run) => (run.drawing.cores || []).map((core) => [core.svg, core.name])));
+  for (const [svg, name] of cores)
+    at('cores').append(make('img', { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`, alt: `Core ${name}: elevation, corner, section, book`, style: 'max-width:100%' }));
+
   // --- drawing -------------------------------------------------------------------------------------
   const scenes = runs.map((run) => new steplap.Scene(run, runs.length > 1 ? 620 : 900));
   const insets = [];
@@ -25,7 +30,10 @@
     if (names.length <= 40) box.append(make('p', { class: 'names' }, names.join(' · ')));
     at('scenes').append(box);
     const sheets = runs[i].drawing.sheets;
-    for (const sheet of sheets.slice(0, 8)) insets.push(new steplap.Inset(runs[i], scene, sheet));
+    // Of a core one kind of interface a corner.
+    const cornerOf = (s) => ((runs[i].drawing.cores || []).some((core) => s.name.startsWith(`${core.name}: `)) ? s.name.replace(/(, packets? .*| \d+)$/, '') : s.name);
+    const shown = sheets.filter((s, k) => sheets.findIndex((other) => cornerOf(other) === cornerOf(s)) === k);
+    for (const sheet of shown.slice(0, 8)) insets.push(new steplap.Inset(runs[i], scene, sheet));
   });
   if (insets.length) {
     const box = at('insets');

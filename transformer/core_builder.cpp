@@ -1,0 +1,334 @@
+#include "transformer/core_builder.h"
+
+#include "elements/step_lap_interface.h"
+#include "elements/step_lap_joint.h"
+#include "mbd/base/number_text.h"
+#include "transformer/core_dimensions.h"
+#include "transformer/core_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// Given steel lighter or heavier than this share of what its sheets weigh cannot be meant: tie plates, bindings and the
+// like add some per cent. Between it and the shares that are plausible (plausible.cpp) a check warns.
+constexpr double k_least_steel = 0.8, k_most_steel = 1.6;
+
+// The middle of the limb in its body's frame: its origin. The paper's strips lie about the centre of gravity.
+Vec2 middle_in_frame(const Core& core, const Body& limb) { return core.has_strips() ? limb.cg : Vec2(Vec2::Zero()); }
+
+// One [[core]] on its way into a model; says all that is wrong with it at once.
+class CoreBuilder {
+public:
+  CoreBuilder(const Core& core, Model& model) : core_(core), model_(model), limbs_(core.all_limbs()) {}
+
+  void build() {
+    check_names();
+    const std::vector<Diagnostic> found = check_dimensions(core_);
+    problems_.insert(problems_.end(), found.begin(), found.end());
+    stop_if_wrong();
+    const CoreGeometry geometry(core_);
+    try {
+      for (std::size_t i = 0; i < limbs_.size(); ++i) add_joint(i, geometry);
+      for (std::size_t i = 0; i < limbs_.size(); ++i) give_steel(i, geometry);
+    } catch (const PolygonError& wrong) {
+      error(wrong.what(), "bolt_holes");
+    }
+    stop_if_wrong();
+    draw_limbs(geometry);
+    draw_active_part(geometry);
+  }
+
+private:
+  // At the field that the message is about, if the table gives it.
+  void error(const std::string& message, const std::string& field = "") {
+    problems_.push_back({core_.place(field), "core '" + core_.name + "': " + message});
+  }
+  void stop_if_wrong() {
+    if (!problems_.empty()) throw ModelError(std::move(problems_));
+  }
+  [[nodiscard]] double widest() const {
+    double width = core_.limb_width.value_or(0.0);
+    for (const Vec2& packet : core_.packets) width = std::max(width, packet.x());
+    return width;
+  }
+  [[nodiscard]] const char* list_of(std::size_t limb) const { return core_.is_middle(limb) ? "middle_limbs" : "limbs"; }
+  [[nodiscard]] const Element* find_element(const std::string& name) const;
+  [[nodiscard]] const Body& limb(std::size_t i) const { return *model_.find_body(limbs_[i]); }
+  [[nodiscard]] const Body& active_part() const { return *model_.find_body(core_.active_part); }
+
+  void check_names();
+  void check_limb(std::size_t i, const Body& active_part);
+  void check_distance(std::size_t i, std::size_t j, const Body& active_part);
+  void check_joint(const std::string& name, const std::string& limb);
+  void check_settings(const StepLapJoint& joint);
+  [[nodiscard]] bool is_given(const std::string& field) const { return core_.places.count(field) > 0; }
+
+  void add_joint(std::size_t i, const CoreGeometry& geometry);
+  void add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap);
+  void refuse_repetition(const StepLapInterface& face);
+  void give_steel(std::size_t i, const CoreGeometry& geometry);
+  void check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit);
+
+  [[nodiscard]] std::vector<Vec2> limb_corners(std::size_t i, const CoreGeometry& geometry) const;
+  void draw_limbs(const CoreGeometry& geometry);
+  void draw_active_part(const CoreGeometry& geometry);
+
+  const Core& core_;
+  Model& model_;
+  std::vector<std::string> limbs_; ///< outer ones, then middle ones
+  std::vector<Diagnostic> problems_;
+};
+
+// --- what it refers to ------------------------------------------------------------------------------
+
+const Element* CoreBuilder::find_element(const std::string& name) const {
+  for (const ElementEntry& entry : model_.elements)
+    if (entry.element->name == name) return entry.element.get();
+  return nullptr;
+}
+
+void CoreBuilder::check_names() {
+  const Body* active_part = model_.find_body(core_.active_part);
+  if (!active_part) return error("'active_part' must be a body that moves, not 'ground'", "active_part");
+  if (limbs_.empty()) error("'limbs' or 'middle_limbs' must name at least one body");
+  for (std::size_t i = 0; i < limbs_.size(); ++i) {
+    check_limb(i, *active_part);
+    for (std::size_t j = 0; j < i; ++j)
+      if (limbs_[j] == limbs_[i]) error("names limb '" + limbs_[i] + "' twice", list_of(i));
+      else check_distance(i, j, *active_part);
+  }
+  if (!core_.joints.empty() && core_.joints.size() != limbs_.size())
+    return error("'joints' must name one joint for each of the " + std::to_string(limbs_.size()) +
+                 " limbs, got " + std::to_string(core_.joints.size()), "joints");
+  for (std::size_t i = 0; i < limbs_.size(); ++i) check_joint(core_.joint_name(i), limbs_[i]);
+}
+
+void CoreBuilder::check_limb(std::size_t i, const Body& active_part) {
+  const std::string& name = limbs_[i];
+  const Body* limb = model_.find_body(name);
+  if (!limb) {
+    std::vector<std::string> known;
+    for (const Body& body : model_.bodies) known.push_back(body.name);
+    return error("limb '" + name + "' is no body" + did_you_mean(name, known), list_of(i));
+  }
+  if (limb == &active_part) return error("limb '" + name + "' is the active part itself", list_of(i));
+  if (!core_.is_middle(i) && std::abs(middle_of_limb(core_, *limb, active_part).x()) < 0.5 * widest())
+    error("limb '" + name + "' stands in the middle of the active part: only outer limbs, at least half a "
+          "limb's width ahead of its centre of gravity or behind it, have mitred corners; name it in "
+          "'middle_limbs'", "limbs");
+}
+
+// Limbs of one core cannot stand in each other.
+void CoreBuilder::check_distance(std::size_t i, std::size_t j, const Body& active_part) {
+  const Body *a = model_.find_body(limbs_[i]), *b = model_.find_body(limbs_[j]);
+  if (!a || !b || a == b || a == &active_part || b == &active_part) return;
+  const double apart = std::abs(middle_of_limb(core_, *a, active_part).x() - middle_of_limb(core_, *b, active_part).x());
+  if (apart < widest())
+    error("limbs '" + a->name + "' and '" + b->name + "' stand " + number_text(apart) + " m apart ('position' of the bodies), less than a limb is wide, " +
+              number_text(widest()) + " m ('" + (core_.packets.empty() ? "limb_width" : "packets") + "')",
+          core_.packets.empty() ? "limb_width" : "packets");
+}
+
+void CoreBuilder::check_joint(const std::string& name, const std::string& limb) {
+  if (name.empty()) return error("'joints': a joint needs a name", "joints");
+  const Element* element = find_element(name);
+  if (!element) return;
+  const auto* joint = dynamic_cast<const StepLapJoint*>(element);
+  if (!joint) return error("joint '" + name + "': the element of this name is no step_lap_joint", "joints");
+  if (joint->limb != limb || joint->active_part != core_.active_part)
+    error("step_lap_joint '" + name + "' holds '" + joint->limb + "' to '" + joint->active_part +
+          "', not '" + limb + "' to '" + core_.active_part + "'", "joints");
+  check_settings(*joint);
+}
+
+// What is given here for the joints must be what a joint declared elsewhere has.
+void CoreBuilder::check_settings(const StepLapJoint& joint) {
+  const auto check = [&](const char* field, bool is_same) {
+    if (is_given(field) && !is_same)
+      error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
+            "' exists already with another: set it there, and leave it out here", field);
+  };
+  check("mode", core_.mode == joint.mode);
+  check("on_apart", core_.on_apart == joint.on_apart);
+  check("least_margin", core_.least_margin == joint.least_margin);
+  check("most_slide", core_.most_slide == joint.most_slide);
+}
+
+// --- into the model -----------------------------------------------------------------------------------
+
+void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
+  if (!find_element(core_.joint_name(i))) {
+    const auto joint = std::make_shared<StepLapJoint>();
+    joint->name = core_.joint_name(i);
+    joint->where = core_.where;
+    joint->limb = limbs_[i];
+    joint->active_part = core_.active_part;
+    joint->mode = core_.mode;
+    joint->on_apart = core_.on_apart;
+    joint->least_margin = core_.least_margin.value_or(joint->least_margin);
+    joint->most_slide = core_.most_slide.value_or(joint->most_slide);
+    model_.elements.push_back({&step_lap_joint_kind(), joint});
+  }
+  const double reach = std::abs(middle_of_limb(core_, limb(i), active_part()).x());
+  for (const CoreCorner& corner : geometry.corners(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()), reach))
+    for (const Lap& lap : corner.laps) add_interface(i, corner, lap);
+}
+
+void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap) {
+  const double turn = active_part().angle;
+  const Vec2 middle = limb(i).position + rotated(middle_in_frame(core_, limb(i)), limb(i).angle);
+  const auto placed = [&](const Ring& ring) {
+    std::vector<Vec2> points;
+    for (const Vec2& p : ring) points.emplace_back(middle + rotated(p, turn));
+    return points;
+  };
+  const auto e = std::make_shared<StepLapInterface>();
+  e->name = core_.name + ": " + core_.joint_name(i) + ", " + corner.place;
+  if (!lap.name.empty()) e->name += (lap.name.front() == 'p' ? ", " : " ") + lap.name;
+  e->where = core_.where;
+  e->joint = core_.joint_name(i);
+  e->limb = placed(lap.limb.outer);
+  e->yoke = placed(lap.yoke.outer);
+  for (const Ring& hole : lap.limb.holes) e->limb_cutouts.push_back(placed(hole));
+  for (const Ring& hole : lap.yoke.holes) e->yoke_cutouts.push_back(placed(hole));
+  if (!core_.has_strips()) e->across = rotated(corner.frame.across, turn);
+  e->count = lap.count;
+  e->clearance = core_.clearance;
+  e->pressure = lap.pressure * (corner.is_top ? core_.pressure : core_.bottom_pressure.value_or(core_.pressure));
+  e->static_friction = corner.is_top ? core_.static_friction : core_.bottom_static_friction.value_or(core_.static_friction);
+  e->kinetic_friction = !corner.is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction
+                                                                        : core_.kinetic_friction;
+  refuse_repetition(*e);
+  model_.elements.push_back({&step_lap_interface_kind(), e});
+}
+
+bool is_same_sheet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+  constexpr double k_same = 1e-9; // m
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](const Vec2& p, const Vec2& q) { return (p - q).norm() < k_same; });
+}
+
+// The same sheets at the same place twice would bear twice as much.
+void CoreBuilder::refuse_repetition(const StepLapInterface& face) {
+  if (!problems_.empty()) return; // once is enough
+  const std::string own = core_.name + ": ";
+  for (const ElementEntry& entry : model_.elements) {
+    const auto* other = dynamic_cast<const StepLapInterface*>(entry.element.get());
+    if (!other || other->joint != face.joint || other->name.rfind(own, 0) == 0) continue;
+    if (!is_same_sheet(other->limb, face.limb) || !is_same_sheet(other->yoke, face.yoke)) continue;
+    return error("its sheets at joint '" + face.joint + "' are those of '" + other->name +
+                 "' over again, and would count twice: a core of several packets is one table with 'packets'; "
+                 "sheets of one width go into one packet, as a deeper stack or more 'interfaces'");
+  }
+}
+
+// --- the limbs' steel -------------------------------------------------------------------------------------
+
+void CoreBuilder::check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit) {
+  if (given >= k_least_steel * steel && given <= k_most_steel * steel) return;
+  problems_.push_back({body.where, "'" + std::string(field) + "' of body '" + body.name + "', " + number_text(given) + " " + unit +
+                                       ", contradicts core '" + core_.name + "', whose sheets make it " +
+                                       number_text(std::round(steel)) + " " + unit +
+                                       " ('stack_depth' or 'packets', 'stacking_factor', 'density'): leave '" + field +
+                                       "' out to take it from the core"});
+}
+
+void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {
+  Body* body = nullptr;
+  for (Body& candidate : model_.bodies)
+    if (candidate.name == limbs_[i]) body = &candidate;
+  if (core_.has_strips() || count_cores_of(model_, limbs_[i]) > 1 || body->fixed) return;
+  const LimbSteel steel = geometry.limb_steel(core_.is_middle(i), side_of_limb(core_, *body, active_part()));
+  if (steel.mass > 0.0) {
+    if (body->mass == 0.0) body->mass = steel.mass;
+    else check_steel(*body, "mass", body->mass, steel.mass, "kg");
+    if (body->inertia == 0.0) body->inertia = steel.inertia * body->mass / steel.mass;
+    else check_steel(*body, "inertia", body->inertia, steel.inertia, "kg m²");
+  }
+  if (core_.centre_of_gravity == "of_the_sheets" && body->cg == Vec2(Vec2::Zero()))
+    body->cg = rotated(steel.centre, active_part().angle - body->angle);
+}
+
+// --- outlines, for bodies whose model gives none ---------------------------------------------------------
+
+// Of the largest packet, counter-clockwise from the bottom, in the active part's axes about the middle of the limb.
+std::vector<Vec2> CoreBuilder::limb_corners(std::size_t i, const CoreGeometry& geometry) const {
+  const bool is_middle = core_.is_middle(i);
+  const Mitre mitre = geometry.mitre(geometry.largest(), is_middle);
+  const double side = side_of_limb(core_, limb(i), active_part());
+  std::vector<Vec2> corners;
+  for (const double level : {-1.0, 1.0}) {
+    std::vector<Vec2> end;
+    if (is_middle) {
+      const CornerFrame left = notch_frame(mitre, 1.0, level), right = notch_frame(mitre, -1.0, level);
+      end = {left.origin, left.origin + left.length * left.along, right.origin};
+    } else {
+      const CornerFrame corner = corner_frame(mitre, side, level);
+      end = {corner.origin, corner.origin + corner.length * corner.along};
+    }
+    // From left to right at the bottom, back again at the top.
+    std::sort(end.begin(), end.end(), [level](const Vec2& a, const Vec2& b) { return level * a.x() > level * b.x(); });
+    corners.insert(corners.end(), end.begin(), end.end());
+  }
+  return corners;
+}
+
+void CoreBuilder::draw_limbs(const CoreGeometry& geometry) {
+  const double turn = active_part().angle;
+  for (std::size_t i = 0; i < limbs_.size(); ++i)
+    for (Body& body : model_.bodies) {
+      if (body.name != limbs_[i] || !body.outline.empty()) continue;
+      for (const Vec2& p : limb_corners(i, geometry))
+        body.outline.push_back(middle_in_frame(core_, body) + rotated(p, turn - body.angle));
+    }
+}
+
+// What lies between the outer limbs: yokes, windings and all.
+void CoreBuilder::draw_active_part(const CoreGeometry& geometry) {
+  const Body* rear = nullptr;
+  const Body* front = nullptr;
+  std::vector<Vec2> at_rear, at_front;
+  for (Body& part : model_.bodies) {
+    if (part.name != core_.active_part || !part.outline.empty()) continue;
+    for (std::size_t i = 0; i < core_.limbs.size(); ++i) {
+      const Vec2 place = middle_of_limb(core_, limb(i), part);
+      const bool is_front = place.x() > 0.0;
+      (is_front ? front : rear) = &limb(i);
+      std::vector<Vec2>& corners = is_front ? at_front : at_rear;
+      corners = limb_corners(i, geometry);
+      for (Vec2& p : corners) p += part.cg + place;
+    }
+    if (!rear || !front) return;
+    // Corners of an outer limb: bottom left, bottom right, top right, top left.
+    part.outline = {at_rear[0], at_front[1], at_front[0], at_front[3], at_front[2], at_rear[3], at_rear[2], at_rear[1]};
+  }
+}
+
+} // namespace
+
+void build_core(const Core& core, Model& model) { CoreBuilder(core, model).build(); }
+
+Vec2 middle_of_limb(const Core& core, const Body& limb, const Body& active_part) {
+  const Vec2 middle = limb.position + rotated(middle_in_frame(core, limb), limb.angle);
+  return rotated(middle - active_part.reference_pose().head<2>(), -active_part.angle);
+}
+
+double side_of_limb(const Core& core, const Body& limb, const Body& active_part) {
+  return middle_of_limb(core, limb, active_part).x() > 0.0 ? 1.0 : -1.0;
+}
+
+std::size_t count_cores_of(const Model& model, const std::string& limb) {
+  std::size_t count = 0;
+  for (const TableEntry& entry : model.tables)
+    if (const auto* core = dynamic_cast<const Core*>(entry.table.get())) {
+      const std::vector<std::string> limbs = core->all_limbs();
+      if (std::find(limbs.begin(), limbs.end(), limb) != limbs.end()) ++count;
+    }
+  return count;
+}
+
+} // namespace steplap

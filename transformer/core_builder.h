@@ -1,0 +1,18 @@
+// What a [[core]] stands for, put into the model: joints, interfaces, the limbs' steel and outlines.
+#pragma once
+
+#include "transformer/core.h"
+
+namespace steplap {
+
+/// Throws ModelError with all that is wrong.
+void build_core(const Core& core, Model& model);
+
+/// Where the middle of a limb is, from the active part's centre of gravity, in its axes.
+[[nodiscard]] Vec2 middle_of_limb(const Core& core, const Body& limb, const Body& active_part);
+/// +1 for a limb ahead of the active part, −1 behind.
+[[nodiscard]] double side_of_limb(const Core& core, const Body& limb, const Body& active_part);
+/// Tables that name the limb: with several, each is a part of its steel.
+[[nodiscard]] std::size_t count_cores_of(const Model& model, const std::string& limb);
+
+} // namespace steplap

@@ -1,0 +1,79 @@
+// What a [[core]] comes to: the overlaps at its corners and the steel of its limbs, as the stack is built.
+//
+// Places are in the active part's axes, from the middle of a limb (corner.h). Everything here is for a core
+// whose fields are complete and sound (core_builder.h sees to that).
+#pragma once
+
+#include "elements/patch/polygon.h"
+#include "transformer/core.h"
+#include "transformer/corner.h"
+#include "transformer/stack.h"
+
+namespace steplap {
+
+/// One kind of interface at a corner: where a yoke sheet of one layer and a limb sheet of a neighbouring layer overlap.
+struct Lap {
+  std::string name;  ///< within its corner: "", "3", "packet 2, 3", "packets 2 and 3, 1"
+  Polygon yoke, limb;
+  double inner = 0.0, outer = 0.0; ///< m, across the mitre: limb sheet beyond the one, yoke sheet before the other
+  double count = 0.0; ///< of such interfaces in the stack
+  double area = 0.0;  ///< m², of one
+  double pressure = 1.0; ///< share of the corner's
+};
+
+/// One mitre: an outer limb has one at either end, a middle limb two.
+struct CoreCorner {
+  bool is_top = true;
+  std::string place; ///< "top", "bottom front"
+  CornerFrame frame; ///< of the widest packet
+  std::vector<Lap> laps;
+};
+
+/// Of a limb's sheets.
+struct LimbSteel {
+  double mass = 0.0;         ///< kg; zero where the stack is not known (overlaps counted)
+  double inertia = 0.0;      ///< kg m², about the centre of gravity
+  Vec2 centre = Vec2::Zero(); ///< of gravity, m
+};
+
+class CoreGeometry {
+public:
+  explicit CoreGeometry(const Core& core);
+
+  [[nodiscard]] const Stack& stack() const { return stack_; } ///< of a counted core: one packet, no sheets
+  /// The widest packet of the highest yoke: its place among the packets.
+  [[nodiscard]] std::size_t largest() const { return largest_; }
+  [[nodiscard]] Mitre mitre(std::size_t packet, bool is_middle) const;
+  /// Angle against the yoke, rad.
+  [[nodiscard]] double angle(std::size_t packet, bool is_middle) const;
+  /// From layer to layer, across the mitre, m.
+  [[nodiscard]] double pitch(std::size_t packet, bool is_middle) const;
+  /// Middle of the line at which sheets of that shape meet, across the mitre, m.
+  [[nodiscard]] double line(const LayerShape& shape, bool is_middle) const;
+
+  /// All corners of a limb that stands on that side of the active part, `reach` from it. Throws PolygonError where a
+  /// bolt hole cuts a sheet in two.
+  [[nodiscard]] std::vector<CoreCorner> corners(bool is_middle, double side, double reach) const;
+  [[nodiscard]] LimbSteel limb_steel(bool is_middle, double side) const;
+
+private:
+  struct End; // of a limb: which of its corners
+  [[nodiscard]] CoreCorner corner(const End& end) const;
+  [[nodiscard]] CornerFrame frame(std::size_t packet, const End& end) const;
+  [[nodiscard]] Polygon limb_sheet(std::size_t packet, const End& end, double q) const;
+  [[nodiscard]] Polygon yoke_sheet(std::size_t packet, const End& end, double q) const;
+  [[nodiscard]] Lap lap(std::size_t limb_packet, double inner, std::size_t yoke_packet, double outer, const End& end) const;
+  void add_built(const End& end, std::vector<Lap>& laps) const;
+  void add_counted(const End& end, std::vector<Lap>& laps) const;
+  void merge(const End& end, std::size_t packet, std::vector<Lap>& laps) const;
+  [[nodiscard]] Polygon punched(const std::vector<Vec2>& ring, double side, std::initializer_list<double> levels) const;
+
+  const Core& core_;
+  Stack stack_;
+  std::size_t largest_ = 0;
+};
+
+/// The stack that the fields describe; of a counted core one packet without sheets.
+[[nodiscard]] Stack stack_of(const Core& core);
+
+} // namespace steplap
