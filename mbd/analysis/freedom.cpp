@@ -92,6 +92,7 @@ Freedom count_freedom(const System& system) {
   freedom.rank = rank_of(rows, motion, &freedom.dependent_rows);
   freedom.shared = sharing(rows, rows.size(), elements, motion, freedom.rank);
   for (const FrictionUnit& unit : system.frictions) {
+    if (unit.friction->is_elastic()) continue;
     const RowSpec* first = unit.friction->rows(FrictionState{});
     for (int r = 0; r < unit.friction->dimension(); ++r) {
       rows.push_back(first + r);

@@ -10,6 +10,10 @@
 // own pair of bodies, one at a time; all that follows from geometry is exact there too. (Coulomb's law
 // depends on the normal forces alone, linearly: exact up to rounding.)
 //
+// Inner states of force elements (roles.h) bring forces of their own and follow rates of their own,
+//   δQ += F_z δz,   δż = P δq + V δv + Z δz,
+// each between one pair of clusters: kept as small blocks (InnerBlock), for methods that eliminate them.
+//
 // Locked coordinates (drives) do not follow the state: their columns are left out, their rows have zero
 // inverse mass. Modes are those of the state; the linearisation holds while no watch value crosses zero.
 #pragma once
@@ -40,6 +44,17 @@ public:
   [[nodiscard]] const std::vector<Triplet>& bias_by_pose() const { return bias_q_; } ///< G_q, m × n
   [[nodiscard]] const std::vector<Triplet>& bias_by_velocity() const { return bias_v_; } ///< G_v, m × n
 
+  /// An inner state between two clusters: columns and rows of either side in turn, zero for the ground and locked columns.
+  struct InnerBlock {
+    int cluster[2] = {-1, -1};
+    int first = 0, count = 0;
+    Eigen::Matrix<double, 6, 3> force;
+    Eigen::Matrix<double, 3, 6> by_pose, by_velocity;
+    Mat3 by_inner;
+  };
+  [[nodiscard]] const std::vector<InnerBlock>& inner() const { return inner_; }
+  [[nodiscard]] int inner_count() const { return dynamics_->inner_count(); }
+
   /// Any of them as a dense matrix of `rows` rows.
   [[nodiscard]] MatX dense(const std::vector<Triplet>& entries, int rows) const;
   /// ∂a/∂q and ∂a/∂v (n × n each) of free coordinates, constraints eliminated: for small scenes.
@@ -47,6 +62,7 @@ public:
 
 private:
   void add_forces(const PairJacobian& part);
+  void add_inner(const InnerJacobian& part);
   void add_transport();
   void add_row(std::size_t r);
   void add_sliding(int friction);
@@ -60,6 +76,8 @@ private:
   const std::vector<double>* inverse_mass_ = nullptr;
   std::vector<double> dy_;
   std::vector<PairJacobian> parts_;
+  std::vector<InnerJacobian> inner_parts_;
+  std::vector<InnerBlock> inner_;
   std::vector<Triplet> stiffness_, damping_, gradient_, bias_q_, bias_v_;
   std::vector<Motion<double>> motion_;   ///< scratch of the slip law's differences
   std::vector<double> normal_;

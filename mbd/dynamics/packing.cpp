@@ -32,8 +32,9 @@ void Dynamics::pack(const State& state, double* y) const {
              system_.bodies[i].mass * (lever.x() * bv[1] - lever.y() * bv[0])) / cluster.inertia;
   }
   // Angular momentum was taken about the cluster's centre, where Σ m lever = 0: no correction is due.
-  y[2 * n] = state.dissipated;
-  y[2 * n + 1] = state.work;
+  double* const rest = std::copy(state.inner.begin(), state.inner.end(), y + 2 * n);
+  rest[0] = state.dissipated;
+  rest[1] = state.work;
 }
 
 void Dynamics::unpack(double t, const double* y, State& state) const {
@@ -55,8 +56,10 @@ void Dynamics::unpack(double t, const double* y, State& state) const {
     bv[0] -= v[2] * lever.y();
     bv[1] += v[2] * lever.x();
   }
-  state.dissipated = y[2 * n];
-  state.work = y[2 * n + 1];
+  const double* const rest = y + 2 * n + inner_count();
+  std::copy(y + 2 * n, rest, state.inner.begin());
+  state.dissipated = rest[0];
+  state.work = rest[1];
 }
 
 } // namespace steplap
