@@ -71,6 +71,7 @@ public:
   /// Throws NumericalFailure, naming the joint, where an iteration has ended too far from its solution.
   [[nodiscard]] RequiredPressure required(const Patch& patch, const Vec3& wrench, double t) const;
   [[nodiscard]] double area(const Snapshot& s) const;
+  [[nodiscard]] const OverlapReference& overlaps() const { return overlaps_; }
   [[nodiscard]] const OverlapLoss& loss(const Snapshot& s) const;
   /// On the limb about its centre of gravity, active part's axes.
   [[nodiscard]] Vec3 wrench(const Snapshot& s) const;

@@ -1,11 +1,13 @@
 #include "elements/step_lap_joint.h"
 
+#include "elements/step_lap_edges.h"
 #include "elements/step_lap_elastic.h"
 #include "elements/step_lap_friction.h"
 #include "elements/step_lap_interface.h"
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 namespace steplap {
 
@@ -181,6 +183,93 @@ bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& b
   return true;
 }
 
+// The edge lines of one corner, as indices of EdgeGroup.
+struct EdgeCorner {
+  std::vector<int> lines;
+  double count = 0.0;
+  Vec2 middle = Vec2::Zero(); ///< of its first line, active part's axes
+};
+
+// Along bands of a corner that lie side by side the loads are taken to act on one line.
+EdgeGroup::Bearing bearing_of(const EdgeGroup& group, const EdgeCorner& corner, const Motion<double>* motion) {
+  EdgeGroup::Bearing sum;
+  for (const int line : corner.lines) {
+    const auto b = group.bearing(line, motion);
+    sum.force += b.force;
+    for (int end = 0; end < 2; ++end) sum.load[end] += b.load[end];
+  }
+  return sum;
+}
+
+double largest_load(const EdgeGroup& group, const std::vector<EdgeCorner>& corners, const Motion<double>* motion) {
+  double largest = 0.0;
+  for (const EdgeCorner& corner : corners) {
+    const auto b = bearing_of(group, corner, motion);
+    largest = std::max({largest, b.load[0], b.load[1]});
+  }
+  return largest;
+}
+
+void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const EdgeGroup& group, const std::vector<EdgeCorner>& corners) {
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const EdgeCorner corner = corners[c];
+    const std::string number = "_" + std::to_string(c + 1);
+    std::ostringstream at;
+    at.precision(4);
+    at << "corner about (" << corner.middle.x() << ", " << corner.middle.y() << ") m from the active part's centre of gravity";
+    builder.add_channel("edge_force" + number, "N", "with which sheet edges press the limb off the yoke, " + at.str(),
+                        [&group, corner](const Snapshot& s) { return bearing_of(group, corner, s.motion).force; });
+    for (const int end : {0, 1})
+      builder.add_channel("edge_load" + number + (end == 0 ? "_start" : "_end"), "N/m",
+                          "line load of sheet edges at one end of the mitre, " + at.str() + "; straight in between",
+                          [&group, corner, end](const Snapshot& s) { return bearing_of(group, corner, s.motion).load[end]; });
+  }
+  builder.add_channel("edge_load", "N/m", "largest line load of sheet edges at any corner",
+                      [&group, corners](const Snapshot& s) { return largest_load(group, corners, s.motion); });
+  if (e.allowed_line_load)
+    builder.add_channel("edge_share", "", "largest line load of sheet edges, of the allowed one",
+                        [&group, corners, allowed = *e.allowed_line_load](const Snapshot& s) {
+                          return largest_load(group, corners, s.motion) / allowed;
+                        });
+}
+
+bool add_edges(const StepLapJoint& e, const Pose& reference, SystemBuilder& builder, const StepLapFriction& friction) {
+  const auto fails = [&builder](const char* message) {
+    builder.error(message);
+    return false;
+  };
+  if (!e.edge_stiffness) return !e.allowed_line_load || fails("'allowed_line_load' needs 'edge_stiffness'");
+  const std::vector<SheetPair>& sheets = friction.sheets();
+  const OverlapReference& overlaps = friction.overlaps();
+  std::vector<EdgeCorner> corners(overlaps.corner_count());
+  for (std::size_t i = 0; i < sheets.size(); ++i)
+    if (sheets[i].clearance) corners[overlaps.corner_of(i)].count += sheets[i].count;
+  auto& group = builder.group<EdgeGroup>();
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    if (!sheets[i].clearance) continue;
+    const EdgeLine line = find_edge_line(sheets[i], reference);
+    if (!line.is_known()) continue; // no overlap
+    EdgeCorner& corner = corners[overlaps.corner_of(i)];
+    EdgeGroup::Entry entry;
+    entry.a = friction.hold[0].a;
+    entry.b = friction.hold[0].b;
+    entry.stiffness = *e.edge_stiffness * sheets[i].count / corner.count;
+    entry.length = (line.ends[1] - line.ends[0]).norm();
+    for (int end = 0; end < 2; ++end) {
+      const Vec2 in_limb = rotated(line.ends[end] - Vec2(reference.x, reference.y), -reference.theta);
+      entry.gap[end] = {in_limb, line.ends[end] - *sheets[i].clearance * line.off, line.off};
+    }
+    if (corner.lines.empty()) corner.middle = 0.5 * (line.ends[0] + line.ends[1]);
+    corner.lines.push_back(static_cast<int>(group.entries.size()));
+    group.entries.push_back(entry);
+    builder.add_unit(group, EdgeGroup::k_watches);
+  }
+  corners.erase(std::remove_if(corners.begin(), corners.end(), [](const EdgeCorner& c) { return c.lines.empty(); }), corners.end());
+  if (corners.empty()) return fails("'edge_stiffness' needs the 'clearance' of its step_lap_interface elements");
+  add_edge_channels(e, builder, group, corners);
+  return true;
+}
+
 void compile_joint(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const StepLapJoint&>(element);
   if (builder.body(e.limb) == builder.body(e.active_part))
@@ -211,6 +300,7 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
                       }));
   }
   add_slide_channels(builder, *friction);
+  if (!add_edges(e, reference, builder, *friction)) return;
   builder.add_friction(std::move(friction));
 }
 
@@ -240,6 +330,11 @@ const ElementKind& step_lap_joint_kind() {
         "the same, of a square metre of one interface: tangential stiffness of two sheets pressed on each other");
     f.add("sheet_thickness", &T::sheet_thickness).in("m").positive().doc("in series with contact_stiffness: sheets in shear");
     f.add("shear_modulus", &T::shear_modulus).in("Pa").positive().doc("of the sheets, with sheet_thickness");
+    f.add("edge_stiffness", &T::edge_stiffness).in("N/m^2").positive().doc(
+        "of sheet edges that bear on each other once a clearance has closed: line load over depth, of all sheets at a corner. "
+        "Without it sheets pass each other freely, and a closed clearance is only reported");
+    f.add("allowed_line_load", &T::allowed_line_load).in("N/m").positive().doc(
+        "of all sheets at a corner, along the mitre: beyond it their edges are crushed and the joint is rejected");
     f.add("least_margin", &T::least_margin).at_least(1.0).doc(
         "smallest margin (capacity over what is in use) that a run must leave: inspect below it");
     f.add("most_slide", &T::most_slide).positive().at_most(1.0).doc(

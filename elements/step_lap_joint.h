@@ -6,8 +6,9 @@
 // step_lap_interface elements that name the joint; without any it holds whatever it takes.
 // An elastic joint (tangential_stiffness, or contact_stiffness of an interface) yields before it slides: a spring in series
 // with the friction (step_lap_elastic.h), whose limit for large stiffness is the joint that sticks exactly, the default.
-// Assumes uniform pressure on each interface that does not change while sliding, no butt contact of
-// sheets of one layer, and motion in the plane of the sheets only. Source: physics.md §4.
+// With edge_stiffness the edges of its sheets bear on each other where a clearance has closed (step_lap_edges.h).
+// Assumes pressure on each interface that does not change while sliding, no friction between edges, and motion in the
+// plane of the sheets only. Source: physics.md §4.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -21,6 +22,8 @@ struct StepLapJoint : Element {
   std::optional<double> tangential_stiffness; ///< N/m, of the whole joint in translation
   std::optional<double> contact_stiffness;    ///< N/m³: of one interface, a square metre of it
   std::optional<double> sheet_thickness, shear_modulus; ///< m, Pa: what a sheet adds to its compliance, t/G
+  std::optional<double> edge_stiffness;       ///< N/m²: line load over depth, of all sheets at a corner
+  std::optional<double> allowed_line_load;    ///< N/m, of all sheets at a corner
   double least_margin = 1.0;     ///< that a run must leave for the joint to be held good
   double most_slide = 0.1;       ///< of a corner, of the width of its overlap: beyond, the joint is rejected
 };
