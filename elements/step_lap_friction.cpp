@@ -1,7 +1,9 @@
 #include "elements/step_lap_friction.h"
 
 #include "elements/patch/admissible_projection.h"
+#include "elements/step_lap_elastic.h"
 #include "mbd/base/diagnostics.h"
+#include "mbd/base/number_text.h"
 #include "mbd/math/portable_math.h"
 
 #include <algorithm>
@@ -31,6 +33,8 @@ constexpr double k_end_time = 1e-11;
 constexpr double k_no_end = 2.0;      // times that |ν|: it has not come to rest after all
 // |ν| over speeds to which rounding leaves it a direction; that time over t at which steps are still far from rounding.
 constexpr double k_rounding = 2.5e-13, k_time_rounding = 2e-12;
+
+constexpr double k_slid_step = 1e-6; // m at a corner 1 m from the centre, of differences of the overlap
 
 // FrictionState::stage, 0 at first: of a slip that starts, and of one that ends.
 constexpr std::uint8_t k_moving_stage = 1, k_ending_stage = 1;
@@ -143,6 +147,7 @@ Pose StepLapFriction::anchor(const double* memory) const {
 }
 
 Pose StepLapFriction::present(const Snapshot& s) const {
+  if (is_elastic()) return slid_pose(s);
   const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick;
   return is_stuck ? anchor(s.memory) : pose_of(s.motion);
 }
@@ -192,14 +197,84 @@ RequiredPressure StepLapFriction::required(const Patch& patch, const Vec3& wrenc
 void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, const double* wrench,
                                   double* watch) const {
   watch[0] = watch[1] = 1.0;
-  if (never_slips()) return;
-  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
+  if (!never_slips()) watch[0] = spare(e, anchor(e.memory), Vec3(wrench[0], wrench[1], wrench[2]));
+}
+
+double StepLapFriction::spare(const Evaluation& e, const Pose& slid, const Vec3& w) const {
+  Fit& f = fit(e.scratch, slid, GripLaw::holding);
   f.prepare();
-  const Vec3 w(wrench[0], wrench[1], wrench[2]);
   const UsageBounds bounds = usage_bounds(f.capacity, w);
-  if (bounds.upper <= k_surely_holds) watch[0] = 1.0 - bounds.upper;
-  else if (bounds.lower >= k_surely_slips) watch[0] = 1.0 - bounds.lower;
-  else watch[0] = 1.0 + k_bound_slack - required(f.tabulated(), w, e.t).u;
+  if (bounds.upper <= k_surely_holds) return 1.0 - bounds.upper;
+  if (bounds.lower >= k_surely_slips) return 1.0 - bounds.lower;
+  return 1.0 + k_bound_slack - required(f.tabulated(), w, e.t).u;
+}
+
+double StepLapFriction::usage_at(const Evaluation& e, const Pose& slid, const Vec3& w) const {
+  return required(fit(e.scratch, slid, GripLaw::holding).patch, w, e.t).u;
+}
+
+// ∂h/∂p along n: a central difference, whose share in the balance is that of the strain at the bound to the overlap's width.
+StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const {
+  Flow flow;
+  const Fit& f = fit(e.scratch, slid, GripLaw::holding);
+  if (f.patch.empty() || !force.allFinite()) return flow;
+  const RequiredPressure need = required(f.patch, force, e.t);
+  const Vec3 n = need.direction, pull = stiffness_ * n;
+  auto& own = static_cast<Scratch&>(*e.scratch[index_]);
+  Fit& moved = own.fits[1]; // free: an elastic joint has one law
+  const double step = k_slid_step * std::min(1.0, gyration_);
+  double change = 0.0;
+  for (const double way : {step, -step}) {
+    build({slid.x + way * n[0], slid.y + way * n[1], slid.theta + way * n[2]}, GripLaw::holding, own.workspace, own.region, moved.patch);
+    change += (moved.patch.empty() ? 0.0 : evaluate_gradient(moved.patch, n).h) / (2.0 * way);
+  }
+  flow.direction = n;
+  flow.resistance = n.dot(pull) + need.u * change;
+  if (!(flow.resistance > 0.0))
+    throw NumericalFailure("step_lap_joint '" + name_ + "', t = " + number_text(e.t) +
+                           " s: loses overlap faster than its stiffness lets go of the load: it snaps through. Give it more "
+                           "tangential stiffness, or leave it rigid");
+  flow.speed = pull.dot(rate) / flow.resistance;
+  flow.rate = flow.speed * n;
+  return flow;
+}
+
+void StepLapFriction::make_elastic(const Mat3& stiffness, int inner, int unit) {
+  stiffness_ = stiffness;
+  inner_ = inner;
+  unit_ = unit;
+}
+
+Mat3 StepLapFriction::spread_stiffness(const Pose& pose, double total) const {
+  OverlapWorkspace workspace;
+  Region region;
+  Patch area({pose.x, pose.y});
+  for (const SheetPair& s : sheets_) {
+    intersect_exactly(s.yoke, s.limb, pose, workspace, region);
+    area.add(region, s.count);
+  }
+  const Vec2 arm = area.centroid() - area.reference();
+  const double polar = area.gyration() * area.gyration() + arm.squaredNorm();
+  Mat3 k;
+  k << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x(), -arm.y(), arm.x(), polar;
+  return total * k;
+}
+
+Vec3 StepLapFriction::wrench(const Snapshot& s) const {
+  if (!is_elastic()) return Vec3::Map(s.friction_force + row_);
+  if (phase(s) == FrictionPhase::apart) return Vec3::Zero();
+  const Pose now = pose_of(s.motion), slid = slid_pose(s);
+  return -(stiffness_ * Vec3(now.x - slid.x, now.y - slid.y, now.theta - slid.theta));
+}
+
+FrictionPhase StepLapFriction::phase(const Snapshot& s) const {
+  return is_elastic() ? phase_of_elastic(s.evaluation->mode[unit_]) : s.evaluation->friction[index_].phase;
+}
+
+Pose StepLapFriction::slid_pose(const Snapshot& s) const {
+  if (!is_elastic()) return pose_of(s.motion);
+  const double* p = s.evaluation->inner + inner_;
+  return {p[0], p[1], p[2]};
 }
 
 double StepLapFriction::support(const Evaluation& e, const FrictionState&, const double* rate) const {
@@ -220,8 +295,7 @@ double StepLapFriction::gauge(const Evaluation& e, const FrictionState&, const d
 
 const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   auto& own = static_cast<Scratch&>(*s.evaluation->scratch[index_]);
-  const double* force = s.friction_force + row_;
-  const Vec3 w(force[0], force[1], force[2]);
+  const Vec3 w = wrench(s);
   const Pose pose = present(s);
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y &&
                        own.asked_at.theta == pose.theta;
@@ -238,8 +312,7 @@ ValueBounds StepLapFriction::usage_between(const Snapshot& s) const {
   Fit& f = fit(s.evaluation->scratch, present(s), GripLaw::holding);
   f.prepare();
   if (!f.has_capacity) return {0.0, std::numeric_limits<double>::infinity()}; // no area left
-  const double* force = s.friction_force + row_;
-  const UsageBounds bounds = usage_bounds(f.capacity, Vec3(force[0], force[1], force[2]));
+  const UsageBounds bounds = usage_bounds(f.capacity, wrench(s));
   return {bounds.lower, bounds.upper};
 }
 
@@ -400,29 +473,36 @@ bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state
 // --- coming apart -------------------------------------------------------------------------------------------
 
 double StepLapFriction::watch_place(const Evaluation& e, const FrictionState& state) const {
-  if (state.phase != FrictionPhase::slip) return 1.0;
-  const Pose pose = pose_of(e.motion);
+  return state.phase == FrictionPhase::slip ? parting(e, pose_of(e.motion), state.foot) : 1.0;
+}
+
+double StepLapFriction::parting(const Evaluation& e, const Pose& pose, std::uint32_t parted) const {
   OverlapWorkspace& workspace = static_cast<Scratch&>(*e.scratch[index_]).workspace;
   double watch = 1.0, deepest = -1.0;
   for (std::size_t i = 0; i < sheets_.size(); ++i) {
     const double depth = penetration(sheets_[i].yoke, sheets_[i].limb, pose, workspace);
-    if (i < k_tracked) watch = std::min(watch, is_apart(state, i) ? -depth : depth);
+    if (i < k_tracked) watch = std::min(watch, (parted >> i & 1u) != 0 ? -depth : depth);
     deepest = std::max(deepest, depth);
   }
   return sheets_.size() > k_tracked ? std::min(watch, deepest) : watch;
 }
 
 void StepLapFriction::change_place(const Evaluation& e, FrictionState& state) const {
-  const Pose pose = pose_of(e.motion);
-  OverlapWorkspace workspace;
   bool is_any_left = false;
-  state.foot = 0;
+  state.foot = parted_at(pose_of(e.motion), is_any_left);
+  if (!is_any_left) state.phase = FrictionPhase::apart;
+}
+
+std::uint32_t StepLapFriction::parted_at(const Pose& pose, bool& is_any_left) const {
+  OverlapWorkspace workspace;
+  std::uint32_t parted = 0;
+  is_any_left = false;
   for (std::size_t i = 0; i < sheets_.size(); ++i) {
     const bool overlaps = penetration(sheets_[i].yoke, sheets_[i].limb, pose, workspace) > 0.0;
-    if (!overlaps && i < k_tracked) state.foot |= 1u << i;
+    if (!overlaps && i < k_tracked) parted |= 1u << i;
     is_any_left = is_any_left || overlaps;
   }
-  if (!is_any_left) state.phase = FrictionPhase::apart;
+  return parted;
 }
 
 } // namespace steplap

@@ -21,6 +21,13 @@
 // had, ν·n < 0, n being the direction as last looked at. An event is also where ν leaves the cone of 60°
 // about n: n is taken anew and the slip goes on. All of this is derived in docs/limit_surface.md, section 7; methods
 // learn how fine velocities have to be known from slip_scale() and decay_rate().
+//
+// An *elastic* joint (make_elastic) neither sticks nor slides by these laws: it is a spring, W = −K (s − p), s the
+// relative pose and p the pose as far as the sheets have slid, an inner state. p moves only while u(W) = 1, along the
+// normal n of the limit surface and as fast as keeps W on it (associated flow, rate-independent):
+//   ṗ = γ n,  γ (n·K n + u ∂h/∂p·n) = n·K ṡ,  h = h(n; p),
+// the overlap being the one at p: what the sheets are sheared by is no slip. It *yields* (slips) while γ ≥ 0, holds while
+// u ≤ 1. The force is that of step_lap_elastic.h. Derived in docs/theory.md, "Elastic step-lap joints".
 #pragma once
 
 #include "elements/patch/required_pressure.h"
@@ -44,6 +51,12 @@ public:
   /// To be called when the rows are complete: scales of lengths and accelerations at this pose.
   void set_scales(const Pose& reference, const BodyData& limb, const BodyData& active_part);
 
+  /// K about the limb's centre of gravity in the active part's axes; `inner`: first of three inner states, p; `unit`: of
+  /// the force element that gives its wrench.
+  void make_elastic(const Mat3& stiffness, int inner, int unit);
+  /// Of springs spread evenly over all interfaces at a pose (each as often as it is counted), `total` N/m in translation.
+  [[nodiscard]] Mat3 spread_stiffness(const Pose& pose, double total) const;
+
   // --- what the joint is like now -------------------------------------------------------------------
   [[nodiscard]] bool has_sheets() const { return !sheets_.empty(); }
   /// One pair for each interface, in the order of the model.
@@ -58,16 +71,42 @@ public:
   /// Throws NumericalFailure, naming the joint, where an iteration has ended too far from its solution.
   [[nodiscard]] RequiredPressure required(const Patch& patch, const Vec3& wrench, double t) const;
   [[nodiscard]] double area(const Snapshot& s) const;
+  [[nodiscard]] const OverlapReference& overlaps() const { return overlaps_; }
   [[nodiscard]] const OverlapLoss& loss(const Snapshot& s) const;
+  /// On the limb about its centre of gravity, active part's axes.
+  [[nodiscard]] Vec3 wrench(const Snapshot& s) const;
+  /// By how much it has slid: the pose, of an elastic joint without what it is strained by.
+  [[nodiscard]] Pose slid_pose(const Snapshot& s) const;
+  [[nodiscard]] FrictionPhase phase(const Snapshot& s) const;
+
+  // --- of an elastic joint ------------------------------------------------------------------------------
+  /// How it yields: the rate ṗ, and γ, the speed of slip at the joint's centre. `force`: K (s − p).
+  struct Flow {
+    Vec3 rate = Vec3::Zero();
+    double speed = 0.0;
+    Vec3 direction = Vec3::Zero(); ///< n
+    double resistance = 1.0;       ///< n·K n + u ∂h/∂p·n
+  };
+  [[nodiscard]] Flow flow(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const;
+  /// 1 − u or, far from the bound, less that is certain.
+  [[nodiscard]] double spare(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;
+  [[nodiscard]] double usage_at(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;
+  /// Watch value of the interfaces that are parted (bits) or not.
+  [[nodiscard]] double parting(const Evaluation& e, const Pose& pose, std::uint32_t parted) const;
+  /// Those that are, as bits; `is_any_left`: do sheets overlap anywhere?
+  [[nodiscard]] std::uint32_t parted_at(const Pose& pose, bool& is_any_left) const;
+  [[nodiscard]] const Mat3& stiffness() const { return stiffness_; }
+  [[nodiscard]] double gyration() const { return gyration_; }
 
   // --- FrictionElement --------------------------------------------------------------------------------
   [[nodiscard]] int dimension() const override { return 3; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return hold; }
-  [[nodiscard]] bool is_rigid() const override { return true; }
+  [[nodiscard]] bool is_rigid() const override { return !is_elastic(); }
+  [[nodiscard]] bool is_elastic() const override { return inner_ >= 0; }
   [[nodiscard]] bool never_slips() const override { return is_monitor_ || sheets_.empty(); }
   void mark_bodies(std::vector<char>&) const override {}
   [[nodiscard]] std::unique_ptr<FrictionScratch> make_scratch() const override;
-  [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
+  [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return !is_elastic(); }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
                    double* wrench) const override;
   [[nodiscard]] double support(const Evaluation& e, const FrictionState& state, const double* rate) const override;
@@ -108,11 +147,8 @@ private:
   [[nodiscard]] double onset_speed() const;
   [[nodiscard]] Vec3 law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const;
   [[nodiscard]] double end_speed(const Evaluation& e) const;
-  [[nodiscard]] bool is_apart(const FrictionState& state, std::size_t i) const {
-    return i < k_tracked && (state.foot >> i & 1u) != 0;
-  }
 
-  static constexpr std::size_t k_tracked = 32; ///< interfaces whose parting is an event of its own
+  static constexpr std::size_t k_tracked = 30; ///< interfaces whose parting is an event of its own
 
   std::shared_ptr<const Fit> reference_; ///< in the reference pose, where most joints stay: made once
   std::string name_;
@@ -126,6 +162,8 @@ private:
   double grip_acceleration_ = 1.0; ///< about the largest that it can give, m/s²
   double limb_mobility_[2] = {0.0, 0.0}; ///< 1/mass, 1/inertia
   double part_mobility_[2] = {0.0, 0.0};
+  int inner_ = -1, unit_ = -1;     ///< of an elastic joint
+  Mat3 stiffness_ = Mat3::Zero();
 };
 
 } // namespace steplap

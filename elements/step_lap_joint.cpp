@@ -1,10 +1,13 @@
 #include "elements/step_lap_joint.h"
 
+#include "elements/step_lap_edges.h"
+#include "elements/step_lap_elastic.h"
 #include "elements/step_lap_friction.h"
 #include "elements/step_lap_interface.h"
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 namespace steplap {
 
@@ -13,15 +16,18 @@ namespace {
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 void add_wrench_channels(SystemBuilder& builder, const StepLapFriction& friction) {
-  const int row = builder.next_friction_row(), b = friction.hold[0].b;
-  builder.add_channel("fx", "N", "force on the limb, ground axes", [row, b](const Snapshot& s) {
-    return s.motion[b].c * s.friction_force[row] - s.motion[b].s * s.friction_force[row + 1];
+  const auto* self = &friction;
+  const int b = friction.hold[0].b;
+  builder.add_channel("fx", "N", "force on the limb, ground axes", [self, b](const Snapshot& s) {
+    const Vec3 w = self->wrench(s);
+    return s.motion[b].c * w[0] - s.motion[b].s * w[1];
   });
-  builder.add_channel("fy", "N", "force on the limb, ground axes", [row, b](const Snapshot& s) {
-    return s.motion[b].s * s.friction_force[row] + s.motion[b].c * s.friction_force[row + 1];
+  builder.add_channel("fy", "N", "force on the limb, ground axes", [self, b](const Snapshot& s) {
+    const Vec3 w = self->wrench(s);
+    return s.motion[b].s * w[0] + s.motion[b].c * w[1];
   });
   builder.add_channel("m", "N m", "couple on the limb about its centre of gravity",
-                      [row](const Snapshot& s) { return s.friction_force[row + 2]; });
+                      [self](const Snapshot& s) { return self->wrench(s)[2]; });
 }
 
 void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction, double pressure) {
@@ -70,21 +76,31 @@ void add_loss_channels(SystemBuilder& builder, const StepLapFriction& friction, 
                         [self](const Snapshot& s) { return self->loss(s).clearance_left; });
 }
 
+double coordinate(const Pose& pose, int r) { return r == 0 ? pose.x : r == 1 ? pose.y : pose.theta; }
+
 void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction) {
-  const int f = builder.next_friction();
+  const auto* self = &friction;
   const RowSpec* hold = friction.hold;
+  const bool is_elastic = friction.is_elastic();
   static constexpr const char* names[] = {"dx", "dy", "theta_acc"};
   for (int r = 0; r < 3; ++r) {
     const double start = evaluate_row<false>(hold[r], &builder.reference(0)).value;
     const double sign = r < 2 ? 1.0 : -1.0; // θ_acc is the active part's angle against the limb's (23)
     builder.add_channel(names[r], r < 2 ? "m" : "rad", "slid since the reference pose",
-                        [hold, r, start, sign](const Snapshot& s) {
+                        [self, hold, r, start, sign, is_elastic](const Snapshot& s) {
+                          if (is_elastic) return sign * (coordinate(self->slid_pose(s), r) - start);
                           return sign * (evaluate_row<false>(hold[r], s.motion).value - start);
                         });
   }
-  builder.add_channel("mode", "", "1 sticks, 2 slips, 3 has come apart", [f](const Snapshot& s) {
-    return static_cast<double>(s.evaluation->friction[f].phase);
-  });
+  builder.add_channel("mode", "", "1 sticks, 2 slips, 3 has come apart",
+                      [self](const Snapshot& s) { return static_cast<double>(self->phase(s)); });
+  if (!is_elastic) return;
+  static constexpr const char* strains[] = {"strain_x", "strain_y", "strain_angle"};
+  for (int r = 0; r < 3; ++r)
+    builder.add_channel(strains[r], r < 2 ? "m" : "rad", "of the joint's spring: of the limb's centre of gravity, active part's axes",
+                        [self, r](const Snapshot& s) {
+                          return coordinate(self->pose_of(s.motion), r) - coordinate(self->slid_pose(s), r);
+                        });
 }
 
 // The interfaces that name this joint. What is wrong with an outline is reported at the interface.
@@ -120,6 +136,140 @@ BodyData mass_of(const std::string& name, const SystemBuilder& builder) {
   return data;
 }
 
+// Of sheets in shear and contact, in series: 1/(1/k + t/G) for a square metre of one interface.
+double stiffness_of(const StepLapJoint& e, const StepLapFriction& friction, const Pose& reference) {
+  if (e.tangential_stiffness) return *e.tangential_stiffness;
+  double compliance = 1.0 / *e.contact_stiffness;
+  if (e.sheet_thickness) compliance += *e.sheet_thickness / *e.shear_modulus;
+  OverlapWorkspace workspace;
+  Region region;
+  double area_of_all = 0.0;
+  for (const SheetPair& s : friction.sheets()) {
+    intersect_exactly(s.yoke, s.limb, reference, workspace, region);
+    area_of_all += s.count * area(region);
+  }
+  return area_of_all / compliance;
+}
+
+bool check_elastic(const StepLapJoint& e, SystemBuilder& builder, const StepLapFriction& friction) {
+  const auto fails = [&builder](bool is_wrong, const char* message) {
+    if (is_wrong) builder.error(message);
+    return is_wrong;
+  };
+  bool is_bad = fails(e.tangential_stiffness && e.contact_stiffness, "give either 'tangential_stiffness' or 'contact_stiffness', not both");
+  is_bad |= fails(e.sheet_thickness.has_value() != e.shear_modulus.has_value(), "give both 'sheet_thickness' and 'shear_modulus', or neither");
+  is_bad |= fails(e.mode == "monitor", "an elastic joint cannot be a monitor: a monitored one is rigid");
+  is_bad |= fails(!friction.has_sheets(), "an elastic joint needs step_lap_interface elements, over which its stiffness is spread");
+  for (const SheetPair& s : friction.sheets())
+    is_bad |= fails(s.kinetic_traction != s.static_traction,
+                    "an elastic joint has one friction coefficient: leave out 'kinetic_friction' of its interfaces (the kinetic "
+                    "one as 'static_friction' is on the safe side)");
+  return !is_bad;
+}
+
+bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& builder, StepLapFriction& friction) {
+  if (!check_elastic(e, builder, friction)) return false;
+  auto& group = builder.group<ElasticGripGroup>();
+  ElasticGripGroup::Entry entry;
+  entry.a = friction.hold[0].a;
+  entry.b = friction.hold[0].b;
+  entry.friction = &friction;
+  entry.inner = builder.add_inner(group, reference.x);
+  builder.add_inner(group, reference.y);
+  builder.add_inner(group, reference.theta);
+  group.entries.push_back(entry);
+  builder.add_unit(group, ElasticGripGroup::k_watches);
+  friction.make_elastic(friction.spread_stiffness(reference, stiffness_of(e, friction, reference)), entry.inner, group.entries.back().unit);
+  return true;
+}
+
+// The edge lines of one corner, as indices of EdgeGroup.
+struct EdgeCorner {
+  std::vector<int> lines;
+  double count = 0.0;
+  Vec2 middle = Vec2::Zero(); ///< of its first line, active part's axes
+};
+
+// Along bands of a corner that lie side by side the loads are taken to act on one line.
+EdgeGroup::Bearing bearing_of(const EdgeGroup& group, const EdgeCorner& corner, const Motion<double>* motion) {
+  EdgeGroup::Bearing sum;
+  for (const int line : corner.lines) {
+    const auto b = group.bearing(line, motion);
+    sum.force += b.force;
+    for (int end = 0; end < 2; ++end) sum.load[end] += b.load[end];
+  }
+  return sum;
+}
+
+double largest_load(const EdgeGroup& group, const std::vector<EdgeCorner>& corners, const Motion<double>* motion) {
+  double largest = 0.0;
+  for (const EdgeCorner& corner : corners) {
+    const auto b = bearing_of(group, corner, motion);
+    largest = std::max({largest, b.load[0], b.load[1]});
+  }
+  return largest;
+}
+
+void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const EdgeGroup& group, const std::vector<EdgeCorner>& corners) {
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const EdgeCorner corner = corners[c];
+    const std::string number = "_" + std::to_string(c + 1);
+    std::ostringstream at;
+    at.precision(4);
+    at << "corner about (" << corner.middle.x() << ", " << corner.middle.y() << ") m from the active part's centre of gravity";
+    builder.add_channel("edge_force" + number, "N", "with which sheet edges press the limb off the yoke, " + at.str(),
+                        [&group, corner](const Snapshot& s) { return bearing_of(group, corner, s.motion).force; });
+    for (const int end : {0, 1})
+      builder.add_channel("edge_load" + number + (end == 0 ? "_start" : "_end"), "N/m",
+                          "line load of sheet edges at one end of the mitre, " + at.str() + "; straight in between",
+                          [&group, corner, end](const Snapshot& s) { return bearing_of(group, corner, s.motion).load[end]; });
+  }
+  builder.add_channel("edge_load", "N/m", "largest line load of sheet edges at any corner",
+                      [&group, corners](const Snapshot& s) { return largest_load(group, corners, s.motion); });
+  if (e.allowed_line_load)
+    builder.add_channel("edge_share", "", "largest line load of sheet edges, of the allowed one",
+                        [&group, corners, allowed = *e.allowed_line_load](const Snapshot& s) {
+                          return largest_load(group, corners, s.motion) / allowed;
+                        });
+}
+
+bool add_edges(const StepLapJoint& e, const Pose& reference, SystemBuilder& builder, const StepLapFriction& friction) {
+  const auto fails = [&builder](const char* message) {
+    builder.error(message);
+    return false;
+  };
+  if (!e.edge_stiffness) return !e.allowed_line_load || fails("'allowed_line_load' needs 'edge_stiffness'");
+  const std::vector<SheetPair>& sheets = friction.sheets();
+  const OverlapReference& overlaps = friction.overlaps();
+  std::vector<EdgeCorner> corners(overlaps.corner_count());
+  for (std::size_t i = 0; i < sheets.size(); ++i)
+    if (sheets[i].clearance) corners[overlaps.corner_of(i)].count += sheets[i].count;
+  auto& group = builder.group<EdgeGroup>();
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    if (!sheets[i].clearance) continue;
+    const EdgeLine line = find_edge_line(sheets[i], reference);
+    if (!line.is_known()) continue; // no overlap
+    EdgeCorner& corner = corners[overlaps.corner_of(i)];
+    EdgeGroup::Entry entry;
+    entry.a = friction.hold[0].a;
+    entry.b = friction.hold[0].b;
+    entry.stiffness = *e.edge_stiffness * sheets[i].count / corner.count;
+    entry.length = (line.ends[1] - line.ends[0]).norm();
+    for (int end = 0; end < 2; ++end) {
+      const Vec2 in_limb = rotated(line.ends[end] - Vec2(reference.x, reference.y), -reference.theta);
+      entry.gap[end] = {in_limb, line.ends[end] - *sheets[i].clearance * line.off, line.off};
+    }
+    if (corner.lines.empty()) corner.middle = 0.5 * (line.ends[0] + line.ends[1]);
+    corner.lines.push_back(static_cast<int>(group.entries.size()));
+    group.entries.push_back(entry);
+    builder.add_unit(group, EdgeGroup::k_watches);
+  }
+  corners.erase(std::remove_if(corners.begin(), corners.end(), [](const EdgeCorner& c) { return c.lines.empty(); }), corners.end());
+  if (corners.empty()) return fails("'edge_stiffness' needs the 'clearance' of its step_lap_interface elements");
+  add_edge_channels(e, builder, group, corners);
+  return true;
+}
+
 void compile_joint(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const StepLapJoint&>(element);
   if (builder.body(e.limb) == builder.body(e.active_part))
@@ -141,6 +291,7 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
     return builder.error("its sheets do not overlap in the reference pose: check the polygons and the "
                          "'frame' of its step_lap_interface elements");
   friction->set_scales(reference, mass_of(e.limb, builder), mass_of(e.active_part, builder));
+  if (is_elastic(e) && !make_elastic(e, reference, builder, *friction)) return;
   add_wrench_channels(builder, *friction);
   if (friction->has_sheets()) {
     add_usage_channels(builder, *friction, interfaces.front()->pressure);
@@ -149,6 +300,7 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
                       }));
   }
   add_slide_channels(builder, *friction);
+  if (!add_edges(e, reference, builder, *friction)) return;
   builder.add_friction(std::move(friction));
 }
 
@@ -171,6 +323,18 @@ const ElementKind& step_lap_joint_kind() {
     f.add("on_apart", &T::on_apart)
         .one_of({"stop", "continue"})
         .doc("what happens when no overlap is left: the run ends, or goes on without friction");
+    f.add("tangential_stiffness", &T::tangential_stiffness).in("N/m").positive().doc(
+        "of the whole joint in translation, spread evenly over its overlaps: a spring in series with the friction. Without it "
+        "(and contact_stiffness) the joint sticks exactly");
+    f.add("contact_stiffness", &T::contact_stiffness).in("N/m^3").positive().doc(
+        "the same, of a square metre of one interface: tangential stiffness of two sheets pressed on each other");
+    f.add("sheet_thickness", &T::sheet_thickness).in("m").positive().doc("in series with contact_stiffness: sheets in shear");
+    f.add("shear_modulus", &T::shear_modulus).in("Pa").positive().doc("of the sheets, with sheet_thickness");
+    f.add("edge_stiffness", &T::edge_stiffness).in("N/m^2").positive().doc(
+        "of sheet edges that bear on each other once a clearance has closed: line load over depth, of all sheets at a corner. "
+        "Without it sheets pass each other freely, and a closed clearance is only reported");
+    f.add("allowed_line_load", &T::allowed_line_load).in("N/m").positive().doc(
+        "of all sheets at a corner, along the mitre: beyond it their edges are crushed and the joint is rejected");
     f.add("least_margin", &T::least_margin).at_least(1.0).doc(
         "smallest margin (capacity over what is in use) that a run must leave: inspect below it");
     f.add("most_slide", &T::most_slide).positive().at_most(1.0).doc(

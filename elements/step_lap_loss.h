@@ -29,6 +29,7 @@ public:
   [[nodiscard]] OverlapLoss loss_at(const std::vector<SheetPair>& sheets, const Pose& pose,
                                     OverlapWorkspace& workspace, Region& region) const;
   [[nodiscard]] std::size_t corner_count() const { return corner_area_.size(); }
+  [[nodiscard]] std::size_t corner_of(std::size_t sheets) const { return overlaps_[sheets].corner; }
 
 private:
   struct Overlap {

@@ -36,6 +36,7 @@ void read_extremes(const RunResult& result, JointAssessment& a) {
   a.time_of_smallest = margin.t;
   a.slid_share = extreme(".slid_share", &ChannelRange::high);
   a.overlap_left = extreme(".overlap_left", &ChannelRange::low);
+  a.edge_share = extreme(".edge_share", &ChannelRange::high);
   a.clearance_left = extreme(".clearance_left", &ChannelRange::low);
   a.slid_x = final_of(result, a.joint + ".dx");
   a.slid_y = final_of(result, a.joint + ".dy");
@@ -71,6 +72,7 @@ JointVerdict verdict_of(const JointAssessment& a, bool has_interfaces) {
   if (a.has_come_apart) return JointVerdict::came_apart;
   if (a.has_parted()) return JointVerdict::corner_parted;
   if (a.has_slid_too_far()) return JointVerdict::slid_too_far;
+  if (a.has_crushed_edges()) return JointVerdict::crushed_edges;
   if (a.has_left_range()) return JointVerdict::closed_clearance;
   if (a.has_slipped) return JointVerdict::slipped;
   if (!a.is_known()) return JointVerdict::not_known;
@@ -86,6 +88,7 @@ const char* words_of(JointVerdict verdict) {
   case JointVerdict::came_apart: return "came apart";
   case JointVerdict::corner_parted: return "a corner parted";
   case JointVerdict::slid_too_far: return "slid too far";
+  case JointVerdict::crushed_edges: return "crushed its edges";
   case JointVerdict::closed_clearance: return "closed its clearance";
   case JointVerdict::slipped: return "slipped";
   case JointVerdict::not_known: return "not known";
@@ -96,7 +99,7 @@ const char* words_of(JointVerdict verdict) {
   return "holds";
 }
 
-bool JointAssessment::has_left_range() const { return clearance_left.value < -k_touching; }
+bool JointAssessment::has_left_range() const { return !has_edges && clearance_left.value < -k_touching; }
 
 std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& result) {
   std::vector<JointAssessment> assessments;
@@ -107,6 +110,7 @@ std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& 
     a.joint = joint->name;
     a.is_monitored = joint->mode == "monitor";
     a.least_margin = joint->least_margin;
+    a.has_edges = joint->edge_stiffness.has_value();
     a.most_slide = joint->most_slide;
     read_extremes(result, a);
     read_events(result.events, a);

@@ -18,6 +18,7 @@ enum class JointVerdict : std::uint8_t {
   came_apart,
   corner_parted,
   slid_too_far,
+  crushed_edges,
   closed_clearance,
   slipped,
   not_known,          ///< no figures
@@ -47,12 +48,15 @@ struct JointAssessment {
   double most_slide = 0.0;                 ///< that the model bears
   Extreme overlap_left;                    ///< least share of its overlap that a corner had left
   Extreme clearance_left;                  ///< m, the least; not-a-number if the model states no clearance
+  Extreme edge_share;                      ///< largest line load of sheet edges, of the allowed one; not-a-number without
+  bool has_edges = false;                  ///< edges that bear are part of the model
   bool has_come_apart = false;
   bool is_monitored = false;
 
   [[nodiscard]] bool has_parted() const { return overlap_left.value <= 0.0; } ///< a whole corner
   [[nodiscard]] bool has_slid_too_far() const { return slid_share.value > most_slide; }
-  /// It has closed its clearance: sheets butt, of which the model knows nothing.
+  [[nodiscard]] bool has_crushed_edges() const { return edge_share.value > 1.0; }
+  /// It has closed its clearance: sheets butt, of which the model knows nothing (unless it has edges).
   [[nodiscard]] bool has_left_range() const;
   /// It is part of the motion, never slipped, and yet had less than it needed to hold.
   [[nodiscard]] bool contradicts_itself() const {

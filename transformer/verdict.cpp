@@ -155,7 +155,18 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
     parted.reserve = joint.overlap_left.value;
     criteria.push_back(parted);
   }
-  if (std::isnan(joint.clearance_left.value)) return;
+  if (!std::isnan(joint.edge_share.value)) {
+    CriterionResult crushed = joint_result(joint, "line load of its sheet edges, of the allowed one <= 1");
+    crushed.consequence = Verdict::reject;
+    crushed.outcome = joint.has_crushed_edges() ? Verdict::reject : Verdict::hold;
+    crushed.value = joint.edge_share.value;
+    crushed.limit = 1.0;
+    crushed.t = joint.edge_share.t;
+    crushed.channel = joint.joint + ".edge_share";
+    crushed.reserve = 1.0 - joint.edge_share.value;
+    criteria.push_back(crushed);
+  }
+  if (joint.has_edges || std::isnan(joint.clearance_left.value)) return;
   CriterionResult closed = joint_result(joint, "the limb closes no clearance: left >= 0 m");
   closed.reason = "beyond it the sheets of a layer butt, of which the model knows nothing: the run is outside its range from then on";
   closed.outcome = joint.has_left_range() ? Verdict::inspect : Verdict::hold;

@@ -156,6 +156,9 @@ State assembled_start(const System& system, const State& assembled) {
   State state = system.initial_state();
   state.q = assembled.q;
   state.v = assembled.v;
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  for (const ForceGroup* group : system.inner_groups) group->start_inner(motion.data(), state.inner.data());
   return state;
 }
 

@@ -27,7 +27,7 @@ class RestProblem {
 public:
   RestProblem(const System& system, State state)
       : system_(system), state_(std::move(state)), dynamics_(system), modes_(system, dynamics_),
-        is_anchored_(system.frictions.size(), 0), y_(6 * system.bodies.size() + 2), dy_(y_.size()) {
+        is_anchored_(system.frictions.size(), 0), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
   }
 

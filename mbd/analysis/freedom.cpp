@@ -134,11 +134,13 @@ Freedom count_freedom(const System& system) {
     freedom.shared_sticking = freedom.shared;
     return freedom;
   }
-  for (const FrictionUnit& unit : system.frictions)
+  for (const FrictionUnit& unit : system.frictions) {
+    if (unit.friction->is_elastic()) continue;
     for (int r = 0; r < unit.friction->dimension(); ++r) {
       rows.add(unit.friction->rows(FrictionState{})[r]);
       elements.push_back(unit.element);
     }
+  }
   rows.factor();
   const std::vector<int> dependent = rows.dependent();
   freedom.rank_sticking = rows.size() - static_cast<int>(dependent.size());

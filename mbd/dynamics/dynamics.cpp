@@ -29,6 +29,7 @@ Dynamics::Dynamics(const System& system) : system_(system) {
   contact_force_.assign(system.contact_count, 0.0);
   watch_.assign(system.watch_count, 1.0);
   watch_rate_.assign(system.watch_count, std::numeric_limits<double>::quiet_NaN());
+  inner_ = system.initial_inner;
   acceleration_.assign(3 * n, 0.0);
   wrench_.resize(n);
   row_force_.assign(system.rows.size(), 0.0);
@@ -39,6 +40,7 @@ Dynamics::Dynamics(const System& system) : system_(system) {
   evaluation_.link_force = force_.data();
   evaluation_.contact_force = contact_force_.data();
   evaluation_.watch = watch_.data();
+  evaluation_.inner = inner_.data();
   evaluation_.watch_rate = watch_rate_.data();
   for (const FrictionUnit& unit : system.frictions) {
     scratch_.push_back(unit.friction->make_scratch());
@@ -134,6 +136,8 @@ void Dynamics::place(double t, const double* q, const double* v) {
   for (const int i : layout.riding) place_member(i);
   for (const ActiveLink& link : layout.links) motion[link.slot] = seen_from(motion[link.a], motion[link.b]);
 }
+
+void Dynamics::take_inner(const double* inner) { std::copy_n(inner, inner_count(), inner_.begin()); }
 
 bool Dynamics::is_placed(double t, const double* y) const {
   if (t != placed_time_) return false;
@@ -430,6 +434,11 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   evaluation_.dissipation = 0.0;
   evaluation_.work = 0.0;
   place(t, y, y + n);
+  if (inner_count() > 0) {
+    take_inner(y + 2 * n);
+    evaluation_.inner_rate = dy + 2 * n;
+    std::fill_n(evaluation_.inner_rate, inner_count(), 0.0);
+  }
   apply_forces();
 
   double* const a = dy + n;
@@ -454,8 +463,9 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   solve_constraints(a);
   finish_power(a);
   finish_watches();
-  dy[2 * n] = evaluation_.dissipation;
-  dy[2 * n + 1] = evaluation_.work;
+  double* const power = dy + 2 * n + inner_count();
+  power[0] = evaluation_.dissipation;
+  power[1] = evaluation_.work;
 }
 
 double Dynamics::mechanical_energy(double t, const double* y) {
@@ -468,6 +478,8 @@ double Dynamics::mechanical_energy(double t, const double* y) {
     potential -= c.mass * (system_.gravity.x() * m.x + system_.gravity.y() * m.y);
   }
   for (const auto& group : system_.groups) potential += group->potential(motion_.data());
+  for (const ForceGroup* group : system_.inner_groups)
+    potential += group->inner_energy(motion_.data(), y + 2 * coordinate_count());
   return kinetic + potential;
 }
 

@@ -2,8 +2,8 @@
 //
 //   M a = Q(q, v, t) + Jᵀλ,  J a = γ            (27), (29)–(31) with the corrections of physics.md §1
 // in the coordinates of a layout: x, y and θ of clusters, or joint coordinates of small islands (mechanism.h). The
-// packed vector y holds the coordinates, their rates, and two integrals of power: energy dissipated and work done by
-// loads and drives.
+// packed vector y holds the coordinates, their rates, the inner states of force elements, and two integrals of power: energy
+// dissipated and work done by loads and drives.
 //
 // One object per thread: it owns all scratch memory; rates() and project() allocate nothing.
 #pragma once
@@ -55,7 +55,8 @@ public:
   /// As last set.
   [[nodiscard]] const State& state() const { return *state_; }
   [[nodiscard]] const Layout& layout() const { return *layout_; }
-  [[nodiscard]] int dimension() const { return 2 * layout_->coordinate_count + 2; }
+  [[nodiscard]] int dimension() const { return 2 * layout_->coordinate_count + inner_count() + 2; }
+  [[nodiscard]] int inner_count() const { return system_.inner_count(); }
   [[nodiscard]] int coordinate_count() const { return layout_->coordinate_count; }
   void pack(const State& state, double* y) const;
   void unpack(double t, const double* y, State& state) const;
@@ -69,6 +70,7 @@ public:
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
   /// residuals found before. Stops at `tolerance`, 0: where rounding sets an end to it; throws ConstraintFailure
   /// if that cannot be reached.
+  /// Inner states are settled with it, and what that dissipates is booked.
   Residual project(double t, double* y, double tolerance);
   /// Velocities onto the constraints as closely as rounding allows: what has come to rest does not creep.
   void close_velocities(double t, double* y);
@@ -128,6 +130,9 @@ public:
 
 private:
   void place(double t, const double* q, const double* v);
+  void take_inner(const double* inner);
+  Residual project_rows(double t, double* y, double tolerance);
+  void settle_inner(double t, double* y);
   [[nodiscard]] bool is_placed(double t, const double* y) const;
   void aim_locks(double t);
   void place_member(int body);
@@ -196,7 +201,7 @@ private:
   std::vector<FrictionScratch*> scratch_pointers_;
   std::vector<Motion<double>> motion_;  ///< bodies, links, clusters of several bodies
   std::vector<BodyForce> force_;        ///< the same; of a body that is its cluster's only one, the cluster's
-  std::vector<double> contact_force_, watch_, watch_rate_;
+  std::vector<double> contact_force_, watch_, watch_rate_, inner_;
   std::vector<SignalJet> lock_target_;  ///< per lock, at lock_time_
   double lock_time_ = std::numeric_limits<double>::quiet_NaN();
   double placed_time_ = std::numeric_limits<double>::quiet_NaN(); ///< of motion_

@@ -109,6 +109,10 @@ void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
   parts_.clear();
   for (const auto& group : dynamics.system().groups) group->add_jacobian(dynamics.evaluation(), parts_);
   for (const PairJacobian& part : parts_) add_forces(part);
+  inner_parts_.clear();
+  inner_.clear();
+  for (const ForceGroup* group : dynamics.system().inner_groups) group->add_inner_jacobian(dynamics.evaluation(), inner_parts_);
+  for (const InnerJacobian& part : inner_parts_) add_inner(part);
   for (std::size_t r = 0; r < layout_->active.size(); ++r) add_row(r);
   for (const int f : layout_->sliding) add_sliding(f);
   add_transport();
@@ -149,6 +153,36 @@ void Linearization::add_forces(const PairJacobian& part) {
     for (int j = 0; j < 2; ++j)
       add_body_block(body[i], body[j], part.stiffness.block<3, 3>(3 * i, 3 * j),
                      part.damping.block<3, 3>(3 * i, 3 * j));
+}
+
+void Linearization::add_inner(const InnerJacobian& part) {
+  InnerBlock& block = inner_.emplace_back();
+  block.first = part.first;
+  block.count = part.count;
+  block.by_inner = part.by_inner;
+  block.force.setZero();
+  block.by_pose.setZero();
+  block.by_velocity.setZero();
+  const int body[2] = {part.a, part.b};
+  for (int side = 0; side < 2; ++side) {
+    const Placement& place = layout_->placements[body[side]];
+    if (place.cluster < 0) continue;
+    block.cluster[side] = place.cluster;
+    Mat3 f = part.force.middleRows<3>(3 * side), p = part.by_pose.middleCols<3>(3 * side),
+         v = part.by_velocity.middleCols<3>(3 * side);
+    if (!place.is_trivial) { // as in add_body_block
+      const Motion<double>&m = dynamics_->motion()[body[side]], &centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
+      const double x = m.x - centre.x, y = m.y - centre.y;
+      f.row(2) += x * f.row(1) - y * f.row(0);
+      p.col(2) += -y * p.col(0) + x * p.col(1) - centre.omega * (x * v.col(0) + y * v.col(1));
+      v.col(2) += -y * v.col(0) + x * v.col(1);
+    }
+    for (int c = 0; c < 3; ++c)
+      if (!((*inverse_mass_)[3 * place.cluster + c] > 0.0)) p.col(c).setZero(), v.col(c).setZero();
+    block.force.middleRows<3>(3 * side) = f;
+    block.by_pose.middleCols<3>(3 * side) = p;
+    block.by_velocity.middleCols<3>(3 * side) = v;
+  }
 }
 
 // The lever of a force on a body off its cluster's centre turns with the cluster: ∂(l × F)/∂θ = −l·F.

@@ -47,8 +47,9 @@ void Dynamics::pack(const State& state, double* y) const {
     std::copy_n(all_v, 3 * layout_->absolute_count, y + n);
     for (Mechanism& m : layout_->mechanisms) m.pack(all_q, all_v, y + m.first_coordinate, y + n + m.first_coordinate);
   }
-  y[2 * n] = state.dissipated;
-  y[2 * n + 1] = state.work;
+  double* const rest = std::copy(state.inner.begin(), state.inner.end(), y + 2 * n);
+  rest[0] = state.dissipated;
+  rest[1] = state.work;
 }
 
 void Dynamics::unpack(double t, const double* y, State& state) const {
@@ -83,8 +84,10 @@ void Dynamics::unpack(double t, const double* y, State& state) const {
     bv[0] -= v[2] * lever.y();
     bv[1] += v[2] * lever.x();
   }
-  state.dissipated = y[2 * n];
-  state.work = y[2 * n + 1];
+  const double* const rest = y + 2 * n + inner_count();
+  std::copy(y + 2 * n, rest, state.inner.begin());
+  state.dissipated = rest[0];
+  state.work = rest[1];
 }
 
 const double* Dynamics::cluster_rates(const double* y) {

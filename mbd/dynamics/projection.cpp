@@ -162,6 +162,21 @@ void Dynamics::remove_held(double* change) {
 }
 
 Residual Dynamics::project(double t, double* y, double tolerance) {
+  const Residual found = project_rows(t, y, tolerance);
+  if (inner_count() > 0) settle_inner(t, y);
+  return found;
+}
+
+void Dynamics::settle_inner(double t, double* y) {
+  double* const inner = y + 2 * coordinate_count();
+  evaluation_.t = std::min(t, time_cap_);
+  if (!is_placed(evaluation_.t, y)) place(evaluation_.t, y, y + coordinate_count());
+  take_inner(inner);
+  for (const ForceGroup* group : system_.inner_groups) inner[inner_count()] += group->settle_inner(evaluation_, inner);
+  take_inner(inner);
+}
+
+Residual Dynamics::project_rows(double t, double* y, double tolerance) {
   const Layout& layout = *layout_;
   const int n = coordinate_count();
   aim_locks(std::min(t, time_cap_));

@@ -154,7 +154,7 @@ private:
 } // namespace
 
 FrictionModes::FrictionModes(const System& system, Dynamics& dynamics)
-    : system_(system), dynamics_(dynamics), y_(6 * system.bodies.size() + 2), dy_(y_.size()) {}
+    : system_(system), dynamics_(dynamics), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {}
 
 void FrictionModes::set_anchor(State& state, int f) const {
   const FrictionElement& friction = *system_.frictions[f].friction;

@@ -123,15 +123,19 @@ void Integrator::update_weights(Dynamics& dynamics) {
   if (has_slip_scale0_)
     for (int i = 0; i < m; ++i)
       if (weight_[m + i] > 0.0) weight_[m + i] = std::max(weight_[m + i], 1.0 / (k_slip_share * slip_scale0_[i]));
+  // Inner states are displacements (of an elastic joint: m, m, rad), known as well as those of bodies.
+  for (int i = 2 * m; i < n_ - 2; ++i)
+    weight_[i] = 1.0 / (tolerance * (k_displacement_floor * std::min(length_scale_, 1.0) +
+                                     std::abs(y0_[i] - system_.initial_inner[i - 2 * m])));
   // Dissipated energy and work: relative to the energy there is, was turned over, or would be in the floor's motion.
   const double floor_rate = k_rate_floor * k_displacement_floor * length_scale_;
-  double energy = std::abs(y0_[2 * m]) + std::abs(y0_[2 * m + 1]);
+  double energy = std::abs(y0_[n_ - 2]) + std::abs(y0_[n_ - 1]);
   const double* v = dynamics.cluster_rates(y0_.data());
   for (int k = 0; k < layout.cluster_count(); ++k, v += 3) {
     const Cluster& cluster = layout.clusters[k];
     energy += 0.5 * cluster.mass * (v[0] * v[0] + v[1] * v[1] + floor_rate * floor_rate) + 0.5 * cluster.inertia * v[2] * v[2];
   }
-  weight_[2 * m] = weight_[2 * m + 1] = energy > 0.0 ? 1.0 / (tolerance * energy) : 0.0;
+  weight_[n_ - 2] = weight_[n_ - 1] = energy > 0.0 ? 1.0 / (tolerance * energy) : 0.0;
 }
 
 double Integrator::error_norm(const double* error) const {
@@ -177,6 +181,8 @@ double Integrator::first_step(Dynamics& dynamics, int order, double h_max) {
   double* change = f + n_;
   for (int i = 0; i < n_; ++i)
     change[i] = i < dynamics.coordinate_count() ? y0_[i] - dynamics.layout().reference[i] : y0_[i];
+  for (int i = 2 * dynamics.coordinate_count(); i < n_ - 2; ++i)
+    change[i] -= system_.initial_inner[i - 2 * dynamics.coordinate_count()];
   const double size = error_norm(change) + 1.0 / settings_.tolerance * 1e-3;
   const double slope = error_norm(k0_);
   double h = slope > 0.0 ? 0.01 * size / slope : h_max;

@@ -6,7 +6,7 @@ namespace steplap {
 
 std::unique_ptr<Integrator> make_integrator(const std::string& name, const Dynamics& dynamics,
                                             const IntegratorSettings& settings) {
-  const int max_dimension = 6 * dynamics.system().body_count() + 2;
+  const int max_dimension = dynamics.system().largest_dimension();
   if (name == "rk4") return make_rk4(dynamics, settings, max_dimension);
   if (name == "tsit5") return make_tsit5(dynamics, settings, max_dimension);
   if (name == "dop853") return make_dop853(dynamics, settings, max_dimension);

@@ -45,7 +45,7 @@ public:
   }
 
   void dense(Dynamics& dynamics, double theta, double* out) override {
-    hermite_dense(dynamics.coordinate_count(), theta, h_, y0_.data(), y1_.data(), k0_, k1_, out);
+    hermite_dense(dynamics.coordinate_count(), n_, theta, h_, y0_.data(), y1_.data(), k0_, k1_, out);
     if (h_ < 0.5 * settings_.step) velocities_by_cubic(dynamics.coordinate_count(), theta, out);
   }
 
@@ -111,7 +111,7 @@ std::unique_ptr<Integrator> make_rk4(const Dynamics& dynamics, const IntegratorS
   return std::make_unique<Rk4>(dynamics, settings, max_dimension);
 }
 
-void hermite_dense(int coordinates, double theta, double h, const double* y0, const double* y1,
+void hermite_dense(int coordinates, int dimension, double theta, double h, const double* y0, const double* y1,
                    const double* rate0, const double* rate1, double* out) {
   const int n = coordinates;
   const double s = theta, s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
@@ -133,7 +133,7 @@ void hermite_dense(int coordinates, double theta, double h, const double* y0, co
     out[n + i] = d3 * change / h + d1 * v0 + d4 * v1 + h * (d2 * a0 + d5 * a1);
   }
   const double c1 = s - 2 * s2 + s3, c2 = 3 * s2 - 2 * s3, c3 = s3 - s2;
-  for (int i = 2 * n; i < 2 * n + 2; ++i)
+  for (int i = 2 * n; i < dimension; ++i)
     out[i] = y0[i] + c2 * (y1[i] - y0[i]) + h * (c1 * rate0[i] + c3 * rate1[i]);
 }
 

@@ -44,7 +44,7 @@ public:
     interpolate(theta, out);
     // The integral of the cubic through the powers at Lobatto's points.
     const int e = n_ - 2;
-    for (int i = 0; i < 2; ++i) out[e + i] = y0_[e + i] + h_ * power_integral(theta, power_[i]);
+    for (int i = 0; i < 2; ++i) out[e + i] = y0_[e + i] + h_ * power_integral(theta, power_[i]) + theta * settled_[i];
   }
 
 protected:
@@ -61,6 +61,7 @@ private:
 
   std::vector<double> k_, u_, rate_, slope_, right_, raw_;
   int stride_;
+  double settled_[2] = {};
   double power_[2][4] = {}; ///< of dissipation and work at 0, the two points inside, 1
   Linearization linearization_;
   StageSystem system_of_stages_;
@@ -159,7 +160,8 @@ void Rodas5p::finish_powers(Dynamics& dynamics) {
   }
   for (int i = 0; i < 2; ++i) {
     power_[i][3] = k1_[e + i];
-    y1_[e + i] = y0_[e + i] + h_ * power_integral(1.0, power_[i]);
+    settled_[i] = y1_[e + i] - y0_[e + i]; // what settling inner states at the step's end has booked
+    y1_[e + i] += h_ * power_integral(1.0, power_[i]);
   }
 }
 

@@ -13,6 +13,43 @@ void StageSystem::set(const Linearization& linearization, const Layout& layout) 
   right_.resize(n_ + m_);
   solution_.resize(n_ + m_);
   moved_.resize(n_);
+  inner_.resize(linearization.inner().size());
+}
+
+void StageSystem::factor_inner() {
+  for (std::size_t i = 0; i < inner_.size(); ++i) {
+    const Linearization::InnerBlock& block = linearization_->inner()[i];
+    inner_[i].answer = (Mat3::Identity() / g_ - block.by_inner).inverse();
+    inner_[i].damping = block.force * inner_[i].answer * (g_ * block.by_pose + block.by_velocity);
+  }
+}
+
+// The forces that inner states bring without the velocities' part.
+void StageSystem::add_inner_forces(const double* r) {
+  for (std::size_t i = 0; i < inner_.size(); ++i) {
+    const Linearization::InnerBlock& block = linearization_->inner()[i];
+    Vec3 z = Vec3::Zero();
+    for (int k = 0; k < block.count; ++k) z[k] = r[2 * n_ + block.first + k];
+    for (int c = 0; c < 6; ++c)
+      if (block.cluster[c / 3] >= 0) z += g_ * block.by_pose.col(c) * r[3 * block.cluster[c / 3] + c % 3];
+    const Eigen::Matrix<double, 6, 1> f = block.force * (inner_[i].answer * z);
+    for (int c = 0; c < 6; ++c)
+      if (block.cluster[c / 3] >= 0) moved_[3 * block.cluster[c / 3] + c % 3] += f[c] / g_;
+  }
+}
+
+void StageSystem::solve_inner(const double* r, double* u) {
+  const int count = linearization_->inner_count();
+  for (int k = 0; k < count; ++k) u[2 * n_ + k] = g_ * r[2 * n_ + k];
+  for (std::size_t i = 0; i < inner_.size(); ++i) {
+    const Linearization::InnerBlock& block = linearization_->inner()[i];
+    Vec3 z = Vec3::Zero();
+    for (int k = 0; k < block.count; ++k) z[k] = r[2 * n_ + block.first + k];
+    for (int c = 0; c < 6; ++c)
+      if (const int at = 3 * block.cluster[c / 3] + c % 3; at >= 0) z += block.by_pose.col(c) * u[at] + block.by_velocity.col(c) * u[n_ + at];
+    z = inner_[i].answer * z;
+    for (int k = 0; k < block.count; ++k) u[2 * n_ + block.first + k] = z[k];
+  }
 }
 
 template <class Put> void StageSystem::assemble(double g, const Put& put) const {
@@ -20,6 +57,14 @@ template <class Put> void StageSystem::assemble(double g, const Put& put) const 
   for (int i = 0; i < n_; ++i) put(i, i, 1.0);
   for (const auto& e : linearization_->stiffness()) put(e.row(), e.col(), -g * g * w[e.row()] * e.value());
   for (const auto& e : linearization_->damping()) put(e.row(), e.col(), -g * w[e.row()] * e.value());
+  for (std::size_t b = 0; b < inner_.size(); ++b) {
+    const int* const cluster = linearization_->inner()[b].cluster;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) {
+        const int row = 3 * cluster[i / 3] + i % 3, column = 3 * cluster[j / 3] + j % 3;
+        if (row >= 0 && column >= 0) put(row, column, -g * w[row] * inner_[b].damping(i, j));
+      }
+  }
   const auto put_row = [&](const Linearization::Triplet& e, double value) {
     put(n_ + e.row(), e.col(), is_redundant_[e.row()] ? 0.0 : value);
   };
@@ -36,6 +81,7 @@ template <class Put> void StageSystem::assemble(double g, const Put& put) const 
 
 bool StageSystem::factor(double g) {
   g_ = g;
+  factor_inner();
   if (is_dense_) {
     matrix_.setZero(n_ + m_, n_ + m_);
     assemble(g, [this](int i, int j, double value) { matrix_(i, j) += value; });
@@ -53,6 +99,7 @@ void StageSystem::solve(const double* r, double* u) {
   const double* const r_v = r + n_;
   moved_.setZero();
   for (const auto& e : linearization_->stiffness()) moved_[e.row()] += e.value() * r[e.col()];
+  add_inner_forces(r);
   for (int i = 0; i < n_; ++i) right_[i] = g_ * (r_v[i] + g_ * w[i] * moved_[i]);
   right_.tail(m_).setZero();
   for (const auto& e : linearization_->gradient()) right_[n_ + e.row()] += g_ * e.value() * r_v[e.col()];
@@ -65,6 +112,7 @@ void StageSystem::solve(const double* r, double* u) {
     u[n_ + i] = solution_[i];
     u[i] = g_ * (r[i] + (w[i] > 0.0 ? solution_[i] : 0.0)); // a locked coordinate has a rate of its own
   }
+  solve_inner(r, u);
 }
 
 void StageSystem::solve_unknowns() {

@@ -5,6 +5,8 @@
 // from the velocities' part; with W = M⁻¹, g = γh:
 //   ⎡ I − g W D − g² W K     −W Jᵀ ⎤ ⎡u_v⎤   ⎡ g (r_v + g W K r_q)       ⎤
 //   ⎣ J − g G_v − g² G_q       0   ⎦ ⎣ w ⎦ = ⎣ g (J r_v + g G_q r_q)     ⎦,   u_q = g (r_q + u_v).
+// Inner states z of force elements are eliminated, each from its own small block (linearization.h):
+//   u_z = A (r_z + P u_q + V u_v), A = (1/g − Z)⁻¹, which adds F_z A (g P + V) to D and F_z A (r_z + g P r_q) to the forces.
 // Locked coordinates have W = 0: their rows say u_v = g r_v. Rows of redundant constraints, as the
 // Schur complement's factorisation has found them, are left out.
 //
@@ -29,13 +31,16 @@ public:
   void set(const Linearization& linearization, const Layout& layout);
   /// For g = γh, s. False if singular.
   [[nodiscard]] bool factor(double g);
-  /// u = (1/g − ∂F/∂y)⁻¹ r; both of length 2n, (q, v).
+  /// u = (1/g − ∂F/∂y)⁻¹ r; both (q, v, z), of length 2n and that of the inner states.
   void solve(const double* r, double* u);
   /// The same for forces: `pull` has the n velocities' parts W f of r; rows and locks answer.
   void respond(const double* pull, double* u);
 
 private:
   template <class Put> void assemble(double g, const Put& put) const;
+  void factor_inner();
+  void add_inner_forces(const double* r);
+  void solve_inner(const double* r, double* u);
   void solve_unknowns();
 
   static constexpr int k_max_dense = 48; ///< unknowns: beyond, sparse factors are cheaper
@@ -48,6 +53,11 @@ private:
   Eigen::PartialPivLU<MatX> dense_;
   SparseLu sparse_;
   VecX right_, solution_, moved_;
+  struct Inner {
+    Mat3 answer;                                       ///< A
+    Eigen::Matrix<double, 6, 6> damping;               ///< F_z A (g P + V)
+  };
+  std::vector<Inner> inner_;
 };
 
 } // namespace steplap

@@ -35,7 +35,7 @@ constexpr double k_whole = 1e-6; // of a part: what is left beyond is added to i
 } // namespace
 
 TimeStepping::TimeStepping(const System& system) : system_(system) {
-  const std::size_t n = 6 * system.bodies.size() + 2;
+  const auto n = static_cast<std::size_t>(system.largest_dimension());
   for (auto* v : {&y0_, &y1_, &dy_, &right_, &free_, &probe_})
     v->assign(n, 0.0);
 }

@@ -48,11 +48,12 @@ SimulationOptions options_of(const Model& model) {
 
 Simulation::Simulation(const System& system, const State& initial, SimulationOptions options)
     : system_(system), options_(std::move(options)), state_(initial), dynamics_(system),
-      handler_(system, dynamics_), finder_(system, 6 * system.body_count() + 2),
-      y_(6 * system.bodies.size() + 2), dy_(y_.size()) {
+      handler_(system, dynamics_), finder_(system, system.largest_dimension()),
+      y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   cpu_start_ = thread_cpu_seconds();
   if (options_.end > system.drives_end)
     throw NumericalFailure("a drive jumps at t = " + std::to_string(system.drives_end) + " s, before the end of the run");
+  refuse_time_stepping();
   integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
   trajectory_ = std::make_unique<Trajectory>(system, options_.channels);
   start_drives(system_, state_);
@@ -70,7 +71,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
     if (friction.dimension() > 1 && !friction.never_slips()) joints_.push_back(static_cast<int>(f));
   }
   if (options_.has_extremes)
-    extremes_ = std::make_unique<ExtremeFinder>(system, 6 * system.body_count() + 2);
+    extremes_ = std::make_unique<ExtremeFinder>(system, system.largest_dimension());
   restart();
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
   if (options_.output_step > 0.0) record_sample(state_.t);
@@ -79,6 +80,13 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
 // Time stepping is linear in absolute coordinates.
 Coordinates Simulation::chosen_coordinates() const {
   return options_.integrator == "moreau" ? Coordinates::absolute : options_.coordinates;
+}
+
+void Simulation::refuse_time_stepping() const {
+  if (options_.integrator != "moreau" || system_.inner_count() == 0) return;
+  throw NumericalFailure("'moreau' does not follow what '" + system_.element_names[system_.inner_elements[0]] +
+                         "' remembers (the slid distance of an elastic joint, whether a tie has broken): choose another "
+                         "integrator, auto for one");
 }
 
 double Simulation::next_limit() const {
@@ -212,7 +220,7 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
   const auto is_at_kink = [](const Event& event) { return is_kink(event.kind); };
   const auto first_new = events_.begin() + static_cast<std::ptrdiff_t>(known);
   if (first_new != events_.end() && std::all_of(first_new, events_.end(), is_at_kink)) ++kinks_;
-  if (options_.integrator == "auto" && handler_.stop_reason().empty())
+  if (options_.integrator == "auto" && system_.inner_count() == 0 && handler_.stop_reason().empty())
     for (std::size_t i = known; i < events_.size(); ++i)
       if (!is_kink(events_[i].kind) && storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
   if (!fired.empty()) guard_against_chatter(t);

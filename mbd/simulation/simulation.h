@@ -96,6 +96,7 @@ private:
   void guard_against_chatter(double t);
   void guard_against_crawl();
   [[noreturn]] void fail_infinite(double t) const;
+  void refuse_time_stepping() const;
   [[nodiscard]] double next_limit() const;
   [[nodiscard]] Coordinates chosen_coordinates() const;
   void approach_limit();

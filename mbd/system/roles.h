@@ -3,6 +3,8 @@
 //   ForceGroup       all elements of one kind that give forces, evaluated in one loop;
 //   FrictionElement  rows along which it can stick, the convex set of wrenches it can bear, its slip law;
 //   RowSpec (row.h)  bilateral and driven constraint rows.
+// A force element may have an *inner state*: numbers with rates of their own, of the first order, which are integrated
+// with the motion (the slid distance of an elastic joint).
 // A *unit* is a force element with modes (a contact: open, pressed, released): its present mode selects
 // a smooth law, and its watch values tell how far that law stays valid: an event is where one of them
 // falls below zero.
@@ -58,6 +60,8 @@ struct Evaluation {
   const UnitMode* mode = nullptr;         ///< per unit
   const FrictionState* friction = nullptr;
   const double* memory = nullptr;         ///< of the state: anchors of rows
+  const double* inner = nullptr;          ///< inner states of force elements
+  double* inner_rate = nullptr;           ///< their rates: zero, unless an element says more
   FrictionScratch* const* scratch = nullptr; ///< per friction element; null where it wants none
   double* contact_force = nullptr;        ///< per contact: normal force f ≥ 0 (N = Σ f)
   double* watch = nullptr;                ///< per watch slot: valid while ≥ 0
@@ -89,6 +93,17 @@ struct PairJacobian {
   Eigen::Matrix<double, 12, 1> normal;   ///< ∂(normal force)/∂(pose a, pose b, velocity a, velocity b)
 };
 
+/// ∂(force on a, force on b)/∂(inner state) of one element, and what the rates of that depend on: ∂/∂(pose a, pose b),
+/// ∂/∂(velocity a, velocity b), ∂/∂(inner state). `count` ≤ 3 numbers of the inner state from `first` on.
+struct InnerJacobian {
+  int a = 0, b = 0;
+  int first = 0, count = 0;
+  Eigen::Matrix<double, 6, 3> force = Eigen::Matrix<double, 6, 3>::Zero();
+  Eigen::Matrix<double, 3, 6> by_pose = Eigen::Matrix<double, 3, 6>::Zero();
+  Eigen::Matrix<double, 3, 6> by_velocity = Eigen::Matrix<double, 3, 6>::Zero();
+  Eigen::Matrix<double, 3, 3> by_inner = Eigen::Matrix<double, 3, 3>::Zero();
+};
+
 class ForceGroup {
 public:
   virtual ~ForceGroup() = default;
@@ -106,6 +121,18 @@ public:
   }
   /// Which event the change is.
   [[nodiscard]] virtual EventKind transition(UnitMode /*from*/, UnitMode /*to*/) const { return EventKind::none; }
+  /// Does the run end with the change to this mode?
+  [[nodiscard]] virtual bool stops_in(int /*element*/, UnitMode /*to*/) const { return false; }
+
+  /// For groups with inner states: energy stored beside potential().
+  [[nodiscard]] virtual double inner_energy(const Motion<double>* /*motion*/, const double* /*inner*/) const { return 0.0; }
+  /// Onto what integration may have left (a yield surface); returns the energy that this dissipates. `inner`: as in `e`.
+  virtual double settle_inner(const Evaluation& /*e*/, double* /*inner*/) const { return 0.0; }
+  /// An element enters a mode at an event: what its inner state changes by at once; returns the energy dissipated.
+  virtual double enter_mode(int /*element*/, UnitMode /*to*/, const Evaluation& /*e*/, double* /*inner*/) const { return 0.0; }
+  /// Without force where the bodies are now: for poses that were given roughly.
+  virtual void start_inner(const Motion<double>* /*motion*/, double* /*inner*/) const {}
+  virtual void add_inner_jacobian(const Evaluation& /*e*/, std::vector<InnerJacobian>& /*out*/) const {}
 };
 
 /// Solution of one element's part of the mode problem.
@@ -129,6 +156,8 @@ public:
   [[nodiscard]] virtual const RowSpec* rows(const FrictionState& state) const = 0;
   /// 3 rows that hold b rigidly to a, so that the two may be merged into one body while sticking.
   [[nodiscard]] virtual bool is_rigid() const { return false; }
+  /// Its wrench is that of a ForceGroup, a spring that yields: it is no constraint and has no phase but free.
+  [[nodiscard]] virtual bool is_elastic() const { return false; }
   /// Sticks whatever it takes: nothing to watch.
   [[nodiscard]] virtual bool never_slips() const { return false; }
   virtual void mark_bodies(std::vector<char>& is_used) const = 0;

@@ -54,6 +54,7 @@ State System::initial_state() const {
   state.mode.assign(units.size(), 0);
   state.friction.resize(frictions.size());
   state.memory = initial_memory;
+  state.inner = initial_inner;
   return state;
 }
 
@@ -259,6 +260,14 @@ int SystemBuilder::add_memory(double base, double base_rate) {
   system_->initial_memory.push_back(base);
   system_->initial_memory.push_back(base_rate);
   return static_cast<int>(system_->initial_memory.size()) - 2;
+}
+
+int SystemBuilder::add_inner(const ForceGroup& group, double start) {
+  if (std::find(system_->inner_groups.begin(), system_->inner_groups.end(), &group) == system_->inner_groups.end())
+    system_->inner_groups.push_back(&group);
+  system_->initial_inner.push_back(start);
+  system_->inner_elements.push_back(element_);
+  return system_->inner_count() - 1;
 }
 
 void SystemBuilder::add_rows(std::vector<RowSpec> rows, bool is_rigid, int coordinate) {

@@ -28,6 +28,7 @@ struct State {
   std::vector<UnitMode> mode;           ///< per unit
   std::vector<FrictionState> friction;  ///< per friction element
   std::vector<double> memory;           ///< bases of rows
+  std::vector<double> inner;            ///< inner states of force elements
   double dissipated = 0.0;              ///< J, since the start
   double work = 0.0;                    ///< J, of loads and drives since the start
 };
@@ -111,12 +112,18 @@ public:
   std::vector<double> breakpoints; ///< of all signals in use, ascending
   double drives_end = std::numeric_limits<double>::infinity(); ///< the first drive jumps there: no run may pass it, s
   std::vector<double> initial_memory;
+  std::vector<double> initial_inner;
+  std::vector<int> inner_elements;           ///< of each inner state
+  std::vector<const ForceGroup*> inner_groups; ///< those with inner states
   std::vector<char> is_body_used; ///< per body: some force element or friction refers to it
   int contact_count = 0;
   int watch_count = 0;
   int friction_row_count = 0;
 
   [[nodiscard]] int body_count() const { return static_cast<int>(bodies.size()); }
+  [[nodiscard]] int inner_count() const { return static_cast<int>(initial_inner.size()); }
+  /// Of the packed state, where nothing is merged (dynamics.h).
+  [[nodiscard]] int largest_dimension() const { return 6 * body_count() + inner_count() + 2; }
   /// The reference pose and velocity, modes and anchors that belong to it.
   [[nodiscard]] State initial_state() const;
   /// Potential energy: gravity and all that is stored in elements.
@@ -180,6 +187,8 @@ public:
   /// it is pressed (mode 1).
   int add_contact(int unit);
   int add_memory(double base = 0.0, double base_rate = 0.0);
+  /// One number of the inner state of an element of `group`: where it starts.
+  int add_inner(const ForceGroup& group, double start);
   void add_rows(std::vector<RowSpec> rows, bool is_rigid = false, int coordinate = -1);
   int add_friction(std::unique_ptr<FrictionElement> friction);
   /// "<element>.<name>"; what is returned is good until the next one is added. A channel that nobody wants is not made:

@@ -108,7 +108,7 @@ StartingBody fastest_at_start(const System& system, const State& initial) {
   dynamics.set_time_limit(limit == system.breakpoints.end() ? system.drives_end : *limit);
   handler.start(state);
   dynamics.set_state(state);
-  std::vector<double> y(6 * system.bodies.size() + 2), dy(y.size());
+  std::vector<double> y(static_cast<std::size_t>(system.largest_dimension())), dy(y.size());
   dynamics.pack(state, y.data());
   dynamics.rates(state.t, y.data(), dy.data());
   const Snapshot snapshot = dynamics.snapshot(dy.data());

@@ -1,0 +1,52 @@
+// The force of elastic step-lap joints: springs in series with friction (step_lap_friction.h), as force elements with modes
+// and an inner state p, the relative pose as far as the sheets have slid.
+//
+//   W = −K (s − p) on the limb about its centre of gravity, active part's axes; stored ½ (s − p)ᵀK (s − p).
+// Holding, p stands and the mode is valid while the wrench is within the limit surface; yielding, p flows along the surface's
+// normal. The wrench is continuous everywhere, so that neither velocities nor accelerations jump: K is bounded, and nothing
+// has to be decided together with other friction. Integration leaves u = 1 + its error while it yields: settle_inner()
+// moves p along the strain onto the surface (radial return) and books what that dissipates, F·Δp.
+#pragma once
+
+#include "elements/step_lap_friction.h"
+
+namespace steplap {
+
+/// Modes: holds, yields, comes apart; above them a bit for each interface that has parted.
+inline constexpr UnitMode k_elastic_holds = 0, k_elastic_yields = 1, k_elastic_apart = 2;
+inline constexpr int k_elastic_parted = 2; ///< first of these bits
+
+[[nodiscard]] inline FrictionPhase phase_of_elastic(UnitMode mode) {
+  if ((mode & k_elastic_apart) != 0) return FrictionPhase::apart;
+  return (mode & k_elastic_yields) != 0 ? FrictionPhase::slip : FrictionPhase::stick;
+}
+
+class ElasticGripGroup final : public ForceGroup {
+public:
+  struct Entry {
+    int a = k_ground, b = k_ground;            ///< limb, active part
+    const StepLapFriction* friction = nullptr; ///< of the system, which owns both
+    int inner = 0;                             ///< first of three: p
+    int link = 0, unit = 0, watch = 0;
+  };
+  static constexpr int k_watches = 2; ///< bound or flow; interfaces parted
+  std::vector<Entry> entries;
+
+  void add_forces(Evaluation& e) const override;
+  [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
+  [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override;
+  void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override;
+  void add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const override;
+  double settle_inner(const Evaluation& e, double* inner) const override;
+  void start_inner(const Motion<double>* motion, double* inner) const override;
+  void mark_bodies(std::vector<char>& is_used) const override;
+  void enter_links(LinkTable& links) override;
+  [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
+  [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
+  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
+  [[nodiscard]] bool stops_in(int element, UnitMode to) const override {
+    return (to & k_elastic_apart) != 0 && entries[element].friction->stops_when_apart();
+  }
+};
+
+} // namespace steplap
