@@ -29,6 +29,18 @@ constexpr double k_many_turns = 40.0 * std::numbers::pi;
 constexpr int k_most_trials = 44, k_most_projections = 25, k_most_polishing = 4;
 constexpr double k_rounded_terms = 32.0;
 
+// Threads are not worth their while in products of this size; where they wait they take the time of others.
+class OneThread {
+public:
+  OneThread() : before_(Eigen::nbThreads()) { Eigen::setNbThreads(1); }
+  ~OneThread() { Eigen::setNbThreads(before_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+private:
+  int before_;
+};
+
 int most_iterations(int n) { return n <= 90 ? 3000 : n <= 300 ? 600 : 150; }
 
 } // namespace
@@ -81,26 +93,33 @@ void Descent::measure_scene() {
   }
 }
 
-Descent::Tangent Descent::tangent() const {
-  Tangent t;
-  MatX rows = (statics_.gradient() * scale_.asDiagonal()).transpose(); // n × m
-  t.row_size = rows.colwise().norm().cwiseMax(1e-300);
-  rows = rows * t.row_size.cwiseInverse().asDiagonal();
+// Which rows do not depend on others: of the joints' first, then of friction's. `rows`: unit columns.
+std::vector<int> Descent::independent(const MatX& rows) const {
+  std::vector<int> kept;
   const Eigen::Index joints = statics_.bilateral_count(), frictions = rows.cols() - joints;
   MatX held(n_, 0);
   if (joints > 0) {
     Eigen::ColPivHouseholderQR<MatX> qr(rows.leftCols(joints));
     qr.setThreshold(k_rank);
-    for (Eigen::Index i = 0; i < qr.rank(); ++i) t.kept.push_back(qr.colsPermutation().indices()[i]);
-    held = qr.householderQ() * MatX::Identity(n_, qr.rank());
+    for (Eigen::Index i = 0; i < qr.rank(); ++i) kept.push_back(qr.colsPermutation().indices()[i]);
+    if (frictions > 0) held = qr.householderQ() * MatX::Identity(n_, qr.rank());
   }
-  if (frictions > 0) {
-    const MatX beyond = rows.rightCols(frictions) - held * (held.transpose() * rows.rightCols(frictions));
-    const Eigen::ColPivHouseholderQR<MatX> qr(beyond);
-    const Eigen::Index most = std::min<Eigen::Index>(frictions, n_);
-    for (Eigen::Index i = 0; i < most && std::abs(qr.matrixQR()(i, i)) > k_friction_rank; ++i)
-      t.kept.push_back(static_cast<int>(joints + qr.colsPermutation().indices()[i]));
-  }
+  if (frictions == 0) return kept;
+  const MatX beyond = rows.rightCols(frictions) - held * (held.transpose() * rows.rightCols(frictions));
+  const Eigen::ColPivHouseholderQR<MatX> qr(beyond);
+  const Eigen::Index most = std::min<Eigen::Index>(frictions, n_);
+  for (Eigen::Index i = 0; i < most && std::abs(qr.matrixQR()(i, i)) > k_friction_rank; ++i)
+    kept.push_back(static_cast<int>(joints + qr.colsPermutation().indices()[i]));
+  return kept;
+}
+
+// `kept`: the independent rows, if they are known; then what they leave free is not asked for.
+Descent::Tangent Descent::tangent(const std::vector<int>* kept_before) const {
+  Tangent t;
+  MatX rows = (statics_.gradient() * scale_.asDiagonal()).transpose(); // n × m
+  t.row_size = rows.colwise().norm().cwiseMax(1e-300);
+  rows = rows * t.row_size.cwiseInverse().asDiagonal();
+  t.kept = kept_before ? *kept_before : independent(rows);
   const auto count = static_cast<Eigen::Index>(t.kept.size());
   if (count == 0) {
     t.held = MatX(n_, 0);
@@ -110,9 +129,9 @@ Descent::Tangent Descent::tangent() const {
   MatX kept(n_, count);
   for (Eigen::Index i = 0; i < count; ++i) kept.col(i) = rows.col(t.kept[i]);
   const Eigen::HouseholderQR<MatX> qr(kept);
-  const MatX q = qr.householderQ() * MatX::Identity(n_, n_);
+  const MatX q = qr.householderQ() * MatX::Identity(n_, kept_before ? count : n_);
   t.held = q.leftCols(count);
-  t.free = q.rightCols(n_ - count);
+  if (!kept_before) t.free = q.rightCols(n_ - count);
   t.triangle = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
   return t;
 }
@@ -128,7 +147,8 @@ void Descent::find_multipliers(const Tangent& t) {
 void Descent::linearise() {
   statics_.evaluate(state_);
   statics_.collect_rows(state_);
-  const Tangent t = tangent();
+  const Tangent t = tangent(nullptr);
+  kept_ = t.kept;
   gradient_ = scale_.cwiseProduct(statics_.force());
   find_multipliers(t);
   stiffness_ = scale_.asDiagonal() * statics_.stiffness(lambda_) * scale_.asDiagonal();
@@ -228,7 +248,7 @@ bool Descent::project(Tangent& end) {
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0;; ++i) {
     statics_.evaluate(state_);
-    end = tangent();
+    end = tangent(&kept_);
     if (statics_.rows().empty()) return true;
     const VecX off = statics_.off();
     const auto count = static_cast<Eigen::Index>(end.kept.size());
@@ -290,6 +310,35 @@ double Descent::correct(const VecX& step, const std::vector<double>& from, doubl
   return slope;
 }
 
+bool Descent::loads_friction() const {
+  for (std::size_t f = 0; f < hold_.size(); ++f)
+    if (hold_[f] == Hold::none && state_.friction[f].phase != FrictionPhase::apart &&
+        system_.frictions[f].friction->is_loaded(statics_.evaluation(), state_.friction[f]))
+      return true;
+  return false;
+}
+
+// Friction holds a contact where it touched, not as deep as the step went: the share of the step at which the first one
+// gets its load.
+double Descent::first_load(const std::vector<double>& from, const VecX& step, double low, double high, Tangent& end) {
+  if (!loads_friction()) return high;
+  const std::vector<double> reached = state_.q;
+  double taken = high;
+  std::vector<double> place = reached;
+  for (int i = 0; i < k_most_trials && taken - low > 1e-12 * taken; ++i) {
+    const double middle = 0.5 * (low + taken);
+    if (move_to(from, middle * step, end) && loads_friction()) {
+      taken = middle;
+      place = state_.q;
+    } else {
+      low = middle;
+    }
+  }
+  state_.q = place;
+  statics_.evaluate(state_);
+  return taken;
+}
+
 bool Descent::advance(const VecX& step) {
   const std::vector<double> from = state_.q;
   const double start = -step.dot(gradient_);
@@ -319,6 +368,7 @@ bool Descent::advance(const VecX& step) {
     state_.q = from;
     return false;
   }
+  factor = first_load(from, step, low < factor ? low : 0.0, factor, end);
   const bool is_straight = std::abs(slope - start) < 0.3 * std::abs(start);
   const double size = factor * step_size(step);
   if (factor == 1.0) {
@@ -435,7 +485,16 @@ bool Descent::leave_saddle() {
   return false;
 }
 
+// Directions in which the forces do not hold it back, with what friction that slides takes part in that.
+int Descent::count_yielding() const {
+  if (value_.size() == 0) return 0;
+  const Eigen::EigenSolver<MatX> solver(reduced_, false);
+  const double rounding = value_rounding_.maxCoeff();
+  return static_cast<int>((solver.eigenvalues().real().array() <= rounding).count());
+}
+
 void Descent::finish() {
+  yielding_ = count_yielding();
   VecX acceleration = share_.size() > 0 ? VecX(shape_ * share_) : VecX(VecX::Zero(n_));
   residual_ = acceleration.cwiseProduct(scale_).cwiseAbs().maxCoeff();
   indifferent_.clear();
@@ -444,14 +503,17 @@ void Descent::finish() {
 }
 
 DescentEnd Descent::run() {
+  const OneThread alone;
   statics_.evaluate(state_);
   follow_friction(state_.q);
   const std::vector<double> given = state_.q;
+  linearise();
   Tangent first;
   if (!project(first)) state_.q = given;
   int failures = 0;
   for (iterations_ = 0; iterations_ < most_iterations(n_); ++iterations_) {
     linearise();
+    if (iterations_ == 0) yielding_at_start_ = count_yielding();
     const VecX newton = newton_step();
     bool is_pushed = false; // along what nothing holds
     for (Eigen::Index i = 0; i < value_.size(); ++i)

@@ -37,6 +37,8 @@ public:
 
   [[nodiscard]] int iterations() const { return iterations_; }
   [[nodiscard]] double length() const { return length_; } ///< m: of the scene
+  /// Per coordinate: 1 for metres, for radians one over the radius at which they are measured.
+  [[nodiscard]] const VecX& scale() const { return scale_; }
   /// Largest acceleration that is left, m/s² or rad/s².
   [[nodiscard]] double residual() const { return residual_; }
   /// Multipliers of statics().rows(); of rows that depend on others one choice of many.
@@ -46,6 +48,9 @@ public:
   [[nodiscard]] const std::vector<MotionPart>& indifferent() const { return indifferent_; }
   /// Poses that balanced but that a nudge would leave, and were left.
   [[nodiscard]] const std::vector<MotionPart>& left() const { return left_; }
+  /// Number of directions in which a small motion meets no resistance, where the way began and where it ended.
+  [[nodiscard]] int yielding_at_start() const { return yielding_at_start_; }
+  [[nodiscard]] int yielding() const { return yielding_; }
   /// What moves on without end, and the force or couple that moves it.
   [[nodiscard]] const MotionPart& runaway() const { return runaway_; }
   [[nodiscard]] double driving_force() const { return driving_force_; }
@@ -60,7 +65,8 @@ private:
     VecX row_size;
   };
   void measure_scene();
-  [[nodiscard]] Tangent tangent() const;
+  [[nodiscard]] std::vector<int> independent(const MatX& rows) const;
+  [[nodiscard]] Tangent tangent(const std::vector<int>* kept_before) const;
   void linearise();
   void find_modes();
   void find_multipliers(const Tangent& t);
@@ -73,17 +79,20 @@ private:
   bool project(Tangent& end);
   bool advance(const VecX& step);
   [[nodiscard]] double correct(const VecX& step, const std::vector<double>& from, double slope, Tangent& end);
+  [[nodiscard]] bool loads_friction() const;
+  [[nodiscard]] double first_load(const std::vector<double>& from, const VecX& step, double low, double high, Tangent& end);
   void follow_friction(const std::vector<double>& from);
   [[nodiscard]] bool has_run_away();
   [[nodiscard]] MotionPart largest_part(const VecX& scaled) const;
   bool polish();
+  [[nodiscard]] int count_yielding() const;
   void finish();
   bool leave_saddle();
 
   const System& system_;
   State& state_;
   Statics statics_;
-  int n_ = 0, iterations_ = 0;
+  int n_ = 0, iterations_ = 0, yielding_at_start_ = 0, yielding_ = 0;
   double length_ = 1.0, reach_ = 1.0; ///< of the scene, and the largest coordinate
   double radius_ = 0.0, turn_ = 0.0;  ///< trust region: m, rad
   VecX scale_;  ///< per coordinate: 1, or one over the body's radius
@@ -94,6 +103,7 @@ private:
   VecX value_, value_rounding_, share_, share_rounding_; ///< λᵢ, gᵢ and what is rounding of them
   double residual_ = 0.0;
   mutable double used_sigma_ = 0.0;
+  std::vector<int> kept_; ///< independent rows at the last linearisation
   std::vector<Hold> hold_; ///< per friction element
   std::vector<MotionPart> indifferent_, left_;
   MotionPart runaway_;

@@ -1,6 +1,6 @@
 #include "mbd/analysis/equilibrium.h"
 
-#include "mbd/base/number_text.h"
+#include "mbd/analysis/admissible_rest.h"
 #include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
@@ -13,7 +13,8 @@ namespace {
 
 constexpr double k_admissible = 1.0 + 1e-9; // share of what friction can bear: rounding of stiff contacts
 constexpr int k_most_slips = 12;            // of one friction element, on the way to where it holds
-constexpr double k_stands = 1e-2; // of the scene's length: contacts that slid further did not hold where they stood
+// Of the scene's length: contacts that gave way so far, with nothing but friction to resist them, did not stand.
+constexpr double k_stands = 1e-2;
 
 std::string rounded(double value) {
   char text[40];
@@ -27,6 +28,8 @@ struct Slip {
   double used = 0.0; ///< when it first gave way
   double from = 0.0; ///< its row's value then
   int times = 0;
+  bool is_new = true;      ///< it has just begun
+  bool gives_way = false; ///< nothing but its friction resisted it
 };
 
 class RestSearch {
@@ -48,9 +51,14 @@ public:
       result_.indifferent = descent.indifferent();
       result_.left.insert(result_.left.end(), descent.left().begin(), descent.left().end());
       length_ = std::max(length_, descent.length());
+      if (descent.yielding_at_start() > yielding_)
+        for (Slip& slip : slips_) slip.gives_way = slip.gives_way || slip.is_new;
+      for (Slip& slip : slips_) slip.is_new = false;
+      yielding_ = descent.yielding();
       if (end != DescentEnd::rest) fail(descent, end);
       find_margins(descent);
-      if (!let_go()) break;
+      if (overloads_.empty()) break;
+      if (!share_anew(descent)) let_go();
     }
     check_slides();
     return at_rest();
@@ -138,9 +146,20 @@ private:
     return evaluate_row<false>(*system_.frictions[f].friction->rows(state_.friction[f]), motion.data()).value;
   }
 
-  // What is overloaded most slides, with what shares its load; false if there is nothing of that kind.
-  bool let_go() {
-    if (overloads_.empty()) return false;
+  // Friction bears what it got when it got its load: another admissible set of forces may hold the machine.
+  bool share_anew(const Descent& descent) {
+    if (was_shared_anew_) return false;
+    const auto rest = admissible_rest(system_, state_, descent.scale(), length_);
+    if (!rest) return false;
+    least_usage_ = rest->usage;
+    if (rest->usage > 1.0) return false;
+    was_shared_anew_ = true;
+    state_ = rest->state;
+    return true;
+  }
+
+  // What is overloaded most slides, with what shares its load.
+  void let_go() {
     const auto worst = std::max_element(overloads_.begin(), overloads_.end(),
                                         [](const Overload& a, const Overload& b) { return a.used < b.used; });
     for (const Overload& overload : overloads_) {
@@ -151,19 +170,20 @@ private:
         throw NumericalFailure("no static equilibrium: '" + name_of(f) + "' would have to hold " + rounded(overload.used) +
                                " times what it can");
       auto slip = std::find_if(slips_.begin(), slips_.end(), [f](const Slip& s) { return s.friction == f; });
-      if (slip == slips_.end()) slip = slips_.insert(slips_.end(), {f, overload.used, row_value(f), 0});
+      if (slip == slips_.end()) slip = slips_.insert(slips_.end(), {f, least_usage_ > 1.0 ? least_usage_ : overload.used, row_value(f)});
+      slip->is_new = true;
       if (++slip->times > k_most_slips) fail_sliding(*slip);
       Statics statics(system_);
       statics.evaluate(state_);
       element.begin_slip(statics.evaluation(), state_.friction[f], overload.wrench);
       state_.friction[f].phase = FrictionPhase::slip;
     }
-    return true;
+    was_shared_anew_ = false;
   }
 
   void check_slides() const {
     for (const Slip& slip : slips_)
-      if (is_of_contacts(slip.friction) && std::abs(row_value(slip.friction) - slip.from) > k_stands * length_)
+      if (slip.gives_way && is_of_contacts(slip.friction) && std::abs(row_value(slip.friction) - slip.from) > k_stands * length_)
         fail_sliding(slip);
   }
 
@@ -176,7 +196,7 @@ private:
     const int body = row.a == k_ground ? row.b : row.a;
     const double way = row_value(slip.friction) - slip.from;
     throw NumericalFailure("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name +
-                           "' slides" + (way == 0.0 ? "" : " by " + rounded(std::abs(way)) + " m"));
+                           "' slides" + (way == 0.0 ? "" : ", to rest " + rounded(std::abs(way)) + " m away"));
   }
   [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
     const MotionPart& part = descent.runaway();
@@ -215,6 +235,9 @@ private:
   const State& start_;
   State state_;
   double length_ = 0.0;
+  int yielding_ = 0; ///< directions in which nothing resists at the last rest
+  double least_usage_ = 0.0; ///< of friction over all ways to share the load, where that was asked
+  bool was_shared_anew_ = false;
   std::vector<Slip> slips_;
   std::vector<Overload> overloads_;
   Equilibrium result_;

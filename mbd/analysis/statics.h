@@ -41,6 +41,8 @@ public:
   [[nodiscard]] MatX stiffness(const VecX& lambda) const;    ///< K
   [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
+  /// Normal force of a contact, for whoever asks what friction would do with another.
+  [[nodiscard]] double& contact_force(int contact) { return contact_force_[contact]; }
   /// Wrench of friction element f while it slips, along its rows.
   void slip_wrench(int f, double* wrench) const;
 
