@@ -1,317 +1,272 @@
 #include "mbd/analysis/equilibrium.h"
 
-#include "mbd/friction/friction_modes.h"
-#include "mbd/math/portable_math.h"
-#include "mbd/simulation/simulation.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include "mbd/analysis/admissible_rest.h"
+#include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace steplap {
 
 namespace {
 
-constexpr double k_acceleration_tolerance = 1e-9; // m/s²: 1e-10 of gravity
-constexpr int k_max_newton = 60;
-constexpr int k_max_damped_swings = 400;
-constexpr int k_most_looks = 12;      // for a swing's peak
-constexpr double k_same_top = 1e-3;   // of the times about it
-constexpr double k_swing_time = 20.0; // s of motion before giving up on a swing
-constexpr double k_least_used = 1e-9; // share of a friction element's capacity that is rounding
+constexpr double k_admissible = 1.0 + 1e-9; // share of what friction can bear: rounding of stiff contacts
+constexpr int k_most_slips = 12;            // of one friction element, on the way to where it holds
+// Of the scene's length: contacts that gave way so far, with nothing but friction to resist them, did not stand.
+constexpr double k_stands = 1e-2;
 
-// Accelerations at rest as a function of the clusters' coordinates.
-class RestProblem {
+std::string rounded(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+// What friction gives way on the search, and by how much.
+struct Slip {
+  int friction = 0;
+  double used = 0.0; ///< when it first gave way
+  double from = 0.0; ///< its row's value then
+  int times = 0;
+  bool is_new = true;      ///< it has just begun
+  bool gives_way = false; ///< nothing but its friction resisted it
+};
+
+class RestSearch {
 public:
-  RestProblem(const System& system, State state)
-      : system_(system), state_(std::move(state)), dynamics_(system), modes_(system, dynamics_),
-        is_anchored_(system.frictions.size(), 0), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
+  RestSearch(const System& system, const State& start) : system_(system), start_(start), state_(start) {
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
+    start_drives(system_, state_);
+    for (FrictionState& friction : state_.friction)
+      if (friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
   }
 
-  // Modes from the gaps as they are now; friction sticks where it is loaded, as long as it is.
-  void update_modes() {
-    evaluate_state();
-    for (std::size_t u = 0; u < system_.units.size(); ++u)
-      state_.mode[u] = system_.units[u].group->initial_mode(system_.units[u].index, dynamics_.evaluation());
-    for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
-      FrictionState& friction = state_.friction[f];
-      if (friction.phase == FrictionPhase::apart) continue;
-      const bool is_loaded = system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction);
-      friction.phase = is_loaded ? FrictionPhase::stick : FrictionPhase::free;
-      if (is_loaded && !is_anchored_[f]) modes_.set_anchor(state_, static_cast<int>(f));
-      is_anchored_[f] = is_loaded;
+  Equilibrium run() {
+    if (system_.body_count() <= 1) return at_rest();
+    while (true) {
+      Descent descent(system_, state_);
+      const DescentEnd end = descent.run();
+      result_.iterations += descent.iterations();
+      result_.residual = descent.residual();
+      result_.indifferent = descent.indifferent();
+      result_.left.insert(result_.left.end(), descent.left().begin(), descent.left().end());
+      length_ = std::max(length_, descent.length());
+      if (descent.yielding_at_start() > yielding_)
+        for (Slip& slip : slips_) slip.gives_way = slip.gives_way || slip.is_new;
+      for (Slip& slip : slips_) slip.is_new = false;
+      yielding_ = descent.yielding();
+      if (end != DescentEnd::rest) fail(descent, end);
+      find_margins(descent);
+      if (overloads_.empty()) break;
+      if (!share_anew(descent)) let_go();
     }
-    evaluate_state();
-  }
-
-  double newton_step() {
-    const int n = dynamics_.coordinate_count();
-    const Eigen::VectorXd a = accelerations();
-    const double before = scaled_norm(a);
-    Eigen::MatrixXd jacobian(n, n);
-    std::vector<double> moved(y_);
-    for (int i = 0; i < n; ++i) {
-      const double h = 1e-7;
-      moved = y_;
-      moved[i] += h;
-      const Eigen::VectorXd up = accelerations(moved);
-      moved[i] -= 2.0 * h;
-      jacobian.col(i) = (up - accelerations(moved)) / (2.0 * h);
-    }
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-    decomposition.setThreshold(1e-10);
-    decomposition.compute(jacobian);
-    const Eigen::VectorXd step = decomposition.solve(-a);
-    const std::vector<double> start = y_;
-    for (double factor = 1.0; factor > 1e-3; factor *= 0.5) {
-      for (int i = 0; i < n; ++i) y_[i] = start[i] + factor * step[i];
-      dynamics_.project(state_.t, y_.data(), 1e-12);
-      std::fill(y_.begin() + n, y_.begin() + 2 * n, 0.0);
-      dynamics_.unpack(state_.t, y_.data(), state_);
-      std::fill(state_.v.begin(), state_.v.end(), 0.0);
-      update_modes();
-      if (scaled_norm(accelerations()) < before || factor < 2e-3) break;
-    }
-    return scaled_norm(accelerations());
-  }
-
-  [[nodiscard]] double residual() { return scaled_norm(accelerations()); }
-  [[nodiscard]] State& state() { return state_; }
-  [[nodiscard]] int fastest_body() {
-    const Snapshot snapshot = dynamics_.snapshot(dy_.data());
-    int worst = 1;
-    const auto size = [&](int i) {
-      return portable::hypot(snapshot.acceleration[3 * i], snapshot.acceleration[3 * i + 1]);
-    };
-    for (int i = 2; i < system_.body_count(); ++i)
-      if (size(i) > size(worst)) worst = i;
-    return worst;
-  }
-  /// A direction in which the pose would run away, as displacements of the clusters' coordinates; empty
-  /// if it is stable. Displacements are taken along the constraints.
-  [[nodiscard]] Eigen::VectorXd unstable_direction() {
-    const int n = dynamics_.coordinate_count();
-    const std::vector<double> start = y_;
-    const double h = 1e-5;
-    Eigen::MatrixXd moved(n, n), answer(n, n);
-    for (int i = 0; i < n; ++i) {
-      std::vector<double> y = start;
-      y[i] += h;
-      dynamics_.rates(state_.t, y.data(), dy_.data());
-      dynamics_.project(state_.t, y.data(), 1e-12);
-      answer.col(i) = accelerations(y);
-      for (int k = 0; k < n; ++k) moved(k, i) = y[k] - start[k];
-    }
-    const Eigen::VectorXd rest = accelerations();
-    answer.colwise() -= rest;
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> range;
-    range.setThreshold(1e-3);
-    range.compute(moved / h);
-    const Eigen::Index rank = range.rank();
-    if (rank == 0) return {};
-    const Eigen::MatrixXd basis =
-        Eigen::MatrixXd(range.householderQ()).leftCols(rank);
-    const Eigen::MatrixXd inverse = moved.completeOrthogonalDecomposition().pseudoInverse();
-    const Eigen::MatrixXd stiffness = basis.transpose() * answer * inverse * basis;
-    const Eigen::EigenSolver<Eigen::MatrixXd> modes(stiffness);
-    Eigen::Index worst = 0;
-    modes.eigenvalues().real().maxCoeff(&worst);
-    // 1/s²: neutral directions have zero up to differences of h.
-    if (modes.eigenvalues()[worst].real() < 1e-4) return {};
-    return basis * modes.eigenvectors().col(worst).real();
-  }
-  /// The pose moved a little along `direction`.
-  [[nodiscard]] State nudged(const Eigen::VectorXd& direction) {
-    std::vector<double> y = y_;
-    const double scale = 1e-3 / direction.cwiseAbs().maxCoeff();
-    for (Eigen::Index i = 0; i < direction.size(); ++i) y[i] += scale * direction[i];
-    dynamics_.rates(state_.t, y.data(), dy_.data());
-    dynamics_.project(state_.t, y.data(), 1e-12);
-    State state = state_;
-    dynamics_.unpack(state_.t, y.data(), state);
-    std::fill(state.v.begin(), state.v.end(), 0.0);
-    return state;
-  }
-  /// Friction elements whose sticking wrench is beyond their bound.
-  [[nodiscard]] std::vector<std::string> slipping() {
-    evaluate_state();
-    std::vector<std::string> names;
-    for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
-      const FrictionUnit& unit = system_.frictions[f];
-      if (state_.friction[f].phase != FrictionPhase::stick) continue;
-      if (dynamics_.watch()[unit.watch] < 0.0 || dynamics_.watch()[unit.watch + 1] < 0.0)
-        names.push_back(system_.element_names[unit.element]);
-    }
-    return names;
-  }
-
-  /// How far those that stick are from slipping.
-  [[nodiscard]] std::vector<FrictionMargin> margins() {
-    evaluate_state();
-    const Snapshot snapshot = dynamics_.snapshot(dy_.data());
-    std::vector<FrictionMargin> found;
-    for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
-      const FrictionUnit& unit = system_.frictions[f];
-      if (state_.friction[f].phase != FrictionPhase::stick || unit.friction->never_slips()) continue;
-      found.push_back({static_cast<int>(f), share_used(*unit.friction, state_.friction[f], snapshot.friction_force + unit.row)});
-    }
-    return found;
+    check_slides();
+    return at_rest();
   }
 
 private:
-  // 1/s for the largest s with s·wrench admissible; the set is convex and holds zero.
-  double share_used(const FrictionElement& element, const FrictionState& state, const double* wrench) {
-    const auto holds = [&](double factor) {
-      double scaled[3] = {0, 0, 0}, watch[2];
-      for (int r = 0; r < element.dimension(); ++r) scaled[r] = factor * wrench[r];
-      element.watch_stick(dynamics_.evaluation(), state, scaled, watch);
-      return watch[0] >= 0.0 && watch[1] >= 0.0;
-    };
-    double low = -portable::log10(k_least_used), high = low; // of the decimal logarithm of s
-    if (holds(portable::pow(10.0, high))) return 0.0;
-    for (low = -high; high - low > 1e-12;) {
-      const double middle = 0.5 * (low + high);
-      (holds(portable::pow(10.0, middle)) ? low : high) = middle;
+  Equilibrium at_rest() {
+    for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f) {
+      if (state_.friction[f].phase != FrictionPhase::slip) continue;
+      state_.friction[f].phase = FrictionPhase::stick;
+      anchor_friction(system_, state_, f);
     }
-    return portable::pow(10.0, -low);
+    for (const Slip& slip : slips_) result_.slid.push_back(slip.friction);
+    note_drives();
+    result_.state = state_;
+    result_.state.v = start_.v;
+    for (std::size_t i = 3; i < start_.q.size(); ++i)
+      if (i % 3 < 2) result_.moved = std::max(result_.moved, std::abs(state_.q[i] - start_.q[i]));
+    return std::move(result_);
   }
-  void evaluate_state() {
-    dynamics_.set_state(state_);
-    dynamics_.pack(state_, y_.data());
-    dynamics_.rates(state_.t, y_.data(), dy_.data());
-    dynamics_.watch_merged(dy_.data());
+
+  // Rates of the drives are taken away, their values stay: the equations of motion are to see a machine at rest.
+  [[nodiscard]] State with_drives_held() const {
+    State held = state_;
+    for (const RowSpec& row : system_.rows) {
+      if (!row.drive) continue;
+      const double now = static_target(row, state_);
+      held.memory[row.memory + 1] = -row.drive->drive(state_.t, row.level).rate;
+      held.memory[row.memory] += now - static_target(row, held);
+    }
+    return held;
   }
-  Eigen::VectorXd accelerations() { return accelerations(y_); }
-  Eigen::VectorXd accelerations(const std::vector<double>& y) {
-    const int n = dynamics_.coordinate_count();
-    dynamics_.rates(state_.t, y.data(), dy_.data());
-    return Eigen::Map<const Eigen::VectorXd>(dy_.data() + n, n);
+
+  void find_margins(const Descent& descent) {
+    result_.margins.clear();
+    overloads_.clear();
+    if (system_.frictions.empty()) return;
+    const State held = with_drives_held();
+    Dynamics dynamics(system_);
+    dynamics.set_state(held);
+    std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
+    dynamics.pack(held, y.data());
+    dynamics.rates(held.t, y.data(), dy.data());
+    dynamics.watch_merged(dy.data());
+    const LoadSharing* const sharing = dynamics.sharing();
+    std::vector<double> wrench(system_.friction_row_count, 0.0);
+    const std::vector<StaticRow>& rows = descent.statics().rows();
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      if (rows[r].friction >= 0) wrench[rows[r].friction_row] = descent.multipliers()[static_cast<Eigen::Index>(r)];
+    for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+      const FrictionUnit& unit = system_.frictions[f];
+      const FrictionPhase phase = state_.friction[f].phase;
+      if ((phase != FrictionPhase::stick && phase != FrictionPhase::slip) || unit.friction->never_slips()) continue;
+      double* const own = &wrench[unit.row];
+      if (phase == FrictionPhase::slip) descent.statics().slip_wrench(f, own);
+      const int group = sharing && phase == FrictionPhase::stick ? sharing->group_of(f) : -1;
+      FrictionMargin margin{f, share_used(descent.statics().evaluation(), f, own), group >= 0};
+      if (group >= 0) margin.used = sharing->groups()[group].least.usage();
+      result_.margins.push_back(margin);
+      if (phase == FrictionPhase::slip || margin.used <= k_admissible) continue;
+      if (group < 0) {
+        overloads_.push_back({f, {own[0], own[1], own[2]}, margin.used});
+        continue;
+      }
+      for (const Release& release : sharing->releases(group))
+        if (release.friction == f) overloads_.push_back({f, {release.wrench[0], 0.0, 0.0}, margin.used});
+    }
   }
-  // Driven coordinates move as they must: their accelerations are not a matter of equilibrium.
-  [[nodiscard]] double scaled_norm(const Eigen::VectorXd& a) const {
-    double largest = 0.0;
-    const Layout& layout = dynamics_.layout();
-    for (int k = 0; k < layout.cluster_count(); ++k)
-      for (int c = 0; c < 3; ++c)
-        if (layout.clusters[k].w[c] > 0.0) largest = std::max(largest, std::abs(a[3 * k + c]));
-    return largest;
+
+  [[nodiscard]] double share_used(const Evaluation& evaluation, int f, const double* wrench) const {
+    const FrictionElement& element = *system_.frictions[f].friction;
+    double size = 0.0, normal[3];
+    for (int r = 0; r < element.dimension(); ++r) size = std::max(size, std::abs(wrench[r]));
+    return size == 0.0 ? 0.0 : element.gauge(evaluation, state_.friction[f], wrench, normal);
   }
+
+  // Does its bound come from contacts, which it needs to be loaded at all?
+  [[nodiscard]] bool is_of_contacts(int f) const {
+    const std::string& kind = system_.element_kinds[system_.frictions[f].element];
+    return kind == "coulomb_stick";
+  }
+  [[nodiscard]] double row_value(int f) const {
+    std::vector<Motion<double>> motion;
+    place_bodies(state_.q, state_.v, motion);
+    return evaluate_row<false>(*system_.frictions[f].friction->rows(state_.friction[f]), motion.data()).value;
+  }
+
+  // Friction bears what it got when it got its load: another admissible set of forces may hold the machine.
+  bool share_anew(const Descent& descent) {
+    if (was_shared_anew_) return false;
+    const auto rest = admissible_rest(system_, state_, descent.scale(), length_);
+    if (!rest) return false;
+    least_usage_ = rest->usage;
+    if (rest->usage > 1.0) return false;
+    was_shared_anew_ = true;
+    state_ = rest->state;
+    return true;
+  }
+
+  // What is overloaded most slides, with what shares its load.
+  void let_go() {
+    const auto worst = std::max_element(overloads_.begin(), overloads_.end(),
+                                        [](const Overload& a, const Overload& b) { return a.used < b.used; });
+    for (const Overload& overload : overloads_) {
+      if (overload.used < worst->used) continue;
+      const int f = overload.friction;
+      const FrictionElement& element = *system_.frictions[f].friction;
+      if (element.dimension() > 1)
+        throw NumericalFailure("no static equilibrium: '" + name_of(f) + "' would have to hold " + rounded(overload.used) +
+                               " times what it can");
+      auto slip = std::find_if(slips_.begin(), slips_.end(), [f](const Slip& s) { return s.friction == f; });
+      if (slip == slips_.end()) slip = slips_.insert(slips_.end(), {f, least_usage_ > 1.0 ? least_usage_ : overload.used, row_value(f)});
+      slip->is_new = true;
+      if (++slip->times > k_most_slips) fail_sliding(*slip);
+      Statics statics(system_);
+      statics.evaluate(state_);
+      element.begin_slip(statics.evaluation(), state_.friction[f], overload.wrench);
+      state_.friction[f].phase = FrictionPhase::slip;
+    }
+    was_shared_anew_ = false;
+  }
+
+  void check_slides() const {
+    for (const Slip& slip : slips_)
+      if (slip.gives_way && is_of_contacts(slip.friction) && std::abs(row_value(slip.friction) - slip.from) > k_stands * length_)
+        fail_sliding(slip);
+  }
+
+  [[nodiscard]] std::string name_of(int f) const { return system_.element_names[system_.frictions[f].element]; }
+  [[nodiscard]] std::string overload_text(const Slip& slip) const {
+    return "'" + name_of(slip.friction) + "' would have to hold " + rounded(slip.used) + " times what it can";
+  }
+  [[noreturn]] void fail_sliding(const Slip& slip) const {
+    const RowSpec& row = *system_.frictions[slip.friction].friction->rows(state_.friction[slip.friction]);
+    const int body = row.a == k_ground ? row.b : row.a;
+    const double way = row_value(slip.friction) - slip.from;
+    throw NumericalFailure("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name +
+                           "' slides" + (way == 0.0 ? "" : ", to rest " + rounded(std::abs(way)) + " m away"));
+  }
+  [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
+    const MotionPart& part = descent.runaway();
+    const std::string unit = part.coordinate == 2 ? " N m" : " N";
+    std::string text = "no static equilibrium: ";
+    if (!slips_.empty()) text += overload_text(slips_.front()) + "; ";
+    if (end == DescentEnd::runs_away)
+      text += part_text(system_, part) + " goes on without end: nothing holds it against the " +
+              rounded(descent.driving_force()) + unit + " that drive it";
+    else
+      text += "none was found; forces do not balance on " + part_text(system_, part) + " (" +
+              rounded(descent.residual()) + " m/s² are left after " + std::to_string(descent.iterations()) + " steps)";
+    for (const MotionPart& left : descent.left()) {
+      text += "; the pose given balances, but not stably: it tips over with " + part_text(system_, left);
+      break;
+    }
+    throw NumericalFailure(text);
+  }
+
+  void note_drives() {
+    for (const RowSpec& row : system_.rows) {
+      if (!row.drive) continue;
+      const SignalJet jet = row.drive->drive(state_.t, row.level);
+      const bool is_moving = row.level != DriveLevel::acceleration && jet.rate != 0.0;
+      if (is_moving || jet.acceleration != 0.0) result_.moving_drives.push_back(row.element);
+    }
+  }
+
+  struct Overload {
+    int friction = 0;
+    double wrench[3] = {0, 0, 0};
+    double used = 0.0;
+  };
 
   const System& system_;
+  const State& start_;
   State state_;
-  Dynamics dynamics_;
-  FrictionModes modes_;
-  std::vector<char> is_anchored_; ///< friction elements that hold where they got their load
-  std::vector<double> y_, dy_;
+  double length_ = 0.0;
+  int yielding_ = 0; ///< directions in which nothing resists at the last rest
+  double least_usage_ = 0.0; ///< of friction over all ways to share the load, where that was asked
+  bool was_shared_anew_ = false;
+  std::vector<Slip> slips_;
+  std::vector<Overload> overloads_;
+  Equilibrium result_;
 };
-
-bool newton(RestProblem& problem, Equilibrium& result) {
-  problem.update_modes();
-  result.residual = problem.residual();
-  double best = result.residual;
-  for (int stalled = 0; result.iterations < k_max_newton && stalled < 6; ++result.iterations) {
-    if (result.residual <= k_acceleration_tolerance) return true;
-    result.residual = problem.newton_step();
-    if (!std::isfinite(result.residual)) return false;
-    stalled = result.residual < 0.7 * best ? 0 : stalled + 1;
-    best = std::min(best, result.residual);
-  }
-  return result.residual <= k_acceleration_tolerance;
-}
-
-// Where the parabola through three points, the middle one the highest, has its top.
-double top_of_parabola(const double* t, const double* e) {
-  const double before = (e[1] - e[0]) / (t[1] - t[0]), after = (e[2] - e[1]) / (t[2] - t[1]);
-  const double curvature = (after - before) / (t[2] - t[0]);
-  return curvature < 0.0 ? std::clamp(0.5 * (t[0] + t[1]) - 0.5 * before / curvature, t[0], t[2]) : t[1];
-}
-
-SimulationOptions swing_options(double end) {
-  SimulationOptions options;
-  options.integrator = "dop853";
-  options.settings.tolerance = 1e-6;
-  options.end = end;
-  return options;
-}
-
-// One swing: from rest to the first peak of the kinetic energy. Steps alone may come no nearer to it than to a
-// place as high as the start, on the other side.
-State swing(const System& system, const State& start) {
-  Simulation simulation(system, start, swing_options(start.t + k_swing_time));
-  double t[3] = {start.t, start.t, start.t}, energy[3] = {0.0, 0.0, 0.0};
-  State state = start;
-  while (simulation.advance()) {
-    const State now = simulation.current_state();
-    t[2] = now.t;
-    energy[2] = system.kinetic_energy(now);
-    if (energy[2] < energy[1]) break;
-    std::copy(t + 1, t + 3, t);
-    std::copy(energy + 1, energy + 3, energy);
-    state = now;
-  }
-  // Few steps make a swing: the parabola's top is looked at and takes the place of one of the three, until it stays.
-  for (int look = 0; look < k_most_looks && energy[2] < energy[1] && t[0] < t[1]; ++look) {
-    const double top = top_of_parabola(t, energy);
-    if (std::abs(top - t[1]) < k_same_top * (t[2] - t[0])) break;
-    Simulation to_top(system, start, swing_options(top));
-    to_top.run();
-    const State there = to_top.current_state();
-    const double reached = system.kinetic_energy(there);
-    const bool is_higher = reached > energy[1], is_later = top > t[1];
-    const int replaced = is_higher == is_later ? 0 : 2;
-    t[replaced] = is_higher ? t[1] : top;
-    energy[replaced] = is_higher ? energy[1] : reached;
-    if (!is_higher) continue;
-    t[1] = top;
-    energy[1] = reached;
-    state = there;
-  }
-  state.t = start.t;
-  std::fill(state.v.begin(), state.v.end(), 0.0);
-  return state;
-}
 
 } // namespace
 
-Equilibrium find_equilibrium(const System& system, const State& start) {
-  Equilibrium result;
-  State from = start;
-  start_drives(system, from);
-  for (int attempt = 0; attempt < k_max_damped_swings; ++attempt) {
-    RestProblem problem(system, from);
-    result.iterations = 0;
-    bool is_found = false;
-    // Newton is tried at once, then after every few swings.
-    if (attempt % 5 == 0) is_found = newton(problem, result);
-    if (is_found) {
-      // A pose that the least nudge would leave is no rest: it is left, and the swing goes on.
-      if (const Eigen::VectorXd away = problem.unstable_direction(); away.size() > 0) {
-        from = swing(system, problem.nudged(away));
-        from.dissipated = from.work = 0.0;
-        continue;
-      }
-      result.slipping = problem.slipping();
-      result.margins = problem.margins();
-      result.state = problem.state();
-      result.state.v = start.v;
-      for (std::size_t i = 3; i < start.q.size(); ++i)
-        if (i % 3 < 2) result.moved = std::max(result.moved, std::abs(result.state.q[i] - start.q[i]));
-      return result;
-    }
-    const State next = swing(system, from);
-    double moved = 0.0;
-    for (std::size_t i = 0; i < next.q.size(); ++i) moved = std::max(moved, std::abs(next.q[i] - from.q[i]));
-    if (moved > 1e3) break;
-    from = next;
-    from.dissipated = from.work = 0.0;
-  }
-  RestProblem problem(system, from);
-  problem.update_modes();
-  throw NumericalFailure("no static equilibrium found: '" + system.bodies[problem.fastest_body()].name +
-                         "' keeps moving; is something missing that holds it?");
+std::string part_text(const System& system, const MotionPart& part) {
+  const std::string name = "'" + system.bodies[part.body].name + "'";
+  if (part.coordinate == 2) return name + " turning " + (part.sign < 0.0 ? "clockwise" : "counter-clockwise");
+  return name + " along " + (part.sign < 0.0 ? "-" : "+") + (part.coordinate == 0 ? "x" : "y");
 }
+
+std::vector<std::string> remarks_on(const System& system, const Equilibrium& found) {
+  std::vector<std::string> remarks;
+  for (const MotionPart& part : found.left)
+    remarks.push_back("a pose on the way balances, but not stably: a nudge of " + part_text(system, part) +
+                      " leaves it, and so did the search");
+  for (const MotionPart& part : found.indifferent)
+    remarks.push_back("indifferent: nothing holds " + part_text(system, part) + " or against it; it rests wherever it is");
+  for (const int f : found.slid)
+    remarks.push_back("'" + system.element_names[system.frictions[f].element] +
+                      "' could not hold where it got its load: it slid to where it does");
+  for (const int element : found.moving_drives)
+    remarks.push_back("the drive '" + system.element_names[element] +
+                      "' moves or accelerates at this time: this is the rest of the machine with the drive held");
+  return remarks;
+}
+
+Equilibrium find_equilibrium(const System& system, const State& start) { return RestSearch(system, start).run(); }
 
 } // namespace steplap

@@ -1,13 +1,15 @@
-// Static equilibrium: the pose in which nothing accelerates, contacts and preload included.
+// Static equilibrium: the pose in which nothing accelerates, contacts, friction and preload included.
 //
-// Friction that is loaded holds its rows where they are (the machine settles without sliding); whether
-// it can is reported. Newton on the constrained accelerations a(q) = 0 from finite differences of them,
-// least-norm where the pose is not unique; where Newton gets nowhere (a body that must first fall onto
-// its contacts), motion with kinetic damping brings it near: velocities are dropped whenever the kinetic
-// energy has passed a peak. A pose that balances but would run away at a nudge is not taken.
+// The machine gives way downhill along its constraints (descent.h) until its forces balance: what hangs swings down,
+// what lies settles, what drives hold is held. Friction that gets its load holds its rows where they are then; where it
+// would have to hold more than it can, it slides at its bound until it holds. Among several rests this is the nearest
+// downhill. A pose that balances but would run away at a nudge is left.
+//
+// There is none where a body would go on without end, where friction between touching bodies gives way (a ladder that
+// slides down may come to rest somewhere, but it does not stand), or where a joint's friction is overloaded.
 #pragma once
 
-#include "mbd/dynamics/dynamics.h"
+#include "mbd/analysis/descent.h"
 
 #include <string>
 #include <vector>
@@ -18,18 +20,28 @@ namespace steplap {
 struct FrictionMargin {
   int friction = 0;   ///< index in System::frictions
   double used = 0.0;  ///< share of what it could bear: the wrench over the largest one of its direction
+  bool is_shared = false; ///< the least share with which it and others can bear the load that they have in common
 };
 
 struct Equilibrium {
   State state;                  ///< at rest; modes and friction phases belong to it
-  double residual = 0.0;        ///< largest acceleration left, m/s² or rad/s² · 1 m
+  double residual = 0.0;        ///< largest acceleration left, m/s² or rad/s²
   double moved = 0.0;           ///< largest displacement from the start, m
   int iterations = 0;
-  std::vector<FrictionMargin> margins; ///< of those that hold; where several share a load, its least-norm share
-  std::vector<std::string> slipping; ///< friction elements that cannot hold what they would have to
+  std::vector<FrictionMargin> margins; ///< of those that hold
+  std::vector<MotionPart> indifferent; ///< directions along which nothing holds it, by their largest parts
+  std::vector<MotionPart> left;        ///< poses that balanced on the way, but that a nudge would leave
+  std::vector<int> slid;               ///< friction elements that slid to where they hold
+  std::vector<int> moving_drives;      ///< elements whose drives move or accelerate now; taken as held
 };
 
-/// From `start`'s pose. Throws NumericalFailure if no equilibrium is found, naming the body that moves.
+/// From `start`'s pose. Throws NumericalFailure if there is no equilibrium, saying what would move where and why.
 [[nodiscard]] Equilibrium find_equilibrium(const System& system, const State& start);
+
+/// "'bob' along -x", "'bob' turning clockwise".
+[[nodiscard]] std::string part_text(const System& system, const MotionPart& part);
+/// What is to be known beside the pose, a sentence each: rests that were left, what is indifferent, what slid, drives
+/// that move.
+[[nodiscard]] std::vector<std::string> remarks_on(const System& system, const Equilibrium& found);
 
 } // namespace steplap

@@ -72,11 +72,14 @@ void print_margins(std::ostream& out, const System& system, const std::vector<Fr
 }
 
 void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equilibrium& found) {
-  out << loaded.name << ": in stable equilibrium after " << found.iterations << " iterations; acceleration left "
+  out << loaded.name << ": in stable equilibrium, the nearest downhill, after " << found.iterations << " iterations; acceleration left "
       << small_text(found.residual) << " m/s²; moved at most " << quantity_text(found.moved, "m", k_unit) << "\n\n";
   print_poses(out, *loaded.system, loaded.system->initial_state(), found.state);
   print_reactions(out, *loaded.system, found.state);
   print_margins(out, *loaded.system, found.margins);
+  const std::vector<std::string> remarks = remarks_on(*loaded.system, found);
+  if (!remarks.empty()) out << "\n";
+  for (const std::string& remark : remarks) out << "Note: " << remark << "\n";
 }
 
 ExitCode equilibrium(const EquilibriumOptions& options, Console& console) {
@@ -85,9 +88,6 @@ ExitCode equilibrium(const EquilibriumOptions& options, Console& console) {
     try {
       const Equilibrium found = equilibrium_of(*loaded);
       if (console.verbosity != Verbosity::quiet) print_equilibrium(console.out, *loaded, found);
-      for (const std::string& name : found.slipping)
-        log_warning("'" + loaded->path + "': '" + name +
-                    "' would have to hold more than its friction can: it slips when released");
     } catch (const NumericalFailure& failure) {
       log_error("'" + loaded->path + "': " + failure.what());
       code = ExitCode::numerical_failure;
@@ -104,7 +104,8 @@ Command equilibrium_command() {
   command.name = "equilibrium";
   command.summary = "the pose in which models rest, and the reactions there";
   command.examples = R"(  steplap equilibrium models/paper/no_interference.toml
-Friction that is loaded holds where it is; what cannot hold is named.
+From the poses given the machine gives way downhill along its joints; friction that is loaded holds where it is.
+Where there is no rest, what moves and why is told.
 )";
   command.options = {{"MODEL", &o->models, "FILE", "model files (TOML)", true},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};

@@ -107,8 +107,8 @@ ExitCode modes(const ModesOptions& options, Console& console) {
       write_file(*options.output, modes_csv(*loaded->system, found),
                  options.is_overwriting ? IfExists::replace : IfExists::refuse);
     if (console.verbosity != Verbosity::quiet) print_modes(console.out, *loaded, found);
-    for (const std::string& name : rest.slipping)
-      log_warning("'" + loaded->path + "': '" + name + "' cannot hold what it would have to: its modes do not exist");
+    for (const std::string& remark : remarks_on(*loaded->system, rest))
+      log_warning("'" + loaded->path + "': " + remark);
   } catch (const NumericalFailure& failure) {
     log_error("'" + loaded->path + "': " + failure.what());
     return ExitCode::numerical_failure;

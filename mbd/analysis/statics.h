@@ -1,0 +1,73 @@
+// Forces, constraint rows and their exact derivatives with everything at rest: what statics asks of a scene.
+//
+// In the bodies' own coordinates (x, y, θ of every body but the ground), so that nothing hangs on how a run would
+// merge or lock them: welds and drives are rows like others. Velocities are zero, and so are those of the drives: they
+// hold their coordinates where the time of the state asks for them. Contacts and tables are in the modes that the
+// pose gives. Friction that sticks is rows, friction that slips is a force at its bound against the slip.
+//   Q + Jᵀλ = 0,   K = ∂(Q + Jᵀλ)/∂q at constant λ
+#pragma once
+
+#include "mbd/system/system.h"
+
+#include <memory>
+#include <vector>
+
+namespace steplap {
+
+/// A row that holds: bilateral, or of friction that sticks.
+struct StaticRow {
+  const RowSpec* spec = nullptr;
+  int row = -1;          ///< bilateral row, or −1
+  int friction = -1;     ///< friction element, or −1
+  int friction_row = 0;  ///< slot in Snapshot::friction_force
+};
+
+class Statics {
+public:
+  explicit Statics(const System& system);
+
+  /// Forces at `state`: poses, time, friction and memory are read; modes are set in it from the poses.
+  void evaluate(State& state);
+  /// The rows that hold in `state`, as of the last collect_rows(); bilateral ones first.
+  void collect_rows(const State& state);
+  [[nodiscard]] const std::vector<StaticRow>& rows() const { return rows_; }
+  [[nodiscard]] int bilateral_count() const { return bilateral_count_; }
+
+  // At the last evaluation; n = 3 (bodies − 1).
+  [[nodiscard]] int coordinates() const { return n_; }
+  [[nodiscard]] const VecX& force() const { return force_; } ///< Q
+  [[nodiscard]] MatX gradient() const;                       ///< J
+  [[nodiscard]] VecX off() const;                            ///< of each row from its target, m or rad
+  [[nodiscard]] MatX stiffness(const VecX& lambda) const;    ///< K
+  [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
+  [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
+  /// Normal force of a contact, for whoever asks what friction would do with another.
+  [[nodiscard]] double& contact_force(int contact) { return contact_force_[contact]; }
+  /// Wrench of friction element f while it slips, along its rows.
+  void slip_wrench(int f, double* wrench) const;
+
+private:
+  void set_modes(State& state);
+  void add_sliding_forces();
+  void add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, MatX& k) const;
+
+  const System& system_;
+  int n_ = 0, bilateral_count_ = 0;
+  const State* state_ = nullptr;
+  Evaluation evaluation_;
+  std::vector<std::unique_ptr<FrictionScratch>> scratch_;
+  std::vector<FrictionScratch*> scratch_pointers_;
+  std::vector<Motion<double>> motion_;
+  std::vector<BodyForce> body_force_;
+  mutable std::vector<double> contact_force_;
+  std::vector<double> watch_, watch_rate_;
+  std::vector<StaticRow> rows_;
+  VecX force_;
+};
+
+/// Value of the target of `row` at rest at the time of `state`.
+[[nodiscard]] double static_target(const RowSpec& row, const State& state);
+/// Anchors the rows of friction element f at the pose of `state`.
+void anchor_friction(const System& system, State& state, int f);
+
+} // namespace steplap
