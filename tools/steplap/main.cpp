@@ -1,4 +1,5 @@
 #include "tools/steplap/command_line.h"
+#include "tools/steplap/study.h"
 
 #include <unistd.h>
 
@@ -6,5 +7,6 @@
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (!arguments.empty() && arguments.front() == "study") return steplap::run_study_program(argv + 1);
   return steplap::run_command_line(arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
 }
