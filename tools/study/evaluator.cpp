@@ -63,7 +63,8 @@ public:
   void run(const double* points, std::size_t count, std::size_t first, std::size_t stride, const std::function<Outcome&(std::size_t)>& outcome) {
     const long mine = first < count ? static_cast<long>((count - first + stride - 1) / stride) : 0;
     const int block = has_models_ ? 1 : 256;
-#pragma omp parallel for schedule(dynamic, block) num_threads(static_cast<int>(scenes_.size())) if (mine > 1)
+    const bool is_worth_it = has_models_ ? mine > 1 : mine > 2000; // formulas take a microsecond, waking threads several
+#pragma omp parallel for schedule(dynamic, block) num_threads(static_cast<int>(scenes_.size())) if (is_worth_it)
     for (long i = 0; i < mine; ++i) {
       const std::size_t k = first + static_cast<std::size_t>(i) * stride;
       scenes_[static_cast<std::size_t>(omp_get_thread_num())]->run(points + k * width_, outcome(k));

@@ -1,6 +1,7 @@
 #include "tools/study/kinds.h"
 
 #include "tools/study/designs.h"
+#include "tools/study/reliability.h"
 
 namespace steplap::study {
 
@@ -16,7 +17,8 @@ const char* name_of(Standing standing) {
 const std::vector<StudyKind>& study_kinds() {
   static const std::vector<StudyKind> kinds{
       {"sweep", "values tried one after the other: a grid, a list, one variable at a time", check_sweep, run_sweep},
-      {"sample", "samples drawn from the distributions: what the responses are like", check_sample, run_sample}};
+      {"sample", "samples drawn from the distributions: what the responses are like", check_sample, run_sample},
+      {"reliability", "how likely failure is, by sampling and by design points", check_reliability, run_reliability}};
   return kinds;
 }
 

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -20,6 +21,8 @@ namespace {
 // Stores of other layouts are refused.
 constexpr int k_layout = 1;
 constexpr int k_application = 0x73746c70; // "stlp", in the file's head
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string quoted(const std::string& name) { return "\"" + name + "\""; }
 
@@ -86,7 +89,7 @@ StoreIdentity identity_of(const LoadedStudy& loaded) {
 void Store::fail(const std::string& doing) {
   const int code = sqlite3_extended_errcode(database_), kind = code & 0xff;
   std::string why = database_ ? sqlite3_errmsg(database_) : "no memory";
-  if (kind == SQLITE_FULL || code == SQLITE_IOERR_WRITE) why = "the disk is full; what was finished before is kept: make room and run the study again";
+  if (kind == SQLITE_FULL || code == SQLITE_IOERR_WRITE) why = "the disk is full, or a quota used up; what was finished before is kept: make room and run the study again";
   if (kind == SQLITE_READONLY || kind == SQLITE_CANTOPEN || kind == SQLITE_PERM) why = "it, or its folder, cannot be written (" + why + ")";
   if (kind == SQLITE_NOTADB) why = "it is no store of a study";
   if (kind == SQLITE_CORRUPT) why = "it is damaged (" + why + ")";
@@ -96,6 +99,23 @@ void Store::fail(const std::string& doing) {
 
 void Store::execute(const std::string& sql) {
   if (sqlite3_exec(database_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail("used");
+}
+
+void Store::begin() {
+  if (!is_open_) execute("BEGIN IMMEDIATE");
+  is_open_ = true;
+}
+
+void Store::flush() {
+  if (is_open_) execute("COMMIT");
+  is_open_ = false;
+  committed_ = now();
+}
+
+// Small batches share a transaction: bringing one to the disk costs some hundredths of a second.
+void Store::commit_if_due() {
+  constexpr double k_due = 0.5; // s
+  if (now() - committed_ > k_due) flush();
 }
 
 // A lock of its own: SQLite's would keep readers out, too. The file stays open for as long as the database is.
@@ -116,12 +136,13 @@ void Store::open(const std::string& path, bool is_writing) {
   sqlite3_busy_timeout(database_, k_patience);
 }
 
-Store::Store(const std::string& path) {
+Store::Store(const std::string& path) : Store() {
   open(path, false);
   read_identity();
 }
 
-Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode mode) {
+Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode mode) : Store() {
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) throw StoreError("'" + path + "' is no file: a store cannot be kept there");
   const bool is_there = std::filesystem::exists(path) && std::filesystem::file_size(path) > 0;
   open(path, true);
   if (mode == StoreMode::restart && is_there) {
@@ -153,6 +174,7 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
 }
 
 Store::~Store() {
+  if (is_open_) sqlite3_exec(database_, "COMMIT", nullptr, nullptr, nullptr);
   sqlite3_close(database_);
   if (lock_file_ >= 0) ::close(lock_file_);
 }
@@ -256,37 +278,32 @@ void Store::append(const StoredSample* rows, std::size_t count) {
   const std::size_t columns = 6 + identity_.variables.size() + identity_.numbers.size();
   std::string marks = "?";
   for (std::size_t i = 1; i < columns; ++i) marks += ", ?";
-  execute("BEGIN IMMEDIATE");
-  try {
-    Statement s(*this, "INSERT INTO sample (" + sample_columns() + ") VALUES (" + marks + ")");
-    for (std::size_t i = 0; i < count; ++i) {
-      const StoredSample& row = rows[i];
-      int c = 1;
-      s.bind(c++, row.number);
-      s.bind(c++, static_cast<long>(row.outcome.status));
-      if (row.outcome.reason.empty()) sqlite3_bind_null(s.statement, c++);
-      else s.bind(c++, row.outcome.reason);
-      s.bind(c++, row.outcome.error);
-      s.bind(c++, row.outcome.evaluations);
-      s.bind(c++, row.outcome.cpu_seconds);
-      for (const double x : row.values) s.bind(c++, x);
-      for (const double x : row.outcome.numbers) s.bind(c++, x);
-      s.once();
-    }
-    execute("COMMIT");
-  } catch (const StoreError&) {
-    sqlite3_exec(database_, "ROLLBACK", nullptr, nullptr, nullptr);
-    throw;
+  begin();
+  Statement s(*this, "INSERT INTO sample (" + sample_columns() + ") VALUES (" + marks + ")");
+  for (std::size_t i = 0; i < count; ++i) {
+    const StoredSample& row = rows[i];
+    int c = 1;
+    s.bind(c++, row.number);
+    s.bind(c++, static_cast<long>(row.outcome.status));
+    if (row.outcome.reason.empty()) sqlite3_bind_null(s.statement, c++);
+    else s.bind(c++, row.outcome.reason);
+    s.bind(c++, row.outcome.error);
+    s.bind(c++, row.outcome.evaluations);
+    s.bind(c++, row.outcome.cpu_seconds);
+    for (const double x : row.values) s.bind(c++, x);
+    for (const double x : row.outcome.numbers) s.bind(c++, x);
+    s.once();
   }
   size_ += static_cast<long>(count);
+  commit_if_due();
 }
 
 void Store::forget_from(long number) {
-  execute("BEGIN IMMEDIATE");
+  if (number > size_) return;
+  begin();
   Statement s(*this, "DELETE FROM sample WHERE number >= ?");
   s.bind(1, number);
   s.once();
-  execute("COMMIT");
   size_ = number - 1;
 }
 
@@ -304,10 +321,14 @@ void Store::put(const std::string& table, long place, const Finding& f) {
   s.once();
 }
 
-void Store::note(long place, const Finding& finding) { put("growth", place, finding); }
+void Store::note(long place, const Finding& finding) {
+  begin();
+  put("growth", place, finding);
+  commit_if_due();
+}
 
 void Store::set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes, const std::string& standing) {
-  execute("BEGIN IMMEDIATE");
+  begin();
   execute("DELETE FROM finding");
   execute("DELETE FROM note");
   for (std::size_t i = 0; i < findings.size(); ++i) put("finding", static_cast<long>(i + 1), findings[i]);
@@ -318,7 +339,7 @@ void Store::set_findings(const std::vector<Finding>& findings, const std::vector
     s.once();
   }
   set("standing", standing);
-  execute("COMMIT");
+  flush();
 }
 
 std::vector<Finding> Store::all_of(const std::string& table) {

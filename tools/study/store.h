@@ -54,7 +54,9 @@ public:
   [[nodiscard]] long size() const { return size_; } ///< samples
   /// Rows number first … first + count − 1, all there.
   void read(long first, long count, std::vector<StoredSample>& rows);
+  /// On the disk within half a second, or with the next call of append(), note() or flush() after that.
   void append(const StoredSample* rows, std::size_t count);
+  void flush();
   /// Takes out all samples from `number` on.
   void forget_from(long number);
   /// An estimate as it grew: `place` counts them within the study.
@@ -75,11 +77,14 @@ public:
   [[nodiscard]] std::vector<Reason> reasons();
 
 private:
+  Store() = default; ///< the others begin with it: what they have opened is closed if they throw
   struct Statement;
   void open(const std::string& path, bool is_writing);
   void lock();
   void create(const StoreIdentity& identity);
   void execute(const std::string& sql);
+  void begin();
+  void commit_if_due();
   void set(const std::string& key, const std::string& value);
   void read_identity();
   void put(const std::string& table, long place, const Finding& finding);
@@ -92,6 +97,8 @@ private:
   int lock_file_ = -1;
   StoreIdentity identity_;
   long size_ = 0;
+  bool is_open_ = false;      ///< a transaction is
+  double committed_ = 0.0;    ///< when the last one ended, s
 };
 
 } // namespace steplap::study
