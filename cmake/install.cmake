@@ -23,6 +23,8 @@ install(TARGETS ${libraries} EXPORT steplap
 install(DIRECTORY mbd elements transformer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap
   FILES_MATCHING PATTERN "*.h")
 install(TARGETS steplap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# bin/steplap looks for it at ../libexec, in the build tree as well.
+install(TARGETS steplap-study RUNTIME DESTINATION libexec)
 install(DIRECTORY models examples DESTINATION ${CMAKE_INSTALL_DATADIR}/steplap)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap)
 

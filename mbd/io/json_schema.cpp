@@ -159,4 +159,10 @@ std::string json_schema(const Catalogue& catalogue) {
   return root.dump(2) + "\n";
 }
 
+std::string field_json_schema(const Field& field) {
+  Json schema = value_schema(field);
+  schema["description"] = field.unit.empty() || field.unit == "*" ? field.doc : field.doc + " [" + field.unit + "]";
+  return schema.dump();
+}
+
 } // namespace steplap

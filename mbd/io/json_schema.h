@@ -10,4 +10,7 @@ namespace steplap {
 /// entry but its name is required.
 [[nodiscard]] std::string json_schema(const Catalogue& catalogue);
 
+/// The schema of one field's value, as JSON text: for files of other kinds that are read through field tables.
+[[nodiscard]] std::string field_json_schema(const Field& field);
+
 } // namespace steplap

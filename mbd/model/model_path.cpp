@@ -192,4 +192,11 @@ double number_of(const Model& model, const std::string& path) {
   complain(path, std::string("holds ") + text_of(value) + ", not a number");
 }
 
+std::string unit_of(const Model& model, const std::string& path) {
+  (void)number_of(model, path);
+  const Target target = Resolver(model, path).resolve();
+  const bool is_second = target.field->type == FieldType::points && target.items.back() == 1;
+  return is_second && !target.field->unit2.empty() ? target.field->unit2 : target.field->unit;
+}
+
 } // namespace steplap

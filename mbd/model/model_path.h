@@ -23,4 +23,7 @@ void set_value(Model& model, const std::string& path, const FieldValue& value);
 /// The same where that is a number. Throws ModelError if it is none.
 [[nodiscard]] double number_of(const Model& model, const std::string& path);
 
+/// The unit of that number: "*" where any will do. Throws ModelError if the path leads to no number.
+[[nodiscard]] std::string unit_of(const Model& model, const std::string& path);
+
 } // namespace steplap

@@ -15,14 +15,16 @@ namespace steplap {
 
 namespace {
 
-constexpr const char* k_footer = R"(Exit codes:
+constexpr const char* k_exit_codes = R"(Exit codes:
   0  done
   1  a fault of the program itself
   2  wrong command line, or results that cannot be written
   3  the model cannot be used as it stands
   4  the computation could not be finished (what there is is saved as partial_*)
   5  finished, but a criterion that was asked for is not met
+)";
 
+constexpr const char* k_examples = R"(
 Examples:
   steplap check my.toml
   steplap simulate my.toml -o out
@@ -94,8 +96,8 @@ ExitCode run_command(const Command& command, Console& console) {
 }
 
 // What the parser says about a wrong command line, with the nearest sub-command.
-ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::string>& arguments,
-                      const std::vector<Command>& commands) {
+ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::string>& arguments, const Program& program) {
+  const std::vector<Command>& commands = program.commands;
   std::vector<std::string> names;
   for (const Command& command : commands)
     names.push_back(command.name);
@@ -103,9 +105,9 @@ ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::strin
                           std::find(names.begin(), names.end(), arguments.front()) == names.end();
   if (is_unknown)
     log_error("there is no command '" + arguments.front() + "'" +
-              did_you_mean(arguments.front(), names) + "; see steplap --help");
+              did_you_mean(arguments.front(), names) + "; see " + program.name + " --help");
   else
-    log_error(std::string(error.what()) + "; see steplap " +
+    log_error(std::string(error.what()) + "; see " + program.name + " " +
               (arguments.empty() || arguments.front().front() == '-' ? "" : arguments.front() + " ") +
               "--help");
   return ExitCode::usage;
@@ -113,17 +115,16 @@ ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::strin
 
 } // namespace
 
-int run_command_line(const std::vector<std::string>& arguments, std::ostream& out,
-                     std::ostream& err, bool is_terminal) {
+int run_program(const Program& program, const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err,
+                bool is_terminal) {
   Console console{out, err, is_terminal};
   start_log(err, is_terminal);
-  CLI::App app("steplap: planar multibody dynamics with honest friction, machines described in TOML",
-               "steplap");
-  const std::vector<Command> commands = all_commands();
+  CLI::App app(program.name + ": " + program.doc, program.name);
+  const std::vector<Command>& commands = program.commands;
   VerbosityFlags flags;
-  app.set_version_flag("--version", std::string("steplap ") + k_version);
+  app.set_version_flag("--version", program.name + " " + k_version);
   app.require_subcommand(1);
-  app.footer(k_footer);
+  app.footer(std::string(k_exit_codes) + (program.name == "steplap" ? k_examples : ""));
   for (const Command& command : commands)
     bind(app, command, flags);
   try {
@@ -131,7 +132,7 @@ int run_command_line(const std::vector<std::string>& arguments, std::ostream& ou
     app.parse(reversed);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0)
-      return static_cast<int>(report_usage(error, arguments, commands));
+      return static_cast<int>(report_usage(error, arguments, program));
     app.exit(error, out, err); // help or version
     return static_cast<int>(ExitCode::done);
   }
@@ -141,6 +142,11 @@ int run_command_line(const std::vector<std::string>& arguments, std::ostream& ou
   for (const Command& command : commands)
     if (command.name == chosen) return static_cast<int>(run_command(command, console));
   return static_cast<int>(ExitCode::internal_error);
+}
+
+int run_command_line(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, bool is_terminal) {
+  return run_program({"steplap", "planar multibody dynamics with honest friction, machines described in TOML", all_commands()}, arguments, out, err,
+                     is_terminal);
 }
 
 } // namespace steplap

@@ -1,6 +1,8 @@
 // The command line: arguments in, exit code out.
 #pragma once
 
+#include "tools/steplap/command.h"
+
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -11,5 +13,15 @@ namespace steplap {
 /// Every error is reported on `err`; never throws. Returns the exit code (command.h).
 int run_command_line(const std::vector<std::string>& arguments, std::ostream& out,
                      std::ostream& err, bool is_terminal);
+
+/// A program of several commands.
+struct Program {
+  std::string name, doc;
+  std::vector<Command> commands;
+};
+
+/// The same for a program with other commands.
+int run_program(const Program& program, const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err,
+                bool is_terminal);
 
 } // namespace steplap

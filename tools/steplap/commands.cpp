@@ -11,6 +11,7 @@
 #include "tools/steplap/report.h"
 #include "tools/steplap/schema.h"
 #include "tools/steplap/simulate.h"
+#include "tools/steplap/study.h"
 
 namespace steplap {
 
@@ -27,6 +28,7 @@ std::vector<Command> all_commands() {
   commands.push_back(accuracy_command());
   commands.push_back(elements_command());
   commands.push_back(schema_command());
+  commands.push_back(study_command());
   return commands;
 }
 

@@ -1,0 +1,66 @@
+// A block on a deck that is accelerated for a while: everything is known in closed form.
+//   D(A, t, mu) = (A t)²/(2 mu g) (1 − mu g/A), if A > mu g
+#include "tests/study/block_scene.h"
+#include "tests/study/study_bench.h"
+#include "tools/study/law.h"
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+std::string with_friction(const std::string& kind, const std::string& settings, double mean, double cov) {
+  return "kind = \"" + kind + "\"\nmodel = \"block.toml\"\n" + settings + "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\n" +
+         "distribution = \"lognormal\"\nmean = " + std::to_string(mean) + "\ncov = " + std::to_string(cov) + "\n" + k_slid;
+}
+
+} // namespace
+
+TEST_CASE("a sweep over friction gives the distances of the closed form") {
+  StudyBench bench;
+  bench.write("block.toml", k_block);
+  const Outcome outcome = bench.run("kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\n"
+                                    "values = [0.1, 0.2, 0.3, 0.5, 0.7]\n" + k_slid);
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  study::Store store(bench.at("study.sqlite"));
+  std::vector<study::StoredSample> rows;
+  store.read(1, 5, rows);
+  for (const study::StoredSample& row : rows) {
+    CAPTURE(row.values[0]);
+    // The run's own tolerance is 1e-10.
+    CHECK(row.outcome.numbers[0] == doctest::Approx(slid_distance(0.6 * k_g, 0.1, row.values[0])).epsilon(1e-8));
+  }
+}
+
+// P = Φ((ln mu* − λ)/ζ): studies.md
+TEST_CASE("the probability that it slides too far, friction lognormal") {
+  struct Case {
+    double mean, cov, limit, probability, beta;
+  };
+  for (const Case& c : {Case{0.45, 0.20, 0.010, 0.529745757, -0.074630777}, {0.60, 0.15, 0.005, 0.164196877, 0.977353354}, {0.60, 0.10, 0.005, 0.063857722, 1.523172941}}) {
+    StudyBench bench;
+    bench.write("block.toml", k_block);
+    const std::string limit = "[[limit_state]]\nname = \"far\"\nexpression = \"" + std::to_string(c.limit) + " - slid\"\n";
+    const Outcome outcome =
+        bench.run(with_friction("reliability", "[reliability]\nmethods = [\"form\", \"importance_sampling\"]\nsamples = 400\nconfidence = 0.999\nstarts = 2\n", c.mean, c.cov) + limit);
+    CAPTURE(outcome.err);
+    CAPTURE(c.mean);
+    // One variable and a monotonic response: first order is exact. Four digits are asked for.
+    CHECK(std::abs(bench.find("form", "beta", "far").value - c.beta) < 1e-4);
+    CHECK(bench.find("form", "probability").value == doctest::Approx(c.probability).epsilon(1e-4));
+    CHECK(bench.find("importance_sampling", "probability").low <= c.probability);
+    CHECK(bench.find("importance_sampling", "probability").high >= c.probability);
+  }
+}
+
+TEST_CASE("a sample is replayed by the command that runs models") {
+  StudyBench bench;
+  bench.write("block.toml", k_block);
+  (void)bench.run("kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nvalues = [0.2, 0.3]\n" + k_slid);
+  const Outcome outcome = study_does({"replay", bench.at("study.toml"), "--store", bench.at("study.sqlite"), "--sample", "2", "-o", bench.at("replay")});
+  CHECK(outcome.code == 0);
+  CHECK(has(outcome.out, "\"element.deck friction.static_friction=0.3\""));
+  CHECK(fs::exists(bench.at("replay/block/summary.json")));
+  CHECK(study_does({"replay", bench.at("study.toml"), "--store", bench.at("study.sqlite"), "--sample", "3"}).code == 2);
+}

@@ -1,0 +1,272 @@
+#include "tools/study/commands.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/io/atomic_file.h"
+#include "mbd/io/csv.h"
+#include "mbd/model/model_path.h"
+#include "tools/steplap/command_line.h"
+#include "tools/steplap/log.h"
+#include "tools/steplap/text_table.h"
+#include "tools/study/export.h"
+#include "tools/study/kinds.h"
+#include "tools/study/show.h"
+
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+namespace steplap::study {
+
+namespace {
+
+struct Options {
+  std::string file;
+  std::optional<std::string> store, sample, output, threads;
+  bool is_restarted = false, is_changed = false, is_findings = false, is_growth = false;
+};
+
+std::string default_store(const std::string& file) { return (std::filesystem::path("out") / (std::filesystem::path(file).stem().string() + ".sqlite")).string(); }
+
+bool is_database(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  char head[16]{};
+  return stream.read(head, sizeof head) && std::string(head, 15) == "SQLite format 3";
+}
+
+// What is given is the study file or the store itself.
+std::string store_of(const Options& o) { return o.store ? *o.store : is_database(o.file) ? o.file : default_store(o.file); }
+
+long whole_number(const std::string& text, const char* option, long least) {
+  long value = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status != std::errc() || end != text.data() + text.size() || value < least)
+    throw UsageError(std::string(option) + " takes a whole number from " + std::to_string(least) + ", not '" + text + "'");
+  return value;
+}
+
+// One line on a terminal: how far, how fast, the last estimate.
+class ProgressLine {
+public:
+  explicit ProgressLine(Console& console) : console_(console) {}
+  ~ProgressLine() {
+    if (is_shown_) console_.err << "\r\x1b[K" << std::flush;
+  }
+  void operator()(const Pace& pace) {
+    constexpr double k_between = 0.2; // s
+    if (!console_.is_terminal || console_.verbosity == Verbosity::quiet || pace.seconds - last_ < k_between) return;
+    last_ = pace.seconds;
+    is_shown_ = true;
+    char text[100];
+    std::snprintf(text, sizeof text, "%ld samples, %.3g a second, %.0f s", pace.samples, pace.rate, pace.seconds);
+    console_.err << "\r\x1b[K" << text << (pace.stored ? ", " + std::to_string(pace.stored) + " from the store" : "")
+                 << (pace.estimate.empty() ? "" : "; " + pace.estimate) << std::flush;
+  }
+
+private:
+  Console& console_;
+  double last_ = -1.0;
+  bool is_shown_ = false;
+};
+
+Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, Console& console) {
+  std::vector<Diagnostic> problems;
+  const JointLaw law(loaded.study, loaded.nominal, problems); // checked by the reader
+  ProgressLine line(console);
+  Evaluator evaluator(loaded, store, ranks, threads, std::ref(line));
+  StudyRun run{loaded, law, evaluator, store};
+  for (const StudyKind& kind : study_kinds()) {
+    if (kind.name != loaded.study.kind) continue;
+    Answer answer = kind.run(run);
+    store.forget_from(evaluator.asked() + 1);
+    return answer;
+  }
+  throw std::logic_error("a kind of study that the reader let pass is not there");
+}
+
+ExitCode code_of(Standing standing) {
+  if (standing == Standing::not_met) return ExitCode::criterion_failed;
+  return standing == Standing::done ? ExitCode::done : ExitCode::numerical_failure;
+}
+
+ExitCode run_first(const Options& o, const LoadedStudy& loaded, const Ranks& ranks, int threads, Console& console) {
+  if (o.is_restarted && o.is_changed) throw UsageError("--restart and --changed exclude each other");
+  const std::string path = store_of(o);
+  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw StoreError("the folder '" + folder.string() + "' cannot be made: " + error.message());
+  }
+  const StoreMode mode = o.is_restarted ? StoreMode::restart : o.is_changed ? StoreMode::changed : StoreMode::run;
+  Store store(path, identity_of(loaded), mode);
+  if (store.size() > 0) log_info("going on with the " + std::to_string(store.size()) + " samples in '" + path + "'");
+  const Answer answer = answer_of(loaded, store, ranks, threads, console);
+  store.set_findings(answer.findings, answer.notes, name_of(answer.standing));
+  if (console.verbosity != Verbosity::quiet) {
+    show(store, loaded.study.title, console.out);
+    console.out << "Store: " << path << "\n";
+  }
+  return code_of(answer.standing);
+}
+
+// What can go wrong with a store or a sample becomes an exit code here: the command line knows neither.
+template <class Work> ExitCode guarded(const Work& work) {
+  try {
+    return work();
+  } catch (const StoreError& error) {
+    log_error(error.what());
+    return ExitCode::usage;
+  } catch (const StudyStopped& error) {
+    log_error(error.what());
+    return ExitCode::numerical_failure;
+  }
+}
+
+ExitCode run_study(const Options& o, const Ranks& ranks, Console& console) {
+  const int threads = o.threads ? static_cast<int>(whole_number(*o.threads, "--threads", 1)) : ranks.threads();
+  std::optional<LoadedStudy> loaded;
+  try {
+    loaded = read_study(o.file);
+  } catch (const ModelError&) {
+    if (ranks.is_first()) throw;
+    return ExitCode::model_error; // said by the first
+  }
+  if (!ranks.is_first()) {
+    Evaluator::serve(*loaded, ranks, threads);
+    return ExitCode::done;
+  }
+  try {
+    const ExitCode code = guarded([&] { return run_first(o, *loaded, ranks, threads, console); });
+    Evaluator::dismiss(ranks);
+    return code;
+  } catch (...) {
+    Evaluator::dismiss(ranks);
+    throw;
+  }
+}
+
+Option store_option(const std::shared_ptr<Options>& o) {
+  return {"-o,--output", &o->store, "STORE", "file of the results (default: out/<name of the study>.sqlite)"};
+}
+
+Command run_command(const Ranks& ranks) {
+  const auto o = std::make_shared<Options>();
+  Command command;
+  command.name = "run";
+  command.summary = "run a study, or go on with one (the word may be left out: steplap study FILE)";
+  command.examples = R"(  steplap study friction.toml
+  steplap study friction.toml -o friction.sqlite --restart
+  mpirun -n 8 steplap study friction.toml
+A study that was interrupted goes on when it is run again.
+)";
+  command.options = {{"FILE", &o->file, "FILE", "study file (TOML)", true},
+                     store_option(o),
+                     {"--restart", &o->is_restarted, "", "drop what the store holds"},
+                     {"--changed", &o->is_changed, "", "the study asks for something else now: keep the samples that are the same"},
+                     {"--threads", &o->threads, "N", "threads (default: all processors)"}};
+  command.run = [o, &ranks](Console& console) { return run_study(*o, ranks, console); };
+  return command;
+}
+
+Command show_command() {
+  const auto o = std::make_shared<Options>();
+  Command command;
+  command.name = "show";
+  command.summary = "what a study has found so far";
+  command.options = {{"FILE", &o->file, "FILE", "study file or store", true}, store_option(o)};
+  command.run = [o](Console& console) {
+    return guarded([&] {
+      Store store(store_of(*o));
+      show(store, "", console.out);
+      return ExitCode::done;
+    });
+  };
+  return command;
+}
+
+Command export_command() {
+  const auto o = std::make_shared<Options>();
+  Command command;
+  command.name = "export";
+  command.summary = "all samples as CSV, or all findings";
+  command.examples = "  steplap study export friction.toml > samples.csv\n  steplap study export friction.toml --findings\n";
+  command.options = {{"FILE", &o->file, "FILE", "study file or store", true},
+                     store_option(o),
+                     {"--findings", &o->is_findings, "", "what was found instead of the samples"},
+                     {"--growth", &o->is_growth, "", "estimates as they grew instead of the samples"}};
+  command.run = [o](Console& console) {
+    return guarded([&] {
+      Store store(store_of(*o));
+      if (o->is_findings) export_findings(store.findings(), console.out);
+      else if (o->is_growth) export_findings(store.growth(), console.out);
+      else export_samples(store, console.out);
+      if (!console.out.flush()) throw UsageError("the export could not be written to its end");
+      return ExitCode::done;
+    });
+  };
+  return command;
+}
+
+// The run of one sample by the command that runs models, with the values laid over them.
+ExitCode replay(const Options& o, Console& console) {
+  const LoadedStudy loaded = read_study(o.file);
+  Store store(store_of(o));
+  const long number = whole_number(*o.sample, "--sample", 1);
+  if (number > store.size()) throw UsageError("the store has " + std::to_string(store.size()) + " samples: there is no sample " + *o.sample);
+  if (store.identity().scene != identity_of(loaded).scene)
+    throw StoreError("the models, variables or responses of '" + o.file + "' are not those of the store any more: its samples cannot be replayed");
+  if (loaded.models.empty()) throw UsageError("the study has no model: its samples are numbers only");
+  std::vector<StoredSample> rows;
+  store.read(number, 1, rows);
+  int worst = 0;
+  for (const auto& model : loaded.models) {
+    std::vector<std::string> arguments{"simulate", model->path, "-o", o.output.value_or("out/replay"), "--force", "--report"};
+    for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
+      const Variable& v = loaded.study.variables[i];
+      if (!is_set_in(v, *model)) continue;
+      for (const std::string& path : v.paths) {
+        const double factor = v.is_factor ? number_of(model->given, path) : 1.0;
+        arguments.insert(arguments.end(), {"--set", path + "=" + number_text(factor * rows[0].values[i])});
+      }
+    }
+    std::string line = "steplap";
+    for (const std::string& argument : arguments) line += argument.find(' ') == std::string::npos ? " " + argument : " \"" + argument + "\"";
+    console.out << line << "\n";
+    worst = std::max(worst, run_command_line(arguments, console.out, console.err, console.is_terminal));
+  }
+  return static_cast<ExitCode>(worst);
+}
+
+Command replay_command() {
+  const auto o = std::make_shared<Options>();
+  o->sample = "";
+  Command command;
+  command.name = "replay";
+  command.summary = "the full run of one sample, with its report";
+  command.examples = "  steplap study replay friction.toml --sample 17\n";
+  command.options = {{"FILE", &o->file, "FILE", "study file", true},
+                     {"--sample", &o->sample, "N", "its number, as show and export say", true},
+                     {"--store", &o->store, "STORE", "file of the results (default: out/<name of the study>.sqlite)"},
+                     {"-o,--output", &o->output, "DIR", "folder for the run (default: out/replay)"}};
+  command.run = [o](Console& console) { return guarded([&] { return replay(*o, console); }); };
+  return command;
+}
+
+Command schema_command() {
+  Command command;
+  command.name = "schema";
+  command.summary = "a JSON Schema of study files, for editors";
+  command.run = [](Console& console) {
+    console.out << study_schema();
+    return ExitCode::done;
+  };
+  return command;
+}
+
+} // namespace
+
+std::vector<Command> study_commands(const Ranks& ranks) {
+  return {run_command(ranks), show_command(), export_command(), replay_command(), schema_command()};
+}
+
+} // namespace steplap::study

@@ -1,0 +1,12 @@
+// steplap study: its sub-commands.
+#pragma once
+
+#include "tools/steplap/command.h"
+#include "tools/study/ranks.h"
+
+namespace steplap::study {
+
+/// run, show, export, replay, schema; `ranks` has to outlive them.
+[[nodiscard]] std::vector<Command> study_commands(const Ranks& ranks);
+
+} // namespace steplap::study

@@ -1,0 +1,104 @@
+// What a study leaves behind: one SQLite file with the study, the models, every sample and every finding.
+//
+// Samples are numbered from 1 in the order in which the study asks for them and are written in transactions, so that
+// those in the file are always the first so many. One process writes.
+#pragma once
+
+#include "tools/study/scene.h"
+#include "tools/study/finding.h"
+
+#include <stdexcept>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace steplap::study {
+
+/// The store cannot be used: its message says why and what helps. Exit code 2.
+class StoreError : public std::runtime_error {
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/// run: goes on with what is there, unless the study has changed; changed: even then, with those samples that are the
+/// same; restart: drops what is there.
+enum class StoreMode { run, changed, restart };
+
+/// What a store holds besides samples.
+struct StoreIdentity {
+  std::string version;  ///< of the program
+  std::string study;    ///< text of the study file, with what it extends
+  std::string kind;
+  std::string scene;    ///< all that a sample's numbers depend on: models, variables, responses, limit states
+  std::vector<std::string> variables, numbers; ///< names of columns
+};
+[[nodiscard]] StoreIdentity identity_of(const LoadedStudy& loaded);
+
+struct StoredSample {
+  long number = 0;
+  std::vector<double> values;
+  Outcome outcome;
+};
+
+class Store {
+public:
+  /// run: makes the file if there is none; one of another study is refused (StoreError).
+  Store(const std::string& path, const StoreIdentity& identity, StoreMode mode);
+  /// For reading what is there, whatever it is of.
+  explicit Store(const std::string& path);
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
+  ~Store();
+
+  [[nodiscard]] const StoreIdentity& identity() const { return identity_; }
+  [[nodiscard]] long size() const { return size_; } ///< samples
+  /// Rows number first … first + count − 1, all there.
+  void read(long first, long count, std::vector<StoredSample>& rows);
+  /// On the disk within half a second, or with the next call of append(), note() or flush() after that.
+  void append(const StoredSample* rows, std::size_t count);
+  void flush();
+  /// Takes out all samples from `number` on.
+  void forget_from(long number);
+  /// An estimate as it grew: `place` counts them within the study.
+  void note(long place, const Finding& finding);
+  void set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes, const std::string& standing);
+  [[nodiscard]] std::vector<Finding> findings();
+  [[nodiscard]] std::vector<Finding> growth();
+  [[nodiscard]] std::vector<std::string> notes();
+  [[nodiscard]] std::string setting(const std::string& key); ///< "" if there is none
+  /// Of the i-th number: how many samples have a value; the one at a place when they are sorted, from 0.
+  [[nodiscard]] long count_of(std::size_t i);
+  [[nodiscard]] double order_statistic(std::size_t i, long place);
+  /// Counts of statuses with their most frequent reasons: status, reason, count, first sample.
+  struct Reason {
+    std::string status, reason;
+    long count = 0, first = 0;
+  };
+  [[nodiscard]] std::vector<Reason> reasons();
+
+private:
+  Store() = default; ///< the others begin with it: what they have opened is closed if they throw
+  struct Statement;
+  void open(const std::string& path, bool is_writing);
+  void lock();
+  void create(const StoreIdentity& identity);
+  void execute(const std::string& sql);
+  void begin();
+  void commit_if_due();
+  void set(const std::string& key, const std::string& value);
+  void read_identity();
+  void put(const std::string& table, long place, const Finding& finding);
+  [[nodiscard]] std::vector<Finding> all_of(const std::string& table);
+  [[noreturn]] void fail(const std::string& doing);
+  [[nodiscard]] std::string sample_columns() const;
+
+  std::string path_;
+  sqlite3* database_ = nullptr;
+  int lock_file_ = -1;
+  StoreIdentity identity_;
+  long size_ = 0;
+  bool is_open_ = false;      ///< a transaction is
+  double committed_ = 0.0;    ///< when the last one ended, s
+};
+
+} // namespace steplap::study
