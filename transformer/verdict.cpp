@@ -1,5 +1,8 @@
 #include "transformer/verdict.h"
 
+#include "mbd/model/method.h"
+#include "mbd/model/validate.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -191,11 +194,11 @@ double size_of(const System& system) {
 }
 
 std::string remedy(const SimulationSettings& s) {
-  const bool has_steps = s.integrator == "rk4" || s.integrator == "moreau";
+  const bool has_steps = has_fixed_step(s.integrator);
   if (has_steps && s.step) return "try --step " + limit_text(*s.step / 10.0) + ", or --integrator auto";
   const double tolerance = s.tolerance.value_or(1e-8);
   return "try --tolerance " + limit_text(std::max(1e-12, tolerance * (tolerance > 1e-6 ? 1e-4 : 1e-2))) +
-         (s.integrator == "rodas5p" ? ", or --integrator dop853" : ", or --integrator rodas5p");
+         (method(s.integrator).is_for_damping ? ", or --integrator dop853" : ", or --integrator rodas5p");
 }
 
 // A joint that holds although it cannot: of a method that locates no events, or that steps over a storm of them, whether it

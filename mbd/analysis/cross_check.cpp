@@ -2,6 +2,7 @@
 
 #include "mbd/analysis/cross_curves.h"
 #include "mbd/base/number_text.h"
+#include "mbd/model/method.h"
 
 #include <algorithm>
 #include <cmath>
@@ -174,7 +175,7 @@ private:
     if (exchanged > 0.0 && methods_[i].is_adaptive)
       note({Doubt::energy, name_of_run(i), "", "", base_.end, residual / allowed,
             number_text(residual) + " J of " + number_text(exchanged) + " J"});
-    const bool is_stepping = r.setting.integrator == "moreau";
+    const bool is_stepping = method(r.setting.integrator).is_time_stepping;
     const double share = methods_[i].is_adaptive ? k_law_share : k_stepped_law_share;
     for (const AuditFinding& f : audit(system_, r.result, share, is_stepping ? k_persistent : 1))
       note({Doubt::law, name_of_run(i), "", "'" + f.where + "' " + f.what, f.t, f.ratio(),
@@ -189,7 +190,7 @@ private:
   // A method of high order that knows its own answer less well than time stepping does.
   void check_own() {
     const auto stepping = std::find_if(curves_.begin(), curves_.end(), [&](const auto& c) {
-      return run_of(static_cast<std::size_t>(&c - curves_.data())).setting.integrator == "moreau";
+      return method(run_of(static_cast<std::size_t>(&c - curves_.data())).setting.integrator).is_time_stepping;
     });
     if (stepping == curves_.end()) return;
     for (std::size_t i = 0; i < curves_.size(); ++i) {
@@ -297,7 +298,7 @@ private:
     double stepping = 0.0, other = 0.0;
     for (const Method& method : methods_) {
       const CrossRun& r = check_.runs[method.run];
-      double& known = r.setting.integrator == "moreau" ? stepping : other;
+      double& known = method(r.setting.integrator).is_time_stepping ? stepping : other;
       known = std::max(known, r.known_until);
     }
     check_.known_until = std::min(stepping, other);

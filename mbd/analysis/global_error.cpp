@@ -1,6 +1,7 @@
 #include "mbd/analysis/global_error.h"
 
 #include "mbd/analysis/event_match.h"
+#include "mbd/model/method.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ constexpr double k_first_order = 0.5;    // what half the step leaves
 constexpr double k_safety = 1.5;
 constexpr double k_stepping_safety = 3.0; // where nothing is located
 
-bool locates_events(const SimulationOptions& options) { return options.integrator != "moreau"; }
+bool locates_events(const SimulationOptions& options) { return !method(options.integrator).is_time_stepping; }
 
 // Error over difference.
 double factor_for(const SimulationOptions& coarse, const SimulationOptions& fine, bool has_storm) {

@@ -136,7 +136,7 @@ protected:
   double length_scale_ = 1.0;
 };
 
-/// "rk4", "tsit5", "dop853", "rodas5p", "moreau", "auto". Throws std::invalid_argument for an unknown name.
+/// One of methods() (mbd/model/method.h). Throws std::invalid_argument for an unknown name.
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(const std::string& name,
                                                           const Dynamics& dynamics,
                                                           const IntegratorSettings& settings);

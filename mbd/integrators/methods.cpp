@@ -1,19 +1,40 @@
 #include "mbd/integrators/methods.h"
 
+#include "mbd/model/method.h"
+
+#include <algorithm>
 #include <stdexcept>
 
 namespace steplap {
 
+const std::vector<Method>& methods() {
+  static const std::vector<Method> list = {
+      // name, fixed step, time stepping, for damping, storms stepped over
+      {"rk4", true, false, false, false, make_rk4},
+      {"tsit5", false, false, false, false, make_tsit5},
+      {"dop853", false, false, false, false, make_dop853},
+      {"rodas5p", false, false, true, false, make_rodas5p},
+      {"moreau", true, true, false, false, make_moreau},
+      {"auto", false, false, false, true, make_automatic},
+  };
+  return list;
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const Method& m : methods()) names.emplace_back(m.name);
+  return names;
+}
+
+const Method& method(const std::string& name) {
+  const auto found = std::find_if(methods().begin(), methods().end(), [&](const Method& m) { return m.name == name; });
+  if (found == methods().end()) throw std::invalid_argument("unknown integrator '" + name + "'");
+  return *found;
+}
+
 std::unique_ptr<Integrator> make_integrator(const std::string& name, const Dynamics& dynamics,
                                             const IntegratorSettings& settings) {
-  const int max_dimension = dynamics.system().largest_dimension();
-  if (name == "rk4") return make_rk4(dynamics, settings, max_dimension);
-  if (name == "tsit5") return make_tsit5(dynamics, settings, max_dimension);
-  if (name == "dop853") return make_dop853(dynamics, settings, max_dimension);
-  if (name == "rodas5p") return make_rodas5p(dynamics, settings, max_dimension);
-  if (name == "moreau") return make_moreau(dynamics, settings, max_dimension);
-  if (name == "auto") return make_automatic(dynamics, settings, max_dimension);
-  throw std::invalid_argument("unknown integrator '" + name + "'");
+  return method(name).make(dynamics, settings, dynamics.system().largest_dimension());
 }
 
 } // namespace steplap

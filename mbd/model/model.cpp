@@ -1,5 +1,7 @@
 #include "mbd/model/model.h"
 
+#include "mbd/model/method.h"
+
 namespace steplap {
 
 Vec3 Body::reference_pose() const {
@@ -45,7 +47,7 @@ const FieldTable& SimulationSettings::fields() {
     using T = SimulationSettings;
     FieldTable f;
     f.add("end", &T::end).in("s").positive().doc("end of the run; it starts at t = 0");
-    f.add("integrator", &T::integrator).one_of({"rk4", "tsit5", "dop853", "rodas5p", "moreau", "auto"}).doc("integration method");
+    f.add("integrator", &T::integrator).one_of(method_names()).doc("integration method");
     f.add("step", &T::step).in("s").positive().doc("step size of the fixed-step methods, rk4 and moreau");
     f.add("tolerance", &T::tolerance).at_least(1e-14).at_most(0.1).doc(
         "relative tolerance of the adaptive methods, for each step; 1e-8 if not given");

@@ -1,6 +1,7 @@
 #include "mbd/model/validate.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/model/method.h"
 #include "mbd/model/signal_network.h"
 
 #include <algorithm>
@@ -10,7 +11,8 @@
 namespace steplap {
 
 bool has_fixed_step(const std::string& integrator) {
-  return integrator == "rk4" || integrator == "moreau";
+  const auto found = std::find_if(methods().begin(), methods().end(), [&](const Method& m) { return m.name == integrator; });
+  return found != methods().end() && found->has_fixed_step; // a wrong name is said elsewhere
 }
 
 std::string subject_text(const std::string& kind, const std::string& name) {

@@ -1,6 +1,7 @@
 #include "mbd/simulation/simulation.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/model/method.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,12 +80,12 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
 
 // Time stepping is linear in absolute coordinates.
 Coordinates Simulation::chosen_coordinates() const {
-  return options_.integrator == "moreau" ? Coordinates::absolute : options_.coordinates;
+  return method(options_.integrator).is_time_stepping ? Coordinates::absolute : options_.coordinates;
 }
 
 void Simulation::refuse_time_stepping() const {
-  if (options_.integrator != "moreau" || system_.inner_count() == 0) return;
-  throw NumericalFailure("'moreau' does not follow what '" + system_.element_names[system_.inner_elements[0]] +
+  if (!method(options_.integrator).is_time_stepping || system_.inner_count() == 0) return;
+  throw NumericalFailure("'" + options_.integrator + "' does not follow what '" + system_.element_names[system_.inner_elements[0]] +
                          "' remembers (the slid distance of an elastic joint, whether a tie has broken): choose another "
                          "integrator, auto for one");
 }
@@ -220,7 +221,7 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
   const auto is_at_kink = [](const Event& event) { return is_kink(event.kind); };
   const auto first_new = events_.begin() + static_cast<std::ptrdiff_t>(known);
   if (first_new != events_.end() && std::all_of(first_new, events_.end(), is_at_kink)) ++kinks_;
-  if (options_.integrator == "auto" && system_.inner_count() == 0 && handler_.stop_reason().empty())
+  if (method(options_.integrator).may_step_over_storms && system_.inner_count() == 0 && handler_.stop_reason().empty())
     for (std::size_t i = known; i < events_.size(); ++i)
       if (!is_kink(events_[i].kind) && storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
   if (!fired.empty()) guard_against_chatter(t);

@@ -1,0 +1,115 @@
+// An integration method, a kind of element and a sub-command each are a file pair and a line in one list: where else is one
+// of them named? All sources are read. What names one by right stands here with its reason; a name anywhere else is a place
+// that whoever adds another would have to find.
+#include "elements/catalog.h"
+#include "mbd/model/method.h"
+#include "tools/steplap/commands.h"
+#include "transformer/catalog.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace fs = std::filesystem;
+using namespace steplap;
+
+namespace {
+
+// Text of all sources of the product but benchmarks, comments left out.
+std::map<std::string, std::string> product_sources() {
+  const fs::path root = STEPLAP_SOURCE;
+  std::map<std::string, std::string> sources;
+  for (const char* top : {"mbd", "elements", "transformer", "tools/steplap", "tools/study"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
+      std::string& text = sources[fs::relative(entry.path(), root).generic_string()];
+      std::ifstream lines(entry.path());
+      for (std::string line; std::getline(lines, line);) text += line.substr(0, line.find("//")) + "\n";
+    }
+  return sources;
+}
+
+// Where the name stands in quotes.
+std::set<std::string> places_of(const std::string& name, const std::map<std::string, std::string>& sources) {
+  std::set<std::string> places;
+  for (const auto& [path, text] : sources)
+    if (text.find('"' + name + '"') != std::string::npos) places.insert(path);
+  return places;
+}
+
+using Reasons = std::map<std::string, std::string>; ///< file → why it names one
+
+void check_places(const std::string& name, const std::set<std::string>& own, const Reasons& reasons,
+                  const std::map<std::string, std::string>& sources) {
+  for (const std::string& place : places_of(name, sources))
+    CHECK_MESSAGE((own.count(place) > 0 || reasons.count(place) > 0), place << " names '" << name << "'");
+}
+
+} // namespace
+
+TEST_CASE("an integration method is a file and a line in methods.cpp") {
+  const auto sources = product_sources();
+  const Reasons by_right = {
+      {"mbd/model/model.h", "what a file that names none has"},
+      {"mbd/simulation/simulation.h", "what a program that names none has"},
+      {"mbd/analysis/accuracy_study.h", "the two that make references"},
+      {"mbd/analysis/cross_check.cpp", "the plan of a cross check, method by method"},
+      {"transformer/verdict.cpp", "what to try instead"},
+  };
+  REQUIRE(methods().size() >= 6);
+  for (const Method& m : methods()) {
+    const std::string name = m.name;
+    // "auto" is a word of others, too: of drawings.
+    Reasons reasons = by_right;
+    if (name == "auto") reasons.insert({{"mbd/model/model.cpp", "how an element is drawn"}, {"tools/steplap/drawing.cpp", "how an element is drawn"}});
+    check_places(name, {"mbd/integrators/methods.cpp", "mbd/integrators/" + (name == "auto" ? "automatic" : name) + ".cpp"}, reasons, sources);
+  }
+}
+
+TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
+  const auto sources = product_sources();
+  const Reasons by_right = {{"tools/steplap/drawing.cpp", "symbols: a kind without one is drawn as a rod"}};
+  for (const ElementKind* kind : element_catalog().elements) {
+    CAPTURE(kind->name);
+    std::set<std::string> own;
+    for (const auto& [path, text] : sources)
+      if (path.starts_with("elements/") && text.find("\"" + kind->name + "\"") != std::string::npos) own.insert(path);
+    CHECK(own.size() == 1); // its own file alone
+    check_places(kind->name, own, by_right, sources);
+  }
+}
+
+TEST_CASE("a sub-command is a file pair and a line in commands.cpp") {
+  const auto sources = product_sources();
+  for (const Command& command : all_commands()) {
+    const std::string function = command.name + "_command()";
+    std::set<std::string> places;
+    for (const auto& [path, text] : sources)
+      if (text.find(function) != std::string::npos) places.insert(path);
+    const std::string file = "tools/steplap/" + command.name;
+    CHECK_MESSAGE((places == std::set<std::string>{file + ".cpp", file + ".h", "tools/steplap/commands.cpp"}), command.name);
+  }
+}
+
+TEST_CASE("where kinds of rows are told apart") {
+  // A kind of row is a MeasureKind, what it measures with its derivatives, and an element that makes rows of it.
+  const Reasons by_right = {
+      {"mbd/system/row.h", "what each measures"},
+      {"mbd/dynamics/linearization.cpp", "second derivatives"},
+      {"mbd/analysis/statics.cpp", "second derivatives"},
+      {"mbd/dynamics/layout.cpp", "which have a shorter way, angles a constant gradient"},
+      {"mbd/dynamics/mechanism_layout.cpp", "which joints a member of a mechanism may hang by"},
+      {"mbd/dynamics/projection.cpp", "the unit of a message"},
+      {"mbd/dynamics/load_sharing.cpp", "the unit of a residual"},
+  };
+  for (const auto& [path, text] : product_sources())
+    if (path.starts_with("mbd/") && text.find("MeasureKind::") != std::string::npos)
+      CHECK_MESSAGE(by_right.count(path) > 0, path << " tells kinds of rows apart");
+}
