@@ -28,6 +28,7 @@ struct Slip {
   double used = 0.0; ///< when it first gave way
   double from = 0.0; ///< its row's value then
   int times = 0;
+  bool is_least = false;   ///< `used` is the least of all ways to share the load
   bool is_new = true;      ///< it has just begun
   bool gives_way = false; ///< nothing but its friction resisted it
 };
@@ -170,7 +171,10 @@ private:
         throw NumericalFailure("no static equilibrium: '" + name_of(f) + "' would have to hold " + rounded(overload.used) +
                                " times what it can");
       auto slip = std::find_if(slips_.begin(), slips_.end(), [f](const Slip& s) { return s.friction == f; });
-      if (slip == slips_.end()) slip = slips_.insert(slips_.end(), {f, least_usage_ > 1.0 ? least_usage_ : overload.used, row_value(f)});
+      if (slip == slips_.end()) {
+        const bool is_least = least_usage_ > 1.0;
+        slip = slips_.insert(slips_.end(), {f, is_least ? least_usage_ : overload.used, row_value(f), 0, is_least});
+      }
       slip->is_new = true;
       if (++slip->times > k_most_slips) fail_sliding(*slip);
       Statics statics(system_);
@@ -189,14 +193,16 @@ private:
 
   [[nodiscard]] std::string name_of(int f) const { return system_.element_names[system_.frictions[f].element]; }
   [[nodiscard]] std::string overload_text(const Slip& slip) const {
-    return "'" + name_of(slip.friction) + "' would have to hold " + rounded(slip.used) + " times what it can";
+    if (!slip.is_least)
+      return "'" + name_of(slip.friction) + "' would have to hold " + rounded(slip.used) + " times what it can";
+    return "friction ('" + name_of(slip.friction) + "' and what shares its load) would have to hold " + rounded(slip.used) +
+           " times what it can, whichever way the load is shared";
   }
   [[noreturn]] void fail_sliding(const Slip& slip) const {
     const RowSpec& row = *system_.frictions[slip.friction].friction->rows(state_.friction[slip.friction]);
     const int body = row.a == k_ground ? row.b : row.a;
-    const double way = row_value(slip.friction) - slip.from;
     throw NumericalFailure("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name +
-                           "' slides" + (way == 0.0 ? "" : ", to rest " + rounded(std::abs(way)) + " m away"));
+                           "' slides");
   }
   [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
     const MotionPart& part = descent.runaway();
