@@ -85,7 +85,7 @@ TEST_CASE("a double pendulum and a chain hang straight down, from the horizontal
 // Rod i of n, each of weight w and length l, between supports at one height: the ends' forces are H along x and
 // V_i = (i − (n − 1)/2) w across at its middle, so tan φ_i = V_i/H; H follows from the span Σ l cos φ_i.
 TEST_CASE("a chain of n rods between two supports takes the catenary's shape") {
-  for (const int n : {2, 7, 16})
+  for (const int n : {3, 8, 16})
     for (const bool is_arch : {false, true}) { // from its mirror image, which balances but does not hold
       CAPTURE(n);
       CAPTURE(is_arch);
@@ -224,7 +224,7 @@ TEST_CASE("a block on a slope that is too steep does not rest, and the share is 
   CAPTURE(why);
   CHECK(has(why, "'friction'"));
   CHECK(has(why, "1.5 times what it can"));
-  CHECK(has(why, "'block' along +x goes on without end"));
+  CHECK(has(why, "and 'block' slides"));
 }
 
 TEST_CASE("where nothing holds it is said what moves where") {
