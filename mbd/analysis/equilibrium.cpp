@@ -12,6 +12,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_admissible = 1.0 + 1e-9; // share of what friction can bear: rounding of stiff contacts
+constexpr double k_least_used = 1e-9;       // less is rounding
 constexpr int k_most_slips = 12;            // of one friction element, on the way to where it holds
 // Of the scene's length: contacts that gave way so far, with nothing but friction to resist them, did not stand.
 constexpr double k_stands = 1e-2;
@@ -133,7 +134,8 @@ private:
     const FrictionElement& element = *system_.frictions[f].friction;
     double size = 0.0, normal[3];
     for (int r = 0; r < element.dimension(); ++r) size = std::max(size, std::abs(wrench[r]));
-    return size == 0.0 ? 0.0 : element.gauge(evaluation, state_.friction[f], wrench, normal);
+    const double used = size == 0.0 ? 0.0 : element.gauge(evaluation, state_.friction[f], wrench, normal);
+    return used < k_least_used ? 0.0 : used;
   }
 
   // Does its bound come from contacts, which it needs to be loaded at all?
