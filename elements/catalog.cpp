@@ -9,6 +9,7 @@
 #include "elements/load.h"
 #include "elements/motor.h"
 #include "elements/prescribed_motion.h"
+#include "elements/rope.h"
 #include "elements/round_contacts.h"
 #include "elements/spring_damper.h"
 #include "elements/step_lap_interface.h"
@@ -32,7 +33,8 @@ const Catalogue& element_catalog() {
                   &point_on_line_kind(),     &prescribed_motion_kind(),
                   &gear_kind(),              &rack_kind(),
                   &motor_kind(),             &limit_kind(),
-                  &joint_friction_kind(),    &load_kind()};
+                  &joint_friction_kind(),    &rope_kind(),
+                  &load_kind()};
     c.signals = signal_kinds();
     c.signals.push_back(&record_signal_kind());
     c.tables = {&plot_kind(), &acceptance_kind()};

@@ -3,6 +3,9 @@
 #include "mbd/base/number_text.h"
 #include "mbd/system/system.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace steplap {
 
 namespace {
@@ -34,10 +37,27 @@ std::string jump_message(const PrescribedMotion& e, const Signal::Jump& jump) {
          number_text(jump.t) + " s, so it cannot be a " + e.as + ": the " + moved + " would have to jump; " + remedy;
 }
 
+// Poses are given to a few digits; what is further off is no rounding of them.
+bool jumps(double now, double wanted) {
+  constexpr double k_rough = 1e-3, k_rounding = 1e-9; // of the coordinate; m, rad
+  return std::abs(wanted - now) > std::max(k_rounding, k_rough * std::max(std::abs(now), std::abs(wanted)));
+}
+
+std::string start_message(const PrescribedMotion& e, const RowSpec& row, double now, double wanted) {
+  const std::string unit = row.kind == MeasureKind::angle ? " rad" : " m";
+  std::string text = "the reference pose has " + number_text(now) + unit + " where the motion begins with " + number_text(wanted) +
+                     unit + " at t = 0: the body would have to jump. ";
+  if (e.zero != "reference")
+    return text + "A position counts from the coordinate's own zero: place the body there, or let it count from the reference "
+                  "pose with zero = \"reference\"";
+  return text + "Use a signal that begins with zero, or place the body there";
+}
+
 void compile_prescribed(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const PrescribedMotion&>(element);
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
   if (a.body == b.body) return builder.error("drives a body against itself");
+  if (e.zero == "reference" && e.as != "position") return builder.error("'zero' belongs to as = \"position\"");
   RowSpec row;
   row.a = a.body;
   row.b = b.body;
@@ -51,7 +71,10 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   row.level = level_of(e.as);
   if (const auto jump = row.drive->first_jump(row.level, 0.0, builder.model().simulation.end))
     return builder.error(jump_message(e, *jump));
-  row.memory = builder.add_memory();
+  const double now = evaluate_row<false>(row, &builder.reference(0)).value, zero = e.zero == "reference" ? now : 0.0;
+  if (e.as == "position" && jumps(now, zero + row.drive->value(0.0)))
+    return builder.error(start_message(e, row, now, zero + row.drive->value(0.0)));
+  row.memory = builder.add_memory(zero);
   const int r = builder.next_row();
   builder.add_channel("reaction", row.kind == MeasureKind::angle ? "N m" : "N",
                       "force or couple on a that the motion takes",
@@ -74,7 +97,9 @@ const ElementKind& prescribed_motion_kind() {
         "x, y: of marker a in marker b's axes; angle of a against b; distance of the markers");
     f.add("signal", &T::signal).as(FieldType::signal).required().doc("signal that it follows");
     f.add("as", &T::as).one_of({"acceleration", "velocity", "position"}).doc(
-        "what the signal is; acceleration and velocity start from the initial pose");
+        "what the signal is; acceleration and velocity start from the initial pose, a position is absolute (see zero)");
+    f.add("zero", &T::zero).one_of({"origin", "reference"}).doc(
+        "as = \"position\": the signal is the coordinate itself, or counts from its value in the reference pose");
     k.holds<T>();
     k.compile = compile_prescribed;
     return k;

@@ -197,6 +197,11 @@ std::vector<int> bodies_of(const ElementEntry& entry, const std::map<std::string
                            const std::map<std::string, int>& marker_body) {
   std::vector<int> bodies;
   for (const Field& field : entry.kind->fields.fields()) {
+    if (field.name == "over" && field.type == FieldType::texts) { // what a rope runs over
+      const auto names = std::get<std::vector<std::string>>(field.get(entry.element.get()));
+      for (const std::string& name : names)
+        if (const auto found = marker_body.find(name); found != marker_body.end()) bodies.push_back(found->second);
+    }
     if (field.type != FieldType::marker && field.type != FieldType::body) continue;
     const std::string name = std::get<std::string>(field.get(entry.element.get()));
     const auto& index = field.type == FieldType::body ? body_index : marker_body;

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +14,6 @@ namespace steplap {
 namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-// Rows of joints below this share of their length beyond others depend on them; rows of friction below the second one,
-// as in the equations of motion (theory.md).
-constexpr double k_rank = 1e-9, k_friction_rank = 1e-6;
 constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // of the trust region: of the scene's length; rad
 constexpr double k_small_turn = 0.4, k_largest_turn = 1.5;  // rad: poses half a turn apart are not to be taken for each other
 constexpr double k_balanced = 1e-11;  // Newton steps below this share of the length are the pose's rounding
@@ -28,18 +24,6 @@ constexpr double k_far = 1e4;         // lengths of the scene
 constexpr double k_many_turns = 40.0 * std::numbers::pi;
 constexpr int k_most_trials = 44, k_most_projections = 25, k_most_polishing = 4;
 constexpr double k_rounded_terms = 32.0;
-
-// Threads are not worth their while in products of this size; where they wait they take the time of others.
-class OneThread {
-public:
-  OneThread() : before_(Eigen::nbThreads()) { Eigen::setNbThreads(1); }
-  ~OneThread() { Eigen::setNbThreads(before_); }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
-
-private:
-  int before_;
-};
 
 int most_iterations(int n) { return n <= 90 ? 3000 : n <= 300 ? 600 : 150; }
 
@@ -59,98 +43,24 @@ Descent::Descent(const System& system, State& state)
 }
 
 void Descent::measure_scene() {
-  double low[2] = {0, 0}, high[2] = {0, 0}, lever = 0.0, gyration = 0.0;
-  std::vector<double> radius(system_.bodies.size(), 0.0);
-  for (int i = 1; i < system_.body_count(); ++i) {
-    for (int c = 0; c < 2; ++c) {
-      const double x = state_.q[3 * i + c];
-      low[c] = i == 1 ? x : std::min(low[c], x);
-      high[c] = i == 1 ? x : std::max(high[c], x);
-    }
-    radius[i] = std::sqrt(system_.bodies[i].inertia / system_.bodies[i].mass);
-    gyration = std::max(gyration, radius[i]);
+  const SceneScale scene = scale_of(system_, state_);
+  length_ = scene.length;
+  reach_ = scene.reach;
+  scale_ = scene.scale;
+  mass_ = VecX(n_);
+  for (int k = 0; k < n_; ++k) {
+    const BodyData& body = system_.bodies[k / 3 + 1];
+    mass_[k] = k % 3 < 2 ? body.mass : body.inertia * scale_[k] * scale_[k];
   }
-  for (const RowSpec& row : system_.rows)
-    for (const auto& [body, point] : {std::pair{row.a, row.point_a}, std::pair{row.b, row.point_b}}) {
-      if (body == k_ground) continue;
-      lever = std::max(lever, point.norm());
-      radius[body] = std::max(radius[body], point.norm());
-    }
-  length_ = std::max({high[0] - low[0], high[1] - low[1], lever});
-  if (length_ <= 1e-3 * gyration) length_ = gyration;
-  if (!(length_ > 0.0)) length_ = 1.0;
-  reach_ = length_;
-  scale_ = VecX::Ones(n_);
-  mass_ = VecX::Ones(n_);
-  for (int i = 1; i < system_.body_count(); ++i) {
-    const double r = std::clamp(radius[i], 1e-3 * length_, length_);
-    for (int c = 0; c < 2; ++c) {
-      mass_[3 * i - 3 + c] = system_.bodies[i].mass;
-      reach_ = std::max(reach_, std::abs(state_.q[3 * i + c]));
-    }
-    scale_[3 * i - 1] = 1.0 / r;
-    mass_[3 * i - 1] = system_.bodies[i].inertia / (r * r);
-  }
-}
-
-// Which rows do not depend on others: of the joints' first, then of friction's. `rows`: unit columns.
-std::vector<int> Descent::independent(const MatX& rows) const {
-  std::vector<int> kept;
-  const Eigen::Index joints = statics_.bilateral_count(), frictions = rows.cols() - joints;
-  MatX held(n_, 0);
-  if (joints > 0) {
-    Eigen::ColPivHouseholderQR<MatX> qr(rows.leftCols(joints));
-    qr.setThreshold(k_rank);
-    for (Eigen::Index i = 0; i < qr.rank(); ++i) kept.push_back(qr.colsPermutation().indices()[i]);
-    if (frictions > 0) held = qr.householderQ() * MatX::Identity(n_, qr.rank());
-  }
-  if (frictions == 0) return kept;
-  const MatX beyond = rows.rightCols(frictions) - held * (held.transpose() * rows.rightCols(frictions));
-  const Eigen::ColPivHouseholderQR<MatX> qr(beyond);
-  const Eigen::Index most = std::min<Eigen::Index>(frictions, n_);
-  for (Eigen::Index i = 0; i < most && std::abs(qr.matrixQR()(i, i)) > k_friction_rank; ++i)
-    kept.push_back(static_cast<int>(joints + qr.colsPermutation().indices()[i]));
-  return kept;
-}
-
-// `kept`: the independent rows, if they are known; then what they leave free is not asked for.
-Descent::Tangent Descent::tangent(const std::vector<int>* kept_before) const {
-  Tangent t;
-  MatX rows = (statics_.gradient() * scale_.asDiagonal()).transpose(); // n × m
-  t.row_size = rows.colwise().norm().cwiseMax(1e-300);
-  rows = rows * t.row_size.cwiseInverse().asDiagonal();
-  t.kept = kept_before ? *kept_before : independent(rows);
-  const auto count = static_cast<Eigen::Index>(t.kept.size());
-  if (count == 0) {
-    t.held = MatX(n_, 0);
-    t.free = MatX::Identity(n_, n_);
-    return t;
-  }
-  MatX kept(n_, count);
-  for (Eigen::Index i = 0; i < count; ++i) kept.col(i) = rows.col(t.kept[i]);
-  const Eigen::HouseholderQR<MatX> qr(kept);
-  const MatX q = qr.householderQ() * MatX::Identity(n_, kept_before ? count : n_);
-  t.held = q.leftCols(count);
-  if (!kept_before) t.free = q.rightCols(n_ - count);
-  t.triangle = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
-  return t;
-}
-
-void Descent::find_multipliers(const Tangent& t) {
-  lambda_ = VecX::Zero(static_cast<Eigen::Index>(statics_.rows().size()));
-  if (t.kept.empty()) return;
-  const VecX along = t.triangle.triangularView<Eigen::Upper>().solve(VecX(-(t.held.transpose() * gradient_)));
-  for (std::size_t i = 0; i < t.kept.size(); ++i)
-    lambda_[t.kept[i]] = along[static_cast<Eigen::Index>(i)] / t.row_size[t.kept[i]];
 }
 
 void Descent::linearise() {
   statics_.evaluate(state_);
   statics_.collect_rows(state_);
-  const Tangent t = tangent(nullptr);
+  const Tangent t = tangent_of(statics_, scale_);
   kept_ = t.kept;
   gradient_ = scale_.cwiseProduct(statics_.force());
-  find_multipliers(t);
+  lambda_ = multipliers_of(statics_, scale_, t);
   stiffness_ = scale_.asDiagonal() * statics_.stiffness(lambda_) * scale_.asDiagonal();
   const VecX reactions = t.kept.empty() ? VecX(VecX::Zero(n_)) : VecX(t.held.cwiseAbs() * (t.held.transpose() * gradient_).cwiseAbs());
   VecX place(n_);
@@ -248,7 +158,7 @@ bool Descent::project(Tangent& end) {
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0;; ++i) {
     statics_.evaluate(state_);
-    end = tangent(&kept_);
+    end = tangent_of(statics_, scale_, &kept_);
     if (statics_.rows().empty()) return true;
     const VecX off = statics_.off();
     const auto count = static_cast<Eigen::Index>(end.kept.size());

@@ -11,7 +11,7 @@
 // body's rows and its mass lie), forces by what rounding of poses, stiffness and reactions leaves of them.
 #pragma once
 
-#include "mbd/analysis/statics.h"
+#include "mbd/analysis/tangent.h"
 
 namespace steplap {
 
@@ -57,19 +57,9 @@ public:
 
 private:
   enum class Hold : unsigned char { none, sticks, slides };
-  struct Tangent {
-    MatX held;  ///< orthonormal: what the independent rows hold
-    MatX free;  ///< and its complement
-    std::vector<int> kept; ///< the independent rows
-    MatX triangle; ///< held · triangle = gradients of the kept rows, scaled
-    VecX row_size;
-  };
   void measure_scene();
-  [[nodiscard]] std::vector<int> independent(const MatX& rows) const;
-  [[nodiscard]] Tangent tangent(const std::vector<int>* kept_before) const;
   void linearise();
   void find_modes();
-  void find_multipliers(const Tangent& t);
   [[nodiscard]] double step_size(const VecX& step) const;
   [[nodiscard]] VecX regularised(double sigma) const;
   [[nodiscard]] VecX trust_step() const;

@@ -12,6 +12,7 @@ namespace steplap {
 namespace {
 
 constexpr double k_admissible = 1.0 + 1e-9; // share of what friction can bear: rounding of stiff contacts
+constexpr double k_least_used = 1e-9;       // less is rounding
 constexpr int k_most_slips = 12;            // of one friction element, on the way to where it holds
 // Of the scene's length: contacts that gave way so far, with nothing but friction to resist them, did not stand.
 constexpr double k_stands = 1e-2;
@@ -28,6 +29,7 @@ struct Slip {
   double used = 0.0; ///< when it first gave way
   double from = 0.0; ///< its row's value then
   int times = 0;
+  bool is_least = false;   ///< `used` is the least of all ways to share the load
   bool is_new = true;      ///< it has just begun
   bool gives_way = false; ///< nothing but its friction resisted it
 };
@@ -132,7 +134,8 @@ private:
     const FrictionElement& element = *system_.frictions[f].friction;
     double size = 0.0, normal[3];
     for (int r = 0; r < element.dimension(); ++r) size = std::max(size, std::abs(wrench[r]));
-    return size == 0.0 ? 0.0 : element.gauge(evaluation, state_.friction[f], wrench, normal);
+    const double used = size == 0.0 ? 0.0 : element.gauge(evaluation, state_.friction[f], wrench, normal);
+    return used < k_least_used ? 0.0 : used;
   }
 
   // Does its bound come from contacts, which it needs to be loaded at all?
@@ -170,7 +173,10 @@ private:
         throw NumericalFailure("no static equilibrium: '" + name_of(f) + "' would have to hold " + rounded(overload.used) +
                                " times what it can");
       auto slip = std::find_if(slips_.begin(), slips_.end(), [f](const Slip& s) { return s.friction == f; });
-      if (slip == slips_.end()) slip = slips_.insert(slips_.end(), {f, least_usage_ > 1.0 ? least_usage_ : overload.used, row_value(f)});
+      if (slip == slips_.end()) {
+        const bool is_least = least_usage_ > 1.0;
+        slip = slips_.insert(slips_.end(), {f, is_least ? least_usage_ : overload.used, row_value(f), 0, is_least});
+      }
       slip->is_new = true;
       if (++slip->times > k_most_slips) fail_sliding(*slip);
       Statics statics(system_);
@@ -189,14 +195,16 @@ private:
 
   [[nodiscard]] std::string name_of(int f) const { return system_.element_names[system_.frictions[f].element]; }
   [[nodiscard]] std::string overload_text(const Slip& slip) const {
-    return "'" + name_of(slip.friction) + "' would have to hold " + rounded(slip.used) + " times what it can";
+    if (!slip.is_least)
+      return "'" + name_of(slip.friction) + "' would have to hold " + rounded(slip.used) + " times what it can";
+    return "friction ('" + name_of(slip.friction) + "' and what shares its load) would have to hold " + rounded(slip.used) +
+           " times what it can, whichever way the load is shared";
   }
   [[noreturn]] void fail_sliding(const Slip& slip) const {
     const RowSpec& row = *system_.frictions[slip.friction].friction->rows(state_.friction[slip.friction]);
     const int body = row.a == k_ground ? row.b : row.a;
-    const double way = row_value(slip.friction) - slip.from;
     throw NumericalFailure("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name +
-                           "' slides" + (way == 0.0 ? "" : ", to rest " + rounded(std::abs(way)) + " m away"));
+                           "' slides");
   }
   [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
     const MotionPart& part = descent.runaway();

@@ -1,59 +1,192 @@
 #include "mbd/analysis/modes.h"
 
-#include "mbd/dynamics/linearization.h"
+#include "mbd/analysis/tangent.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace steplap {
 
 namespace {
 
 constexpr double k_two_pi = 2.0 * std::numbers::pi;
-// Constraint rows below this against the largest count as dependent.
-constexpr double k_rank_tolerance = 1e-10;
-// Eigenvalues below this against the largest belong to rigid motions: double ones split by rounding as its
-// square root, 1e-8.
-constexpr double k_rigid_tolerance = 3e-8;
+constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
+constexpr double k_rounded_terms = 64.0;
+// Up to so many free coordinates eigenvalues are refined one by one, which costs a factorisation each.
+constexpr Eigen::Index k_refined = 60;
+constexpr double k_near = 1e-3; // a refinement that moves an eigenvalue further, as a share of it, has lost its way
 
-// Orthonormal basis of the motions that rows and locks leave free: n × r. Coordinates are scaled by the
-// square root of their mass, so that rank does not depend on units.
-MatX free_motions(const Linearization& linear, const VecX& root_of_mass) {
-  const int n = linear.coordinates();
-  std::vector<int> unlocked;
-  for (int i = 0; i < n; ++i)
-    if (linear.inverse_mass()[i] > 0.0) unlocked.push_back(i);
-  const int free_count = static_cast<int>(unlocked.size());
-  MatX basis = MatX::Zero(n, free_count);
-  for (int k = 0; k < free_count; ++k) basis(unlocked[k], k) = 1.0;
-  if (linear.rows() == 0) return basis;
-  const MatX gradient = linear.dense(linear.gradient(), linear.rows());
-  const MatX rows = gradient * root_of_mass.cwiseInverse().asDiagonal() * basis;
-  Eigen::ColPivHouseholderQR<MatX> qr(rows.transpose());
-  qr.setThreshold(k_rank_tolerance);
-  const MatX q = qr.householderQ() * MatX::Identity(free_count, free_count);
-  return basis * q.rightCols(free_count - qr.rank());
+using Complex = std::complex<double>;
+using ComplexMatrix = Eigen::MatrixXcd;
+using ComplexVector = Eigen::VectorXcd;
+
+// η'' = A η + B η' in mass-orthonormal coordinates η: δq = basis η.
+struct FreeVibration {
+  MatX a, b, basis;
+  MatX held;  ///< orthonormal: motions that something holds
+  MatX loose; ///< and those that nothing holds: null vectors of A
+};
+
+// Singular values of A with their right vectors; of a symmetric one by its eigenvectors.
+std::pair<VecX, MatX> singular_vectors(const MatX& a) {
+  if ((a - a.transpose()).cwiseAbs().sum() <= 1e-9 * a.cwiseAbs().sum()) {
+    const Eigen::SelfAdjointEigenSolver<MatX> solver(0.5 * (a + a.transpose()));
+    return {solver.eigenvalues().cwiseAbs(), solver.eigenvectors()};
+  }
+  const Eigen::BDCSVD<MatX> svd(a, Eigen::ComputeFullV);
+  return {svd.singularValues(), svd.matrixV()};
 }
 
-// Complex displacements of all bodies for one of the clusters' coordinates.
-std::vector<std::complex<double>> shape_of(const System& system, const Dynamics& dynamics,
-                                           const Eigen::VectorXcd& q) {
-  std::vector<std::complex<double>> shape(3 * system.bodies.size(), 0.0);
-  std::complex<double> largest = 0.0;
+FreeVibration free_vibration(const System& system, State state) {
+  Statics statics(system);
+  statics.evaluate(state);
+  statics.collect_rows(state);
+  const VecX scale = scale_of(system, state).scale;
+  const Tangent tangent = tangent_of(statics, scale);
+  const VecX lambda = multipliers_of(statics, scale, tangent);
+  const int n = statics.coordinates();
+  VecX mass(n);
+  for (int k = 0; k < n; ++k) {
+    const BodyData& body = system.bodies[k / 3 + 1];
+    mass[k] = (k % 3 < 2 ? body.mass : body.inertia) * scale[k] * scale[k];
+  }
+  FreeVibration v;
+  v.basis = scale.asDiagonal() * tangent.free;
+  if (v.basis.cols() == 0) return v;
+  const Eigen::LLT<MatX> metric(tangent.free.transpose() * mass.asDiagonal() * tangent.free);
+  v.basis = metric.matrixL().solve(v.basis.transpose()).transpose();
+  const MatX stiffness = statics.stiffness(lambda);
+  v.a = v.basis.transpose() * stiffness * v.basis;
+  v.b = v.basis.transpose() * statics.damping() * v.basis;
+  // What nothing holds: singular vectors of A that rounding of the stiffness could make. Found beside the others with
+  // their own rounding, not with that of the stiffest.
+  const auto [sizes, vectors] = singular_vectors(v.a);
+  const MatX shapes = v.basis * vectors;
+  const MatX size = stiffness.cwiseAbs() * shapes.cwiseAbs();
+  std::vector<Eigen::Index> held, loose;
+  for (Eigen::Index i = 0; i < v.a.cols(); ++i) {
+    const double rounding = k_epsilon * (k_rounded_terms * shapes.col(i).cwiseAbs().dot(size.col(i)) + 4.0 * sizes.maxCoeff());
+    (sizes[i] <= rounding ? loose : held).push_back(i);
+  }
+  const auto columns = [&](const std::vector<Eigen::Index>& which) {
+    MatX out(v.a.cols(), static_cast<Eigen::Index>(which.size()));
+    for (std::size_t i = 0; i < which.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = vectors.col(which[i]);
+    return out;
+  };
+  v.held = columns(held);
+  v.loose = columns(loose);
+  return v;
+}
+
+// Orthonormal complement of the columns' span.
+MatX complement(const MatX& columns) {
+  const Eigen::Index n = columns.rows();
+  if (columns.cols() == 0) return MatX::Identity(n, n);
+  const Eigen::HouseholderQR<MatX> qr(columns);
+  return MatX(qr.householderQ() * MatX::Identity(n, n)).rightCols(n - columns.cols());
+}
+
+// Motions at constant velocity that damping does not resist either: (β, η') with Vᵀη' = 0, A V β + B η' = 0.
+MatX steady_motions(const FreeVibration& v) {
+  const Eigen::Index r = v.a.cols(), k = v.held.cols();
+  if (v.loose.cols() == 0) return MatX(k + r, 0);
+  const MatX av = v.a * v.held, bl = v.b * v.loose;
+  MatX beyond = bl;
+  if (k > 0) {
+    const Eigen::HouseholderQR<MatX> qr(av);
+    const MatX q = qr.householderQ() * MatX::Identity(r, k);
+    beyond -= q * (q.transpose() * bl);
+  }
+  const double size = (v.b.cwiseAbs() * v.loose.cwiseAbs()).norm();
+  const Eigen::BDCSVD<MatX> svd(beyond, Eigen::ComputeThinV);
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < v.loose.cols(); ++i)
+    if (i >= svd.singularValues().size() || svd.singularValues()[i] <= k_rounded_terms * k_epsilon * size) free.push_back(i);
+  MatX motions(k + r, static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const VecX rate = v.loose * svd.matrixV().col(free[i]);
+    const auto at = static_cast<Eigen::Index>(i);
+    if (k > 0) motions.col(at).head(k) = -av.colPivHouseholderQr().solve(v.b * rate);
+    motions.col(at).tail(r) = rate;
+  }
+  return motions;
+}
+
+// D⁻¹ M D with powers of two, so that rows and columns are of one size (B. N. Parlett, C. Reinsch, Numer. Math. 13 (1969)
+// 293): slow modes keep their digits beside fast ones. Returns D.
+VecX balance(MatX& m) {
+  const Eigen::Index n = m.rows();
+  VecX d = VecX::Ones(n);
+  for (bool is_changed = true; is_changed;) {
+    is_changed = false;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      double column = m.col(i).cwiseAbs().sum() - std::abs(m(i, i)), row = m.row(i).cwiseAbs().sum() - std::abs(m(i, i));
+      if (column == 0.0 || row == 0.0) continue;
+      const double before = column + row;
+      double f = 1.0;
+      for (; column < 0.5 * row; column *= 4.0) f *= 2.0;
+      for (; column >= 2.0 * row; column *= 0.25) f *= 0.5;
+      if ((column + row) / f >= 0.95 * before) continue;
+      is_changed = true;
+      d[i] *= f;
+      m.col(i) *= f;
+      m.row(i) /= f;
+    }
+  }
+  return d;
+}
+
+// Newton's method for (λ² − λ B − A) x = 0, inverse iteration with the eigenvalue moving along: rounding is then that of
+// the mode's own terms.
+void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
+  const Eigen::Index r = v.a.cols();
+  Complex at = value;
+  ComplexVector shape = x;
+  double last = k_near;
+  for (int i = 0; i < 6; ++i) {
+    ComplexMatrix q = -at * v.b.cast<Complex>() - v.a.cast<Complex>();
+    q.diagonal().array() += at * at;
+    ComplexVector right = Complex(2.0) * at * shape - v.b.cast<Complex>() * shape;
+    for (Eigen::Index k = 0; k < r; ++k) { // rows of one size: pivots are not chosen by the units of stiff ones
+      double size = 0.0;
+      for (Eigen::Index j = 0; j < r; ++j) size = std::max(size, std::abs(q(k, j).real()) + std::abs(q(k, j).imag()));
+      if (!(size > 0.0)) return;
+      q.row(k) /= size;
+      right[k] /= size;
+    }
+    const ComplexVector next = q.partialPivLu().solve(right);
+    const Complex ratio = shape.dot(next);
+    if (!next.allFinite() || size_of(ratio) == 0.0) break; // on the eigenvalue
+    const Complex change = Complex(shape.squaredNorm()) / ratio;
+    const double moved = size_of(change) / size_of(at);
+    if (!(moved < last)) break;
+    at -= change;
+    shape = next / next.norm();
+    last = moved;
+  }
+  if (last >= k_near) return;
+  value = at;
+  x = shape;
+}
+
+// Complex displacements of all bodies.
+std::vector<Complex> shape_of(const System& system, const ComplexVector& q) {
+  std::vector<Complex> shape(3 * system.bodies.size(), 0.0);
+  Complex largest = 0.0;
   for (int i = 1; i < system.body_count(); ++i) {
-    const Placement& place = dynamics.layout().placements[i];
-    const Motion<double>& k = dynamics.motion()[dynamics.layout().clusters[place.cluster].motion];
-    const Pair<double> lever = to_ground(k, place.offset);
-    const std::complex<double> turn = q[3 * place.cluster + 2];
-    shape[3 * i] = q[3 * place.cluster] - turn * lever.y;
-    shape[3 * i + 1] = q[3 * place.cluster + 1] + turn * lever.x;
-    shape[3 * i + 2] = turn;
+    for (int c = 0; c < 3; ++c) shape[3 * i + c] = q[3 * i - 3 + c];
     const double gyration = std::sqrt(system.bodies[i].inertia / system.bodies[i].mass);
-    for (const auto& part : {shape[3 * i], shape[3 * i + 1], gyration * turn})
+    for (const auto& part : {shape[3 * i], shape[3 * i + 1], gyration * shape[3 * i + 2]})
       if (size_of(part) > size_of(largest)) largest = part;
   }
   if (largest != 0.0)
@@ -72,59 +205,42 @@ double VibrationMode::damping_ratio() const {
 }
 
 VibrationModes vibration_modes(const System& system, const State& state) {
-  Dynamics dynamics(system);
-  dynamics.set_state(state);
-  if (dynamics.coordinate_count() > k_max_modal_coordinates)
-    throw NumericalFailure("modes are found with dense algebra: " + std::to_string(dynamics.coordinate_count()) +
+  if (3 * (system.body_count() - 1) > k_max_modal_coordinates)
+    throw NumericalFailure("modes are found with dense algebra: " + std::to_string(3 * (system.body_count() - 1)) +
                            " coordinates are more than the " + std::to_string(k_max_modal_coordinates) +
                            " that it is made for");
-  std::vector<double> y(dynamics.dimension());
-  dynamics.pack(state, y.data());
-  Linearization linear;
-  linear.evaluate(dynamics, state.t, y.data());
-  const int n = linear.coordinates();
-  VecX root(n);
-  for (int i = 0; i < n; ++i) {
-    const Cluster& cluster = dynamics.layout().clusters[i / 3];
-    root[i] = std::sqrt(i % 3 < 2 ? cluster.mass : cluster.inertia);
-  }
-  const MatX z = free_motions(linear, root);
-  const int r = static_cast<int>(z.cols());
-  MatX by_pose, by_velocity;
-  linear.acceleration_by_state(by_pose, by_velocity);
-  // In mass-scaled coordinates Z is orthonormal and a symmetric stiffness stays symmetric.
-  const auto reduced = [&](const MatX& a) {
-    return MatX(z.transpose() * root.asDiagonal() * a * root.cwiseInverse().asDiagonal() * z);
-  };
-  MatX companion = MatX::Zero(2 * r, 2 * r);
-  companion.topRightCorner(r, r).setIdentity();
-  companion.bottomLeftCorner(r, r) = reduced(by_pose);
-  companion.bottomRightCorner(r, r) = reduced(by_velocity);
-
   VibrationModes found;
-  if (r == 0) return found;
+  if (system.body_count() <= 1) return found;
+  const OneThread alone;
+  const FreeVibration v = free_vibration(system, state);
+  const Eigen::Index r = v.a.cols(), k = v.held.cols();
+  found.rigid_motions = static_cast<int>(v.loose.cols());
+  // (β, η'): positions along what nothing holds do not count, nor do velocities that nothing resists: no eigenvalue
+  // that is left is zero.
+  MatX whole = MatX::Zero(k + r, k + r);
+  whole.topRightCorner(k, r) = v.held.transpose();
+  whole.bottomLeftCorner(r, k) = v.a * v.held;
+  whole.bottomRightCorner(r, r) = v.b;
+  const MatX moving = complement(steady_motions(v));
+  if (moving.cols() == 0) return found;
+  MatX companion = moving.transpose() * whole * moving;
+  const VecX scale = balance(companion);
   const Eigen::EigenSolver<MatX> solver(companion);
   if (solver.info() != Eigen::Success) throw NumericalFailure("the eigenvalues of the small vibrations do not converge");
   const auto& values = solver.eigenvalues();
-  double largest = 0.0;
-  for (int i = 0; i < 2 * r; ++i)
-    largest = std::max(largest, size_of(values[i]));
-  int rigid = 0;
-  for (int i = 0; i < 2 * r; ++i) {
-    if (size_of(values[i]) <= k_rigid_tolerance * largest) {
-      ++rigid;
-      continue;
-    }
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
     if (values[i].imag() < 0.0) continue;
+    const ComplexVector state_vector = moving * scale.asDiagonal() * solver.eigenvectors().col(i);
+    ComplexVector x = state_vector.tail(r);
+    x /= x.norm();
     VibrationMode mode;
     mode.eigenvalue = values[i];
-    const Eigen::VectorXcd scaled = z * solver.eigenvectors().col(i).head(r);
-    mode.shape = shape_of(system, dynamics, root.cwiseInverse().cast<std::complex<double>>().cwiseProduct(scaled));
+    if (r <= k_refined) refine(v, mode.eigenvalue, x);
+    mode.shape = shape_of(system, v.basis * x);
     found.modes.push_back(std::move(mode));
   }
-  found.rigid_motions = (rigid + 1) / 2;
-  std::stable_sort(found.modes.begin(), found.modes.end(), [](const VibrationMode& a, const VibrationMode& b) {
-    return a.natural_frequency() < b.natural_frequency();
+  std::stable_sort(found.modes.begin(), found.modes.end(), [](const VibrationMode& one, const VibrationMode& other) {
+    return one.natural_frequency() < other.natural_frequency();
   });
   return found;
 }

@@ -1,13 +1,17 @@
 // Small vibrations about a state of rest: natural frequencies, damping ratios, mode shapes.
 //
-// The linearised equations of motion (linearization.h) are reduced to the motions that constraints, drives
-// and sticking friction leave free, δq = Z η with J Z = 0, and the eigenvalues of
-//   d/dt (η, η') = [0 I; Zᵀ A_q Z  Zᵀ A_v Z] (η, η')
-// are found, A = ∂a/∂(q, v). Contacts that are closed and joints that stick stay so: amplitudes are as small
-// as that asks for. Dense algebra: for scenes up to some hundred bodies.
+// The equations of statics (statics.h), linearised and reduced to the motions that constraints, drives and sticking
+// friction leave free, δq = Z η with J Z = 0 and Zᵀ M Z = 1, are
+//   η'' = A η + B η',   A = Zᵀ K Z,   B = Zᵀ ∂Q/∂v Z.
+// Motions that nothing holds (A η = 0) are parted off before any eigenvalue is asked for, with rounding that is theirs;
+// the state matrix of the others is balanced, and each eigenvalue refined on (λ² − λ B − A) x = 0, so that slow modes
+// keep their digits beside fast or strongly damped ones.
+// Drives hold their coordinates where they are: a base that moves or accelerates is taken as held (Equilibrium says so).
+// Contacts that are closed and joints that stick stay so: amplitudes are as small as that asks for. Dense algebra: for
+// scenes up to some hundred bodies.
 #pragma once
 
-#include "mbd/dynamics/dynamics.h"
+#include "mbd/system/system.h"
 #include "mbd/math/portable_math.h"
 
 #include <complex>
@@ -35,10 +39,10 @@ struct VibrationMode {
 
 struct VibrationModes {
   std::vector<VibrationMode> modes; ///< ascending natural frequency; rigid motions are not among them
-  int rigid_motions = 0;            ///< coordinates along which nothing holds it
+  int rigid_motions = 0; ///< coordinates along which nothing holds it, though dampers may resist
 };
 
-/// Largest number of free coordinates that is worked on.
+/// Largest number of coordinates of bodies that is worked on.
 inline constexpr int k_max_modal_coordinates = 1500;
 
 /// About `state`, which must be at rest. Throws NumericalFailure for a scene that is too large.

@@ -57,6 +57,14 @@ void add_curvature(const RowSpec& row, const std::vector<Motion<double>>& motion
       if (const int r = place_of(row, i), c = place_of(row, l); r >= 0 && c >= 0) k(r, c) += w * j[i].d[l];
 }
 
+void add_pair(int a, int b, const Eigen::Matrix<double, 6, 6>& part, MatX& whole) {
+  const int body[2] = {a, b};
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      if (body[i] != k_ground && body[j] != k_ground)
+        whole.block<3, 3>(3 * body[i] - 3, 3 * body[j] - 3) += part.block<3, 3>(3 * i, 3 * j);
+}
+
 } // namespace
 
 double static_target(const RowSpec& row, const State& state) { return row_target(row, state.memory.data(), state.t).value; }
@@ -183,18 +191,20 @@ MatX Statics::stiffness(const VecX& lambda) const {
   MatX k = MatX::Zero(n_, n_);
   std::vector<PairJacobian> parts;
   for (const auto& group : system_.groups) group->add_jacobian(evaluation_, parts);
-  for (const PairJacobian& part : parts) {
-    const int body[2] = {part.a, part.b};
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j)
-        if (body[i] != k_ground && body[j] != k_ground)
-          k.block<3, 3>(3 * body[i] - 3, 3 * body[j] - 3) += part.stiffness.block<3, 3>(3 * i, 3 * j);
-  }
+  for (const PairJacobian& part : parts) add_pair(part.a, part.b, part.stiffness, k);
   for (std::size_t r = 0; r < rows_.size(); ++r)
     add_curvature(*rows_[r].spec, motion_, lambda[static_cast<Eigen::Index>(r)], k);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f)
     if (state_->friction[f].phase == FrictionPhase::slip) add_sliding_stiffness(f, parts, k);
   return k;
+}
+
+MatX Statics::damping() const {
+  MatX d = MatX::Zero(n_, n_);
+  std::vector<PairJacobian> parts;
+  for (const auto& group : system_.groups) group->add_jacobian(evaluation_, parts);
+  for (const PairJacobian& part : parts) add_pair(part.a, part.b, part.damping, d);
+  return d;
 }
 
 // Force w(N) along the row: w ∂²(measure) and what the normal forces change. w is linear in them.

@@ -39,6 +39,7 @@ public:
   [[nodiscard]] MatX gradient() const;                       ///< J
   [[nodiscard]] VecX off() const;                            ///< of each row from its target, m or rad
   [[nodiscard]] MatX stiffness(const VecX& lambda) const;    ///< K
+  [[nodiscard]] MatX damping() const;                        ///< ∂Q/∂v
   [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
   /// Normal force of a contact, for whoever asks what friction would do with another.

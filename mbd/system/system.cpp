@@ -29,7 +29,7 @@ void start_drives(const System& system, State& state) {
   for (const RowSpec& row : system.rows) {
     if (!row.drive) continue;
     if (row.level == DriveLevel::position) {
-      state.memory[row.memory] = row.drive->value(0.0);
+      state.memory[row.memory] = system.initial_memory[row.memory] + row.drive->value(0.0);
       continue;
     }
     const auto m = evaluate_row<false>(row, motion.data());

@@ -118,6 +118,11 @@ inline const std::vector<ConformanceScene>& conformance_scenes() {
       {"limit", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nlower = 0.8\nupper = 0.87\nstiffness = 900.0\ndamping = 25.0\n", false, true},
       {"joint_friction", "a = \"A\"\nb = \"B\"\ncoordinate = \"angle\"\nholds = 3.0\ndrags = 2.0\n"},
       {"joint_friction", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nholds = 30.0\n", false, true},
+      {"rope", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nslack = 0.02\n", false, true},
+      {"rope",
+       "a = \"A\"\nb = \"B\"\nover = [\"high on b\", \"low on a\", \"low on a\"]\nstiffness = 800.0\ndamping = 30.0\npretension = 9.0\n"
+       "[[marker]]\nname = \"high on b\"\nbody = \"b\"\npoint = [@+0.2, 0.6]\n"
+       "[[marker]]\nname = \"low on a\"\nbody = \"a\"\npoint = [@-0.3, 0.1]\n"},
       {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @+0.7\nforce_y = \"wave\"\n", true},
       {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @-0.7\nforce_y = \"wave\"\nframe = \"body\"\n", true}};
   return list;

@@ -8,6 +8,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -225,4 +227,62 @@ TEST_CASE("the paper's transformer, nudged along a mode, follows its eigenvalue"
     // nudge over the geometry's millimetres.
     CHECK(worst < 1e-4);
   }
+}
+
+// A compound pendulum of ω² = m g r/(J + m r²) beside 10 g on a damper of 3e6 N s/m, which creeps back at about −k/c and
+// forth at −c/m: λ² + (c/m) λ + k/m = 0, the slow root as (k/m)/fast, which does not cancel. Fourteen decades between
+// them: each mode is known to its own rounding.
+TEST_CASE("slow modes beside a fast, strongly damped one keep their digits") {
+  const VibrationModes found = modes_of(R"(
+[simulation]
+step = 1e-3
+[[body]]
+name = "bob"
+mass = 1.0
+inertia = 0.01
+position = [0.0, -0.75]
+[[body]]
+name = "grain"
+mass = 0.01
+inertia = 1e-5
+position = [3.0, 0.0]
+[[element]]
+kind = "revolute"
+name = "pin"
+a = { body = "bob", point = [0.0, 0.75] }
+[[element]]
+kind = "bushing"
+name = "mount"
+a = "grain"
+b = { body = "ground", at = [3.0, 0.0] }
+stiffness = [1e4, 1e6]
+damping = [3e6, 3e6]
+rotational_stiffness = 1e3
+rotational_damping = 1e3
+)");
+  REQUIRE(found.modes.size() == 7);
+  CHECK(found.rigid_motions == 0);
+  std::vector<double> expected;
+  for (const auto& [mass, c, k] : {std::array{0.01, 3e6, 1e4}, std::array{0.01, 3e6, 1e6}, std::array{1e-5, 1e3, 1e3}}) {
+    const double b = 0.5 * c / mass, fast = b + std::sqrt(b * b - k / mass);
+    expected.insert(expected.end(), {fast, k / mass / fast});
+  }
+  expected.push_back(std::sqrt(9.81 * 0.75 / (0.01 + 0.75 * 0.75)));
+  std::sort(expected.begin(), expected.end());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    CHECK(std::abs(size_of(found.modes[i].eigenvalue) / expected[i] - 1.0) < 1e-12);
+  CHECK(std::abs(found.modes[3].damping_ratio()) < 1e-9);
+}
+
+// Three masses on guides, each on a damper alone: nothing holds any of them, and each velocity decays with c/m.
+TEST_CASE("dampers resist but do not hold") {
+  std::string text = "gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n";
+  for (const char* name : {"1", "2", "3"})
+    text += std::string("[[body]]\nname = \"") + name + "\"\nmass = 2.0\ninertia = 1.0\n[[element]]\nkind = \"prismatic\"\nname = \"guide " + name +
+            "\"\na = \"" + name + "\"\naxis = [1.0, 0.0]\n[[element]]\nkind = \"spring_damper\"\nname = \"damper " + name + "\"\na = \"" + name +
+            "\"\naxis = [1.0, 0.0]\nstiffness = 0.0\ndamping = " + name + "0.0\n";
+  const VibrationModes found = modes_of(text);
+  CHECK(found.rigid_motions == 3);
+  REQUIRE(found.modes.size() == 3);
+  for (int i = 0; i < 3; ++i) CHECK(std::abs(found.modes[i].eigenvalue + 5.0 * (i + 1)) < 1e-13);
 }

@@ -24,6 +24,7 @@ frequencies = [1.5]
 name = "body"
 mass = 3.0
 inertia = 0.6
+position = [)" + std::string(level == "position" ? "0.2" : "0.0") + R"(, 0.0]
 velocity = [)" + std::to_string(speed) + R"(, 0.0]
 [[element]]
 kind = "spring_damper"
@@ -36,7 +37,7 @@ free_length = 0.0
 [[element]]
 kind = "bushing"
 name = "seat"
-a = { body = "body", at = [0.0, 0.0] }
+a = { body = "body", point = [0.0, 0.0] }
 stiffness = [0.0, 500.0]
 damping = [0.0, 10.0]
 rotational_stiffness = 30.0
@@ -136,4 +137,28 @@ TEST_CASE("the work of a drive is what its reaction does: the energy account clo
     CHECK(r.result.statistics.energy_residual < 1e-9 * r.result.statistics.energy_exchanged);
     CHECK(std::abs(r.result.statistics.work) > 0.0);
   }
+}
+
+TEST_CASE("a position is absolute, or counts from the reference pose; neither makes the body jump") {
+  const auto moved = [](const std::string& place, const std::string& more) {
+    return std::string("[[signal]]\nname = \"swing\"\nkind = \"harmonics\"\namplitudes = [0.2]\nfrequencies = [1.5]\n"
+                       "phases = [-1.5707963267948966]\n[[body]]\nname = \"body\"\nmass = 3.0\ninertia = 0.6\n") +
+           place + "[[element]]\nkind = \"prescribed_motion\"\nname = \"drive\"\na = \"body\"\nsignal = \"swing\"\n" + more;
+  };
+  const std::string absolute = "as = \"position\"\n", counted = absolute + "zero = \"reference\"\n";
+  const std::string away = "position = [7.0, 0.0]\nangle = 0.5\n", at_origin = "position = [0.0, 0.0]\n";
+  for (const std::string coordinate : {"x", "angle"}) {
+    CAPTURE(coordinate);
+    const std::string along = "coordinate = \"" + coordinate + "\"\n";
+    CHECK_THROWS_AS((void)run(moved(away, along + absolute), {"dop853", 1e-9, 0.2}), ModelError);
+    const Run whole = run(moved(at_origin, along + absolute), {"dop853", 1e-9, 0.2});
+    const Run beyond = run(moved(away, along + counted), {"dop853", 1e-9, 0.2});
+    const std::string channel = coordinate == "x" ? "body.x" : "body.theta";
+    const double wanted = 0.2 * std::sin(0.2 * k_w);
+    CHECK(std::abs(whole.last(channel) - wanted) < 1e-12);
+    CHECK(std::abs(beyond.last(channel) - (coordinate == "x" ? 7.0 : 0.5) - wanted) < 1e-12);
+  }
+  // A signal that does not begin with zero would make it jump from there, too.
+  CHECK_THROWS_AS((void)run(driven("x", "position", "\"body\"", 0.0) + "zero = \"reference\"\n", {"dop853", 1e-9, 0.2}), ModelError);
+  CHECK_THROWS_AS((void)run(driven("x", "velocity", "\"body\"", 0.0) + "zero = \"reference\"\n", {"dop853", 1e-9, 0.2}), ModelError);
 }

@@ -50,7 +50,7 @@ TEST_CASE("what nothing holds has no equilibrium, and the body is named") {
   const Model model = scene(k_head + "[[body]]\nname = \"stone\"\nmass = 1\ninertia = 1\n");
   const auto system = compile(model);
   CHECK_THROWS_WITH_AS((void)find_equilibrium(*system, system->initial_state()),
-                       "no static equilibrium found: 'stone' keeps moving; is something missing that holds it?",
+                       "no static equilibrium: 'stone' along -y goes on without end: nothing holds it against the 9.81 N that drive it",
                        NumericalFailure);
 }
 
@@ -214,6 +214,5 @@ static_friction = 0.4
     REQUIRE(rest.margins.size() == 1);
     // Six decimals in the load of the model's text.
     CHECK(rest.margins[0].used == doctest::Approx(std::tan(slope) / mu).epsilon(1e-6));
-    CHECK(rest.slipping.empty());
   }
 }

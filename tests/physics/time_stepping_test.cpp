@@ -272,7 +272,7 @@ TEST_CASE("moreau: friction on a driven coordinate slides at the drive's rate an
   // 0.2 rad.
   const std::string text =
       k_no_gravity + signal_entry("harmonics", "swing", "amplitudes = [0.2]; frequencies = [2.0]") +
-      body("wheel", "mass = 1.0; inertia = 0.1") + element("revolute", "pin", "a = 'wheel'") +
+      body("wheel", "mass = 1.0; inertia = 0.1; angle = 0.2") + element("revolute", "pin", "a = 'wheel'") +
       element("prescribed_motion", "drive",
               "a = 'wheel'; coordinate = 'angle'; signal = 'swing'; as = 'position'") +
       element("joint_friction", "bearing", "a = 'wheel'; coordinate = 'angle'; holds = 1.0");

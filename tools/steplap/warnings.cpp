@@ -38,6 +38,10 @@ References references_of(const Model& model) {
       if (field.type == FieldType::marker) names = &found.markers;
       if (field.type == FieldType::body) names = &found.bodies;
       if (names) names->insert(std::get<std::string>(field.get(entry.element.get())));
+      if (field.name == "over" && field.type == FieldType::texts) { // what a rope runs over
+        const auto over = std::get<std::vector<std::string>>(field.get(entry.element.get()));
+        found.markers.insert(over.begin(), over.end());
+      }
     }
   for (const Marker& marker : model.markers)
     if (found.markers.count(marker.name) > 0) found.bodies.insert(marker.body);

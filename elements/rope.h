@@ -1,0 +1,26 @@
+// Rope: tension only, from marker a over any number of others to marker b.
+//
+// Its length is the way over its points, L = Σ |p_{i+1} − p_i|; a point that it runs over is a pulley without size or
+// friction, fixed in its body, so that the tension is the same all along:
+//   T = max(0, k (L − L₀) + c L̇) while L > L₀, else 0.
+// Each straight part pulls its two points towards each other with T. Potential ½ k (L − L₀)²; the damper dissipates
+// T L̇ less the change of that. Points keep their order, whether or not the rope would leave a pulley. An inextensible
+// rope is not offered: a stiff one stretches by T/k.
+#pragma once
+
+#include "mbd/model/model.h"
+
+namespace steplap {
+
+struct Rope : Element {
+  std::string a, b = "ground";
+  std::vector<std::string> over;    ///< markers between its ends, in order
+  double stiffness = 0.0, damping = 0.0;
+  std::optional<double> length;     ///< without load
+  std::optional<double> pretension; ///< in the reference pose
+  std::optional<double> slack;      ///< in the reference pose: length less the way
+};
+
+[[nodiscard]] const ElementKind& rope_kind();
+
+} // namespace steplap

@@ -1,0 +1,273 @@
+// Rest found from far away: closed forms, all models that have a rest, friction's limits, and what is said where there
+// is none.
+#include "mbd/analysis/assembly.h"
+#include "mbd/analysis/equilibrium.h"
+#include "tests/physics/model_text.h"
+#include "tests/physics/scene.h"
+
+#include <cmath>
+#include <cstdio>
+#include <doctest/doctest.h>
+#include <numbers>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+constexpr double k_g = 9.81, k_pi = std::numbers::pi;
+const std::string k_head = "[simulation]\nstep = 1e-3\n";
+
+std::string number(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+std::string point(double x, double y) { return "[" + number(x) + ", " + number(y) + "]"; }
+
+struct Found {
+  std::unique_ptr<System> system;
+  Equilibrium rest;
+};
+
+Found settle(const Model& model) {
+  Found found{compile(model), {}};
+  State start = assembled_start(*found.system, assemble(model, *found.system));
+  std::fill(start.v.begin(), start.v.end(), 0.0);
+  found.rest = find_equilibrium(*found.system, start);
+  return found;
+}
+Found settle(const std::string& text) { return settle(scene(k_head + text)); }
+
+std::string reason(const std::string& text) {
+  try {
+    (void)settle(text);
+  } catch (const NumericalFailure& failure) {
+    return failure.what();
+  }
+  return "";
+}
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+} // namespace
+
+TEST_CASE("all models that have a rest are found to have one") {
+  for (const char* name : {"benchmarks/double_pendulum", "benchmarks/chain_10", "benchmarks/slider_crank", "benchmarks/robot_arm",
+                           "benchmarks/rocking_block", "benchmarks/four_bar_2", "benchmarks/andrews", "layouts/rail_wagon_humping"}) {
+    CAPTURE(std::string(name));
+    const Model model = read_model(std::string(STEPLAP_MODELS) + "/" + name + ".toml", transformer_catalog());
+    const Found found = settle(model);
+    CHECK(found.rest.iterations < 100);
+    // Forces are sums of terms k δ: springs of 1e10 N/m of andrews' order and parts of grams leave 1e-8 m/s² of rounding.
+    CHECK(found.rest.residual < 1e-8);
+    // Nowhere does the machine rest higher than it began.
+    std::vector<Motion<double>> before, after;
+    const State start = assemble(model, *found.system);
+    place_bodies(start.q, start.v, before);
+    place_bodies(found.rest.state.q, start.v, after);
+    const double scale = std::abs(found.system->potential_energy(before.data()));
+    if (std::string(name) != "benchmarks/andrews" && std::string(name) != "benchmarks/robot_arm") // loads and motors have no potential
+      CHECK(found.system->potential_energy(after.data()) <= found.system->potential_energy(before.data()) + 1e-12 * scale);
+  }
+}
+
+TEST_CASE("a double pendulum and a chain hang straight down, from the horizontal") {
+  for (const char* name : {"double_pendulum", "chain_10"}) {
+    const Model model = read_model(std::string(STEPLAP_MODELS) + "/benchmarks/" + name + ".toml", transformer_catalog());
+    const Found found = settle(model);
+    for (int i = 1; i < found.system->body_count(); ++i) { // Newton's last step leaves rounding of 10 m
+      CHECK(std::abs(found.rest.state.q[3 * i]) < 1e-12);
+      CHECK(std::abs(found.rest.state.q[3 * i + 1] + (i - 0.5)) < 1e-12);
+    }
+  }
+}
+
+// Rod i of n, each of weight w and length l, between supports at one height: the ends' forces are H along x and
+// V_i = (i − (n − 1)/2) w across at its middle, so tan φ_i = V_i/H; H follows from the span Σ l cos φ_i.
+TEST_CASE("a chain of n rods between two supports takes the catenary's shape") {
+  for (const int n : {3, 8, 16})
+    for (const bool is_arch : {false, true}) { // from its mirror image, which balances but does not hold
+      CAPTURE(n);
+      CAPTURE(is_arch);
+      const double span = 0.7 * n, w = 2.0 * k_g;
+      const auto width = [&](double h) {
+        double sum = 0.0;
+        for (int i = 0; i < n; ++i) sum += 1.0 / std::hypot(1.0, (i - 0.5 * (n - 1)) * w / h);
+        return sum;
+      };
+      double low = 1e-3, high = 1e6;
+      for (int i = 0; i < 200; ++i) (width(0.5 * (low + high)) < span ? low : high) = 0.5 * (low + high);
+      std::vector<double> angle, x, y;
+      double px = 0.0, py = 0.0;
+      for (int i = 0; i < n; ++i) {
+        angle.push_back(std::atan((i - 0.5 * (n - 1)) * w / low));
+        x.push_back(px + 0.5 * std::cos(angle[i]));
+        y.push_back(py + 0.5 * std::sin(angle[i]));
+        px += std::cos(angle[i]);
+        py += std::sin(angle[i]);
+      }
+      std::string text;
+      // The other start: a roof, which does not balance.
+      const double roof = std::acos(0.7);
+      for (int i = 0; i < n; ++i) {
+        const std::string name = "rod " + std::to_string(i);
+        const double tilt = is_arch ? -angle[i] : (i < n / 2 ? roof : i >= n - n / 2 ? -roof : 0.0);
+        const double cx = is_arch ? x[i] : 0.7 * (i + 0.5), cy = is_arch ? -y[i] : std::min(i + 0.5, n - i - 0.5) * std::sin(roof);
+        text += body(name, "mass = 2; inertia = 0.16666666666666666; position = " + point(cx, cy) + "; angle = " + number(tilt)) +
+                element("revolute", "pin " + std::to_string(i),
+                        "a = { body = '" + name + "', point = [-0.5, 0.0] }; b = " +
+                            (i == 0 ? "{ body = 'ground', point = [0.0, 0.0] }"
+                                    : "{ body = 'rod " + std::to_string(i - 1) + "', point = [0.5, 0.0] }"));
+      }
+      text += element("revolute", "end", "a = { body = 'rod " + std::to_string(n - 1) + "', point = [0.5, 0.0] }; b = { body = 'ground', point = " + point(span, 0.0) + " }");
+      for (char& c : text)
+        if (c == '\'') c = '"';
+      const Found found = settle(text);
+      if (is_arch) CHECK_FALSE(found.rest.left.empty());
+      for (int i = 0; i < n; ++i) { // rounding of 11 m, through n joints
+        CHECK(std::abs(found.rest.state.q[3 * i + 3] - x[i]) < 1e-11);
+        CHECK(std::abs(found.rest.state.q[3 * i + 4] - y[i]) < 1e-11);
+        CHECK(std::abs(found.rest.state.q[3 * i + 5] - angle[i]) < 1e-11);
+      }
+    }
+}
+
+// A boom on a servo K (θ₀ − θ) carries a load on a rod at its tip: K (θ₀ − θ) = (m_b L/2 + m L) g cos θ, and the load
+// hangs below the tip.
+TEST_CASE("a crane arm gives way to its load, which swings down from anywhere") {
+  const double k = 4e4, boom = 300.0, load = 500.0, length = 3.0, start = 0.6;
+  double theta = start;
+  for (int i = 0; i < 100; ++i) {
+    const double arm = (0.5 * boom + load) * length * k_g;
+    theta -= (k * (theta - start) + arm * std::cos(theta)) / (k - arm * std::sin(theta));
+  }
+  for (const double swung : {0.0, 1.5, -3.0}) {
+    CAPTURE(swung);
+    const double tx = length * std::cos(start), ty = length * std::sin(start);
+    const Found found = settle(
+        body("boom", "mass = 300; inertia = 225; position = " + point(0.5 * tx, 0.5 * ty) + "; angle = " + number(start)) +
+        body("load", "mass = 500; inertia = 40; position = " + point(tx + 2.0 * std::sin(swung), ty - 2.0 * std::cos(swung))) +
+        element("revolute", "foot", "a = { body = \"boom\", point = [-1.5, 0.0] }") +
+        element("motor", "servo", "a = \"boom\"; coordinate = \"angle\"; proportional = 4e4; derivative = 100.0") +
+        element("distance", "hoist", "a = \"load\"; b = { body = \"boom\", point = [1.5, 0.0] }; length = 2.0"));
+    CHECK(std::abs(found.rest.state.q[5] - theta) < 1e-12); // rounding of a radian
+    CHECK(std::abs(found.rest.state.q[6] - length * std::cos(theta)) < 1e-11);
+    CHECK(std::abs(found.rest.state.q[7] - length * std::sin(theta) + 2.0) < 1e-11);
+    REQUIRE(found.rest.indifferent.size() == 1); // the load's angle: a rod at its centre does not hold it
+    CHECK(found.rest.indifferent[0].body == 2);
+    CHECK(found.rest.indifferent[0].coordinate == 2);
+  }
+}
+
+// A tank on four springs, led sideways by a bushing, with a lid that hangs on a pin at its side. With the tank level but
+// for small angles: 4 k δ = (M + m) g, and the lid hangs straight down.
+TEST_CASE("a tank on four springs with a bushing and a hanging lid settles") {
+  const double m_tank = 4000.0, m_lid = 200.0, k = 2e6;
+  std::string text = body("tank", "mass = 4000; inertia = 3000; position = [0.0, 1.0]") +
+                     body("lid", "mass = 200; inertia = 20; position = [1.9, 1.7]") +
+                     element("revolute", "hinge", "a = { body = \"lid\", point = [-0.7, 0.0] }; b = { body = \"tank\", point = [1.2, 0.7] }") +
+                     element("bushing", "guide", "a = { body = \"tank\", point = [0.0, 0.0] }; b = { body = \"ground\", at = [0.0, 1.0] }; "
+                             "stiffness = [1e6, 0.0]; damping = [1e3, 0.0]; rotational_stiffness = 3e8");
+  for (const double at : {-1.5, -0.5, 0.5, 1.5})
+    text += element("spring_damper", "spring " + number(at), "a = { body = \"tank\", point = [" + number(at) + ", -1.0] }; b = { body = \"ground\", at = [" +
+                    number(at) + ", 0.0] }; axis = [0.0, 1.0]; stiffness = 2e6; damping = 1e4; free_length = 0.0");
+  const Found found = settle(text);
+  const double* tank = &found.rest.state.q[3];
+  // The lid's weight turns the tank by m g x/(Σ k x² + K) about 7e-6 rad: its square and δ/L ≈ 3e-3 of it are left out.
+  const double turn = -m_lid * k_g * 1.2 / (k * (2.0 * 2.25 + 2.0 * 0.25) + 3e8);
+  CHECK(std::abs(tank[2] - turn) < 1e-2 * std::abs(turn));
+  CHECK(std::abs(tank[1] - 1.0 + (m_tank + m_lid) * k_g / (4.0 * k)) < 1e-9);
+  CHECK(std::abs(std::remainder(found.rest.state.q[8] + 0.5 * k_pi, 2.0 * k_pi)) < 1e-11);
+}
+
+// A ladder at 60° between floor and wall of one friction: it holds from μ = tan(45° − 60°/2) on, since with forces at
+// both borders tan 60° = (1 − μ²)/(2 μ); with more friction it uses that share of it.
+TEST_CASE("a ladder holds from the friction of the closed form on, however it was loaded") {
+  const double limit = std::tan(0.25 * k_pi - k_pi / 6.0), half = 2.0, x = half * 0.5, y = half * std::sin(k_pi / 3.0);
+  const auto ladder = [&](double friction, const std::string& start) {
+    std::string text = body("ladder", "mass = 20; inertia = 26.666666666666668; position = " + point(x, y));
+    const auto end = [&](const std::string& name, double ex, double ey, const std::string& normal) {
+      return element("unilateral_contact", name, "a = { body = \"ladder\", point = " + point(ex, ey) + " }; normal = " + normal +
+                     "; stiffness = 1e7; damping = 2e3; " + start) +
+             element("coulomb_stick", name + " friction", "contacts = [\"" + name + "\"]; static_friction = " + number(friction));
+    };
+    return text + end("foot", x, -y, "[0.0, 1.0]") + end("top", -x, y, "[1.0, 0.0]");
+  };
+  for (const char* start : {"gap = 0.0", "preload = 50.0", "preload = 98.1"}) {
+    CAPTURE(std::string(start));
+    for (const double friction : {0.27, 0.3, 0.5, 1.0}) {
+      CAPTURE(friction);
+      const Found found = settle(ladder(friction, start));
+      REQUIRE(found.rest.margins.size() == 2);
+      for (const FrictionMargin& margin : found.rest.margins) {
+        CHECK(margin.used <= 1.0);
+        // The wall and the floor give way by 1e-5 m of 1 m, and preloads may leave the ladder where it uses less.
+        if (std::string(start) == "gap = 0.0" && friction < 0.5) CHECK(std::abs(margin.used * friction / limit - 1.0) < 1e-3);
+      }
+      CHECK(found.rest.moved < 1e-3);
+    }
+    for (const double friction : {0.2, 0.26}) {
+      CAPTURE(friction);
+      CHECK(has(reason(ladder(friction, start)), "friction' and what shares its load) would have to hold 1."));
+    }
+  }
+}
+
+TEST_CASE("a block on a slope that is too steep does not rest, and the share is told") {
+  const std::string text =
+      body("block", "mass = 100; inertia = 10; position = [0.0, 0.2]") +
+      element("unilateral_contact", "upper", "a = { body = \"block\", point = [-0.5, -0.2] }; stiffness = 1e6; damping = 1e3; preload = 490.0") +
+      element("unilateral_contact", "lower", "a = { body = \"block\", point = [0.5, -0.2] }; stiffness = 1e6; damping = 1e3; preload = 490.0") +
+      element("coulomb_stick", "friction", "contacts = [\"upper\", \"lower\"]; static_friction = 0.4") +
+      element("load", "tilt", "at = \"block\"; force = [588.6, 0.0]"); // 0.6 of the weight
+  const std::string why = reason(text);
+  CAPTURE(why);
+  CHECK(has(why, "'friction'"));
+  CHECK(has(why, "1.5 times what it can"));
+  CHECK(has(why, "and 'block' slides"));
+}
+
+TEST_CASE("where nothing holds it is said what moves where") {
+  CHECK(has(reason(body("stone", "mass = 2; inertia = 1")), "'stone' along -y goes on without end: nothing holds it against the 19.62 N"));
+  const std::string wheel = body("wheel", "mass = 2; inertia = 1") + element("revolute", "pin", "a = \"wheel\"");
+  CHECK(has(reason(wheel + element("motor", "drive", "a = \"wheel\"; coordinate = \"angle\"; constant_effort = 3.0")),
+            "'wheel' turning counter-clockwise goes on without end: nothing holds it against the 3 N m"));
+  const Found loose = settle(wheel);
+  REQUIRE(loose.rest.indifferent.size() == 1);
+  CHECK(loose.rest.indifferent[0].coordinate == 2);
+}
+
+TEST_CASE("a pose that balances without holding is left, and told") {
+  const Found found = settle(body("bob", "mass = 2; inertia = 0.1; position = [0.0, 1.0]") +
+                             element("revolute", "pin", "a = { body = \"bob\", at = [0.0, 0.0] }"));
+  CHECK(found.rest.left.size() == 1);
+  CHECK(std::abs(found.rest.state.q[4] + 1.0) < 1e-12);
+}
+
+// Friction of M on the pin of a pendulum holds it where m g r |sin φ| ≤ M: from the horizontal it sinks to that border.
+TEST_CASE("a pendulum with dry friction in its pin sinks to where that holds it") {
+  const Found found = settle(body("bob", "mass = 2; inertia = 0.1; position = [1.0, 0.0]") +
+                             element("revolute", "pin", "a = { body = \"bob\", at = [0.0, 0.0] }") +
+                             element("joint_friction", "rust", "a = \"bob\"; coordinate = \"angle\"; holds = 8.0"));
+  REQUIRE(found.rest.margins.size() == 1);
+  // A millionth short of the border, so that it holds.
+  CHECK(std::abs(found.rest.margins[0].used - 1.0) < 2e-6);
+  CHECK(std::abs(found.rest.state.q[3] - 8.0 / (2.0 * k_g)) < 2e-6);
+  CHECK(found.rest.slid.size() == 1);
+}
+
+TEST_CASE("a drive that moves is held for the search, and told") {
+  const auto cart = [](const std::string& signal) {
+    return signal + body("cart", "mass = 10; inertia = 1; position = [0.0, 0.0]") +
+           body("bob", "mass = 2; inertia = 0.1; position = [1.0, 0.0]") +
+           element("prismatic", "road", "a = \"cart\"; axis = [1.0, 0.0]") +
+           element("prescribed_motion", "drive", "a = \"cart\"; coordinate = \"x\"; signal = \"go\"; as = \"acceleration\"") +
+           element("revolute", "pin", "a = { body = \"bob\", point = [-1.0, 0.0] }; b = \"cart\"");
+  };
+  const Found moving = settle(cart(signal_entry("constant", "go", "value = 5.0")));
+  CHECK(std::abs(moving.rest.state.q[6]) < 1e-12);
+  CHECK(std::abs(moving.rest.state.q[7] + 1.0) < 1e-12);
+  REQUIRE(moving.rest.moving_drives.size() == 1);
+  CHECK(has(remarks_on(*moving.system, moving.rest).back(), "'drive' moves or accelerates"));
+  CHECK(settle(cart(signal_entry("constant", "go", "value = 0.0"))).rest.moving_drives.empty());
+}
