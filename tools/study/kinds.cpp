@@ -1,7 +1,9 @@
 #include "tools/study/kinds.h"
 
+#include "tools/study/critical.h"
 #include "tools/study/designs.h"
 #include "tools/study/reliability.h"
+#include "tools/study/sensitivity.h"
 
 namespace steplap::study {
 
@@ -18,7 +20,10 @@ const std::vector<StudyKind>& study_kinds() {
   static const std::vector<StudyKind> kinds{
       {"sweep", "values tried one after the other: a grid, a list, one variable at a time", check_sweep, run_sweep},
       {"sample", "samples drawn from the distributions: what the responses are like", check_sample, run_sample},
-      {"reliability", "how likely failure is, by sampling and by design points", check_reliability, run_reliability}};
+      {"reliability", "how likely failure is, by sampling and by design points", check_reliability, run_reliability},
+      {"sensitivity", "how much each variable matters: elasticities, Morris' screening, Sobol indices, a tornado", check_sensitivity, run_sensitivity},
+      {"critical", "the values of a variable at which an expression is zero", check_critical, run_critical},
+      {"map", "the curve in the plane of two variables on which an expression is zero", check_map, run_map}};
   return kinds;
 }
 

@@ -1,0 +1,110 @@
+// Critical values and borders against closed forms.
+#include "tests/study/block_scene.h"
+#include "tests/study/study_bench.h"
+
+#include <map>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+std::string critical(const std::string& expression, double low, double high) {
+  return "kind = \"critical\"\n[critical]\nvariable = \"x\"\nexpression = \"" + expression + "\"\n[[variable]]\nname = \"x\"\nrange = [" + std::to_string(low) + ", " +
+         std::to_string(high) + "]\n";
+}
+
+// Points of a border, both variables.
+std::map<std::string, std::vector<std::pair<double, double>>> borders_of(const StudyBench& bench) {
+  std::map<std::string, std::vector<std::pair<double, double>>> borders;
+  const auto& f = bench.findings();
+  for (std::size_t i = 0; i + 1 < f.size(); i += 2) borders[f[i].subject.substr(0, f[i].subject.find(" point"))].emplace_back(f[i].value, f[i + 1].value);
+  return borders;
+}
+
+} // namespace
+
+TEST_CASE("the friction at which the block slides 5 mm: mu* = A/(g (1 + 2 D/(A t^2)))") {
+  StudyBench bench;
+  bench.write("block.toml", k_block);
+  const Outcome outcome = bench.run("model = \"block.toml\"\nkind = \"critical\"\n[critical]\nvariable = \"mu\"\nexpression = \"slid - 0.005\"\npoints = 5\n[[variable]]\nname = \"mu\"\n"
+                                    "path = \"element.deck friction.static_friction\"\nrange = [0.3, 0.59]\n" + k_slid);
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  CHECK(bench.find("critical", "critical value").value == doctest::Approx(0.512866686).epsilon(1e-8)); // studies.md, to its digits
+  CHECK(has(outcome.out, "falls all over the range"));
+}
+
+TEST_CASE("all crossings of a response that is not monotonic") {
+  StudyBench bench;
+  REQUIRE(bench.run(critical("sin(x) - 0.5", 0, 10)).code == 0);
+  const double pi = std::acos(-1.0);
+  REQUIRE(bench.findings().size() == 4); // 13 pi/6 = 6.81 and 17 pi/6 = 8.90 too
+  for (int i = 0; i < 4; ++i) CHECK(bench.findings()[i].value == doctest::Approx((i % 2 ? 5.0 / 6.0 : 1.0 / 6.0) * pi + i / 2 * 2.0 * pi).epsilon(1e-8));
+  CHECK(has(text_of(bench.at("study.toml")), "sin"));
+}
+
+TEST_CASE("a pair of crossings between two looks is seen where the response turns") {
+  StudyBench bench;
+  // Zeros at 0.52 ± 0.01; the looks are 0.05 apart.
+  REQUIRE(bench.run(critical("(x - 0.52)^2 - 0.0001", 0, 1)).code == 0);
+  REQUIRE(bench.findings().size() == 2);
+  CHECK(bench.findings()[0].value == doctest::Approx(0.51).epsilon(1e-7));
+  CHECK(bench.findings()[1].value == doctest::Approx(0.53).epsilon(1e-7));
+}
+
+TEST_CASE("a jump past zero is no zero") {
+  StudyBench bench;
+  (void)bench.run(critical("x < 0.3 ? -1 : 2", 0, 1));
+  CHECK(bench.find("critical", "critical value").value == doctest::Approx(0.3).epsilon(1e-7));
+  CHECK(has(bench.find("critical", "critical value").status, "jumps past zero"));
+}
+
+TEST_CASE("no crossing is an answer of its own, and an exit code") {
+  StudyBench bench;
+  CHECK(bench.run(critical("1 + x^2", 0, 1)).code == 5);
+  CHECK(has(bench.find("critical", "critical value").status, "positive wherever it was looked at"));
+}
+
+// t = sqrt(2 D0/(A (A/(mu g) − 1)))
+TEST_CASE("the border of damage in the plane of acceleration and duration") {
+  StudyBench bench;
+  bench.write("block.toml", k_block);
+  const Outcome outcome = bench.run("model = \"block.toml\"\nkind = \"map\"\n[map]\nvariables = [\"A\", \"t\"]\nexpression = \"0.005 - slid\"\nstep = 0.1\npoints = 4\n"
+                                    "[[variable]]\nname = \"A\"\npath = \"signal.push.peak\"\nrange = [3.924, 19.62]\n"
+                                    "[[variable]]\nname = \"t\"\npath = \"signal.push.duration\"\nrange = [\"5 ms\", \"100 ms\"]\n" + k_slid);
+  CAPTURE(outcome.err);
+  CAPTURE(outcome.out);
+  REQUIRE(outcome.code == 0);
+  const auto borders = borders_of(bench);
+  REQUIRE(borders.size() == 1);
+  const auto& points = borders.begin()->second;
+  CHECK(points.size() > 10);
+  for (const auto& [A, t] : points) CHECK(t == doctest::Approx(std::sqrt(0.01 / (A * (A / (0.3 * k_g) - 1.0)))).epsilon(1e-6));
+  // From end to end: A = 0.4 g at 87.437 ms, 2 g at 9.484 ms (studies.md).
+  const auto [least, most] = std::minmax_element(points.begin(), points.end());
+  CHECK(least->first == doctest::Approx(0.4 * k_g));
+  CHECK(least->second == doctest::Approx(0.087437177).epsilon(1e-6));
+  CHECK(most->first == doctest::Approx(2.0 * k_g));
+  CHECK(most->second == doctest::Approx(0.009483893).epsilon(1e-6));
+}
+
+TEST_CASE("borders that close, and several of them") {
+  StudyBench bench;
+  // Two circles, of radius 0.2 and 0.1.
+  REQUIRE(bench.run("kind = \"map\"\n[map]\nvariables = [\"x\", \"y\"]\nexpression = \"min((x - 0.3)^2 + (y - 0.4)^2 - 0.04, (x - 0.75)^2 + (y - 0.75)^2 - 0.01)\"\n"
+                    "[[variable]]\nname = \"x\"\nrange = [0, 1]\n[[variable]]\nname = \"y\"\nrange = [0, 1]\n").code == 0);
+  const auto borders = borders_of(bench);
+  REQUIRE(borders.size() == 2);
+  for (const auto& [name, points] : borders) {
+    CHECK(points.front() == points.back());
+    double length = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double large = std::hypot(points[i].first - 0.3, points[i].second - 0.4) - 0.2, small = std::hypot(points[i].first - 0.75, points[i].second - 0.75) - 0.1;
+      CHECK(std::min(std::abs(large), std::abs(small)) < 1e-8);
+      if (i) length += std::hypot(points[i].first - points[i - 1].first, points[i].second - points[i - 1].second);
+    }
+    const double radius = length > 1.0 ? 0.2 : 0.1;
+    CHECK(length == doctest::Approx(2.0 * std::acos(-1.0) * radius).epsilon(0.01)); // of chords
+  }
+}
