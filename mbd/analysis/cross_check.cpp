@@ -298,7 +298,7 @@ private:
     double stepping = 0.0, other = 0.0;
     for (const Method& method : methods_) {
       const CrossRun& r = check_.runs[method.run];
-      double& known = method(r.setting.integrator).is_time_stepping ? stepping : other;
+      double& known = steplap::method(r.setting.integrator).is_time_stepping ? stepping : other;
       known = std::max(known, r.known_until);
     }
     check_.known_until = std::min(stepping, other);
