@@ -331,7 +331,7 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   layout.absolute_count = layout.cluster_count();
   std::vector<char> is_pin(system.row_blocks.size(), 0);
   if (coordinates != Coordinates::absolute) {
-    JointCoordinates found = find_joint_coordinates(system, state, layout, is_block_merged, is_friction_merged);
+    JointCoordinates found = find_joint_coordinates(system, state, layout, coordinates, is_block_merged, is_friction_merged);
     is_pin = found.is_pin;
     if (!found.mechanisms.empty()) take_joint_coordinates(std::move(found), layout);
   }

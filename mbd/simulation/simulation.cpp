@@ -1,6 +1,7 @@
 #include "mbd/simulation/simulation.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/integrators/explicit_pair.h"
 
 #include <algorithm>
 #include <cmath>
@@ -266,7 +267,15 @@ void Simulation::look_for_extremes(long evaluations, bool is_last) {
 bool Simulation::advance() {
   if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
   const double limit = next_limit();
-  integrator_->step(dynamics_, limit);
+  try {
+    integrator_->step(dynamics_, limit);
+  } catch (const JointsNearSingular&) { // rounding is spread otherwise over places and angles
+    state_ = current_state();
+    options_.coordinates = Coordinates::absolute;
+    dynamics_.use_coordinates(Coordinates::absolute);
+    restart();
+    return true;
+  }
   const long evaluations = dynamics_.evaluations();
   guard_against_crawl();
   if (integrator_->stepped_state()) return pass_stepped();
