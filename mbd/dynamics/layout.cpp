@@ -332,7 +332,7 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   std::vector<char> is_pin(system.row_blocks.size(), 0);
   // The small blocks of inner states (Linearization::InnerBlock) are between clusters in absolute coordinates.
   if (coordinates != Coordinates::absolute && system.inner_count() == 0) {
-    JointCoordinates found = find_joint_coordinates(system, state, layout, is_block_merged, is_friction_merged);
+    JointCoordinates found = find_joint_coordinates(system, state, layout, coordinates, is_block_merged, is_friction_merged);
     is_pin = found.is_pin;
     if (!found.mechanisms.empty()) take_joint_coordinates(std::move(found), layout);
   }

@@ -60,6 +60,8 @@ void Mechanism::close(int cluster_count, const Vec2& gravity, const SchurRow* ro
     m.coordinate = above;
   }
   w.n = n_;
+  w.is_chain = true;
+  for (int i = 0; i < n_; ++i) w.is_chain = w.is_chain && w.up[i] == i - 1;
   for (int i = 0; i < n_; ++i) w.all[i] = static_cast<std::uint8_t>(n_ - 1 - i);
   for (const Member& m : members) {
     Link link;
@@ -162,6 +164,32 @@ void Mechanism::pack(const double* cluster_q, const double* cluster_v, double* q
 
 // --- forces and accelerations -----------------------------------------------------------------------
 
+namespace {
+
+void factor_chain(MechanismWork& w) {
+  switch (w.n) {
+  case 1: return w.factor_chain<1>();
+  case 2: return w.factor_chain<2>();
+  case 3: return w.factor_chain<3>();
+  case 4: return w.factor_chain<4>();
+  case 5: return w.factor_chain<5>();
+  default: return w.factor_chain<0>();
+  }
+}
+
+void solve_chain(const MechanismWork& w, double* x) {
+  switch (w.n) {
+  case 1: return w.solve_chain<1>(x);
+  case 2: return w.solve_chain<2>(x);
+  case 3: return w.solve_chain<3>(x);
+  case 4: return w.solve_chain<4>(x);
+  case 5: return w.solve_chain<5>(x);
+  default: return w.solve_chain<0>(x);
+  }
+}
+
+} // namespace
+
 void Mechanism::factor_mass() {
   MechanismWork& w = *work_;
   double* const h = w.mass.data();
@@ -181,6 +209,7 @@ void Mechanism::factor_mass() {
     h[x * k + x] = h[y * k + y] = at->mass_below;
     h[y * k + x] = 0.0;
   }
+  if (w.is_chain) return factor_chain(w);
   for (int r = n_ - 1; r >= 0; --r) {
     double* const row = h + r * k;
     const double inverse = w.inverse_d[r] = 1.0 / row[r];
@@ -195,6 +224,7 @@ void Mechanism::factor_mass() {
 
 void Mechanism::solve_mass(double* x) const {
   const MechanismWork& w = *work_;
+  if (w.is_chain) return solve_chain(w, x);
   w.whiten(x, w.all.data(), n_);
   for (int i = 0; i < n_; ++i) {
     const double* const row = w.mass.data() + i * k_most;

@@ -50,8 +50,8 @@ bool is_rod(const System& system, const RowBlock& block) {
 
 class Finder {
 public:
-  Finder(const System& system, const State& state, const Layout& layout)
-      : system_(system), state_(state), layout_(layout), islands_(layout.clusters.size()),
+  Finder(const System& system, const State& state, const Layout& layout, Coordinates choice)
+      : system_(system), state_(state), layout_(layout), choice_(choice), islands_(layout.clusters.size()),
         rows_(layout.clusters.size(), 0), hinges_at_(layout.clusters.size()), is_driven_(layout.clusters.size(), 0),
         member_(layout.clusters.size(), -1) {}
 
@@ -130,7 +130,10 @@ private:
       else if (!hang_by_rod(island)) add_free(most_hinged(island));
     }
     int coordinates = 0, rows = 0;
-    for (const Member& m : tree_.members) coordinates += m.is_free ? 3 : 1;
+    for (const Member& m : tree_.members) {
+      coordinates += m.is_free ? 3 : 1;
+      if (m.is_free && choice_ == Coordinates::automatic) return;
+    }
     for (const int k : island) rows += rows_[k];
     for (const int block : used_) rows -= system_.row_blocks[block].count;
     if (used_.empty() || coordinates > Mechanism::k_most || rows > Mechanism::k_most) return;
@@ -223,6 +226,7 @@ private:
   const System& system_;
   const State& state_;
   const Layout& layout_;
+  Coordinates choice_;
   Islands islands_;
   std::vector<int> rows_;
   std::vector<Hinge> hinges_;
@@ -236,9 +240,9 @@ private:
 
 } // namespace
 
-JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout,
+JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout, Coordinates choice,
                                         const std::vector<char>& is_block_merged, const std::vector<char>& is_friction_merged) {
-  return Finder(system, state, layout).find(is_block_merged, is_friction_merged);
+  return Finder(system, state, layout, choice).find(is_block_merged, is_friction_merged);
 }
 
 } // namespace steplap

@@ -21,13 +21,87 @@ double own_compliance(const SchurRow& row) {
   return sum;
 }
 
-void eliminate(const MechanismWork& w, int m, double* x) {
+struct Pivots {
+  int dependent_count = 0;
+  double smallest = 1.0;
+};
+
+// A = J M⁻¹ Jᵀ row by row: below the diagonal first L D, then L. N: the number of rows if it is small, else 0.
+template <int N> Pivots factor_dense(MechanismWork& w, int count, const std::vector<char>& out) {
+  constexpr int k_most = MechanismWork::k_most;
+  Pivots found;
+  double least = 1.0;
+  const int m = N > 0 ? N : count;
+  const MechanismWork::Shared* pair = w.shared.data();
+  double* const a = w.factor.data();
+  double* const inverse = w.inverse_pivot.data();
+  for (int r = 0; r < m; ++r) {
+    const double* const scaled = w.scaled.data() + r * k_most;
+    double* const row = a + r * m;
+    for (int t = 0; t <= r; ++t, ++pair) {
+      const double* const other = w.white.data() + t * k_most;
+      double sum = 0.0;
+      for (const std::uint8_t *at = w.shared_at.data() + pair->begin, *const end = at + pair->count; at != end; ++at)
+        sum += scaled[*at] * other[*at];
+      row[t] = sum;
+    }
+    const double own = w.own[r];
+    double d = row[r] + w.shift * own;
+    for (int j = 0; j < r; ++j) {
+      const double* const before = a + j * m;
+      double sum = row[j];
+      for (int k = 0; k < j; ++k) sum -= row[k] * before[k];
+      row[j] = sum;
+    }
+    for (int j = 0; j < r; ++j) {
+      const double l = row[j] * inverse[j];
+      d -= l * row[j];
+      row[j] = l;
+    }
+    const bool is_out = !out.empty() && out[r] != 0;
+    if (is_out || !(d > SchurSolver::k_pivot_tolerance * own)) [[unlikely]] {
+      inverse[r] = 0.0;
+      ++found.dependent_count;
+    } else {
+      inverse[r] = 1.0 / d;
+      if (d < least * own) least = d / own;
+    }
+  }
+  found.smallest = least;
+  return found;
+}
+
+Pivots factor(MechanismWork& w, int count, const std::vector<char>& out) {
+  switch (count) {
+  case 1: return factor_dense<1>(w, count, out);
+  case 2: return factor_dense<2>(w, count, out);
+  case 3: return factor_dense<3>(w, count, out);
+  case 4: return factor_dense<4>(w, count, out);
+  case 6: return factor_dense<6>(w, count, out);
+  default: return factor_dense<0>(w, count, out);
+  }
+}
+
+template <int N> STEPLAP_INLINE void eliminate_dense(const MechanismWork& w, int count, double* x) {
   const double* const l = w.factor.data();
-  for (int i = 1; i < m; ++i)
-    for (int j = 0; j < i; ++j) x[i] -= l[i * m + j] * x[j];
+  const int m = N > 0 ? N : count;
+  for (int i = 1; i < m; ++i) {
+    double sum = x[i];
+    for (int j = 0; j < i; ++j) sum -= l[i * m + j] * x[j];
+    x[i] = sum;
+  }
   for (int i = 0; i < m; ++i) x[i] *= w.inverse_pivot[i];
   for (int i = m - 1; i > 0; --i)
     for (int j = 0; j < i; ++j) x[j] -= l[i * m + j] * x[i];
+}
+
+void eliminate(const MechanismWork& w, int m, double* x) {
+  switch (m) {
+  case 2: return eliminate_dense<2>(w, m, x);
+  case 4: return eliminate_dense<4>(w, m, x);
+  case 6: return eliminate_dense<6>(w, m, x);
+  default: return eliminate_dense<0>(w, m, x);
+  }
 }
 
 // x += A⁻¹ (right − J M⁻¹ Jᵀ x) while that makes the correction smaller, factor by factor as SchurSolver does it.
@@ -156,44 +230,11 @@ void Mechanism::factor_rows(const SchurRow* rows, double shift) {
   if (is_rank_open_) [[unlikely]] keep_rank(shift);
 }
 
-// A = J M⁻¹ Jᵀ row by row: below the diagonal first L D, then L.
 void Mechanism::factor_as_is(double shift) {
-  MechanismWork& w = *work_;
-  w.shift = shift;
-  dependent_count_ = 0;
-  smallest_pivot_ = 1.0;
-  const int m = row_count;
-  const MechanismWork::Shared* pair = w.shared.data();
-  for (int r = 0; r < m; ++r) {
-    const double* const scaled = w.scaled.data() + static_cast<std::ptrdiff_t>(r) * k_most;
-    double* const row = w.factor.data() + static_cast<std::ptrdiff_t>(r) * m;
-    for (int t = 0; t <= r; ++t, ++pair) {
-      const double* const other = w.white.data() + static_cast<std::ptrdiff_t>(t) * k_most;
-      const std::uint8_t* const at = w.shared_at.data() + pair->begin;
-      double sum = 0.0;
-      for (int p = 0; p < pair->count; ++p) sum += scaled[at[p]] * other[at[p]];
-      row[t] = sum;
-    }
-    double d = row[r] + shift * w.own[r];
-    for (int j = 0; j < r; ++j) {
-      const double* const before = w.factor.data() + static_cast<std::ptrdiff_t>(j) * m;
-      double sum = row[j];
-      for (int k = 0; k < j; ++k) sum -= row[k] * before[k];
-      row[j] = sum;
-    }
-    for (int j = 0; j < r; ++j) {
-      const double l = row[j] * w.inverse_pivot[j];
-      d -= l * row[j];
-      row[j] = l;
-    }
-    if (is_left_out(r) || !(d > SchurSolver::k_pivot_tolerance * w.own[r])) [[unlikely]] {
-      w.inverse_pivot[r] = 0.0;
-      ++dependent_count_;
-    } else {
-      w.inverse_pivot[r] = 1.0 / d;
-      if (d < smallest_pivot_ * w.own[r]) smallest_pivot_ = d / w.own[r];
-    }
-  }
+  work_->shift = shift;
+  const Pivots found = factor(*work_, row_count, out_);
+  dependent_count_ = found.dependent_count;
+  smallest_pivot_ = found.smallest;
 }
 
 void Mechanism::decide_rank(const char* is_friction) {

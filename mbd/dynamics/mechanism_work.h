@@ -45,7 +45,7 @@ struct MechanismWork {
     now.lever = {now.c * now.centre.x - now.s * now.centre.y, now.s * now.centre.x + now.c * now.centre.y};
   }
 
-  /// x = L⁻ᵀ x, where x is zero but for what moves one thing: `above` its coordinates, the outermost first.
+  /// x = L⁻ᵀ x, where x is zero but for the coordinates of `pattern`, the outermost first.
   STEPLAP_INLINE void whiten(double* x, const std::uint8_t* pattern, int count) const {
     for (int p = 0; p < count; ++p) {
       const int i = pattern[p];
@@ -55,7 +55,35 @@ struct MechanismWork {
     }
   }
 
+  // The same, M = Lᵀ D L and M⁻¹ x where every coordinate but the first is below the one before it, so that M is full.
+  template <int N> STEPLAP_INLINE void factor_chain() {
+    const int size = N > 0 ? N : n;
+    double* const h = mass.data();
+    for (int r = size - 1; r >= 0; --r) {
+      double* const row = h + r * k_most;
+      const double inverse = inverse_d[r] = 1.0 / row[r];
+      for (int i = r - 1; i >= 0; --i) {
+        const double a = row[i] * inverse;
+        double* const other = h + i * k_most;
+        for (int j = 0; j <= i; ++j) other[j] -= a * row[j];
+        row[i] = a;
+      }
+    }
+  }
+  template <int N> STEPLAP_INLINE void solve_chain(double* x) const {
+    const int size = N > 0 ? N : n;
+    const double* const h = mass.data();
+    for (int i = size - 1; i > 0; --i)
+      for (int j = 0; j < i; ++j) x[j] -= h[i * k_most + j] * x[i];
+    for (int i = 0; i < size; ++i) {
+      double sum = x[i] * inverse_d[i];
+      for (int j = 0; j < i; ++j) sum -= h[i * k_most + j] * x[j];
+      x[i] = sum;
+    }
+  }
+
   int n = 0;
+  bool is_chain = false;
   Pair<double> gravity;
   std::vector<Link> links;
   mutable std::vector<Link> packed; ///< scratch of pack and unpack, which leave the pose placed as it is

@@ -32,6 +32,7 @@ ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& s
 void ExplicitPair::on_restart(Dynamics&) {
   control_.previous_error = 1e-4;
   start_pivot_ = highest_pivot_ = 1.0;
+  failed_crossings_ = 0;
 }
 
 bool ExplicitPair::end_step(Dynamics& dynamics) {
@@ -79,7 +80,12 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   h_ = h;
   t1_ = t0_ + h_;
   begin_watch_nodes();
-  is_crossing_ = crossing_->cross(dynamics, crossing_step(dynamics), y1_.data()) <= 1.0;
+  const double error = crossing_->cross(dynamics, crossing_step(dynamics), y1_.data());
+  is_crossing_ = error <= 1.0;
+  const bool has_choice = dynamics.coordinates() == Coordinates::automatic && dynamics.layout().has_mechanisms();
+  failed_crossings_ = is_crossing_ ? 0 : failed_crossings_ + 1; // the first may have been too far away
+  if (has_choice && (failed_crossings_ > 1 || error == std::numeric_limits<double>::infinity()))
+    throw JointsNearSingular("a singular position of the joints behind t = " + std::to_string(t0_) + " s is not passed");
   return is_crossing_ ? 0.0 : std::min(h_tried, k_closer * ahead);
 }
 

@@ -6,6 +6,12 @@
 
 namespace steplap {
 
+/// A singular position of joints lies ahead that the step from here does not pass in joint coordinates, which bodies' own
+/// might: thrown where there is a choice, the state still that of the last step.
+struct JointsNearSingular : NumericalFailure {
+  using NumericalFailure::NumericalFailure;
+};
+
 class ExplicitPair : public Integrator {
 public:
   ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension,
@@ -60,6 +66,7 @@ private:
   double start_pivot_ = 1.0;                   ///< of the constraints at t0, 1: not known
   double highest_pivot_ = 1.0;                 ///< since the last restart
   bool is_crossing_ = false;                   ///< the step made is one
+  int failed_crossings_ = 0;                   ///< since one was made
 };
 
 } // namespace steplap

@@ -115,7 +115,8 @@ void Integrator::update_weights(Dynamics& dynamics) {
     double size = scale.is_place ? k_displacement_floor * length_scale_ : k_displacement_floor;
     // What an angle of a mechanism turns is known as well as a place would be.
     if (scale.reach > length_scale_) size *= length_scale_ / scale.reach;
-    const double displacement = std::abs(y0_[i] - layout.reference[i]);
+    double displacement = std::abs(y0_[i] - layout.reference[i]);
+    if (scale.reach > 0.0) displacement = std::min(displacement, 1.0); // whatever it turns goes no further
     weight_[i] = is_locked ? 0.0 : 1.0 / (tolerance * (size + displacement));
     weight_[m + i] =
         is_locked ? 0.0 : 1.0 / (tolerance * (k_rate_floor * size + std::abs(y0_[m + i])));

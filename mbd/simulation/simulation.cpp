@@ -1,6 +1,7 @@
 #include "mbd/simulation/simulation.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/integrators/explicit_pair.h"
 #include "mbd/model/method.h"
 
 #include <algorithm>
@@ -275,7 +276,15 @@ void Simulation::look_for_extremes(long evaluations, bool is_last) {
 bool Simulation::advance() {
   if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
   const double limit = next_limit();
-  integrator_->step(dynamics_, limit);
+  try {
+    integrator_->step(dynamics_, limit);
+  } catch (const JointsNearSingular&) { // rounding is spread otherwise over places and angles
+    state_ = current_state();
+    options_.coordinates = Coordinates::absolute;
+    dynamics_.use_coordinates(Coordinates::absolute);
+    restart();
+    return true;
+  }
   constexpr long k_now_and_then = 64; // steps: also where no sample is due for long
   if (options_.progress && integrator_->steps() % k_now_and_then == 0) options_.progress(state_.t);
   const long evaluations = dynamics_.evaluations();
