@@ -228,7 +228,8 @@ void Patch::group_pieces() {
     group.first = members_.size();
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const double reach = (pieces_[i].centroid - group.centre).norm() + pieces_[i].radius;
-      const bool is_like = reach <= k_wider * pieces_[largest].radius && pieces_[i].radius >= k_smaller * pieces_[largest].radius;
+      const bool is_like = reach <= k_wider * pieces_[largest].radius &&
+                           pieces_[i].radius >= k_smaller * pieces_[largest].radius;
       if (is_grouped_[i] || !(is_like || i == largest)) continue;
       is_grouped_[i] = 1;
       members_.push_back(i);

@@ -126,7 +126,9 @@ TEST_CASE("patch: pieces that lie over each other, taken together or one by one"
         const double length = 0.8 - 0.05 * (k % 4), q = 5e-3 * (k % 5 - 2), w = k % 5 == 4 ? 18e-3 : 4.5e-3;
         const Vec2 t = Vec2(1, corner.y() > 0 ? 1 : -1).normalized(), n(-t.y(), t.x());
         const auto at = [&](double s, double across) { return Vec2(corner + s * t + across * n); };
-        const Polygon strip{{at(-0.5 * length, q), at(0.5 * length, q), at(0.5 * length - w, q + w), at(w - 0.5 * length, q + w)}, {}};
+        const Polygon strip{{at(-0.5 * length, q), at(0.5 * length, q), at(0.5 * length - w, q + w),
+                             at(w - 0.5 * length, q + w)},
+                            {}};
         const Traction traction{1e5 * (1 + k), k % 3 == 0 ? Vec2(1e4, -2e4) : Vec2(0, 0)};
         alone.add(strip, traction);
         together.add(strip, traction);
