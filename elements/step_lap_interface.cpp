@@ -144,8 +144,10 @@ const ElementKind& step_lap_interface_kind() {
     f.add("clearance", &T::clearance).in("m").not_negative().doc(
         "by which the limb may move towards the yoke, across the overlap, before the sheets of a layer butt; not given: "
         "not known, and not looked at");
-    f.add("across", &T::across).doc("direction from the yoke to the limb, in which a limb moves away from the yoke; axes by "
-                                    "'frame'; default: from the middle of one sheet to that of the other");
+    f.add("across", &T::across)
+        .doc("direction from the yoke to the limb, in which a limb moves away from the yoke; axes "
+             "by "
+             "'frame'; default: from the middle of one sheet to that of the other");
     k.holds<T>();
     k.compile = compile_interface;
     return k;

@@ -10,7 +10,9 @@ std::vector<std::string> Core::all_limbs() const {
   return all;
 }
 
-std::string Core::joint_name(std::size_t limb) const { return joints.empty() ? all_limbs()[limb] + " joint" : joints[limb]; }
+std::string Core::joint_name(std::size_t limb) const {
+  return joints.empty() ? all_limbs()[limb] + " joint" : joints[limb];
+}
 
 namespace {
 
@@ -28,22 +30,32 @@ void add_dimensions(FieldTable& f) {
   f.add("yoke_height", &T::yoke_height).in("m").positive().doc("of one yoke, of a core of one packet");
   f.add("packets", &T::packets).in("m").positive().doc(
       "stepped section: width of the limb's sheets and depth of each packet, from the front face to the back");
-  f.add("yoke_heights", &T::yoke_heights).in("m").positive().doc("height of the yoke in each packet; of round yokes the limb's widths");
+  f.add("yoke_heights", &T::yoke_heights)
+      .in("m")
+      .positive()
+      .doc("height of the yoke in each packet; of round yokes the limb's widths");
   f.add("yoke_steps", &T::yoke_steps)
       .one_of({"both", "window", "outside"})
-      .doc("where yokes of several packets are stepped: on both sides (an axis in common), at the window or outside only");
+      .doc("where yokes of several packets are stepped: on both sides (an axis in common), at the "
+           "window or outside only");
   f.add("ducts", &T::ducts).in("m").doc(
       "oil ducts across the stack: depth of stack in front of each, and its width; sheets on either side do not touch");
-  f.add("bolt_holes", &T::bolt_holes).in("m").doc(
-      "centres of holes at every corner, through limb and yoke: from where the axes of limb and yoke cross, outwards and "
-      "away from the window");
+  f.add("bolt_holes", &T::bolt_holes)
+      .in("m")
+      .doc("centres of holes at every corner, through limb and yoke: from where the axes of limb "
+           "and yoke cross, outwards and "
+           "away from the window");
   f.add("bolt_hole_diameter", &T::bolt_hole_diameter).in("m").positive().doc("of all bolt holes");
   f.add("mitre_angle", &T::mitre_angle).in("rad").doc("against the yoke; default: from corner to corner");
   f.add("notch_angle", &T::notch_angle).in("rad").doc("of a middle limb's point against the yoke; default: 45°");
   f.add("sheet_outlines", &T::sheet_outlines)
       .one_of({"real", "strips"})
-      .doc("real: as limb and yoke have them; strips: along the mitre, with square ends, as in the paper (counted overlaps only)");
-  f.add("tongue", &T::tongue).in("m").positive().doc("of strips: length of sheet on either side of the middle of the mitre; default: 50 mm");
+      .doc("real: as limb and yoke have them; strips: along the mitre, with square ends, as in the "
+           "paper (counted overlaps only)");
+  f.add("tongue", &T::tongue)
+      .in("m")
+      .positive()
+      .doc("of strips: length of sheet on either side of the middle of the mitre; default: 50 mm");
   f.add("margin", &T::margin).in("m").not_negative().doc(
       "of strips: of the yoke's sheet beyond the limb's at either end of the mitre; default: 20 mm");
   f.add("density", &T::density).in("kg/m^3").positive().doc("of the sheets");
@@ -87,7 +99,8 @@ void add_friction(FieldTable& f) {
                                                                                "different");
   f.add("pressure_shares", &T::pressure_shares)
       .positive()
-      .doc("of each packet: its pressure over 'pressure' (or 'bottom_pressure'); where packets meet the mean of both; default: all 1");
+      .doc("of each packet: its pressure over 'pressure' (or 'bottom_pressure'); where packets "
+           "meet the mean of both; default: all 1");
   f.add("mode", &T::mode).one_of({"slip", "monitor"}).doc("of the joints added, see step_lap_joint");
   f.add("on_apart", &T::on_apart).one_of({"stop", "continue"}).doc("of the joints added, see step_lap_joint");
   f.add("least_margin", &T::least_margin).at_least(1.0).doc("of the joints added, see step_lap_joint");

@@ -126,10 +126,13 @@ void CoreBuilder::check_limb(std::size_t i, const Body& active_part) {
 void CoreBuilder::check_distance(std::size_t i, std::size_t j, const Body& active_part) {
   const Body *a = model_.find_body(limbs_[i]), *b = model_.find_body(limbs_[j]);
   if (!a || !b || a == b || a == &active_part || b == &active_part) return;
-  const double apart = std::abs(middle_of_limb(core_, *a, active_part).x() - middle_of_limb(core_, *b, active_part).x());
+  const double apart = std::abs(middle_of_limb(core_, *a, active_part).x() -
+                                middle_of_limb(core_, *b, active_part).x());
   if (apart < widest())
-    error("limbs '" + a->name + "' and '" + b->name + "' stand " + number_text(apart) + " m apart ('position' of the bodies), less than a limb is wide, " +
-              number_text(widest()) + " m ('" + (core_.packets.empty() ? "limb_width" : "packets") + "')",
+    error("limbs '" + a->name + "' and '" + b->name + "' stand " + number_text(apart) +
+              " m apart ('position' of the bodies), less than a limb is wide, " +
+              number_text(widest()) + " m ('" + (core_.packets.empty() ? "limb_width" : "packets") +
+              "')",
           core_.packets.empty() ? "limb_width" : "packets");
 }
 
@@ -174,7 +177,8 @@ void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
     model_.elements.push_back({&step_lap_joint_kind(), joint});
   }
   const double reach = std::abs(middle_of_limb(core_, limb(i), active_part()).x());
-  for (const CoreCorner& corner : geometry.corners(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()), reach))
+  for (const CoreCorner& corner :
+       geometry.corners(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()), reach))
     for (const Lap& lap : corner.laps) add_interface(i, corner, lap);
 }
 
@@ -199,7 +203,8 @@ void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const L
   e->count = lap.count;
   e->clearance = core_.clearance;
   e->pressure = lap.pressure * (corner.is_top ? core_.pressure : core_.bottom_pressure.value_or(core_.pressure));
-  e->static_friction = corner.is_top ? core_.static_friction : core_.bottom_static_friction.value_or(core_.static_friction);
+  e->static_friction = corner.is_top ? core_.static_friction
+                                     : core_.bottom_static_friction.value_or(core_.static_friction);
   e->kinetic_friction = !corner.is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction
                                                                         : core_.kinetic_friction;
   refuse_repetition(*e);
@@ -209,7 +214,8 @@ void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const L
 bool is_same_sheet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
   constexpr double k_same = 1e-9; // m
   return a.size() == b.size() &&
-         std::equal(a.begin(), a.end(), b.begin(), [](const Vec2& p, const Vec2& q) { return (p - q).norm() < k_same; });
+         std::equal(a.begin(), a.end(), b.begin(),
+                    [](const Vec2& p, const Vec2& q) { return (p - q).norm() < k_same; });
 }
 
 // The same sheets at the same place twice would bear twice as much.
@@ -228,13 +234,15 @@ void CoreBuilder::refuse_repetition(const StepLapInterface& face) {
 
 // --- the limbs' steel -------------------------------------------------------------------------------------
 
-void CoreBuilder::check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit) {
+void CoreBuilder::check_steel(const Body& body, const char* field, double given, double steel,
+                              const std::string& unit) {
   if (given >= k_least_steel * steel && given <= k_most_steel * steel) return;
-  problems_.push_back({body.where, "'" + std::string(field) + "' of body '" + body.name + "', " + number_text(given) + " " + unit +
-                                       ", contradicts core '" + core_.name + "', whose sheets make it " +
-                                       number_text(std::round(steel)) + " " + unit +
-                                       " ('stack_depth' or 'packets', 'stacking_factor', 'density'): leave '" + field +
-                                       "' out to take it from the core"});
+  problems_.push_back(
+      {body.where, "'" + std::string(field) + "' of body '" + body.name + "', " +
+                       number_text(given) + " " + unit + ", contradicts core '" + core_.name +
+                       "', whose sheets make it " + number_text(std::round(steel)) + " " + unit +
+                       " ('stack_depth' or 'packets', 'stacking_factor', 'density'): leave '" +
+                       field + "' out to take it from the core"});
 }
 
 void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {

@@ -68,21 +68,27 @@ private:
 
 void DimensionCheck::check_section() {
   if (core_.packets.empty()) {
-    need(core_.limb_width.has_value(), "limb_width", "width of a limb's sheets; in m; or 'packets' for a stepped section");
-    need(core_.yoke_height.has_value(), "yoke_height", "height of a yoke's sheets; in m; or 'yoke_heights' besides 'packets'");
+    need(core_.limb_width.has_value(), "limb_width",
+         "width of a limb's sheets; in m; or 'packets' for a stepped section");
+    need(core_.yoke_height.has_value(), "yoke_height",
+         "height of a yoke's sheets; in m; or 'yoke_heights' besides 'packets'");
     if (!core_.yoke_heights.empty()) error("'yoke_heights' is for 'packets', and none are given", "yoke_heights");
-    if (!core_.pressure_shares.empty()) error("'pressure_shares' is for 'packets', and none are given", "pressure_shares");
+    if (!core_.pressure_shares.empty())
+      error("'pressure_shares' is for 'packets', and none are given", "pressure_shares");
   } else {
     for (const char* field : {"limb_width", "yoke_height", "stack_depth"})
-      if ((field == std::string("limb_width") && core_.limb_width) || (field == std::string("yoke_height") && core_.yoke_height) ||
+      if ((field == std::string("limb_width") && core_.limb_width) ||
+          (field == std::string("yoke_height") && core_.yoke_height) ||
           (field == std::string("stack_depth") && core_.stack_depth))
         error("'" + std::string(field) + "' and 'packets' say the same: give one of them", field);
     if (core_.yoke_heights.size() != core_.packets.size())
-      error("'yoke_heights' must give one height for each of the " + std::to_string(core_.packets.size()) + " packets, got " +
+      error("'yoke_heights' must give one height for each of the " +
+                std::to_string(core_.packets.size()) + " packets, got " +
                 std::to_string(core_.yoke_heights.size()) + "; round yokes have the limb's widths",
             core_.yoke_heights.empty() ? "packets" : "yoke_heights");
     if (!core_.pressure_shares.empty() && core_.pressure_shares.size() != core_.packets.size())
-      error("'pressure_shares' must give one share for each of the " + std::to_string(core_.packets.size()) + " packets, got " +
+      error("'pressure_shares' must give one share for each of the " +
+                std::to_string(core_.packets.size()) + " packets, got " +
                 std::to_string(core_.pressure_shares.size()),
             "pressure_shares");
     if (core_.is_counted())
@@ -116,10 +122,15 @@ void DimensionCheck::check_counted() {
               (core_.overlap ? "overlap" : "interfaces") + "'",
           core_.overlap ? "overlap" : "interfaces");
   const std::pair<const char*, bool> built[] = {
-      {"stack_depth", core_.stack_depth.has_value()}, {"sheet_thickness", core_.sheet_thickness.has_value()},
-      {"stacking_factor", core_.stacking_factor.has_value()}, {"sheets_per_layer", core_.sheets_per_layer.has_value()},
-      {"steps", core_.steps.has_value()}, {"step_pitch", core_.step_pitch.has_value()},
-      {"pitch_direction", !core_.pitch_direction.empty()}, {"book", !core_.book.empty()}, {"bands", core_.bands != "each"},
+      {"stack_depth", core_.stack_depth.has_value()},
+      {"sheet_thickness", core_.sheet_thickness.has_value()},
+      {"stacking_factor", core_.stacking_factor.has_value()},
+      {"sheets_per_layer", core_.sheets_per_layer.has_value()},
+      {"steps", core_.steps.has_value()},
+      {"step_pitch", core_.step_pitch.has_value()},
+      {"pitch_direction", !core_.pitch_direction.empty()},
+      {"book", !core_.book.empty()},
+      {"bands", core_.bands != "each"},
       {"ducts", !core_.ducts.empty()}};
   for (const auto& [field, is_given] : built)
     if (is_given)
@@ -142,22 +153,27 @@ void DimensionCheck::check_stack() {
   need(core_.steps.has_value(), "steps", "layers from one end of a book to the other; usual are 3 to 7");
   need(core_.step_pitch.has_value(), "step_pitch", "from layer to layer; in m");
   need(!core_.pitch_direction.empty(), "pitch_direction",
-       "\"across\" the mitre, \"along_limb\" or \"along_yoke\", the sheets' own length; it has no default: at 45° the two "
+       "\"across\" the mitre, \"along_limb\" or \"along_yoke\", the sheets' own length; it has no "
+       "default: at 45° the two "
        "differ by a factor of 1.41");
   need(!core_.book.empty(), "book",
-       "\"saw_tooth\", \"zig_zag\" or \"zig_zag_doubled\"; it has no default: a zig-zag has about 0.6 of a saw tooth's overlap");
+       "\"saw_tooth\", \"zig_zag\" or \"zig_zag_doubled\"; it has no default: a zig-zag has about "
+       "0.6 of a saw tooth's overlap");
   need(core_.clearance.has_value(), "clearance",
        "between the sheets of one layer, across the mitre; in m; it has no default: usual are 0.5 to 2 mm");
 }
 
 void DimensionCheck::check_strips() {
   if (core_.has_strips() && !core_.is_counted())
-    error("'sheet_outlines' = \"strips\" is for counted overlaps, 'overlap' and 'interfaces': a stack has its sheets' real "
+    error("'sheet_outlines' = \"strips\" is for counted overlaps, 'overlap' and 'interfaces': a "
+          "stack has its sheets' real "
           "outlines",
           "sheet_outlines");
   for (const char* field : {"tongue", "margin"})
     if ((field == std::string("tongue") ? core_.tongue : core_.margin) && !core_.has_strips())
-      error("'" + std::string(field) + "' is of strips only, sheet_outlines = \"strips\": real sheets go as far as limb and yoke",
+      error("'" + std::string(field) +
+                "' is of strips only, sheet_outlines = \"strips\": real sheets go as far as limb "
+                "and yoke",
             field);
 }
 
@@ -171,7 +187,8 @@ void DimensionCheck::check_holes() {
   if (core_.has_strips()) error("'bolt_holes' need real sheets, and 'sheet_outlines' is \"strips\"", "bolt_holes");
   for (std::size_t i = 0; i < core_.bolt_holes.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (core_.bolt_hole_diameter && (core_.bolt_holes[i] - core_.bolt_holes[j]).norm() <= 1.05 * *core_.bolt_hole_diameter)
+      if (core_.bolt_hole_diameter &&
+          (core_.bolt_holes[i] - core_.bolt_holes[j]).norm() <= 1.05 * *core_.bolt_hole_diameter)
         error("bolt holes " + std::to_string(j + 1) + " and " + std::to_string(i + 1) + " run into each other: " +
                   metres((core_.bolt_holes[i] - core_.bolt_holes[j]).norm()) + " apart, 'bolt_hole_diameter' " +
                   metres(*core_.bolt_hole_diameter),
@@ -188,8 +205,9 @@ void DimensionCheck::check_places_of_holes() {
   }
   for (std::size_t i = 0; i < core_.bolt_holes.size(); ++i)
     if (const Vec2& hole = core_.bolt_holes[i]; std::abs(hole.x()) >= 0.5 * width && std::abs(hole.y()) >= 0.5 * height)
-      error("bolt hole " + std::to_string(i + 1) + " at (" + metres(hole.x()) + ", " + metres(hole.y()) + ") lies outside a limb of " +
-                metres(width) + " and a yoke of " + metres(height) + ": places are from where their axes cross",
+      error("bolt hole " + std::to_string(i + 1) + " at (" + metres(hole.x()) + ", " +
+                metres(hole.y()) + ") lies outside a limb of " + metres(width) + " and a yoke of " +
+                metres(height) + ": places are from where their axes cross",
             "bolt_holes");
 }
 
@@ -208,15 +226,20 @@ void DimensionCheck::check_angle(std::size_t packet, bool is_middle) {
   const Mitre m = geometry.mitre(packet, is_middle);
   if (angle < k_least_angle || angle > k_largest_angle)
     return error(std::string("a ") + (is_middle ? "notch" : "mitre") + " at " +
-                     number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) + "° to the yoke: must be 10° to 80°" +
-                     (m.angle ? "" : "; it follows from the yoke's height of " + metres(m.yoke_height) + " and the limb's width of " +
-                                         metres(m.limb_width) + " unless 'mitre_angle' is given"),
-                 is_middle ? "notch_angle" : core_.mitre_angle ? "mitre_angle" : "yoke_height");
+                     number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) +
+                     "° to the yoke: must be 10° to 80°" +
+                     (m.angle ? ""
+                              : "; it follows from the yoke's height of " + metres(m.yoke_height) +
+                                    " and the limb's width of " + metres(m.limb_width) +
+                                    " unless 'mitre_angle' is given"),
+                 is_middle           ? "notch_angle"
+                 : core_.mitre_angle ? "mitre_angle"
+                                     : "yoke_height");
   if (!is_middle) return;
   const auto [s, c] = portable::sin_cos(angle);
   if (const double depth = 0.5 * m.limb_width * s / c; depth > m.yoke_height)
-    error("the point of a middle limb, " + metres(depth) + " high, is higher than the yoke of " + metres(m.yoke_height) +
-              ": take a smaller 'notch_angle'",
+    error("the point of a middle limb, " + metres(depth) + " high, is higher than the yoke of " +
+              metres(m.yoke_height) + ": take a smaller 'notch_angle'",
           "notch_angle");
 }
 
@@ -251,7 +274,8 @@ void DimensionCheck::check_ducts(const Stack& stack) {
   double depth = 0.0;
   for (const Packet& p : stack.packets) depth += p.depth;
   for (const Duct& duct : stack.ducts) {
-    if (!(duct.width > 0.0)) error("a duct needs a place and a width above 0 m: 'ducts' = [[place, width], …]", "ducts");
+    if (!(duct.width > 0.0))
+      error("a duct needs a place and a width above 0 m: 'ducts' = [[place, width], …]", "ducts");
     if (duct.place <= 0.0 || duct.place >= depth)
       error("a duct at " + metres(duct.place) + " lies outside the stack of " + metres(depth) +
                 ": its place is the depth of steel and insulation in front of it",
@@ -267,7 +291,9 @@ void DimensionCheck::check_cuts() {
     for (const bool is_middle : {false, true}) {
       if (likeness(stack, p) != p || (is_middle ? core_.middle_limbs : core_.limbs).empty()) continue;
       double half = 0.5 * core_.overlap.value_or(0.0);
-      if (!core_.is_counted()) half = 0.5 * (geometry.pitch(p, is_middle) * static_cast<double>(stack.book.steps - 1) + stack.book.clearance);
+      if (!core_.is_counted())
+        half = 0.5 * (geometry.pitch(p, is_middle) * static_cast<double>(stack.book.steps - 1) +
+                      stack.book.clearance);
       check_cut(p, is_middle, -half, half);
     }
 }
@@ -279,15 +305,16 @@ void DimensionCheck::check_cut(std::size_t packet, bool is_middle, double lowest
                                               : "a book that reaches " + metres(highest - lowest) + " across the mitre";
   const std::string field = core_.is_counted() ? "overlap" : "step_pitch";
   if (highest >= least_shift(m))
-    return error(what + " is wider than the sheets: where a limb of " + metres(m.limb_width) + " and a yoke of " +
-                     metres(m.yoke_height) + " cross there are " + metres(least_shift(m)) + " on either side of the mitre",
+    return error(what + " is wider than the sheets: where a limb of " + metres(m.limb_width) +
+                     " and a yoke of " + metres(m.yoke_height) + " cross there are " +
+                     metres(least_shift(m)) + " on either side of the mitre",
                  field);
   if (!is_middle) return;
   const auto [s, c] = portable::sin_cos(*m.angle);
   const double depth = 0.5 * m.limb_width * s / c, tip = depth - lowest / c;
   if (0.5 * m.limb_width * s <= highest || tip > m.yoke_height)
-    error(what + " does not fit the point of a middle limb, " + metres(depth) + " high: its layers reach " + metres(tip) +
-              " into a yoke of " + metres(m.yoke_height),
+    error(what + " does not fit the point of a middle limb, " + metres(depth) +
+              " high: its layers reach " + metres(tip) + " into a yoke of " + metres(m.yoke_height),
           field);
 }
 

@@ -62,7 +62,8 @@ private:
   [[nodiscard]] CornerFrame frame(std::size_t packet, const End& end) const;
   [[nodiscard]] Polygon limb_sheet(std::size_t packet, const End& end, double q) const;
   [[nodiscard]] Polygon yoke_sheet(std::size_t packet, const End& end, double q) const;
-  [[nodiscard]] Lap lap(std::size_t limb_packet, double inner, std::size_t yoke_packet, double outer, const End& end) const;
+  [[nodiscard]] Lap lap(std::size_t limb_packet, double inner, std::size_t yoke_packet,
+                        double outer, const End& end) const;
   void add_built(const End& end, std::vector<Lap>& laps) const;
   void add_counted(const End& end, std::vector<Lap>& laps) const;
   void merge(const End& end, std::size_t packet, std::vector<Lap>& laps) const;

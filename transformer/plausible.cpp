@@ -13,13 +13,16 @@ namespace steplap {
 
 namespace {
 
-// Given steel may be somewhat lighter than computed (stacking factor, cropped corners) and heavier (tie plates, bindings).
+// Given steel may be somewhat lighter than computed (stacking factor, cropped corners) and heavier
+// (tie plates, bindings).
 constexpr double k_light = 0.98, k_heavy = 1.10, k_small = 0.95, k_large = 1.15;
 constexpr double k_off_centre = 10e-3; // m, a given centre of gravity from that of the sheets
 
 const char* const k_assumed = "assumed: nothing published was found";
 
-std::string line_of(const Location& where) { return where.line > 0 ? " (line " + std::to_string(where.line) + ")" : ""; }
+std::string line_of(const Location& where) {
+  return where.line > 0 ? " (line " + std::to_string(where.line) + ")" : "";
+}
 
 std::string rounded_text(double value) {
   char text[32];
@@ -29,7 +32,8 @@ std::string rounded_text(double value) {
 
 class Look {
 public:
-  Look(const Model& model, const Core& core, std::vector<std::string>& said) : model_(model), core_(core), said_(said) {}
+  Look(const Model& model, const Core& core, std::vector<std::string>& said)
+      : model_(model), core_(core), said_(said) {}
 
   void run() {
     look_at_fields();
@@ -77,14 +81,17 @@ private:
     const Mitre m = geometry.mitre(geometry.largest(), false);
     const double window = m.core_height - 2.0 * m.yoke_height;
     if (window < m.limb_width)
-      say("core_height", "'core_height' = " + number_text(m.core_height) + " m leaves a window " + rounded_text(window) +
-                             " m high between limbs " + number_text(m.limb_width) +
-                             " m wide: windows are usually higher than limbs are wide (" + k_assumed + ")");
+      say("core_height",
+          "'core_height' = " + number_text(m.core_height) + " m leaves a window " +
+              rounded_text(window) + " m high between limbs " + number_text(m.limb_width) +
+              " m wide: windows are usually higher than limbs are wide (" + k_assumed + ")");
     if (core_.is_counted()) return;
     const double depth = depth_of(geometry.stack());
     if (depth < 0.4 * m.limb_width || depth > 1.8 * m.limb_width)
-      say("stack_depth", "a stack " + rounded_text(depth) + " m deep of limbs " + number_text(m.limb_width) +
-                             " m wide is unusual: sections are about as deep as wide, 0.4 to 1.8 of it (" + k_assumed + ")");
+      say("stack_depth",
+          "a stack " + rounded_text(depth) + " m deep of limbs " + number_text(m.limb_width) +
+              " m wide is unusual: sections are about as deep as wide, 0.4 to 1.8 of it (" +
+              k_assumed + ")");
   }
 
   void look_at_steel() {
@@ -101,16 +108,17 @@ private:
       }
       const Vec2 centre = rotated(steel.centre, part.angle - limb.angle);
       if (core_.centre_of_gravity == "of_the_sheets" && (limb.cg - centre).norm() > k_off_centre)
-        said_.push_back(body + ": 'cg' = [" + number_text(limb.cg.x()) + ", " + number_text(limb.cg.y()) +
-                        "] m, the sheets of core '" + core_.name + "' have theirs at [" + rounded_text(centre.x()) + ", " +
+        said_.push_back(body + ": 'cg' = [" + number_text(limb.cg.x()) + ", " +
+                        number_text(limb.cg.y()) + "] m, the sheets of core '" + core_.name +
+                        "' have theirs at [" + rounded_text(centre.x()) + ", " +
                         rounded_text(centre.y()) + "] m from the middle of the limb");
     }
   }
 
   void compare(const std::string& what, double given, double steel, double low, double high, const char* unit) {
     if (given >= low * steel && given <= high * steel) return;
-    said_.push_back(what + " = " + number_text(given) + " " + unit + ", the sheets of core '" + core_.name + "' make it " +
-                    rounded_text(steel) + " " + unit +
+    said_.push_back(what + " = " + number_text(given) + " " + unit + ", the sheets of core '" +
+                    core_.name + "' make it " + rounded_text(steel) + " " + unit +
                     (given < steel ? ": too light a limb takes too little friction to be held"
                                    : ": more than tie plates and bindings usually add"));
   }
@@ -170,9 +178,9 @@ std::vector<std::string> implausible_cores(const Model& model) {
                                          {"kinetic_friction", face->kinetic_friction.value_or(face->static_friction)}})
         if (field == usual.field && (value < usual.low || value > usual.high) &&
             (field != "kinetic_friction" || face->kinetic_friction))
-          said.push_back("step_lap_interface '" + face->name + "'" + line_of(face->where) + ": '" + field + "' = " +
-                         number_text(value) + (field == "pressure" ? " Pa" : "") + " is unusual: " + usual.text + " are usual (" +
-                         usual.source + ")");
+          said.push_back("step_lap_interface '" + face->name + "'" + line_of(face->where) + ": '" +
+                         field + "' = " + number_text(value) + (field == "pressure" ? " Pa" : "") +
+                         " is unusual: " + usual.text + " are usual (" + usual.source + ")");
   }
   return said;
 }

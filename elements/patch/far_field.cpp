@@ -79,19 +79,30 @@ int FarField::needed_order(double x) {
 
 FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& traction,
                    double radius, int order)
-    : radius_(radius), order_(order) {
-  a_.fill(Pair::Zero());
-  // Moments of degree n over the triangle (centroid, edge): 2·area/(n+2) ∫₀¹ on the edge.
+    : FarField(radius, order) {
+  add(edges, count, traction, Vec2::Zero());
+  finish();
+}
+
+FarField::FarField(double radius, int order) : radius_(radius), order_(order) { a_.fill(Pair::Zero()); }
+
+void FarField::add(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& shift) {
+  const double at_centre = traction.at_centroid - traction.gradient.dot(shift);
+  // Moments of degree n over the triangle (centre, edge): 2·area/(n+2) ∫₀¹ on the edge.
   static const GaussRule rule = gauss_rule();
   for (std::size_t e = 0; e < count; ++e) {
     const PatchEdge& edge = edges[e];
-    const double twice_area = cross(edge.start, edge.along) * edge.length;
+    const Vec2 start = edge.start + shift;
+    const double twice_area = cross(start, edge.along) * edge.length;
     for (int i = 0; i < k_nodes; ++i) {
-      const Vec2 r = edge.start + edge.along * (edge.length * rule.x[i]);
+      const Vec2 r = start + edge.along * (edge.length * rule.x[i]);
       const double w = rule.w[i] * twice_area;
-      add_node(r / radius, w * traction.at_centroid, w * traction.gradient.dot(r));
+      add_node(r / radius_, w * at_centre, w * traction.gradient.dot(r));
     }
   }
+}
+
+void FarField::finish() {
   for (int l = 0; l <= order_; ++l)
     for (int k = 0; l + 2 * k <= order_; ++k) {
       Pair& a = a_[l * k_row + k];

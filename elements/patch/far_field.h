@@ -27,7 +27,7 @@ struct PieceDissipation {
   double xw = 0, yw = 0, ww = 0;
 };
 
-/// Coefficients a_{n,l} of a piece, in units of its radius.
+/// Coefficients a_{n,l} of a piece, or of pieces that lie over each other, in units of the radius.
 class FarField {
 public:
   static constexpr int k_order = 18;
@@ -35,6 +35,12 @@ public:
   /// Takes about 7 µs for a quadrilateral at full order, less as the square of `order`.
   FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius,
            int order = k_order);
+
+  /// Of several pieces together, about a centre of theirs: add() each, then finish().
+  explicit FarField(double radius, int order = k_order);
+  /// Edges and traction are about the piece's centroid, which is at `shift` from the centre.
+  void add(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& shift);
+  void finish();
 
   /// Highest order n that still matters at |κ| R, up to k_order.
   [[nodiscard]] static int needed_order(double kappa_radius);

@@ -11,6 +11,8 @@ struct PatchAccess {
   static const FarField* far(const Patch& p, std::size_t i) {
     return p.far_.empty() ? nullptr : &p.far_[i];
   }
+  static const std::vector<Patch::Group>& groups(const Patch& p) { return p.groups_; }
+  static const std::vector<std::size_t>& members(const Patch& p) { return p.members_; }
 };
 
 namespace {
@@ -72,13 +74,35 @@ void add_shifted(Dissipation& out, const PieceDissipation& p, const Vec2& arm) {
 }
 
 template <bool WithCurvature>
+void add_piece(Dissipation& out, const Patch& patch, std::size_t i, const Vec2& point, const Vec3& nu) {
+  const Vec2 arm = patch.pieces()[i].centroid - point;
+  const Vec2 v(nu[0] - nu[2] * arm.y(), nu[1] + nu[2] * arm.x());
+  add_shifted<WithCurvature>(out, evaluate_piece<WithCurvature>(patch, i, v, nu[2]), arm);
+}
+
+/// Pieces that lie over each other at once, if the centre of rotation is far from all of them.
+template <bool WithCurvature>
+void add_groups(Dissipation& out, const Patch& patch, const Vec2& point, const Vec3& nu) {
+  for (const auto& group : PatchAccess::groups(patch)) {
+    const Vec2 arm = group.centre - point;
+    const Vec2 v(nu[0] - nu[2] * arm.y(), nu[1] + nu[2] * arm.x());
+    const double reach = k_far_ratio * group.radius * nu[2];
+    if (group.count > 1 && v.squaredNorm() > reach * reach) {
+      add_shifted<WithCurvature>(out, group.far.template evaluate<WithCurvature>(v, nu[2]), arm);
+      continue;
+    }
+    for (std::size_t k = 0; k < group.count; ++k)
+      add_piece<WithCurvature>(out, patch, PatchAccess::members(patch)[group.first + k], point, nu);
+  }
+}
+
+template <bool WithCurvature>
 Dissipation evaluate_all(const Patch& patch, const Vec2& point, const Vec3& nu) {
   Dissipation out;
-  const double omega = nu[2];
-  for (std::size_t i = 0; i < patch.pieces().size(); ++i) {
-    const Vec2 arm = patch.pieces()[i].centroid - point;
-    const Vec2 v(nu[0] - omega * arm.y(), nu[1] + omega * arm.x());
-    add_shifted<WithCurvature>(out, evaluate_piece<WithCurvature>(patch, i, v, omega), arm);
+  if (!PatchAccess::groups(patch).empty()) {
+    add_groups<WithCurvature>(out, patch, point, nu);
+  } else {
+    for (std::size_t i = 0; i < patch.pieces().size(); ++i) add_piece<WithCurvature>(out, patch, i, point, nu);
   }
   if constexpr (WithCurvature) {
     out.hessian(1, 0) = out.hessian(0, 1);
@@ -127,6 +151,7 @@ void Patch::clear(const Vec2& reference) {
   pieces_.clear();
   edges_.clear();
   far_.clear();
+  groups_.clear();
   area_ = force_ = polar_ = 0;
   moment_.setZero();
 }
@@ -178,12 +203,50 @@ void Patch::add(const Polygon& polygon, const Traction& traction) {
   force_ += moments.force;
   moment_ += moments.force * centre;
   if (!far_.empty()) far_.emplace_back(edges(piece), piece.edges, traction, piece.radius);
+  groups_.clear();
   pieces_.push_back(piece);
 }
 
 void Patch::prepare() {
   for (std::size_t i = far_.size(); i < pieces_.size(); ++i)
     far_.emplace_back(edges(pieces_[i]), pieces_[i].edges, pieces_[i].traction, pieces_[i].radius);
+  if (groups_.empty()) group_pieces();
+}
+
+// About the largest piece that has no group yet, as long as there is one.
+void Patch::group_pieces() {
+  // Than the largest piece: its circle is to serve the others, too, and the smaller ones are not to wait for it.
+  constexpr double k_wider = 1.05, k_smaller = 0.8;
+  members_.clear();
+  is_grouped_.assign(pieces_.size(), 0);
+  while (members_.size() < pieces_.size()) {
+    std::size_t largest = pieces_.size();
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+      if (!is_grouped_[i] && (largest == pieces_.size() || pieces_[i].radius > pieces_[largest].radius)) largest = i;
+    Group group;
+    group.centre = pieces_[largest].centroid;
+    group.first = members_.size();
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const double reach = (pieces_[i].centroid - group.centre).norm() + pieces_[i].radius;
+      const bool is_like = reach <= k_wider * pieces_[largest].radius &&
+                           pieces_[i].radius >= k_smaller * pieces_[largest].radius;
+      if (is_grouped_[i] || !(is_like || i == largest)) continue;
+      is_grouped_[i] = 1;
+      members_.push_back(i);
+      group.radius = std::max(group.radius, reach);
+    }
+    group.count = members_.size() - group.first;
+    if (group.count > 1) {
+      group.far = FarField(group.radius);
+      for (std::size_t k = group.first; k < members_.size(); ++k) {
+        const Piece& piece = pieces_[members_[k]];
+        group.far.add(edges(piece), piece.edges, piece.traction, piece.centroid - group.centre);
+      }
+      group.far.finish();
+    }
+    groups_.push_back(group);
+  }
+  if (groups_.size() == pieces_.size()) groups_.clear(); // no two lie over each other
 }
 
 double Patch::gyration() const {

@@ -48,7 +48,8 @@ public:
   /// it must not be negative at any vertex.
   void add(const Polygon& polygon, const Traction& traction);
 
-  /// Tabulates the expansions of all pieces (about 7 µs each), for patches evaluated many times.
+  /// Tabulates the expansions of all pieces (about 7 µs each), and those of pieces that lie over each other together
+  /// (the overlaps of a stack at one corner), for patches evaluated many times.
   /// Without it a far evaluation makes the part of the table that it needs and forgets it.
   void prepare();
 
@@ -72,7 +73,20 @@ private:
   Vec2 reference_;
   std::vector<Piece> pieces_;
   std::vector<PatchEdge> edges_;
+  void group_pieces();
+
+  /// Pieces within a circle hardly larger than that of the largest: one expansion serves them all.
+  struct Group {
+    Vec2 centre{0, 0};
+    double radius = 0;
+    std::size_t first = 0, count = 0; ///< in members_
+    FarField far{1.0};
+  };
+
   std::vector<FarField> far_; // empty, or one per piece
+  std::vector<Group> groups_; // of prepared patches, all pieces in one each; none if no two lie over each other
+  std::vector<std::size_t> members_;
+  std::vector<char> is_grouped_;
   double area_ = 0, force_ = 0;
   double polar_ = 0; // ∬ w |r − centroid()|² dA
   Vec2 moment_{0, 0};

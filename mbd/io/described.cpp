@@ -69,7 +69,9 @@ std::vector<Described> describe(const Catalogue& catalogue) {
                  &SimulationSettings::fields(), made<SimulationSettings>()});
   all.push_back({"settings", "output", "What the run writes.", &OutputSettings::fields(),
                  made<OutputSettings>()});
-  all.push_back({"table", "body", "A rigid body; a fixed one needs no mass and inertia, nor one that a table, such as a core's, gives them.",
+  all.push_back({"table", "body",
+                 "A rigid body; a fixed one needs no mass and inertia, nor one that a table, such "
+                 "as a core's, gives them.",
                  &Body::fields(), made<Body>()});
   all.push_back(
       {"table", "marker",

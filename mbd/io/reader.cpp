@@ -350,7 +350,8 @@ void Reader::report_missing_masses(bool is_certain) {
       const Body& body = model_.bodies[i];
       if (!is_mass(field) || is_excused(body, field) || std::get<double>(field.get(&body)) != 0.0) continue;
       std::vector<GivenField>& given_fields = given(Section::body)[i];
-      if (std::any_of(given_fields.begin(), given_fields.end(), [&](const GivenField& g) { return g.field->name == field.name; }))
+      if (std::any_of(given_fields.begin(), given_fields.end(),
+                      [&](const GivenField& g) { return g.field->name == field.name; }))
         continue;
       given_fields.push_back({&field, nullptr, false});
       if (is_certain) add(body.where, missing_field_message(field, subject_text("body", body.name)));

@@ -116,6 +116,36 @@ TEST_CASE("patch: a linear traction is the sum of its parts too") {
   }
 }
 
+// The overlaps of a stack lie over each other at a corner: a prepared patch expands them together.
+TEST_CASE("patch: pieces that lie over each other, taken together or one by one") {
+  Draw draw(37);
+  for (int i = 0; i < cases(200); ++i) {
+    Patch alone, together;
+    for (const Vec2& corner : {Vec2(0, 1.3), Vec2(0, -1.3)})
+      for (int k = 0; k < 12; ++k) {
+        const double length = 0.8 - 0.05 * (k % 4), q = 5e-3 * (k % 5 - 2), w = k % 5 == 4 ? 18e-3 : 4.5e-3;
+        const Vec2 t = Vec2(1, corner.y() > 0 ? 1 : -1).normalized(), n(-t.y(), t.x());
+        const auto at = [&](double s, double across) { return Vec2(corner + s * t + across * n); };
+        const Polygon strip{{at(-0.5 * length, q), at(0.5 * length, q), at(0.5 * length - w, q + w),
+                             at(w - 0.5 * length, q + w)},
+                            {}};
+        const Traction traction{1e5 * (1 + k), k % 3 == 0 ? Vec2(1e4, -2e4) : Vec2(0, 0)};
+        alone.add(strip, traction);
+        together.add(strip, traction);
+      }
+    together.prepare();
+    for (int j = 0; j < 50; ++j) {
+      Vec3 nu = draw.twist();
+      if (j % 2 == 0) nu[2] *= 0.05; // far centres of rotation
+      const Dissipation a = evaluate(alone, nu), b = evaluate(together, nu);
+      const double size = together.force() * fastest(together, nu), speed = nu.head<2>().norm() + std::abs(nu[2]);
+      CHECK(std::abs(a.h - b.h) < k_rounding * size);
+      CHECK((a.gradient - b.gradient).norm() * speed < 10 * k_rounding * size);
+      CHECK((a.hessian - b.hessian).norm() * speed * speed < 1e-9 * size); // curvature near a piece loses digits
+    }
+  }
+}
+
 TEST_CASE("patch: moving and turning the scene, and the point of reference, change nothing") {
   Draw draw(35);
   for (int i = 0; i < cases(10000); ++i) {

@@ -69,7 +69,7 @@ double largest(const std::vector<double>& series) {
   return most;
 }
 
-const char* k_layouts[] = {"single_phase_two_limb", "three_limb", "five_limb", "rail_wagon"};
+const char* k_layouts[] = {"single_phase_two_limb", "three_limb", "three_limb_stepped", "five_limb", "rail_wagon"};
 
 struct Load {
   const char* model;
@@ -79,6 +79,7 @@ struct Load {
 const Load k_loads[] = {{"single_phase_two_limb", "drive", 0.6}, {"single_phase_two_limb_humping", "drive", 0.2},
                         {"single_phase_two_limb_bump", "drive", 0.6}, {"three_limb", "drive", 0.6},
                         {"three_limb_humping", "drive", 0.2}, {"three_limb_bump", "drive", 0.6},
+                        {"three_limb_stepped", "drive", 0.2},
                         {"five_limb", "drive", 0.6}, {"five_limb_humping", "drive", 0.2},
                         {"five_limb_bump", "drive", 0.6}, {"rail_wagon", "brake", 0.6},
                         {"rail_wagon_bump", "brake", 0.4}, {"rail_wagon_humping", "", 0.4}};

@@ -52,8 +52,10 @@ static_friction = 0.25
 
 const std::string k_overlaps = "overlap = 0.01\ninterfaces = 1165\n";
 const std::string k_counted = k_overlaps + "sheet_outlines = \"strips\"\n"; // as in the paper
-const std::string k_built = "stack_depth = 0.585\nstacking_factor = 0.96\nsheet_thickness = \"0.27 mm\"\nsheets_per_layer = 1\n"
-                            "steps = 5\nstep_pitch = \"5 mm\"\npitch_direction = \"across\"\nbook = \"saw_tooth\"\nclearance = 0.0\n";
+const std::string k_built = "stack_depth = 0.585\nstacking_factor = 0.96\nsheet_thickness = \"0.27 "
+                            "mm\"\nsheets_per_layer = 1\n"
+                            "steps = 5\nstep_pitch = \"5 mm\"\npitch_direction = \"across\"\nbook "
+                            "= \"saw_tooth\"\nclearance = 0.0\n";
 
 Model model_of(const std::string& core, const std::vector<std::string>& overrides = {}) {
   return parse_model(k_bodies + core, "core.toml", transformer_catalog(), overrides);
@@ -252,16 +254,20 @@ TEST_CASE("a stack as it is built: sheets, interfaces, capacity") {
 }
 
 TEST_CASE("a pitch along the sheet is one across the mitre times the cosine or sine of its angle") {
-  const auto force = [](const std::vector<std::string>& overrides) { return patch_of(model_of(k_shape + k_built, overrides)).force(); };
+  const auto force = [](const std::vector<std::string>& overrides) {
+    return patch_of(model_of(k_shape + k_built, overrides)).force();
+  };
   const auto pitch = [](double s) { return "core.core.step_pitch=" + std::to_string(s); };
   const std::string limb = "core.core.pitch_direction=along_limb", yoke = "core.core.pitch_direction=along_yoke";
   // 45°: both the same; six digits of the text
   CHECK(force({limb}) == doctest::Approx(force({yoke})).epsilon(1e-12));
   CHECK(force({limb}) == doctest::Approx(force({pitch(5e-3 / std::sqrt(2.0))})).epsilon(1e-3));
   // tan α = 0.6/0.5
-  const std::string high = "core.core.yoke_height=0.6", front = "body.front limb.inertia=4000", back = "body.back limb.inertia=4000";
+  const std::string high = "core.core.yoke_height=0.6", front = "body.front limb.inertia=4000",
+                    back = "body.back limb.inertia=4000";
   const double c = 0.5 / std::hypot(0.5, 0.6), s = 0.6 / std::hypot(0.5, 0.6);
-  CHECK(force({limb, high, front, back}) / force({yoke, high, front, back}) == doctest::Approx(c / s).epsilon(0.02)); // but for the ends
+  CHECK(force({limb, high, front, back}) / force({yoke, high, front, back}) ==
+        doctest::Approx(c / s).epsilon(0.02)); // but for the ends
 }
 
 TEST_CASE("all bands as one of their mean area: same capacity, parts earlier") {
@@ -296,7 +302,9 @@ TEST_CASE("the limb's centre of gravity is that of its sheets, its body's origin
   CHECK((front.cg - Vec2(0.25 - off, 0)).norm() < 1e-14);
   CHECK((real.find_body("back limb")->cg + front.cg).norm() < 1e-14); // mirrored
   // As given, if asked for; strips lie about the centre of gravity, as in the paper.
-  CHECK(model_of(k_shape + k_overlaps, {"core.core.centre_of_gravity=as_given"}).find_body("front limb")->cg.norm() == 0.0);
+  CHECK(model_of(k_shape + k_overlaps, {"core.core.centre_of_gravity=as_given"})
+            .find_body("front limb")
+            ->cg.norm() == 0.0);
   CHECK(model_of(k_shape + k_counted).find_body("front limb")->cg.norm() == 0.0);
   CHECK(model_of(k_shape + k_overlaps, {"body.front limb.cg=[0.01,0.0]"}).find_body("front limb")->cg.x() == 0.01);
 }
@@ -319,8 +327,11 @@ TEST_CASE("limbs without a mass have that of their sheets, given ones must agree
   };
   // Counted overlaps say nothing of the stack: the mass is missed as before.
   CHECK(has(said(bodies + k_shape + k_overlaps), "body 'front limb' needs 'mass' (mass; in kg)"));
-  CHECK(has(refusal(k_shape + k_built, {"body.front limb.mass=3000"}), "'mass' of body 'front limb', 3000 kg, contradicts core 'core', whose sheets make it 60"));
-  CHECK(has(refusal(k_shape + k_built, {"body.front limb.inertia=65000"}), "'inertia' of body 'front limb', 65000 kg m², contradicts"));
+  CHECK(has(
+      refusal(k_shape + k_built, {"body.front limb.mass=3000"}),
+      "'mass' of body 'front limb', 3000 kg, contradicts core 'core', whose sheets make it 60"));
+  CHECK(has(refusal(k_shape + k_built, {"body.front limb.inertia=65000"}),
+            "'inertia' of body 'front limb', 65000 kg m², contradicts"));
 }
 
 TEST_CASE("top and bottom may differ") {
@@ -423,20 +434,24 @@ TEST_CASE("impossible cores are refused, with what would be right") {
   }
   CHECK(has(refusal(built, {"core.core.clearance=6 mm"}), "leaves no overlap"));
   CHECK(has(refusal(built, {"core.core.stack_depth=1 mm"}), "3 sheets"));
-  CHECK(has(refusal(built, {"core.core.step_pitch=0.2"}), "a book that reaches 0.8 m across the mitre is wider than the sheets"));
+  CHECK(has(refusal(built, {"core.core.step_pitch=0.2"}),
+            "a book that reaches 0.8 m across the mitre is wider than the sheets"));
   CHECK(has(refusal(counted + "limb_wdth = 3\n"), "did you mean 'limb_width'?"));
   CHECK(has(refusal(counted, {"body.back limb.position=[0.9,1.95]"}),
-            "limbs 'back limb' and 'front limb' stand 0.35 m apart ('position' of the bodies), less than a limb is wide, 0.5 m ('limb_width')"));
+            "limbs 'back limb' and 'front limb' stand 0.35 m apart ('position' of the bodies), "
+            "less than a limb is wide, 0.5 m ('limb_width')"));
 }
 
 TEST_CASE("stepped sections, ducts and holes that cannot be are refused, with the field and its line") {
   std::string shape = k_shape;
-  for (const char* field : {"limb_width = 0.5\n", "yoke_height = 0.5\n"}) shape.erase(shape.find(field), std::string(field).size());
+  for (const char* field : {"limb_width = 0.5\n", "yoke_height = 0.5\n"})
+    shape.erase(shape.find(field), std::string(field).size());
   std::string built = k_built;
   built.erase(built.find("stack_depth"), built.find('\n') + 1);
   const std::string packets = "packets = [[0.4, 0.05], [0.5, 0.4], [0.4, 0.05]]\nyoke_heights = [0.4, 0.5, 0.4]\n";
   const std::string stepped = shape + built + packets;
-  const std::vector<std::string> steel = {"body.front limb.mass=5000", "body.back limb.mass=5000", "body.front limb.inertia=3400",
+  const std::vector<std::string> steel = {"body.front limb.mass=5000", "body.back limb.mass=5000",
+                                          "body.front limb.inertia=3400",
                                           "body.back limb.inertia=3400"};
   CHECK(refusal(stepped, steel) == "");
   const auto with = [&](const std::string& more) { return refusal(stepped + more, steel); };
@@ -451,8 +466,10 @@ TEST_CASE("stepped sections, ducts and holes that cannot be are refused, with th
   CHECK(has(with("ducts = [[0.1, 0.0]]\n"), "a width above 0 m"));
   CHECK(has(with("bolt_holes = [[0.0, 0.0]]\n"), "'bolt_holes' needs 'bolt_hole_diameter'"));
   CHECK(has(with("bolt_hole_diameter = 0.02\n"), "'bolt_hole_diameter' needs 'bolt_holes'"));
-  CHECK(has(with("bolt_holes = [[0.3, 0.3]]\nbolt_hole_diameter = 0.02\n"), "bolt hole 1 at (0.3 m, 0.3 m) lies outside a limb"));
-  CHECK(has(with("bolt_holes = [[0.0, 0.0], [0.0, 0.02]]\nbolt_hole_diameter = 0.02\n"), "bolt holes 1 and 2 run into each other"));
+  CHECK(has(with("bolt_holes = [[0.3, 0.3]]\nbolt_hole_diameter = 0.02\n"),
+            "bolt hole 1 at (0.3 m, 0.3 m) lies outside a limb"));
+  CHECK(has(with("bolt_holes = [[0.0, 0.0], [0.0, 0.02]]\nbolt_hole_diameter = 0.02\n"),
+            "bolt holes 1 and 2 run into each other"));
   CHECK(has(with("bolt_holes = [[0.19, 0.19]]\nbolt_hole_diameter = 0.12\n"), "cuts a sheet in two"));
   CHECK(has(refusal(k_shape + k_counted + "yoke_heights = [0.5]\n"), "'yoke_heights' is for 'packets'"));
 }

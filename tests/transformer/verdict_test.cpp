@@ -229,9 +229,10 @@ TEST_CASE("a joint's verdict needs nothing of what is written") {
 }
 
 TEST_CASE("a limb that falls out is rejected as soon as a corner has parted") {
-  const Judgement judgement = judge_layout(
-      "three_limb.toml", {"core.core.static_friction=0.1", "core.core.pressure=50000", "core.core.sheets_per_layer=2", "core.core.bands=mean", "simulation.end=0.4",
-                          "output.step=0.1"});
+  const Judgement judgement =
+      judge_layout("three_limb.toml", {"core.core.static_friction=0.1", "core.core.pressure=50000",
+                                       "core.core.sheets_per_layer=2", "core.core.bands=mean",
+                                       "simulation.end=0.4", "output.step=0.1"});
   CHECK(judgement.verdict == Verdict::reject);
   const CriterionResult* slid = find(judgement, "front joint", "displacement of its corners");
   REQUIRE(slid);

@@ -40,7 +40,9 @@ std::vector<const Core*> chosen_cores(const CoreOptions& options, const LoadedMo
   if (options.cores.empty()) return all;
   for (const std::string& name : options.cores) {
     const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end()) throw UsageError("'" + loaded.path + "' has no core '" + name + "'" + did_you_mean(name, known));
+    if (found == known.end())
+      throw UsageError("'" + loaded.path + "' has no core '" + name + "'" +
+                       did_you_mean(name, known));
     chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
   }
   return chosen;
@@ -53,30 +55,39 @@ std::string degrees(double angle) { return number_text(std::round(angle * 1800.0
 
 std::string book_text(const Core& core, const CoreGeometry& geometry) {
   const Book& book = geometry.stack().book;
-  const std::string kind = book.kind == BookKind::saw_tooth ? "saw-tooth book" : book.kind == BookKind::zig_zag ? "zig-zag book" : "zig-zag book, ends doubled";
+  const std::string kind = book.kind == BookKind::saw_tooth ? "saw-tooth book"
+                           : book.kind == BookKind::zig_zag ? "zig-zag book"
+                                                            : "zig-zag book, ends doubled";
   std::string text = kind + " of " + std::to_string(book.steps) + " steps of " + metres(book.pitch) + " ";
-  text += core.pitch_direction == "across" ? "across the mitre" : core.pitch_direction == "along_limb" ? "along the limb" : "along the yoke";
-  return text + ", " + std::to_string(book.sheets_per_layer) + (book.sheets_per_layer > 1 ? " sheets" : " sheet") + " in a layer, clearance " +
+  text += core.pitch_direction == "across"       ? "across the mitre"
+          : core.pitch_direction == "along_limb" ? "along the limb"
+                                                 : "along the yoke";
+  return text + ", " + std::to_string(book.sheets_per_layer) +
+         (book.sheets_per_layer > 1 ? " sheets" : " sheet") + " in a layer, clearance " +
          metres(book.clearance);
 }
 
 void print_packets(std::ostream& out, const Core& core, const CoreGeometry& geometry) {
   const Stack& stack = geometry.stack();
-  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right});
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right,
+                   Align::right, Align::right, Align::right});
   table.add_row({"packet", "limb", "yoke", "depth", "sheets", "layers", "mitre", "angle"});
   for (std::size_t p = 0; p < stack.packets.size(); ++p) {
     const Packet& packet = stack.packets[p];
     const bool is_middle = core.limbs.empty();
     const Mitre m = geometry.mitre(p, is_middle);
     const CornerFrame frame = is_middle ? notch_frame(m, 1.0, 1.0) : corner_frame(m, 1.0, 1.0);
-    table.add_row({std::to_string(p + 1), metres(packet.width), metres(packet.yoke_height), metres(packet.depth),
-                   std::to_string(sheets_in(stack, packet)), std::to_string(layers_in(stack, packet)), metres(frame.length),
+    table.add_row({std::to_string(p + 1), metres(packet.width), metres(packet.yoke_height),
+                   metres(packet.depth), std::to_string(sheets_in(stack, packet)),
+                   std::to_string(layers_in(stack, packet)), metres(frame.length),
                    degrees(geometry.angle(p, is_middle))});
   }
-  table.add_row({"together", "", "", metres(depth_of(stack)), std::to_string(sheets_in(stack)), std::to_string(layers_in(stack)), "", ""});
+  table.add_row({"together", "", "", metres(depth_of(stack)), std::to_string(sheets_in(stack)),
+                 std::to_string(layers_in(stack)), "", ""});
   out << table;
   for (const Duct& duct : stack.ducts)
-    out << "  duct of " << metres(duct.width) << " behind " << metres(duct.place) << " of stack, " << sheets_before(stack, duct) << " sheets\n";
+    out << "  duct of " << metres(duct.width) << " behind " << metres(duct.place) << " of stack, "
+        << sheets_before(stack, duct) << " sheets\n";
 }
 
 // Interfaces between layers, whether they carry an overlap or not.
@@ -86,7 +97,8 @@ double interfaces_between_layers(const Stack& stack) {
   return count;
 }
 
-void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geometry, std::size_t limb, const Model& model) {
+void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geometry,
+                   std::size_t limb, const Model& model) {
   const Body &body = *model.find_body(core.all_limbs()[limb]), &part = *model.find_body(core.active_part);
   const double reach = std::abs(middle_of_limb(core, body, part).x());
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
@@ -101,8 +113,11 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
       width += lap.count * (lap.outer - lap.inner);
     }
     const double pressure = corner.is_top ? core.pressure : core.bottom_pressure.value_or(core.pressure);
-    const double friction = corner.is_top ? core.static_friction : core.bottom_static_friction.value_or(core.static_friction);
-    table.add_row({corner.place, std::to_string(corner.laps.size()), whole(count), metres(width / count), quantity_text(area, "m²"),
+    const double friction = corner.is_top
+                                ? core.static_friction
+                                : core.bottom_static_friction.value_or(core.static_friction);
+    table.add_row({corner.place, std::to_string(corner.laps.size()), whole(count),
+                   metres(width / count), quantity_text(area, "m²"),
                    quantity_text(pressed * pressure * friction, "N")});
     all += area;
     capacity += pressed * pressure * friction;
@@ -111,15 +126,18 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
   out << table;
 }
 
-void print_steel(std::ostream& out, const Core& core, const CoreGeometry& geometry, std::size_t limb, const Model& model) {
+void print_steel(std::ostream& out, const Core& core, const CoreGeometry& geometry,
+                 std::size_t limb, const Model& model) {
   const Body &body = *model.find_body(core.all_limbs()[limb]), &part = *model.find_body(core.active_part);
   const LimbSteel steel = geometry.limb_steel(core.is_middle(limb), side_of_limb(core, body, part));
   TextTable table({Align::left, Align::right, Align::right});
   table.add_row({"", "of the sheets", "of the body"});
   const std::string unknown = "-";
   table.add_row({"mass", steel.mass > 0.0 ? quantity_text(steel.mass, "kg") : unknown, quantity_text(body.mass, "kg")});
-  table.add_row({"inertia", steel.mass > 0.0 ? quantity_text(steel.inertia, "kg m²") : unknown, quantity_text(body.inertia, "kg m²")});
-  table.add_row({"centre of gravity, off the axis", quantity_text(steel.centre.x(), "m", 1.0), quantity_text(body.cg.x(), "m", 1.0)});
+  table.add_row({"inertia", steel.mass > 0.0 ? quantity_text(steel.inertia, "kg m²") : unknown,
+                 quantity_text(body.inertia, "kg m²")});
+  table.add_row({"centre of gravity, off the axis", quantity_text(steel.centre.x(), "m", 1.0),
+                 quantity_text(body.cg.x(), "m", 1.0)});
   out << table;
 }
 
@@ -132,10 +150,13 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
   } else {
     out << book_text(core, geometry) << "\n";
     print_packets(out, core, geometry);
-    out << "  interfaces between layers: " << whole(interfaces_between_layers(geometry.stack())) << " at every corner\n";
+    out << "  interfaces between layers: " << whole(interfaces_between_layers(geometry.stack()))
+        << " at every corner\n";
   }
   for (std::size_t i = 0; i < core.all_limbs().size(); ++i) {
-    out << "\n" << core.joint_name(i) << ": '" << core.all_limbs()[i] << "'" << (core.is_middle(i) ? ", T-joint" : "") << "\n";
+    out << "\n"
+        << core.joint_name(i) << ": '" << core.all_limbs()[i] << "'"
+        << (core.is_middle(i) ? ", T-joint" : "") << "\n";
     print_corners(out, core, geometry, i, model);
     print_steel(out, core, geometry, i, model);
   }
@@ -144,7 +165,9 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
 // With several cores: FILE.svg, FILE-2.svg …
 void write_image(const std::string& path, std::size_t index, const Core& core, const Model& model, std::ostream& out) {
   std::filesystem::path file(path);
-  if (index > 0) file.replace_filename(file.stem().string() + "-" + std::to_string(index + 1) + file.extension().string());
+  if (index > 0)
+    file.replace_filename(file.stem().string() + "-" + std::to_string(index + 1) +
+                          file.extension().string());
   std::ofstream image(file);
   image << core_svg(core, model);
   image.close();
@@ -179,10 +202,12 @@ Command core_command() {
 Capacity is the friction of a corner in translation, mu_s p times the area of all its overlaps. "Kinds" of interface
 differ in the sheets that overlap; "interfaces" are those that carry an overlap. More on a joint: steplap joint.
 )";
-  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML)", true},
-                     {"--core", &o->cores, "NAME", "this core; may be repeated (default: all)"},
-                     {"--svg", &o->image, "FILE", "draw elevation, section, corner and book into an SVG image; of further cores FILE-2 …"},
-                     {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
+  command.options = {
+      {"MODEL", &o->model, "FILE", "model file (TOML)", true},
+      {"--core", &o->cores, "NAME", "this core; may be repeated (default: all)"},
+      {"--svg", &o->image, "FILE",
+       "draw elevation, section, corner and book into an SVG image; of further cores FILE-2 …"},
+      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
   command.run = [o](Console& console) { return core(*o, console); };
   return command;
 }
