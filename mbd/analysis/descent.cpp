@@ -22,7 +22,8 @@ constexpr double k_nudge = 1e-3;      // of the length, rad
 constexpr double k_turned_against = 0.5; // of the work along the tangent
 constexpr double k_far = 1e4;         // lengths of the scene
 constexpr double k_many_turns = 40.0 * std::numbers::pi;
-constexpr int k_most_trials = 44, k_most_projections = 25, k_most_polishing = 4;
+constexpr double k_most_looks = 1000.0; // along a step
+constexpr int k_most_trials = 44, k_most_corrections = 4, k_most_projections = 25, k_most_polishing = 4;
 constexpr double k_rounded_terms = 32.0;
 
 int most_iterations(int n) { return n <= 90 ? 3000 : n <= 300 ? 600 : 150; }
@@ -190,34 +191,70 @@ static double slope_along(const VecX& step, const VecX& gradient, const MatX& he
   return -(step - held * (held.transpose() * step)).dot(gradient);
 }
 
-// A step that bends away from a stiff contact's or spring's way has its balance in the stiff directions restored at its
-// end, with the stiffness of its start; the slope there.
+// Displacements that would restore the balance in the stiff directions, with the stiffness of the step's start; their
+// largest in `size`.
+VecX Descent::stiff_imbalance(const Tangent& end, double& size) const {
+  VecX gradient = scale_.cwiseProduct(statics_.force());
+  gradient -= end.held * (end.held.transpose() * gradient);
+  VecX share = shape_.transpose() * gradient;
+  for (Eigen::Index i = 0; i < share.size(); ++i) {
+    const bool counts = value_[i] > 10.0 * used_sigma_ && value_[i] > value_rounding_[i];
+    share[i] = counts ? share[i] / (value_[i] + used_sigma_) : 0.0;
+  }
+  const VecX move = shape_ * share;
+  size = move.size() > 0 ? move.cwiseAbs().maxCoeff() : 0.0;
+  return move;
+}
+
+// A step that bends away from a stiff contact's or spring's way is brought back to it; the slope there.
 double Descent::correct(const VecX& step, const std::vector<double>& from, double slope, Tangent& end) {
   const std::vector<double> first = state_.q;
   const Tangent first_end = end;
   VecX moved = step;
-  double best = slope;
-  for (int round = 0; round < 3; ++round) {
-    VecX gradient = scale_.cwiseProduct(statics_.force());
-    gradient -= end.held * (end.held.transpose() * gradient);
-    VecX share = shape_.transpose() * gradient;
-    bool is_stiff = false;
-    for (Eigen::Index i = 0; i < share.size(); ++i) {
-      const bool counts = value_[i] > 10.0 * used_sigma_ && value_[i] > value_rounding_[i];
-      is_stiff = is_stiff || counts;
-      share[i] = counts ? share[i] / (value_[i] + used_sigma_) : 0.0;
+  double before = 0.0, after = 0.0;
+  VecX back = stiff_imbalance(end, before);
+  if (before == 0.0) return slope;
+  double now = slope;
+  bool is_better = false;
+  for (int round = 0; round < k_most_corrections; ++round) {
+    moved += back;
+    if (!(step_size(moved) < 2.0) || !move_to(from, moved, end)) {
+      is_better = false;
+      break;
     }
-    if (!is_stiff) return slope;
-    moved += shape_ * share;
-    if (!move_to(from, moved, end)) break;
-    const double now = slope_along(step, scale_.cwiseProduct(statics_.force()), end.held);
-    if (now < best && now < 0.5 * slope && step_size(moved) < 2.0) return now;
-    best = std::min(best, now);
+    back = stiff_imbalance(end, after);
+    now = slope_along(step, scale_.cwiseProduct(statics_.force()), end.held);
+    if (!(after < 0.5 * before)) break;
+    is_better = true;
+    before = after;
   }
+  if (is_better && (now < slope || now < 0.0)) return now;
   state_.q = first;
   end = first_end;
   statics_.evaluate(state_);
   return slope;
+}
+
+// The share of a long step at which a contact first closes that its end may have passed through.
+double Descent::first_contact(const std::vector<double>& from, const VecX& step) {
+  double parts = 0.0; // in quarters of a body's size, and tenths of a radian
+  for (int k = 0; k < n_; ++k) {
+    const double inverse_size = scale_[k - k % 3 + 2];
+    parts = std::max(parts, k % 3 < 2 ? 4.0 * std::abs(step[k]) * inverse_size : 10.0 * std::abs(step[k]) * inverse_size);
+  }
+  if (system_.contact_count == 0 || parts <= 1.0) return 1.0;
+  const int count = static_cast<int>(std::min(std::ceil(parts), k_most_looks));
+  const double* const force = statics_.evaluation().contact_force;
+  const std::vector<double> open(force, force + system_.contact_count);
+  double first = 1.0;
+  for (int j = 1; j < count && first == 1.0; ++j) {
+    for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * step[k] * j / count;
+    statics_.evaluate(state_);
+    for (int c = 0; c < system_.contact_count; ++c)
+      if (open[c] <= 0.0 && force[c] > 0.0) first = static_cast<double>(j) / count;
+  }
+  state_.q = from;
+  return first;
 }
 
 bool Descent::loads_friction() const {
@@ -249,21 +286,37 @@ double Descent::first_load(const std::vector<double>& from, const VecX& step, do
   return taken;
 }
 
+// After a step that was taken at `factor` of what was planned.
+void Descent::adapt_region(double factor, const VecX& step, bool is_straight) {
+  double moved = 0.0, turned = 0.0;
+  for (int k = 0; k < n_; ++k)
+    (k % 3 < 2 ? moved : turned) = std::max(k % 3 < 2 ? moved : turned, k % 3 < 2 ? std::abs(step[k]) : std::abs(step[k]) * scale_[k]);
+  if (factor < 1.0) {
+    radius_ = std::clamp(4.0 * moved, 0.25 * radius_, radius_);
+    turn_ = std::min(k_small_turn, std::clamp(4.0 * turned, 0.25 * turn_, turn_));
+    return;
+  }
+  if (moved > 0.5 * radius_) radius_ *= 2.0;
+  if (turned > 0.5 * turn_) turn_ = is_straight ? std::min(k_largest_turn, 1.5 * turn_) : std::min(k_small_turn, 2.0 * turn_);
+  else if (!is_straight) turn_ = std::min(turn_, k_small_turn);
+}
+
 bool Descent::advance(const VecX& step) {
   const std::vector<double> from = state_.q;
   const double start = -step.dot(gradient_);
   if (!(start < 0.0)) return false;
   Tangent end;
-  double low = 0.0, high = 1.0, slope = 0.0;
-  double factor = 1.0;
+  const std::vector<UnitMode> modes = state_.mode;
+  const double whole = first_contact(from, step);
+  double low = 0.0, high = whole, slope = 0.0, factor = whole;
   bool is_taken = false;
   for (int trial = 0; trial < k_most_trials; ++trial) {
     bool is_too_far = !move_to(from, factor * step, end);
     if (!is_too_far) {
       slope = slope_along(step, scale_.cwiseProduct(statics_.force()), end.held);
-      if (slope > -k_turned_against * start) slope = correct(factor * step, from, slope, end);
+      if (slope > -k_turned_against * start || state_.mode != modes) slope = correct(factor * step, from, slope, end);
       is_too_far = !(slope <= -k_turned_against * start);
-      is_taken = !is_too_far && (factor == 1.0 || slope >= k_turned_against * start);
+      is_taken = !is_too_far && (factor == whole || slope >= k_turned_against * start);
     }
     if (is_taken) break;
     (is_too_far ? high : low) = factor;
@@ -280,14 +333,7 @@ bool Descent::advance(const VecX& step) {
   }
   factor = first_load(from, step, low < factor ? low : 0.0, factor, end);
   const bool is_straight = std::abs(slope - start) < 0.3 * std::abs(start);
-  const double size = factor * step_size(step);
-  if (factor == 1.0) {
-    if (size > 0.5) radius_ *= 2.0;
-    turn_ = is_straight ? std::min(k_largest_turn, 1.5 * turn_) : std::clamp(2.0 * turn_, 1e-12, k_small_turn);
-  } else {
-    radius_ *= std::clamp(4.0 * size, 0.25, 1.0);
-    turn_ = std::min(k_small_turn, turn_ * std::clamp(4.0 * size, 0.25, 1.0));
-  }
+  adapt_region(factor, factor * step, is_straight);
   follow_friction(from);
   return true;
 }

@@ -68,6 +68,9 @@ private:
   bool move_to(const std::vector<double>& from, const VecX& step, Tangent& end);
   bool project(Tangent& end);
   bool advance(const VecX& step);
+  [[nodiscard]] VecX stiff_imbalance(const Tangent& end, double& size) const;
+  [[nodiscard]] double first_contact(const std::vector<double>& from, const VecX& step);
+  void adapt_region(double factor, const VecX& step, bool is_straight);
   [[nodiscard]] double correct(const VecX& step, const std::vector<double>& from, double slope, Tangent& end);
   [[nodiscard]] bool loads_friction() const;
   [[nodiscard]] double first_load(const std::vector<double>& from, const VecX& step, double low, double high, Tangent& end);

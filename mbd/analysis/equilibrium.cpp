@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 namespace steplap {
 
@@ -14,6 +15,7 @@ namespace {
 constexpr double k_admissible = 1.0 + 1e-9; // share of what friction can bear: rounding of stiff contacts
 constexpr double k_least_used = 1e-9;       // less is rounding
 constexpr int k_most_slips = 12;            // of one friction element, on the way to where it holds
+constexpr double k_tipped = 0.75; // rad
 // Of the scene's length: contacts that gave way so far, with nothing but friction to resist them, did not stand.
 constexpr double k_stands = 1e-2;
 
@@ -77,6 +79,7 @@ private:
     note_drives();
     result_.state = state_;
     result_.state.v = start_.v;
+    note_tipping();
     for (std::size_t i = 3; i < start_.q.size(); ++i)
       if (i % 3 < 2) result_.moved = std::max(result_.moved, std::abs(state_.q[i] - start_.q[i]));
     return std::move(result_);
@@ -224,6 +227,28 @@ private:
     throw NumericalFailure(text);
   }
 
+  // A body that no joint leads stood on something, or tipped over.
+  void note_tipping() {
+    if (system_.contact_count == 0) return;
+    std::vector<char> is_led(system_.bodies.size(), 0);
+    is_led[k_ground] = 1;
+    for (std::size_t round = 0; round < system_.rows.size(); ++round) {
+      bool is_changed = false;
+      for (const RowSpec& row : system_.rows) {
+        if (is_led[row.a] == is_led[row.b]) continue;
+        is_led[row.a] = is_led[row.b] = 1;
+        is_changed = true;
+      }
+      if (!is_changed) break;
+    }
+    for (int i = 1; i < system_.body_count(); ++i) {
+      const double turn = state_.q[3 * i + 2] - start_.q[3 * i + 2];
+      if (is_led[i] || std::abs(turn) < k_tipped || std::abs(turn) < std::abs(result_.turned)) continue;
+      result_.turned = turn;
+      result_.turned_body = i;
+    }
+  }
+
   void note_drives() {
     for (const RowSpec& row : system_.rows) {
       if (!row.drive) continue;
@@ -266,6 +291,9 @@ std::vector<std::string> remarks_on(const System& system, const Equilibrium& fou
                       " leaves it, and so did the search");
   for (const MotionPart& part : found.indifferent)
     remarks.push_back("indifferent: nothing holds " + part_text(system, part) + " or against it; it rests wherever it is");
+  if (found.turned != 0.0)
+    remarks.push_back("'" + system.bodies[found.turned_body].name + "' turned by " + rounded(found.turned * 180.0 / std::numbers::pi) +
+                      "° on the way to this rest: it does not stand as given");
   for (const int f : found.slid)
     remarks.push_back("'" + system.element_names[system.frictions[f].element] +
                       "' could not hold where it got its load: it slid to where it does");

@@ -32,6 +32,8 @@ struct Equilibrium {
   std::vector<MotionPart> indifferent; ///< directions along which nothing holds it, by their largest parts
   std::vector<MotionPart> left;        ///< poses that balanced on the way, but that a nudge would leave
   std::vector<int> slid;               ///< friction elements that slid to where they hold
+  int turned_body = 0;                 ///< of those that no joint leads the one that turned furthest, if so far that it
+  double turned = 0.0;                 ///< did not settle but tip over; rad
   std::vector<int> moving_drives;      ///< elements whose drives move or accelerate now; taken as held
 };
 
