@@ -1,6 +1,8 @@
 // Study files: every mistake is told with its line before anything runs.
 #include "tests/study/study_bench.h"
 
+#include "tools/study/study_reader.h"
+
 #include <nlohmann/json.hpp>
 
 using namespace steplap;
@@ -67,6 +69,32 @@ TEST_CASE("all mistakes of a file are told at once") {
                                      "[[response]]\nname = \"r\"\nchannel = \"nothing\"\nwhat = \"final\"\n");
   CHECK(has(said, "there is no body 'tnk'"));
   CHECK(has(said, "no channel of model"));
+}
+
+TEST_CASE("the examples are read without a complaint") {
+  int studies = 0;
+  for (const auto& entry : fs::directory_iterator(STEPLAP_MODELS "/studies")) {
+    if (!has(text_of(entry.path()), "kind = \"") && !has(text_of(entry.path()), "extends = \"slip_probability")) continue; // a model
+    CAPTURE(entry.path().string());
+    CHECK_NOTHROW((void)study::read_study(entry.path().string()));
+    ++studies;
+  }
+  CHECK(studies >= 8);
+}
+
+// A monitored joint's motion does not hang on its pressure, and its capacity is proportional to it: the critical pressure is
+// the pressure over the margin, at any pressure.
+TEST_CASE("the critical clamping pressure of the paper's transformer") {
+  StudyBench bench;
+  const Outcome outcome = study_does({"run", STEPLAP_MODELS "/studies/critical_pressure.toml", "-o", bench.at("study.sqlite")});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  study::Store store(bench.at("study.sqlite"));
+  std::vector<study::StoredSample> rows;
+  store.read(9, 1, rows); // the last of the first looks
+  CHECK(rows[0].values[0] == doctest::Approx(1e5));
+  // The tolerance of the study is 1e-6 of the range, that of extremes 1e-6 of the channel's.
+  CHECK(store.findings().front().value == doctest::Approx(1e5 / rows[0].outcome.numbers[0]).epsilon(1e-5));
 }
 
 TEST_CASE("the schema knows the tables, keys and kinds") {

@@ -280,7 +280,8 @@ Answer run_map(StudyRun& run) {
   Answer answer;
   for (std::size_t i = 0; i < borders.size(); ++i) report(borders[i], i + 1, plane, run, answer);
   if (borders.empty()) {
-    answer.findings.push_back({"map", "border", "points", 0.0, std::nan(""), std::nan(""), run.evaluator.asked(), "the expression has one sign wherever it was looked at"});
+    answer.findings.push_back({"map", "border", "points", 0.0, std::nan(""), std::nan(""), run.evaluator.asked(),
+                               plane.bad() == run.evaluator.asked() ? "no run gave a value" : "the expression has one sign wherever it was looked at"});
     answer.degrade(Standing::not_met);
   }
   if (plane.has_jump()) answer.notes.push_back("In places the expression jumps past zero: the border is then where it jumps.");

@@ -215,6 +215,7 @@ ExitCode replay(const Options& o, Console& console) {
   if (number > store.size()) throw UsageError("the store has " + std::to_string(store.size()) + " samples: there is no sample " + *o.sample);
   if (store.identity().scene != identity_of(loaded).scene)
     throw StoreError("the models, variables or responses of '" + o.file + "' are not those of the store any more: its samples cannot be replayed");
+  if (!loaded.variants.empty()) throw UsageError("a sample of the kind 'needs' is another model, not other values of one: it cannot be replayed");
   if (loaded.models.empty()) throw UsageError("the study has no model: its samples are numbers only");
   std::vector<StoredSample> rows;
   store.read(number, 1, rows);

@@ -2,6 +2,7 @@
 
 #include "tools/study/critical.h"
 #include "tools/study/designs.h"
+#include "tools/study/needs.h"
 #include "tools/study/reliability.h"
 #include "tools/study/sensitivity.h"
 
@@ -23,7 +24,8 @@ const std::vector<StudyKind>& study_kinds() {
       {"reliability", "how likely failure is, by sampling and by design points", check_reliability, run_reliability},
       {"sensitivity", "how much each variable matters: elasticities, Morris' screening, Sobol indices, a tornado", check_sensitivity, run_sensitivity},
       {"critical", "the values of a variable at which an expression is zero", check_critical, run_critical},
-      {"map", "the curve in the plane of two variables on which an expression is zero", check_map, run_map}};
+      {"map", "the curve in the plane of two variables on which an expression is zero", check_map, run_map},
+      {"needs", "what the scene needs: every element and body in turn left out, rigid or fixed", check_needs, run_needs}};
   return kinds;
 }
 

@@ -42,6 +42,7 @@ public:
 
 private:
   void run_model(const StudyModel& model, const double* values, Outcome& outcome);
+  void look_only_where_asked(const StudyModel& model, System& system) const;
   void look(const StudyModel& model, const Model& whole, const System& system, const RunResult& result, Outcome& outcome);
 
   const LoadedStudy& loaded_;

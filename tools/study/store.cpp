@@ -77,6 +77,7 @@ StoreIdentity identity_of(const LoadedStudy& loaded) {
     for (const std::string& path : v.paths) scene += " | " + path;
     scene += "\n";
   }
+  for (const ModelVariant& v : loaded.variants) scene += "# variant " + v.name + "\n";
   for (const Response& r : study.responses) {
     scene += "# response " + r.name + " | " + r.model + " | " + r.channel + " | " + r.what + " | " + r.event + " | " + r.element + " | " + r.expression;
     if (r.otherwise) scene += " | " + number_text(*r.otherwise);

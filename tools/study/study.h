@@ -117,6 +117,11 @@ struct MapSettings {
   Location where;
 };
 
+struct NeedsSettings {
+  double accuracy = 0.01; ///< changes of responses up to this share of them do not matter
+  Location where;
+};
+
 struct Study {
   std::string file;
   std::string text;
@@ -135,6 +140,7 @@ struct Study {
   SensitivitySettings sensitivity;
   CriticalSettings critical;
   MapSettings map;
+  NeedsSettings needs;
   Location where;
 
   /// -1 if there is none.
@@ -161,6 +167,7 @@ struct StudyTable {
 [[nodiscard]] FieldTable sensitivity_fields();
 [[nodiscard]] FieldTable critical_fields();
 [[nodiscard]] FieldTable map_fields();
+[[nodiscard]] FieldTable needs_fields();
 /// All of them, in the order of a file.
 [[nodiscard]] std::vector<StudyTable> study_tables();
 

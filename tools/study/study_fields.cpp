@@ -150,6 +150,12 @@ FieldTable map_fields() {
   return t;
 }
 
+FieldTable needs_fields() {
+  FieldTable t;
+  t.add("accuracy", &NeedsSettings::accuracy).positive().at_most(1).doc("changes of responses up to this share of them do not matter");
+  return t;
+}
+
 std::vector<StudyTable> study_tables() {
   return {{"", "top-level keys of a study file", false, header_fields()},
           {"variable", "a number that is not known, or that is to be tried", true, variable_fields("*")},
@@ -161,7 +167,8 @@ std::vector<StudyTable> study_tables() {
           {"reliability", "settings of kind = \"reliability\"", false, reliability_fields()},
           {"sensitivity", "settings of kind = \"sensitivity\"", false, sensitivity_fields()},
           {"critical", "settings of kind = \"critical\"", false, critical_fields()},
-          {"map", "settings of kind = \"map\"", false, map_fields()}};
+          {"map", "settings of kind = \"map\"", false, map_fields()},
+          {"needs", "settings of kind = \"needs\"", false, needs_fields()}};
 }
 
 } // namespace steplap::study

@@ -15,6 +15,7 @@
 #include "tools/study/expression.h"
 #include "tools/study/kinds.h"
 #include "tools/study/law.h"
+#include "tools/study/needs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,8 +70,10 @@ public:
     read_settings("sensitivity", sensitivity_fields(), study_.sensitivity);
     read_settings("critical", critical_fields(), study_.critical);
     read_settings("map", map_fields(), study_.map);
+    read_settings("needs", needs_fields(), study_.needs);
     stop_if_wrong();
     add_border();
+    add_variants();
     check_names();
     find_nominal();
     check_expressions();
@@ -352,6 +355,16 @@ private:
   void add_border() {
     if (study_.kind == "critical") study_.limit_states.push_back({"critical", study_.critical.expression, study_.critical.where});
     if (study_.kind == "map") study_.limit_states.push_back({"border", study_.map.expression, study_.map.where});
+  }
+
+  void add_variants() {
+    if (study_.kind != "needs" || models_.size() != 1) return;
+    loaded_.variants = variants_of(models_.front()->given);
+    Variable v;
+    v.name = "variant";
+    v.value = 0.0;
+    v.where = study_.where;
+    study_.variables.push_back(v);
   }
 
   void check_names() {

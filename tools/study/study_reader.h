@@ -4,6 +4,7 @@
 #include "mbd/system/system.h"
 #include "tools/study/study.h"
 
+#include <functional>
 #include <memory>
 
 namespace steplap::study {
@@ -17,10 +18,17 @@ struct StudyModel {
   std::vector<double> base; ///< per variable: what the first of its paths holds; not-a-number if it has none here
 };
 
+/// A model changed in another way than by values.
+struct ModelVariant {
+  std::string name;
+  std::function<void(Model&)> apply; ///< to the model as given
+};
+
 struct LoadedStudy {
   Study study;
   std::vector<std::shared_ptr<const StudyModel>> models;
   std::vector<double> nominal; ///< per variable
+  std::vector<ModelVariant> variants; ///< not empty: the last variable says which, from 1; 0 is the model as it is
 
   /// Values, responses and limit states: the names that expressions may use, in the order of the numbers.
   [[nodiscard]] std::vector<std::string> variable_names() const;
