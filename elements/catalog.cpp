@@ -14,6 +14,7 @@
 #include "elements/spring_damper.h"
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
+#include "elements/tie.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/io/record_signal.h"
 #include "mbd/io/presentation.h"
@@ -26,6 +27,7 @@ const Catalogue& element_catalog() {
     c.elements = {&spring_damper_kind(),     &rotational_spring_damper_kind(),
                   &bushing_kind(),           &unilateral_contact_kind(),
                   &circle_contact_kind(),    &segment_contact_kind(),
+                  &tie_kind(),
                   &coulomb_stick_kind(),     &step_lap_joint_kind(),
                   &step_lap_interface_kind(),
                   &revolute_kind(),          &prismatic_kind(),

@@ -24,6 +24,12 @@ bool is_yielding(UnitMode mode) { return (mode & (k_elastic_yields | k_elastic_a
 /// s − p.
 Vec3 strain(const Pose& now, const double* slid) { return {now.x - slid[0], now.y - slid[1], now.theta - slid[2]}; }
 
+double stored(const ElasticGripGroup::Entry& entry, const Motion<double>* motion, const double* inner) {
+  if (inner[entry.inner + 3] != 0.0) return 0.0;
+  const Vec3 d = strain(entry.friction->pose_of(motion), inner + entry.inner);
+  return 0.5 * d.dot(entry.friction->stiffness() * d);
+}
+
 /// The joint's three measures, with their derivatives by the motion of both bodies.
 struct Measures {
   MeasureValue<D12> m[3];
@@ -65,17 +71,21 @@ void ElasticGripGroup::add_forces(Evaluation& e) const {
     Vec3::Map(e.inner_rate + entry.inner) = flow.rate;
     e.dissipation += force.dot(flow.rate);
     watch[0] = flow.speed;
-    watch[1] = entry.friction->parting(e, slid_at(p), mode >> k_elastic_parted);
+    watch[1] = std::min(entry.friction->parting(e, slid_at(p), mode >> k_elastic_parted), entry.friction->grip_beyond_last(e, slid_at(p)));
   }
 }
 
 double ElasticGripGroup::inner_energy(const Motion<double>* motion, const double* inner) const {
   double sum = 0.0;
-  for (const Entry& entry : entries) {
-    const Vec3 d = strain(entry.friction->pose_of(motion), inner + entry.inner);
-    sum += 0.5 * d.dot(entry.friction->stiffness() * d);
-  }
+  for (const Entry& entry : entries) sum += stored(entry, motion, inner);
   return sum;
+}
+
+double ElasticGripGroup::enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const {
+  if (!is_apart(to)) return 0.0;
+  const double lost = stored(entries[element], e.motion, inner);
+  inner[entries[element].inner + 3] = 1.0;
+  return lost;
 }
 
 void ElasticGripGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const {
@@ -155,7 +165,7 @@ double ElasticGripGroup::settle_inner(const Evaluation& e, double* inner) const 
     const Pose now = entry.friction->pose_of(e.motion);
     for (int i = 0; i < k_most_returns; ++i) {
       const Vec3 d = strain(now, p), force = entry.friction->stiffness() * d;
-      const double u = entry.friction->usage_at(e, slid_at(p), force);
+      const double u = entry.friction->yield_usage(e, slid_at(p), force);
       if (!std::isfinite(u) || u <= 0.0 || std::abs(u - 1.0) <= k_on_surface) break;
       const Vec3 moved = d - d / u;
       Vec3::Map(p) += moved;
@@ -192,6 +202,7 @@ UnitMode ElasticGripGroup::next_mode(int element, UnitMode mode, int slot, const
   if (slot == 0) return mode ^ k_elastic_yields;
   bool is_any_left = false;
   const UnitMode parted = entry.friction->parted_at(slid_at(e.inner + entry.inner), is_any_left);
+  is_any_left = is_any_left && entry.friction->grip_beyond_last(e, slid_at(e.inner + entry.inner)) > k_on_surface;
   return parted << k_elastic_parted | (is_any_left ? mode & k_elastic_yields : k_elastic_apart);
 }
 

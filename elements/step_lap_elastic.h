@@ -6,6 +6,7 @@
 // normal. The wrench is continuous everywhere, so that neither velocities nor accelerations jump: K is bounded, and nothing
 // has to be decided together with other friction. Integration leaves u = 1 + its error while it yields: settle_inner()
 // moves p along the strain onto the surface (radial return) and books what that dissipates, F·Δp.
+// It comes apart where its overlaps have a hundredth of the capacity left that they had in the reference pose.
 #pragma once
 
 #include "elements/step_lap_friction.h"
@@ -26,7 +27,7 @@ public:
   struct Entry {
     int a = k_ground, b = k_ground;            ///< limb, active part
     const StepLapFriction* friction = nullptr; ///< of the system, which owns both
-    int inner = 0;                             ///< first of three: p
+    int inner = 0;                             ///< first of four: p, and 1 once it has come apart
     int link = 0, unit = 0, watch = 0;
   };
   static constexpr int k_watches = 2; ///< bound or flow; interfaces parted
@@ -38,6 +39,7 @@ public:
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override;
   void add_inner_jacobian(const Evaluation& e, std::vector<InnerJacobian>& out) const override;
   double settle_inner(const Evaluation& e, double* inner) const override;
+  double enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const override;
   void start_inner(const Motion<double>* motion, double* inner) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
   void enter_links(LinkTable& links) override;

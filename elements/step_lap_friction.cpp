@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 
 namespace steplap {
 
@@ -34,6 +35,11 @@ constexpr double k_no_end = 2.0;      // times that |ν|: it has not come to res
 // |ν| over speeds to which rounding leaves it a direction; that time over t at which steps are still far from rounding.
 constexpr double k_rounding = 2.5e-13, k_time_rounding = 2e-12;
 
+// Share of its overlaps' capacity below which an elastic joint has come apart. The direction of flow follows the strain
+// within F/(K |ν|), which goes to zero with the overlap: to follow it to the end would take for ever.
+constexpr double k_last_grip = 1e-2;
+constexpr double k_trial = 1.01; // u beyond which a yielding joint is at a stage of a step, not at its end
+constexpr double k_tilt_step = 1e-3; // m/s²: of pressures that are linear in it
 constexpr double k_slid_step = 1e-6; // m at a corner 1 m from the centre, of differences of the overlap
 
 // FrictionState::stage, 0 at first: of a slip that starts, and of one that ends.
@@ -59,8 +65,9 @@ bool is_ending(const FrictionState& state) { return !state.is_starting && state.
 } // namespace
 
 struct StepLapFriction::Fit {
-  Patch patch;
+  Patch patch; ///< at a pressure factor of 1
   Pose pose;
+  double tilt = 0.0;
   Capacity capacity;
   bool is_valid = false, has_capacity = false;
 
@@ -85,6 +92,7 @@ struct StepLapFriction::Scratch final : FrictionScratch {
   Vec3 asked = Vec3::Zero(); ///< wrench of the last usage(), at this pose
   Pose asked_at;
   RequiredPressure answer;
+  PressureState pressed; ///< at the last usage()
   OverlapLoss lost; ///< at this pose
   Pose lost_at;
   bool is_lost_known = false;
@@ -109,7 +117,7 @@ void StepLapFriction::set_scales(const Pose& reference, const BodyData& limb,
                                  const BodyData& active_part) {
   const Patch patch = patch_at(reference, GripLaw::holding);
   if (patch.empty()) return;
-  auto fit = std::make_shared<Fit>();
+  auto fit = std::make_shared<Fit>(); // of no acceleration across the sheets
   fit->patch = patch;
   fit->pose = reference;
   fit->is_valid = true;
@@ -152,13 +160,60 @@ Pose StepLapFriction::present(const Snapshot& s) const {
   return is_stuck ? anchor(s.memory) : pose_of(s.motion);
 }
 
-void StepLapFriction::build(const Pose& pose, GripLaw law, OverlapWorkspace& workspace, Region& region,
+void StepLapFriction::build(const Pose& pose, GripLaw law, double tilt, OverlapWorkspace& workspace, Region& region,
                             Patch& patch) const {
   patch.clear({pose.x, pose.y});
   for (const SheetPair& s : sheets_) {
     intersect(s.yoke, s.limb, pose, workspace, region);
-    patch.add(region, law == GripLaw::holding ? s.static_traction : s.kinetic_traction);
+    add_pressed(s, region, law, tilt, patch);
   }
+}
+
+void StepLapFriction::add_pressed(const SheetPair& s, const Region& region, GripLaw law, double tilt, Patch& patch) const {
+  const double pressed = s.transverse == 0.0 ? 1.0 : std::max(0.0, 1.0 + s.transverse * tilt);
+  const double traction = pressed * (law == GripLaw::holding ? s.static_traction : s.kinetic_traction);
+  if (s.gradient.isZero(0.0)) return patch.add(region, traction);
+  for (const Polygon& piece : region) {
+    const double at_centroid = 1.0 + s.gradient.dot(steplap::centroid(piece) - s.middle);
+    try {
+      patch.add(piece, Traction{traction * at_centroid, traction * s.gradient});
+    } catch (const std::invalid_argument&) {
+      throw NumericalFailure("step_lap_joint '" + name_ + "': its linear pressure is negative somewhere in the overlap");
+    }
+  }
+}
+
+void StepLapFriction::centre_pressures(const Pose& reference) {
+  OverlapWorkspace workspace;
+  Region region;
+  for (SheetPair& s : sheets_) {
+    if (s.gradient.isZero(0.0)) continue;
+    intersect_exactly(s.yoke, s.limb, reference, workspace, region);
+    if (!region.empty()) s.middle = steplap::centroid(region);
+  }
+}
+
+void StepLapFriction::set_pressure(const Signal* factor, double loss, const Signal* acceleration) {
+  pressure_signal_ = factor;
+  kept_ = 1.0 - loss;
+  acceleration_ = acceleration;
+}
+
+// The tractions are n μ (p f + c a) = n μ p f (1 + (c/p) a/f).
+PressureState StepLapFriction::pressure_at(double t) const {
+  PressureState now;
+  now.factor = kept_;
+  if (pressure_signal_) {
+    now.factor *= pressure_signal_->value(t);
+    now.factor_rate = kept_ * pressure_signal_->drive(t, DriveLevel::position).rate;
+    if (!(now.factor > 0.0))
+      throw NumericalFailure("step_lap_joint '" + name_ + "', t = " + number_text(t) +
+                             " s: the factor of its pressures is " + number_text(now.factor) + ": it has to stay above zero");
+  }
+  if (!acceleration_) return now;
+  now.tilt = acceleration_->value(t) / now.factor;
+  now.tilt_rate = (acceleration_->drive(t, DriveLevel::position).rate - now.tilt * now.factor_rate) / now.factor;
+  return now;
 }
 
 Patch StepLapFriction::patch_at(const Pose& pose, GripLaw law) const {
@@ -167,19 +222,20 @@ Patch StepLapFriction::patch_at(const Pose& pose, GripLaw law) const {
   Patch patch({pose.x, pose.y});
   for (const SheetPair& s : sheets_) {
     intersect_exactly(s.yoke, s.limb, pose, workspace, region);
-    patch.add(region, law == GripLaw::holding ? s.static_traction : s.kinetic_traction);
+    add_pressed(s, region, law, 0.0, patch);
   }
   return patch;
 }
 
 StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, const Pose& pose,
-                                           GripLaw law) const {
+                                           GripLaw law, double tilt) const {
   auto& own = static_cast<Scratch&>(*scratch[index_]);
   Fit& f = own.fits[is_one_law_ || law == GripLaw::holding ? 0 : 1];
-  const bool is_same = f.is_valid && f.pose.x == pose.x && f.pose.y == pose.y && f.pose.theta == pose.theta;
+  const bool is_same = f.is_valid && f.pose.x == pose.x && f.pose.y == pose.y && f.pose.theta == pose.theta && f.tilt == tilt;
   if (is_same) return f;
-  build(pose, law, own.workspace, own.region, f.patch);
+  build(pose, law, tilt, own.workspace, own.region, f.patch);
   f.pose = pose;
+  f.tilt = tilt;
   f.is_valid = true;
   f.has_capacity = false;
   return f;
@@ -200,8 +256,10 @@ void StepLapFriction::watch_stick(const Evaluation& e, const FrictionState&, con
   if (!never_slips()) watch[0] = spare(e, anchor(e.memory), Vec3(wrench[0], wrench[1], wrench[2]));
 }
 
-double StepLapFriction::spare(const Evaluation& e, const Pose& slid, const Vec3& w) const {
-  Fit& f = fit(e.scratch, slid, GripLaw::holding);
+double StepLapFriction::spare(const Evaluation& e, const Pose& slid, const Vec3& wrench) const {
+  const PressureState now = pressure_at(e.t);
+  const Vec3 w = wrench / now.factor;
+  Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
   f.prepare();
   const UsageBounds bounds = usage_bounds(f.capacity, w);
   if (bounds.upper <= k_surely_holds) return 1.0 - bounds.upper;
@@ -209,32 +267,50 @@ double StepLapFriction::spare(const Evaluation& e, const Pose& slid, const Vec3&
   return 1.0 + k_bound_slack - required(f.tabulated(), w, e.t).u;
 }
 
-double StepLapFriction::usage_at(const Evaluation& e, const Pose& slid, const Vec3& w) const {
-  return required(fit(e.scratch, slid, GripLaw::holding).patch, w, e.t).u;
+double StepLapFriction::yield_usage(const Evaluation& e, const Pose& slid, const Vec3& wrench) const {
+  const PressureState now = pressure_at(e.t);
+  const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
+  if (f.patch.force() < 0.5 * k_last_grip * reference_->patch.force()) return 1.0;
+  return required(f.patch, wrench / now.factor, e.t).u;
 }
 
-// ∂h/∂p along n: a central difference, whose share in the balance is that of the strain at the bound to the overlap's width.
+// ∂h/∂p along n, and what h changes by as the pressures do: central differences, whose share in the balance is that of the
+// strain at the bound to the overlap's width.
 StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const {
   Flow flow;
-  const Fit& f = fit(e.scratch, slid, GripLaw::holding);
-  if (f.patch.empty() || !force.allFinite()) return flow;
-  const RequiredPressure need = required(f.patch, force, e.t);
+  const PressureState now = pressure_at(e.t);
+  const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
+  if (f.patch.force() < 0.5 * k_last_grip * reference_->patch.force()) { // beyond the event: the strain stays
+    flow.rate = rate;
+    flow.speed = 1.0;
+    return flow;
+  }
+  if (!force.allFinite()) return flow;
+  const RequiredPressure need = required(f.patch, force / now.factor, e.t);
   const Vec3 n = need.direction, pull = stiffness_ * n;
   auto& own = static_cast<Scratch&>(*e.scratch[index_]);
   Fit& moved = own.fits[1]; // free: an elastic joint has one law
   const double step = k_slid_step * std::min(1.0, gyration_);
-  double change = 0.0;
-  for (const double way : {step, -step}) {
-    build({slid.x + way * n[0], slid.y + way * n[1], slid.theta + way * n[2]}, GripLaw::holding, own.workspace, own.region, moved.patch);
-    change += (moved.patch.empty() ? 0.0 : evaluate_gradient(moved.patch, n).h) / (2.0 * way);
-  }
+  const auto power = [&](double way, double tilt) {
+    build({slid.x + way * n[0], slid.y + way * n[1], slid.theta + way * n[2]}, GripLaw::holding, tilt, own.workspace, own.region, moved.patch);
+    return moved.patch.empty() ? 0.0 : evaluate_gradient(moved.patch, n).h;
+  };
+  moved.is_valid = false;
+  const double change = now.factor * (power(step, now.tilt) - power(-step, now.tilt)) / (2.0 * step);
+  double tightening = now.factor_rate == 0.0 ? 0.0 : now.factor_rate * evaluate_gradient(f.patch, n).h; // W: of h at a slip of 1 m/s, a second
+  if (now.tilt_rate != 0.0)
+    tightening += now.factor * now.tilt_rate * (power(0.0, now.tilt + k_tilt_step) - power(0.0, now.tilt - k_tilt_step)) / (2.0 * k_tilt_step);
   flow.direction = n;
   flow.resistance = n.dot(pull) + need.u * change;
+  if (!(flow.resistance > 0.0) && need.u > k_trial) { // of a step that goes too far: it will be made again
+    flow.rate = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    return flow;
+  }
   if (!(flow.resistance > 0.0))
     throw NumericalFailure("step_lap_joint '" + name_ + "', t = " + number_text(e.t) +
                            " s: loses overlap faster than its stiffness lets go of the load: it snaps through. Give it more "
                            "tangential stiffness, or leave it rigid");
-  flow.speed = pull.dot(rate) / flow.resistance;
+  flow.speed = (pull.dot(rate) - need.u * tightening) / flow.resistance;
   flow.rate = flow.speed * n;
   return flow;
 }
@@ -254,9 +330,9 @@ Mat3 StepLapFriction::spread_stiffness(const Pose& pose, double total) const {
     area.add(region, s.count);
   }
   const Vec2 arm = area.centroid() - area.reference();
-  const double polar = area.gyration() * area.gyration() + arm.squaredNorm();
+  const double second = area.gyration() * area.gyration() + arm.squaredNorm();
   Mat3 k;
-  k << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x(), -arm.y(), arm.x(), polar;
+  k << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x(), -arm.y(), arm.x(), second;
   return total * k;
 }
 
@@ -278,17 +354,18 @@ Pose StepLapFriction::slid_pose(const Snapshot& s) const {
 }
 
 double StepLapFriction::support(const Evaluation& e, const FrictionState&, const double* rate) const {
-  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
-  return evaluate_gradient(f.tabulated(), Vec3(rate[0], rate[1], rate[2])).h;
+  const PressureState now = pressure_at(e.t);
+  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding, now.tilt);
+  return now.factor * evaluate_gradient(f.tabulated(), Vec3(rate[0], rate[1], rate[2])).h;
 }
 
 // u = W·ν/h(ν) with its maximiser ν: its gradient is ν/h.
 double StepLapFriction::gauge(const Evaluation& e, const FrictionState&, const double* wrench, double* normal) const {
-  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
-  const Patch& patch = f.tabulated();
-  const RequiredPressure need = required(patch, Vec3(wrench[0], wrench[1], wrench[2]), e.t);
+  const PressureState now = pressure_at(e.t);
+  const Patch& patch = fit(e.scratch, anchor(e.memory), GripLaw::holding, now.tilt).tabulated();
+  const RequiredPressure need = required(patch, Vec3(wrench[0], wrench[1], wrench[2]) / now.factor, e.t);
   Vec3 n = need.direction;
-  if (need.u > 0.0) n /= evaluate_gradient(patch, n).h;
+  if (need.u > 0.0) n /= now.factor * evaluate_gradient(patch, n).h;
   Vec3::Map(normal) = n;
   return need.u;
 }
@@ -297,22 +374,25 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   auto& own = static_cast<Scratch&>(*s.evaluation->scratch[index_]);
   const Vec3 w = wrench(s);
   const Pose pose = present(s);
+  const PressureState now = pressure_at(s.t);
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y &&
-                       own.asked_at.theta == pose.theta;
+                       own.asked_at.theta == pose.theta && own.pressed.factor == now.factor && own.pressed.tilt == now.tilt;
   if (is_same) return own.answer;
-  Fit& f = fit(s.evaluation->scratch, pose, GripLaw::holding);
+  Fit& f = fit(s.evaluation->scratch, pose, GripLaw::holding, now.tilt);
   const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
-  own.answer = required(is_stuck ? f.tabulated() : f.patch, w, s.t);
+  own.answer = required(is_stuck ? f.tabulated() : f.patch, w / now.factor, s.t);
+  own.pressed = now;
   own.asked = w;
   own.asked_at = pose;
   return own.answer;
 }
 
 ValueBounds StepLapFriction::usage_between(const Snapshot& s) const {
-  Fit& f = fit(s.evaluation->scratch, present(s), GripLaw::holding);
+  const PressureState now = pressure_at(s.t);
+  Fit& f = fit(s.evaluation->scratch, present(s), GripLaw::holding, now.tilt);
   f.prepare();
   if (!f.has_capacity) return {0.0, std::numeric_limits<double>::infinity()}; // no area left
-  const UsageBounds bounds = usage_bounds(f.capacity, wrench(s));
+  const UsageBounds bounds = usage_bounds(f.capacity, wrench(s) / now.factor);
   return {bounds.lower, bounds.upper};
 }
 
@@ -329,20 +409,22 @@ const OverlapLoss& StepLapFriction::loss(const Snapshot& s) const {
 }
 
 double StepLapFriction::area(const Snapshot& s) const {
-  return fit(s.evaluation->scratch, present(s), GripLaw::holding).patch.area();
+  return fit(s.evaluation->scratch, present(s), GripLaw::holding, pressure_at(s.t).tilt).patch.area();
 }
 
 FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionState&, const double* a,
                                            const double* b, bool is_kinetic) const {
   const GripLaw law = is_kinetic ? GripLaw::sliding : GripLaw::holding;
-  Fit& f = fit(e.scratch, anchor(e.memory), law);
-  const Mat3 mobility = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a);
+  const PressureState now = pressure_at(e.t);
+  Fit& f = fit(e.scratch, anchor(e.memory), law, now.tilt);
+  // Wrenches in units of the factor: ½ f² wᵀA w + f bᵀw over the set at a factor of 1.
+  const Mat3 mobility = now.factor * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a);
   const AdmissibleWrench w =
       admissible_wrench(f.tabulated(), 0.5 * (mobility + mobility.transpose()), Vec3(b[0], b[1], b[2]));
   insist(w.residual, k_block_residual, name_, e.t, "whether it sticks, and the wrench on its limb,");
   FrictionBlock block;
   block.is_inside = !w.slips;
-  Vec3::Map(block.wrench) = w.wrench;
+  Vec3::Map(block.wrench) = now.factor * w.wrench;
   if (const double size = scaled(w.acceleration).norm(); size > 0.0)
     Vec3::Map(block.direction) = w.acceleration / size;
   return block;
@@ -372,7 +454,7 @@ double StepLapFriction::end_speed(const Evaluation& e) const {
 }
 
 void StepLapFriction::begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const {
-  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding);
+  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding, pressure_at(e.t).tilt);
   state.stage = 0;
   set_direction(state, -required(f.tabulated(), Vec3(wrench[0], wrench[1], wrench[2]), e.t).direction);
 }
@@ -402,8 +484,9 @@ Vec3 StepLapFriction::law_twist(const Evaluation& e, const FrictionState& state,
 
 void StepLapFriction::slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
                                   double* wrench) const {
-  const Fit& f = fit(e.scratch, pose_of(e.motion), GripLaw::sliding);
-  Vec3::Map(wrench) = -evaluate_gradient(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).gradient;
+  const PressureState now = pressure_at(e.t);
+  const Fit& f = fit(e.scratch, pose_of(e.motion), GripLaw::sliding, now.tilt);
+  Vec3::Map(wrench) = -now.factor * evaluate_gradient(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).gradient;
 }
 
 void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
@@ -434,8 +517,9 @@ SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& 
 // The trace of A ∇²h is the sum of the rates, none of which is negative.
 double StepLapFriction::decay_rate(const Evaluation& e, const FrictionState& state, const double* rate) const {
   const Pose pose = pose_of(e.motion);
-  const Fit& f = fit(e.scratch, pose, GripLaw::sliding);
-  const Mat3 curvature = evaluate(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).hessian;
+  const PressureState now = pressure_at(e.t);
+  const Fit& f = fit(e.scratch, pose, GripLaw::sliding, now.tilt);
+  const Mat3 curvature = now.factor * evaluate(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).hessian;
   const Vec3 turned(pose.y, -pose.x, -1.0); // of ν as the active part turns
   return (limb_mobility_[0] + part_mobility_[0]) * (curvature(0, 0) + curvature(1, 1)) +
          limb_mobility_[1] * curvature(2, 2) + part_mobility_[1] * turned.dot(curvature * turned);
@@ -491,6 +575,10 @@ void StepLapFriction::change_place(const Evaluation& e, FrictionState& state) co
   bool is_any_left = false;
   state.foot = parted_at(pose_of(e.motion), is_any_left);
   if (!is_any_left) state.phase = FrictionPhase::apart;
+}
+
+double StepLapFriction::grip_beyond_last(const Evaluation& e, const Pose& slid) const {
+  return fit(e.scratch, slid, GripLaw::holding, pressure_at(e.t).tilt).patch.force() / reference_->patch.force() - k_last_grip;
 }
 
 std::uint32_t StepLapFriction::parted_at(const Pose& pose, bool& is_any_left) const {

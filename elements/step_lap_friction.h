@@ -37,6 +37,13 @@
 
 namespace steplap {
 
+/// What the clamping pressures are like at a time: all are multiplied by `factor`, each once more by
+/// 1 + transverse · tilt (SheetPair::transverse), at least 0.
+struct PressureState {
+  double factor = 1.0, tilt = 0.0;
+  double factor_rate = 0.0, tilt_rate = 0.0;
+};
+
 /// Which coefficients count.
 enum class GripLaw { holding, sliding };
 
@@ -48,6 +55,12 @@ public:
                   bool stops_when_apart);
 
   RowSpec hold[3]; ///< x and y in the active part's axes, angle
+  /// Signals of PressureState: factor (1 − loss) · `factor`, acceleration across the sheets; null where there is none.
+  void set_pressure(const Signal* factor, double loss, const Signal* acceleration);
+  [[nodiscard]] PressureState pressure_at(double t) const;
+  [[nodiscard]] bool has_changing_pressure() const { return pressure_signal_ || acceleration_ || kept_ != 1.0; }
+  /// Where linear pressures are what their interfaces say: at the middles of the overlaps at this pose.
+  void centre_pressures(const Pose& reference);
   /// To be called when the rows are complete: scales of lengths and accelerations at this pose.
   void set_scales(const Pose& reference, const BodyData& limb, const BodyData& active_part);
 
@@ -90,9 +103,12 @@ public:
   [[nodiscard]] Flow flow(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const;
   /// 1 − u or, far from the bound, less that is certain.
   [[nodiscard]] double spare(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;
-  [[nodiscard]] double usage_at(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;
+  /// u of a joint that yields; 1 where it is as good as parted.
+  [[nodiscard]] double yield_usage(const Evaluation& e, const Pose& slid, const Vec3& wrench) const;
   /// Watch value of the interfaces that are parted (bits) or not.
   [[nodiscard]] double parting(const Evaluation& e, const Pose& pose, std::uint32_t parted) const;
+  /// Of an elastic joint: share of its capacity that overlaps leave, less that at which it has come apart.
+  [[nodiscard]] double grip_beyond_last(const Evaluation& e, const Pose& slid) const;
   /// Those that are, as bits; `is_any_left`: do sheets overlap anywhere?
   [[nodiscard]] std::uint32_t parted_at(const Pose& pose, bool& is_any_left) const;
   [[nodiscard]] const Mat3& stiffness() const { return stiffness_; }
@@ -137,11 +153,12 @@ public:
 private:
   struct Fit;
   struct Scratch;
-  [[nodiscard]] Fit& fit(FrictionScratch* const* scratch, const Pose& pose, GripLaw law) const;
+  [[nodiscard]] Fit& fit(FrictionScratch* const* scratch, const Pose& pose, GripLaw law, double tilt) const;
   [[nodiscard]] Pose anchor(const double* memory) const;
   [[nodiscard]] Pose present(const Snapshot& s) const;
-  void build(const Pose& pose, GripLaw law, OverlapWorkspace& workspace, Region& region,
+  void build(const Pose& pose, GripLaw law, double tilt, OverlapWorkspace& workspace, Region& region,
              Patch& patch) const;
+  void add_pressed(const SheetPair& sheets, const Region& region, GripLaw law, double tilt, Patch& patch) const;
   [[nodiscard]] Vec3 scaled(const Vec3& nu) const;
   void set_direction(FrictionState& state, const Vec3& nu) const;
   [[nodiscard]] double onset_speed() const;
@@ -162,6 +179,9 @@ private:
   double grip_acceleration_ = 1.0; ///< about the largest that it can give, m/s²
   double limb_mobility_[2] = {0.0, 0.0}; ///< 1/mass, 1/inertia
   double part_mobility_[2] = {0.0, 0.0};
+  const Signal* pressure_signal_ = nullptr;
+  const Signal* acceleration_ = nullptr;
+  double kept_ = 1.0;              ///< share of the pressures that relaxation leaves
   int inner_ = -1, unit_ = -1;     ///< of an elastic joint
   Mat3 stiffness_ = Mat3::Zero();
 };

@@ -108,6 +108,10 @@ SheetPair make_sheets(const StepLapInterface& e, const std::string& limb,
   pair.limb = make_sheet(e, limb_of(e), limb, builder);
   pair.static_traction = e.count * e.pressure * e.static_friction;
   pair.kinetic_traction = e.count * e.pressure * e.kinetic_friction.value_or(e.static_friction);
+  const Body* part = e.frame == "body" ? builder.model().find_body(active_part) : nullptr;
+  const double angle = part ? part->angle : 0.0;
+  pair.gradient = rotated(e.pressure_gradient, angle - builder.reference(builder.body(active_part)).theta) / e.pressure;
+  pair.transverse = e.transverse_pressure / e.pressure;
   pair.count = e.count;
   pair.clearance = e.clearance;
   const Body* part = builder.model().find_body(active_part);
@@ -137,7 +141,12 @@ const ElementKind& step_lap_interface_kind() {
     f.add("limb_cutouts", &T::limb_cutouts).in("m").doc("holes in the limb sheet of any shape: corners of each, either sense");
     f.add("hole_diameter", &T::hole_diameter).in("m").not_negative().doc("of all round holes");
     f.add("hole_sides", &T::hole_sides).at_least(3).at_most(360).doc("a round hole is a polygon of the circle's area");
-    f.add("pressure", &T::pressure).in("Pa").positive().required().doc("clamping pressure, constant");
+    f.add("pressure", &T::pressure).in("Pa").positive().required().doc("clamping pressure, at the middle of the overlap in the reference pose");
+    f.add("pressure_gradient", &T::pressure_gradient).in("Pa/m").doc(
+        "by which the pressure grows along x and y of the corners' frame; it may be negative nowhere in the overlap");
+    f.add("transverse_pressure", &T::transverse_pressure).in("Pa s^2/m").doc(
+        "by which the pressure grows per m/s² of the joint's transverse_acceleration: density × distance of this packet from "
+        "the free side of the stack, less what it loses on the other; may be negative");
     f.add("static_friction", &T::static_friction).positive().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).positive().doc("mu_k; default: mu_s");
     f.add("count", &T::count).positive().doc("number of equal interfaces in the stack");

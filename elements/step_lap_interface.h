@@ -3,7 +3,9 @@
 // The yoke sheet's polygon is fixed in the active part, the limb sheet's in the limb; where they overlap
 // at the present relative pose there is friction (Fig. 2 of the paper). A stack has `count` equal
 // interfaces of the kind, each with the clamping pressure and the friction coefficients given, which do
-// not change while the sheets slide. Several interfaces (corners, regions) make up a joint.
+// not change while the sheets slide. Several interfaces (corners, regions, packets of the stack) make up a joint.
+// The pressure may vary linearly over the overlap, and with the acceleration across the sheets (transverse_pressure),
+// which presses one side of a stack together and relieves the other; in time it varies as its joint says.
 #pragma once
 
 #include "elements/patch/overlap.h"
@@ -20,6 +22,8 @@ struct StepLapInterface : Element {
   double hole_diameter = 0.0;     ///< m
   long hole_sides = 24;           ///< a hole is a regular polygon of the circle's area
   double pressure = 0.0;          ///< Pa
+  Vec2 pressure_gradient = Vec2::Zero(); ///< Pa/m along x and y of the corners' frame
+  double transverse_pressure = 0.0; ///< Pa per m/s² of the joint's transverse acceleration
   double static_friction = 0.0;
   std::optional<double> kinetic_friction;
   double count = 1.0;             ///< of equal interfaces
@@ -34,6 +38,9 @@ struct StepLapInterface : Element {
 struct SheetPair {
   Outline yoke, limb;
   double static_traction = 0.0, kinetic_traction = 0.0; ///< count · μ · p, N/m²
+  Vec2 gradient = Vec2::Zero(); ///< of the traction, of itself, 1/m, active part's axes
+  Vec2 middle = Vec2::Zero();   ///< where it is `static_traction`: of the overlap in the reference pose
+  double transverse = 0.0;      ///< of itself, per m/s²
   double count = 1.0;
   std::optional<double> clearance; ///< m
   std::optional<Vec2> across; ///< from the yoke to the limb, of length 1, in the active part's axes

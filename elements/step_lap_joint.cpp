@@ -30,19 +30,41 @@ void add_wrench_channels(SystemBuilder& builder, const StepLapFriction& friction
                       [self](const Snapshot& s) { return self->wrench(s)[2]; });
 }
 
-void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction, double pressure) {
+// Signals that the pressures follow. They may not jump: what held would have to let go within no time.
+const Signal* steady_signal(SystemBuilder& builder, const std::string& name, const char* field) {
+  const Signal* signal = builder.signal(name);
+  if (!signal) return nullptr;
+  for (std::size_t k = 0; k < signal->breakpoints().size(); ++k)
+    if (signal->jumps_at(k)) {
+      builder.error("'" + std::string(field) + "': signal '" + name + "' jumps at t = " + std::to_string(signal->breakpoints()[k]) +
+                    " s; a clamping pressure changes within some time: a trapezoid, or a record between lines");
+      break;
+    }
+  return signal;
+}
+
+void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction, const StepLapInterface& first) {
   const auto* self = &friction;
+  // What the first interface is pressed by now, at the middle of its overlap.
+  const auto pressure_at = [self, nominal = first.pressure, share = first.transverse_pressure / first.pressure](double t) {
+    const PressureState now = self->pressure_at(t);
+    return nominal * now.factor * std::max(0.0, 1.0 + share * now.tilt);
+  };
   builder.add_channel("u", "", "share of the friction capacity in use; slides at 1",
                       [self](const Snapshot& s) { return self->usage(s).u; })
       .bounds = [self](const Snapshot& s) { return self->usage_between(s); };
   builder.add_channel("p_req", "Pa",
                       "required pressure: all pressures scaled together so that the joint just holds, "
                       "that of its first interface",
-                      [self, pressure](const Snapshot& s) { return self->usage(s).u * pressure; })
-      .bounds = [self, pressure](const Snapshot& s) {
+                      [self, pressure_at](const Snapshot& s) { return self->usage(s).u * pressure_at(s.t); })
+      .bounds = [self, pressure_at](const Snapshot& s) {
     const ValueBounds u = self->usage_between(s);
+    const double pressure = pressure_at(s.t);
     return ValueBounds{u.low * pressure, u.high * pressure};
   };
+  if (self->has_changing_pressure())
+    builder.add_channel("pressure", "Pa", "that the first interface has now, at the middle of its overlap",
+                        [pressure_at](const Snapshot& s) { return pressure_at(s.t); });
   builder.add_channel("margin", "", "capacity over what is in use, 1/u; infinite without load",
                       [self](const Snapshot& s) { return self->usage(s).margin(); })
       .bounds = [self](const Snapshot& s) {
@@ -177,6 +199,7 @@ bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& b
   entry.inner = builder.add_inner(group, reference.x);
   builder.add_inner(group, reference.y);
   builder.add_inner(group, reference.theta);
+  builder.add_inner(group, 0.0);
   group.entries.push_back(entry);
   builder.add_unit(group, ElasticGripGroup::k_watches);
   friction.make_elastic(friction.spread_stiffness(reference, stiffness_of(e, friction, reference)), entry.inner, group.entries.back().unit);
@@ -287,6 +310,17 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
       e.on_apart == "stop");
   add_rows(e, builder, *friction);
   const Pose reference = friction->pose_of(&builder.reference(0));
+  friction->centre_pressures(reference);
+  friction->set_pressure(steady_signal(builder, e.pressure_signal, "pressure_signal"), e.pressure_loss,
+                         steady_signal(builder, e.transverse_acceleration, "transverse_acceleration"));
+  if (!e.transverse_acceleration.empty() && std::none_of(interfaces.begin(), interfaces.end(), [](const auto* i) { return i->transverse_pressure != 0.0; }))
+    return builder.error("'transverse_acceleration' changes nothing: give its step_lap_interface elements a 'transverse_pressure'");
+  try {
+    static_cast<void>(friction->patch_at(reference, GripLaw::holding));
+  } catch (const NumericalFailure&) {
+    return builder.error("the pressure of one of its step_lap_interface elements is negative somewhere in the overlap: a smaller "
+                         "'pressure_gradient', or more 'pressure'");
+  }
   if (friction->has_sheets() && friction->patch_at(reference, GripLaw::holding).empty())
     return builder.error("its sheets do not overlap in the reference pose: check the polygons and the "
                          "'frame' of its step_lap_interface elements");
@@ -294,7 +328,7 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   if (is_elastic(e) && !make_elastic(e, reference, builder, *friction)) return;
   add_wrench_channels(builder, *friction);
   if (friction->has_sheets()) {
-    add_usage_channels(builder, *friction, interfaces.front()->pressure);
+    add_usage_channels(builder, *friction, *interfaces.front());
     add_loss_channels(builder, *friction, std::any_of(interfaces.begin(), interfaces.end(), [](const auto* i) {
                         return i->clearance.has_value();
                       }));
@@ -335,6 +369,10 @@ const ElementKind& step_lap_joint_kind() {
         "Without it sheets pass each other freely, and a closed clearance is only reported");
     f.add("allowed_line_load", &T::allowed_line_load).in("N/m").positive().doc(
         "of all sheets at a corner, along the mitre: beyond it their edges are crushed and the joint is rejected");
+    f.add("pressure_signal", &T::pressure_signal).as(FieldType::signal).doc("factor of all its pressures in time, above 0; not given: 1");
+    f.add("pressure_loss", &T::pressure_loss).not_negative().at_most(0.99).doc("share of all its pressures that relaxation has taken");
+    f.add("transverse_acceleration", &T::transverse_acceleration).as(FieldType::signal).doc(
+        "across the sheets, m/s², out of the plane of motion: changes the pressure of each interface by its transverse_pressure");
     f.add("least_margin", &T::least_margin).at_least(1.0).doc(
         "smallest margin (capacity over what is in use) that a run must leave: inspect below it");
     f.add("most_slide", &T::most_slide).positive().at_most(1.0).doc(

@@ -24,6 +24,9 @@ struct StepLapJoint : Element {
   std::optional<double> sheet_thickness, shear_modulus; ///< m, Pa: what a sheet adds to its compliance, t/G
   std::optional<double> edge_stiffness;       ///< N/m²: line load over depth, of all sheets at a corner
   std::optional<double> allowed_line_load;    ///< N/m, of all sheets at a corner
+  std::string pressure_signal;         ///< factor of all pressures in time; empty: 1
+  double pressure_loss = 0.0;          ///< share of all pressures that is lost by relaxation
+  std::string transverse_acceleration; ///< signal, m/s²; empty: none
   double least_margin = 1.0;     ///< that a run must leave for the joint to be held good
   double most_slide = 0.1;       ///< of a corner, of the width of its overlap: beyond, the joint is rejected
 };

@@ -1,5 +1,6 @@
 #include "transformer/verdict.h"
 
+#include "elements/tie.h"
 #include "mbd/model/method.h"
 #include "mbd/model/validate.h"
 
@@ -259,10 +260,40 @@ Verdict outcome_of(JointVerdict verdict) {
   case JointVerdict::not_known: return Verdict::open;
   case JointVerdict::came_apart:
   case JointVerdict::corner_parted:
+  case JointVerdict::crushed_edges:
   case JointVerdict::slid_too_far: return Verdict::reject;
   default: return Verdict::inspect;
   }
 }
+
+namespace {
+
+// Of a tie that has a strength: that it does not break.
+void judge_tie(const Tie& tie, const RunResult& run, std::vector<CriterionResult>& criteria) {
+  CriterionResult result;
+  result.name = result.where = tie.name;
+  result.text = "the tie does not break: its force, of its strength < 1";
+  result.consequence = Verdict::reject;
+  result.outcome = Verdict::open;
+  result.limit = 1.0;
+  for (const ChannelRange& range : run.ranges) {
+    if (range.channel->name != tie.name + ".strength_share" || std::isnan(range.high.value)) continue;
+    result.outcome = Verdict::hold;
+    result.value = range.high.value;
+    result.t = range.high.t;
+    result.channel = range.channel->name;
+    result.reserve = 1.0 - range.high.value;
+  }
+  for (const Event& event : run.events)
+    if (event.kind == EventKind::breaks && event.element == tie.name) {
+      result.outcome = Verdict::reject;
+      result.t = event.t;
+      result.reserve.reset(); // that it broke is no matter of digits
+    }
+  criteria.push_back(result);
+}
+
+} // namespace
 
 Judgement judge(const Model& model, const System& system, const RunResult& result, const std::string& failure) {
   Judgement judgement;
@@ -271,6 +302,8 @@ Judgement judge(const Model& model, const System& system, const RunResult& resul
     judgement.criteria.push_back(judge_holding(joint));
     judge_overlap(joint, judgement.criteria);
   }
+  for (const ElementEntry& entry : model.elements)
+    if (const auto* tie = dynamic_cast<const Tie*>(entry.element.get()); tie && tie->strength) judge_tie(*tie, result, judgement.criteria);
   for (const Criterion& c : model.criteria)
     judgement.criteria.push_back(c.event.empty() ? judge_channel(c, result.ranges) : judge_event(c, result));
   judgement.has_criteria = !judgement.criteria.empty();

@@ -90,9 +90,9 @@ TEST_CASE("a limb that turns bears along a part of the line: force, moment and e
 }
 
 TEST_CASE("thrown askew it rocks on its edges, and no energy is made") {
-  for (const char* integrator : {"dop853", "tsit5", "rodas5p"}) {
+  for (const char* integrator : {"dop853", "rodas5p"}) {
     CAPTURE(integrator);
-    const Run r = run_text(limb_at_yoke(std::string("end = 0.02\nintegrator = \"") + integrator + "\"\ntolerance = 1e-11", 0.02, k_loose + "edge_stiffness = 2e8", 1e-6,
+    const Run r = run_text(limb_at_yoke(std::string("end = 0.008\nintegrator = \"") + integrator + "\"\ntolerance = 1e-11", 0.008, k_loose + "edge_stiffness = 2e8", 1e-6,
                                         0.5e-3, {0.02, 0.3}, "", 0.4));
     REQUIRE(r.times("joint", "closes").size() >= 1);
     REQUIRE(r.times("joint", "opens").size() >= 1);
