@@ -164,7 +164,7 @@ void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
       q.row(k) /= size;
       right[k] /= size;
     }
-    const ComplexVector next = q.partialPivLu().solve(right);
+    const ComplexVector next = q.householderQr().solve(right); // an LU would ask the C library for cabs
     const Complex ratio = shape.dot(next);
     if (!next.allFinite() || size_of(ratio) == 0.0) break; // on the eigenvalue
     const Complex change = Complex(shape.squaredNorm()) / ratio;

@@ -29,7 +29,8 @@ struct Kind {
 };
 
 const std::vector<Kind> k_kinds = {
-    {"constant", "value = 0.3", true, true},
+    {"constant", "value = 0.0", true, true},
+    {"constant", "value = 0.3", false, true}, // the arm would have to jump
     {"haversine", "peak = 0.4; start = 0.1; duration = 0.2", true, true},
     {"half_sine", "peak = 0.4; start = 0.1; duration = 0.2", false, true},
     {"triangle", "peak = 0.4; start = 0.1; duration = 0.2", false, true},

@@ -3,6 +3,7 @@
 #include "tests/random/scene_writer.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace steplap::random {
 
@@ -15,6 +16,27 @@ void couple(SceneWriter& w, const std::string& a, const std::string& b) {
     w.element("spring_damper", {{"a", quoted(a)}, {"b", quoted(b)}, {"stiffness", number(k)}, {"damping", number(c)}}, {a, b});
   else
     w.element("bushing", {{"a", quoted(a)}, {"b", quoted(b)}, {"stiffness", pair(k, k)}, {"damping", pair(c, c)}}, {a, b});
+}
+
+// A rope to something above or a tie to something below: in a few scenes, drawn from a stream of
+// its own, so that all that is drawn otherwise stays what it was.
+void hold(SceneWriter& w, RandomNumber own, const std::string& body) {
+  constexpr double k_some = 0.1;
+  if (!own.chance(k_some)) return;
+  const double length = neat(w.size * own.between(2.0, 4.0)), aside = neat(w.size * own.between(0.5, 2.0));
+  const double k = w.mass * 4.0 * own.between(1.0, 100.0) * std::max(w.gravity / w.size, 1.0 / (w.duration * w.duration));
+  const double c = own.chance(0.5) ? 0.02 * std::sqrt(k * w.mass) : 0.0;
+  SceneWriter::Fields fields{{"a", quoted(body)}, {"stiffness", number(k)}, {"damping", number(c)}};
+  if (own.chance(0.5)) {
+    fields.push_back({"b", marker("ground", {aside, length})});
+    if (own.chance(0.5)) fields.push_back({"slack", number(0.05 * w.size)});
+    w.element("rope", fields, {body});
+  } else {
+    fields.push_back({"b", marker("ground", {aside, -length})});
+    fields.push_back({"acts", quoted(own.one_of<std::string>({"tension", "compression", "both"}))});
+    if (own.chance(0.5)) fields.push_back({"slack", number(0.05 * w.size)});
+    w.element("tie", fields, {body});
+  }
 }
 
 void add_cell(SceneWriter& w, const std::vector<NamedCell>& cells, At place, std::vector<std::string>& ends) {
@@ -37,6 +59,7 @@ Scene random_scene(std::uint64_t seed) {
   }
   for (std::size_t i = 1; i < ends.size(); ++i)
     if (w.r.chance(0.5)) couple(w, ends[i - 1], ends[i]);
+  if (!ends.empty()) hold(w, RandomNumber(~seed), ends.front());
   return w.scene;
 }
 

@@ -47,7 +47,7 @@ TEST_CASE("a run stopped by a signal keeps what was computed") {
   // Days of steps, a row every few thousand of them. A machine may be so slow that the program is not yet listening when the
   // signal comes: then it dies of it, with nothing to keep, and is given longer.
   const std::vector<std::string> arguments = {"simulate", model, "-o", bench.at("out"), "--force",
-                                              "--set", "simulation.end=1e8", "--set", "output.step=1e3"};
+                                              "--set", "simulation.end=1e6", "--set", "output.step=10"};
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     CAPTURE(signal);
     bool is_kept = false;

@@ -207,20 +207,25 @@ TEST_CASE("joints that slide, mechanisms, contacts with powers and driven wheels
     check_same_bytes(own + " --integrator " + settings);
 }
 
-TEST_CASE("the program takes no function from the C library that depends on the processor") {
-  const Outcome imports = shell_does("nm -D --undefined-only " STEPLAP_PROGRAM);
+// Of the program's own archives: what other makers' libraries call (UDUNITS a logarithm, for units of sound) takes no part
+// in the numbers of a run.
+TEST_CASE("the program's own code takes no function from the C library that depends on the processor") {
+  const Outcome imports = shell_does("nm --undefined-only " STEPLAP_ARCHIVES);
   REQUIRE(imports.code == 0);
   REQUIRE(has(imports.out, "malloc"));
+  int looked_at = 0;
   std::istringstream lines(imports.out);
   for (std::string line; std::getline(lines, line);) {
     const std::size_t at = line.find(" U ");
     if (at == std::string::npos) continue;
-    const std::string name = line.substr(at + 3, line.find('@') - at - 3);
+    ++looked_at;
+    const std::string name = line.substr(at + 3);
     const bool has_suffix = name.ends_with("f") || name.ends_with("l"); // of float and long double
     CHECK_MESSAGE(!(chosen_by_processor().contains(name) ||
                     (has_suffix && chosen_by_processor().contains(name.substr(0, name.size() - 1)))),
                   "the program calls " << name << " of the C library: use mbd/math/portable_math.h");
   }
+  CHECK(looked_at > 1000);
 }
 
 TEST_CASE("a call of the C library is told from others") {
