@@ -108,13 +108,12 @@ SheetPair make_sheets(const StepLapInterface& e, const std::string& limb,
   pair.limb = make_sheet(e, limb_of(e), limb, builder);
   pair.static_traction = e.count * e.pressure * e.static_friction;
   pair.kinetic_traction = e.count * e.pressure * e.kinetic_friction.value_or(e.static_friction);
-  const Body* part = e.frame == "body" ? builder.model().find_body(active_part) : nullptr;
-  const double angle = part ? part->angle : 0.0;
+  const Body* part = builder.model().find_body(active_part);
+  const double angle = e.frame == "body" && part ? part->angle : 0.0;
   pair.gradient = rotated(e.pressure_gradient, angle - builder.reference(builder.body(active_part)).theta) / e.pressure;
   pair.transverse = e.transverse_pressure / e.pressure;
   pair.count = e.count;
   pair.clearance = e.clearance;
-  const Body* part = builder.model().find_body(active_part);
   if (e.across)
     pair.across = e.frame == "body" || !part ? e.across->normalized() : rotated(e.across->normalized(), -part->angle);
   return pair;
