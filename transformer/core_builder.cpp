@@ -37,6 +37,7 @@ public:
     } catch (const PolygonError& wrong) {
       error(wrong.what(), "bolt_holes");
     }
+    check_yokes(geometry);
     stop_if_wrong();
     draw_limbs(geometry);
     draw_active_part(geometry);
@@ -71,6 +72,7 @@ private:
   void add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap);
   void refuse_repetition(const StepLapInterface& face);
   void give_steel(std::size_t i, const CoreGeometry& geometry);
+  void check_yokes(const CoreGeometry& geometry);
   void check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit);
 
   [[nodiscard]] std::vector<Vec2> limb_corners(std::size_t i, const CoreGeometry& geometry) const;
@@ -261,6 +263,17 @@ void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {
     body->cg = rotated(steel.centre, active_part().angle - body->angle);
 }
 
+// The active part holds the yokes, and more.
+void CoreBuilder::check_yokes(const CoreGeometry& geometry) {
+  if (count_cores_at(model_, core_.active_part) > 1 || active_part().mass <= 0.0) return;
+  const double steel = geometry.yoke_steel(places_of_limbs(core_, model_));
+  if (active_part().mass < steel)
+    problems_.push_back(
+        {active_part().where, "'mass' of body '" + core_.active_part + "', " + number_text(active_part().mass) +
+                                  " kg, is less than the yokes of core '" + core_.name + "' weigh alone, " +
+                                  number_text(std::round(steel)) + " kg"});
+}
+
 // --- outlines, for bodies whose model gives none ---------------------------------------------------------
 
 // Of the largest packet, counter-clockwise from the bottom, in the active part's axes about the middle of the limb.
@@ -327,6 +340,25 @@ Vec2 middle_of_limb(const Core& core, const Body& limb, const Body& active_part)
 
 double side_of_limb(const Core& core, const Body& limb, const Body& active_part) {
   return middle_of_limb(core, limb, active_part).x() > 0.0 ? 1.0 : -1.0;
+}
+
+std::vector<LimbPlace> places_of_limbs(const Core& core, const Model& model) {
+  std::vector<LimbPlace> places;
+  const std::vector<std::string> names = core.all_limbs();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Body &limb = *model.find_body(names[i]), &part = *model.find_body(core.active_part);
+    places.push_back(
+        {core.is_middle(i), side_of_limb(core, limb, part), middle_of_limb(core, limb, part).x()});
+  }
+  return places;
+}
+
+std::size_t count_cores_at(const Model& model, const std::string& active_part) {
+  return static_cast<std::size_t>(
+      std::count_if(model.tables.begin(), model.tables.end(), [&](const TableEntry& entry) {
+        const auto* core = dynamic_cast<const Core*>(entry.table.get());
+        return core && core->active_part == active_part;
+      }));
 }
 
 std::size_t count_cores_of(const Model& model, const std::string& limb) {

@@ -1,7 +1,7 @@
 // What a [[core]] stands for, put into the model: joints, interfaces, the limbs' steel and outlines.
 #pragma once
 
-#include "transformer/core.h"
+#include "transformer/core_geometry.h"
 
 namespace steplap {
 
@@ -12,6 +12,10 @@ void build_core(const Core& core, Model& model);
 [[nodiscard]] Vec2 middle_of_limb(const Core& core, const Body& limb, const Body& active_part);
 /// +1 for a limb ahead of the active part, −1 behind.
 [[nodiscard]] double side_of_limb(const Core& core, const Body& limb, const Body& active_part);
+/// All limbs of a core, as CoreGeometry wants them.
+[[nodiscard]] std::vector<LimbPlace> places_of_limbs(const Core& core, const Model& model);
+/// Cores with that active part.
+[[nodiscard]] std::size_t count_cores_at(const Model& model, const std::string& active_part);
 /// Tables that name the limb: with several, each is a part of its steel.
 [[nodiscard]] std::size_t count_cores_of(const Model& model, const std::string& limb);
 

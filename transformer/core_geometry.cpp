@@ -297,4 +297,28 @@ LimbSteel CoreGeometry::limb_steel(bool is_middle, double side) const {
   return steel;
 }
 
+// What the yoke's strip has left where no limb and no clearance is: of each limb, the part of it that crosses the strip.
+double CoreGeometry::yoke_steel(const std::vector<LimbPlace>& limbs) const {
+  const auto is_before = [](const LimbPlace& a, const LimbPlace& b) { return a.x < b.x; };
+  if (core_.is_counted() || limbs.size() < 2) return 0.0;
+  const auto [rear, front] = std::minmax_element(limbs.begin(), limbs.end(), is_before);
+  if (rear->is_middle || front->is_middle) return 0.0;
+  double mass = 0.0;
+  for (const LayerCount& layer : layer_counts(stack_)) {
+    Moments left;
+    for (const LimbPlace& limb : limbs) {
+      const Mitre m = mitre(layer.shape.packet, limb.is_middle);
+      const double half = 0.5 * m.limb_width, top = 0.5 * m.core_height, low = top - m.yoke_height;
+      const double q = line(layer.shape, limb.is_middle) - 0.5 * stack_.book.clearance;
+      std::vector<Vec2> crossing = {{-half, low}, {half, low}, {half, top}, {-half, top}};
+      if (limb.is_middle) crossing = beyond(crossing, notch_frame(m, -1.0, 1.0), q);
+      left.add(beyond(crossing, limb.is_middle ? notch_frame(m, 1.0, 1.0) : corner_frame(m, limb.side, 1.0), q), -1.0);
+    }
+    const Packet& packet = stack_.packets[layer.shape.packet];
+    left.area += packet.yoke_height * (front->x - rear->x + packet.width);
+    mass += 2.0 * core_.density * stack_.sheet_thickness * static_cast<double>(layer.sheets) * left.area;
+  }
+  return mass;
+}
+
 } // namespace steplap

@@ -29,6 +29,12 @@ struct CoreCorner {
   std::vector<Lap> laps;
 };
 
+struct LimbPlace {
+  bool is_middle = false;
+  double side = 1.0; ///< of an outer limb
+  double x = 0.0;    ///< of its axis, m
+};
+
 /// Of a limb's sheets.
 struct LimbSteel {
   double mass = 0.0;         ///< kg; zero where the stack is not known (overlaps counted)
@@ -55,6 +61,9 @@ public:
   /// bolt hole cuts a sheet in two.
   [[nodiscard]] std::vector<CoreCorner> corners(bool is_middle, double side, double reach) const;
   [[nodiscard]] LimbSteel limb_steel(bool is_middle, double side) const;
+  /// Of both yokes between the outer faces of outer limbs, kg, without taking off bolt holes; zero where the stack or
+  /// one of the outer limbs is not of this core.
+  [[nodiscard]] double yoke_steel(const std::vector<LimbPlace>& limbs) const;
 
 private:
   struct End; // of a limb: which of its corners

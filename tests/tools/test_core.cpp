@@ -26,7 +26,7 @@ TEST_CASE("core tells sheets, layers, interfaces, overlaps, capacity and masses"
        {"saw-tooth book of 5 steps of 5 mm across the mitre, 1 sheet in a layer, clearance 0.5 mm",
         "1706    1706  0.848528 m    45°", "interfaces between layers: 1705",
         "middle joint: 'middle limb', T-joint", "5072.56 kg      5070 kg", "24.9983 mm",
-        "top front"})
+        "top front", "yokes: "})
     CHECK_MESSAGE(has(outcome.out, part), part);
   CHECK_FALSE(has(outcome.out, "warning"));
   const Outcome paper = steplap_does({"core", STEPLAP_MODELS "/paper/no_interference.toml"});

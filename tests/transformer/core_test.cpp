@@ -481,6 +481,14 @@ TEST_CASE("all that is wrong with a core is said at once") {
   CHECK(has(all, "needs either"));
 }
 
+// Two yokes of 3 m over limbs 2.5 m apart, less half the square where an outer limb crosses, 0.25 m² · 1/2.
+TEST_CASE("an active part lighter than its own yokes contradicts the core") {
+  const double area = 2 * (0.5 * 3.0 - 2 * 0.5 * 0.25), steel = 7650 * 2080 * 0.27e-3 * area;
+  CHECK(refusal(k_shape + k_built, {"body.active part.mass=" + std::to_string(1.001 * steel)}) == "");
+  CHECK(has(refusal(k_shape + k_built, {"body.active part.mass=" + std::to_string(0.999 * steel)}),
+            "kg, is less than the yokes of core 'core' weigh alone, "));
+}
+
 TEST_CASE("limbs and active part without an outline are drawn by the core's dimensions") {
   Model model = read_model(std::string(STEPLAP_MODELS) + "/layouts/three_limb.toml", transformer_catalog());
   const auto area = [&](const char* name) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
@@ -65,7 +66,9 @@ std::string bodies_text(const Model& model) {
     body.fixed ? static_cast<void>(++fixed) : static_cast<void>(mass += body.mass);
   std::string text = std::to_string(model.bodies.size());
   if (fixed > 0) text += ", " + std::to_string(fixed) + " of them fixed";
-  return text + "; " + number_text(mass) + " kg move";
+  char rounded[32]; // a core's sheets weigh no round number of kilograms
+  std::snprintf(rounded, sizeof rounded, "%.8g", mass);
+  return text + "; " + rounded + " kg move";
 }
 
 std::string run_text(const Model& model) {

@@ -153,6 +153,9 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
     out << "  interfaces between layers: " << whole(interfaces_between_layers(geometry.stack()))
         << " at every corner\n";
   }
+  if (const double steel = geometry.yoke_steel(places_of_limbs(core, model)); steel > 0.0 && count_cores_at(model, core.active_part) == 1)
+    out << "  yokes: " << quantity_text(steel, "kg") << " of the " << quantity_text(model.find_body(core.active_part)->mass, "kg") << " of '"
+        << core.active_part << "'\n";
   for (std::size_t i = 0; i < core.all_limbs().size(); ++i) {
     out << "\n"
         << core.joint_name(i) << ": '" << core.all_limbs()[i] << "'"
