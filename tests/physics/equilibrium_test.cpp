@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <doctest/doctest.h>
 #include <numbers>
+#include <utility>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -270,4 +271,80 @@ TEST_CASE("a drive that moves is held for the search, and told") {
   REQUIRE(moving.rest.moving_drives.size() == 1);
   CHECK(has(remarks_on(*moving.system, moving.rest).back(), "'drive' moves or accelerates"));
   CHECK(settle(cart(signal_entry("constant", "go", "value = 0.0"))).rest.moving_drives.empty());
+}
+
+// Boxes with corners of 1e7 N/m, dropped from metres above at any angle: they come to lie on a side, each corner of the
+// lowest pressed in by its share of the weight.
+TEST_CASE("boxes dropped at any angle come to lie, and stacks stand") {
+  const auto box = [](const std::string& name, double height, double tilt) {
+    return body(name, "mass = 10; inertia = 1.6666666666666667; position = " + point(0.01 * height, height) + "; angle = " + number(tilt));
+  };
+  for (const double tilt : {0.0, 0.3, 0.7, 1.2, 2.5, -0.6}) {
+    CAPTURE(tilt);
+    std::string text = box("box", 3.0, tilt);
+    int i = 0;
+    for (const auto& [x, y] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
+      const std::string name = "corner " + std::to_string(i++);
+      text += element("unilateral_contact", name, "a = { body = \"box\", point = " + point(x, y) + " }; stiffness = 1e7; damping = 1e3") +
+              element("coulomb_stick", name + " friction", "contacts = [\"" + name + "\"]; static_friction = 0.4");
+    }
+    const Found found = settle(text);
+    const double quarter = 0.5 * k_pi, angle = found.rest.state.q[5];
+    // Friction on both corners holds what the last of the way left between them: up to its share of 1e-5 of the load.
+    CHECK(std::abs(angle - quarter * std::round(angle / quarter)) < 1e-9);
+    CHECK(std::abs(found.rest.state.q[4] - 0.5 + 10.0 * k_g / 2e7) < 1e-9);
+    CHECK(found.rest.iterations < 1000);
+  }
+  std::string stack;
+  for (int i = 0; i < 4; ++i) {
+    const std::string name = "box " + std::to_string(i), left = "left " + std::to_string(i), right = "right " + std::to_string(i);
+    const std::string on = i == 0 ? "\"ground\"" : "{ body = \"box " + std::to_string(i - 1) + "\", point = [0.0, 0.5] }";
+    stack += box(name, 0.6 + 1.1 * i, i % 2 == 0 ? 0.04 : -0.03);
+    for (const auto& [foot, x] : {std::pair{left, -0.5}, {right, 0.5}})
+      stack += element("unilateral_contact", foot, "a = { body = \"" + name + "\", point = " + point(x, -0.5) + " }; b = " + on +
+                       "; stiffness = 1e7; damping = 1e3");
+    stack += element("coulomb_stick", "friction " + std::to_string(i), "contacts = [\"" + left + "\", \"" + right + "\"]; static_friction = 0.4");
+  }
+  const Found found = settle(stack);
+  double y = -0.5;
+  for (int i = 0; i < 4; ++i) { // 2 k δ = weight of it and of what is above
+    y += 1.0 - (4 - i) * 10.0 * k_g / 2e7;
+    // Boxes stand off centre by a few centimetres: tilts of 1e-6, their square over a metre.
+    CHECK(std::abs(found.rest.state.q[3 * i + 4] - y) < 1e-6);
+    CHECK(std::abs(found.rest.state.q[3 * i + 5]) < 1e-5);
+  }
+}
+
+// A frictionless ball between two planes of 45° and less lies where both touch it: its centre is r/sin(half angle) from
+// the corner along the bisector. Falling from high above it must not pass through them.
+TEST_CASE("a ball falls into a groove and stays in it, from however high") {
+  for (const double height : {2.0, 40.0}) {
+    CAPTURE(height);
+    std::string text = body("ball", "mass = 5; inertia = 0.5; position = " + point(0.1, height));
+    for (const auto& [name, ends] : {std::pair{"left", "from = [-3.0, 3.0]; to = [0.0, 0.0]"}, {"right", "from = [0.0, 0.0]; to = [3.0, 3.0]"}})
+      text += element("segment_contact", name, std::string("a = \"ball\"; b = \"ground\"; radius = 0.5; stiffness = 1e8; damping = 1e3; ") + ends);
+    const Found found = settle(text);
+    // 1e8 N/m gives way by 3.5e-7 m on each side.
+    const double depth = 5.0 * k_g * std::sqrt(0.5) / 1e8;
+    CHECK(std::abs(found.rest.state.q[3]) < 1e-9);
+    CHECK(std::abs(found.rest.state.q[4] - (0.5 - depth) * std::sqrt(2.0)) < 1e-9);
+  }
+}
+
+TEST_CASE("a forklift with too much on its fork tips over, and is said to") {
+  const auto truck = [](double load) {
+    std::string text = body("truck", "mass = 1000; inertia = 300; position = [0.0, 0.8]") +
+                       body("load", "mass = " + number(load) + "; inertia = 20; position = [1.6, 0.8]") +
+                       element("weld", "fork", "a = \"load\"; b = { body = \"truck\", at = [1.0, 0.8] }");
+    for (const auto& [name, x] : {std::pair{"rear", -0.8}, {"front", 0.8}})
+      text += element("unilateral_contact", name, "a = { body = \"truck\", point = " + point(x, -0.8) + " }; stiffness = 1e7; damping = 1e4");
+    return text + element("coulomb_stick", "tyres", "contacts = [\"rear\", \"front\"]; static_friction = 0.7");
+  };
+  // It stands while 0.8 m · 1000 kg of its own exceed 0.8 m of the load.
+  CHECK(settle(truck(990.0)).rest.turned == 0.0);
+  const Found tipped = settle(truck(1010.0));
+  CHECK(std::abs(tipped.rest.turned) > 1.0);
+  bool is_told = false;
+  for (const std::string& remark : remarks_on(*tipped.system, tipped.rest)) is_told = is_told || has(remark, "does not stand as given");
+  CHECK(is_told);
 }
