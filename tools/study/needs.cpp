@@ -1,6 +1,7 @@
 #include "tools/study/needs.h"
 
 #include "elements/joints.h"
+#include "mbd/model/completion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +40,19 @@ double change_of(double before, double after) {
   return std::abs(after - before) / std::abs(before);
 }
 
+// A table such as [[core]] may put the element in again.
+bool comes_back(const Model& given, const ModelVariant& variant) {
+  if (variant.gone.empty()) return false;
+  try {
+    Model model = given;
+    variant.apply(model);
+    const Model whole = completed(model);
+    return std::any_of(whole.elements.begin(), whole.elements.end(), [&](const ElementEntry& e) { return e.element->name == variant.gone; });
+  } catch (const ModelError&) {
+    return false; // told by the sample
+  }
+}
+
 struct Row {
   std::string name, response, refused;
   double change = 0.0;
@@ -54,7 +68,8 @@ std::vector<ModelVariant> variants_of(const Model& model) {
     variants.push_back({"without '" + name + "'", [e](Model& m) {
                           m.elements.erase(m.elements.begin() + static_cast<long>(e));
                           drop_presentation(m);
-                        }});
+                        },
+                        name});
     if (a.empty() || b.empty() || entry.kind->name == "weld") continue;
     variants.push_back({"'" + name + "' rigid", [e, name, a, b](Model& m) {
                           m.elements[e] = weld_between(name, a, b);
@@ -108,6 +123,7 @@ Answer run_needs(StudyRun& run) {
       row.refused = std::string("cannot be: ") + name_of(outcome.status) + ": " + outcome.reason;
       row.change = std::numeric_limits<double>::infinity();
     }
+    if (comes_back(run.loaded.models.front()->given, variants[k])) row.refused = "cannot be: a table of the model puts it in again";
     for (std::size_t r = 0; r < responses && row.refused.empty(); ++r) {
       const double change = change_of(base.numbers[r], outcome.numbers[r]);
       if (std::isnan(change)) row.refused = "'" + run.study().responses[r].name + "' has no value then";

@@ -22,6 +22,7 @@ struct StudyModel {
 struct ModelVariant {
   std::string name;
   std::function<void(Model&)> apply; ///< to the model as given
+  std::string gone{};                ///< element that is to be there no more
 };
 
 struct LoadedStudy {
