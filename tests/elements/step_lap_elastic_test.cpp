@@ -225,6 +225,22 @@ TEST_CASE("a limb that slides off its yoke comes apart where its sheets have par
   }
 }
 
+TEST_CASE("a shaken limb ratchets down its joint, and shakes down onto a tie plate") {
+  // The example of docs/step_lap_joint.md: its table.
+  const auto slid = [](const char* plate) {
+    const Run r = run(steplap::read_model(std::string(STEPLAP_MODELS) + "/../examples/ratcheting.toml", steplap::transformer_catalog(),
+                                          {std::string("element.tie plate.stiffness=") + plate}));
+    const auto dy = r.series("joint.dy");
+    return std::vector<double>{-dy[10], -dy[20], -dy[30]};
+  };
+  const auto alone = slid("1.0"), beside = slid("5e7");
+  CHECK(alone[0] == doctest::Approx(0.249e-3).epsilon(0.01));
+  CHECK(alone[1] == doctest::Approx(0.561e-3).epsilon(0.01));
+  CHECK(alone[2] == doctest::Approx(0.901e-3).epsilon(0.01));
+  CHECK(beside[0] == doctest::Approx(0.033e-3).epsilon(0.01));
+  CHECK(beside[2] == beside[1]); // nothing slides any more
+}
+
 TEST_CASE("stiffness of sheets in shear and contact, spread over the overlap, about the limb's centre") {
   const auto matrix = [](const std::string& stiffness) {
     const steplap::Model model = steplap::parse_model(
