@@ -20,7 +20,8 @@ std::string arm(const std::string& signal, const std::string& level, const std::
                  "a = { body = 'upper', at = [0.0, 0.0] }; b = { body = 'ground', at = [0.0, 0.0] }") +
          element("revolute", "elbow",
                  "a = { body = 'fore', at = [1.0, 0.0] }; b = { body = 'upper', at = [1.0, 0.0] }") +
-         element("prescribed_motion", "drive", "a = 'upper'; coordinate = 'angle'; signal = 's'; as = '" + level + "'");
+         element("prescribed_motion", "drive", "a = 'upper'; coordinate = 'angle'; signal = 's'; as = '" + level +
+                     (level == "position" ? "'; zero = 'reference'" : "'")); // from where the arm is: it does not jump there
 }
 
 struct Kind {
@@ -29,8 +30,7 @@ struct Kind {
 };
 
 const std::vector<Kind> k_kinds = {
-    {"constant", "value = 0.0", true, true},
-    {"constant", "value = 0.3", false, true}, // the arm would have to jump
+    {"constant", "value = 0.3", true, true},
     {"haversine", "peak = 0.4; start = 0.1; duration = 0.2", true, true},
     {"half_sine", "peak = 0.4; start = 0.1; duration = 0.2", false, true},
     {"triangle", "peak = 0.4; start = 0.1; duration = 0.2", false, true},

@@ -24,7 +24,7 @@ constexpr double k_samples = 400.0;
 std::vector<std::string> model_files() {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(STEPLAP_MODELS))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
+    if (entry.path().extension() == ".toml" && entry.path().parent_path().filename() != "studies") files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -72,9 +72,10 @@ State initial_state_of(const LoadedModel& loaded) {
 
 Run run_model(std::shared_ptr<const LoadedModel> loaded, std::function<void(double t)> progress) {
   SimulationOptions options = options_of(loaded->model);
-  options.progress = [progress = std::move(progress)](double t) {
+  bool is_over = false; // the last state is sampled after a failure, too
+  options.progress = [&is_over, progress = std::move(progress)](double t) {
     if (progress) progress(t);
-    stop_if_interrupted(t);
+    if (!is_over) stop_if_interrupted(t);
   };
   Simulation simulation(*loaded->system, initial_state_of(*loaded), std::move(options));
   Run run;
@@ -83,6 +84,7 @@ Run run_model(std::shared_ptr<const LoadedModel> loaded, std::function<void(doub
     simulation.run();
   } catch (const NumericalFailure& failure) {
     run.failure = failure.what();
+    is_over = true;
   }
   run.result = std::move(simulation).result();
   return run;
