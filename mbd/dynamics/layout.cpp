@@ -186,8 +186,8 @@ void want_bilateral(const System& system, const std::vector<char>& is_block_merg
   }
 }
 
-void want_frictions(const System& system, const State& state, const std::vector<char>& is_friction_merged, Layout& layout,
-                    std::vector<ActiveRow>& wanted) {
+void want_frictions(const System& system, const State& state, const std::vector<char>& is_friction_merged,
+                    Layout& layout, std::vector<ActiveRow>& wanted) {
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
     if (is_friction_merged[f]) {
       layout.merged.push_back(f);
@@ -213,7 +213,8 @@ void add_rows(const System& system, std::vector<ActiveRow> wanted, Layout& layou
                      [&](const ActiveRow& a, const ActiveRow& b) { return place_of(a) < place_of(b); });
   for (const ActiveRow& row : wanted) {
     if (row.friction >= 0)
-      layout.held_rows.push_back({static_cast<int>(layout.active.size()), system.frictions[row.friction].row + row.friction_row});
+      layout.held_rows.push_back(
+          {static_cast<int>(layout.active.size()), system.frictions[row.friction].row + row.friction_row});
     add_active(layout, row);
   }
   const auto is_of = [&place_of](const Mechanism& m) {
@@ -332,7 +333,8 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   std::vector<char> is_pin(system.row_blocks.size(), 0);
   // The small blocks of inner states (Linearization::InnerBlock) are between clusters in absolute coordinates.
   if (coordinates != Coordinates::absolute && system.inner_count() == 0) {
-    JointCoordinates found = find_joint_coordinates(system, state, layout, coordinates, is_block_merged, is_friction_merged);
+    JointCoordinates found =
+        find_joint_coordinates(system, state, layout, coordinates, is_block_merged, is_friction_merged);
     is_pin = found.is_pin;
     if (!found.mechanisms.empty()) take_joint_coordinates(std::move(found), layout);
   }

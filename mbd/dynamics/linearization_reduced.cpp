@@ -11,7 +11,8 @@ Linearization::LeverRates Linearization::rates_of(const Lever& lever, int c) {
   if (lever.axis >= 0) return {lever.axis == c ? 1.0 : 0.0, 0.0, 0.0, 0.0};
   if (c == 2) return {lever.is_own ? 1.0 : 0.0, 0.0, 0.0, 0.0};
   const double along = c == 0 ? lever.arm.x : lever.arm.y, across = c == 0 ? -lever.arm.y : lever.arm.x;
-  return {across, -lever.omega * along, -lever.alpha * along - lever.omega * lever.omega * across, -2.0 * lever.omega * along};
+  return {across, -lever.omega * along, -lever.alpha * along - lever.omega * lever.omega * across,
+          -2.0 * lever.omega * along};
 }
 
 void Linearization::find_levers() {
@@ -47,7 +48,9 @@ void Linearization::reduce() {
   kept_rate_.clear();
   const int absolute = 3 * layout_->absolute_count;
   for (const Triplet& e : stiffness_)
-    if (e.row() < absolute) for_levers(e.col(), [&](int at, const LeverRates& r) { kept_pose_.emplace_back(e.row(), at, e.value() * r.rate); });
+    if (e.row() < absolute)
+      for_levers(e.col(),
+                 [&](int at, const LeverRates& r) { kept_pose_.emplace_back(e.row(), at, e.value() * r.rate); });
   for (const Triplet& e : damping_)
     if (e.row() < absolute)
       for_levers(e.col(), [&](int at, const LeverRates& r) {
@@ -59,7 +62,7 @@ void Linearization::reduce() {
   damping_.swap(kept_rate_);
 }
 
-// Gradients, and what the rows' slack changes by: the clusters' accelerations at constant s̈ change with the state, too.
+// Gradients, and what the rows' slack changes by: the clusters' accelerations at constant s̈ change with the state.
 void Linearization::reduce_rows() {
   const int absolute = 3 * layout_->absolute_count;
   for (auto* entries : {&kept_gradient_, &kept_pose_, &kept_rate_}) entries->clear();
@@ -98,7 +101,9 @@ void Linearization::reduce_forces(const Mechanism& m) {
   by_pose_.setZero();
   by_rate_.setZero();
   is_touched_.assign(n_, 0);
-  const auto is_here = [&m](int row) { return row / 3 >= m.first_cluster && row / 3 < m.first_cluster + m.cluster_count(); };
+  const auto is_here = [&m](int row) {
+    return row / 3 >= m.first_cluster && row / 3 < m.first_cluster + m.cluster_count();
+  };
   const auto add = [&](const Triplet& e, bool is_damping) {
     if (!is_here(e.row())) return;
     for (const Lever& lever : levers_[e.row() / 3]) {

@@ -91,6 +91,9 @@ void Mechanism::close(int cluster_count, const Vec2& gravity, const SchurRow* ro
     beyond[link.parent] = std::max(beyond[link.parent], length(link.pin) + reach_[link.coordinate]);
   }
   w.packed = w.links;
+  w.is_constant = std::all_of(w.links.begin(), w.links.end(), [](const Link& link) {
+    return !link.is_free && (link.parent < 0 || (link.moment.x == 0.0 && link.moment.y == 0.0));
+  });
   find_patterns(rows);
 }
 
@@ -192,6 +195,8 @@ void solve_chain(const MechanismWork& w, double* x) {
 
 void Mechanism::factor_mass() {
   MechanismWork& w = *work_;
+  if (w.is_constant && w.is_factored) return;
+  w.is_factored = true;
   double* const h = w.mass.data();
   constexpr int k = k_most;
   Link* const links = w.links.data();
@@ -270,7 +275,8 @@ void Mechanism::expand(const double* s, double* cluster_a) const {
     if (now->parent >= 0) {
       const Link& above = links[now->parent];
       const double alpha = s[above.coordinate], w2 = above.omega * above.omega;
-      now->force = {above.force.x - alpha * now->arm.y - w2 * now->arm.x, above.force.y + alpha * now->arm.x - w2 * now->arm.y};
+      now->force = {above.force.x - alpha * now->arm.y - w2 * now->arm.x,
+                    above.force.y + alpha * now->arm.x - w2 * now->arm.y};
     } else if (now->is_free) {
       now->force = {s[now->coordinate - 2], s[now->coordinate - 1]};
     } else {

@@ -115,7 +115,8 @@ private:
         if (k >= 0) hinges_at_[k].pop_back();
   }
 
-  // Outward over pins, breadth first, from the ground; then by a rod, or from a member that is free, what pins do not reach.
+  // Outward over pins, breadth first, from the ground; then by a rod, or from a member that is free, what pins do not
+  // reach.
   void consider(const std::vector<int>& island) {
     if (island.size() > static_cast<std::size_t>(Mechanism::k_most)) return; // each has a coordinate at least
     for (const int k : island)
@@ -240,8 +241,9 @@ private:
 
 } // namespace
 
-JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout, Coordinates choice,
-                                        const std::vector<char>& is_block_merged, const std::vector<char>& is_friction_merged) {
+JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout,
+                                        Coordinates choice, const std::vector<char>& is_block_merged,
+                                        const std::vector<char>& is_friction_merged) {
   return Finder(system, state, layout, choice).find(is_block_merged, is_friction_merged);
 }
 

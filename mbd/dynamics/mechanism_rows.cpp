@@ -141,7 +141,9 @@ void refine(const MechanismWork& w, int m, double* x) {
 } // namespace
 
 bool Mechanism::is_dependent(int row) const { return work_->inverse_pivot[row] == 0.0; }
-const double* Mechanism::gradient(int row) const { return work_->gradient.data() + static_cast<std::ptrdiff_t>(row) * k_most; }
+const double* Mechanism::gradient(int row) const {
+  return work_->gradient.data() + static_cast<std::ptrdiff_t>(row) * k_most;
+}
 
 void Mechanism::find_patterns(const SchurRow* rows) {
   MechanismWork& w = *work_;

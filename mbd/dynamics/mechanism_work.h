@@ -1,4 +1,5 @@
-// What an evaluation of a mechanism changes, beside the constants that it reads: to be included by its own sources alone.
+// What an evaluation of a mechanism changes, beside the constants that it reads: to be included by its own sources
+// alone.
 #pragma once
 
 #include "mbd/dynamics/mechanism.h"
@@ -84,6 +85,8 @@ struct MechanismWork {
 
   int n = 0;
   bool is_chain = false;
+  bool is_constant = false; ///< M: nothing couples one member's turning with another's
+  bool is_factored = false; ///< M has been once
   Pair<double> gravity;
   std::vector<Link> links;
   mutable std::vector<Link> packed; ///< scratch of pack and unpack, which leave the pose placed as it is

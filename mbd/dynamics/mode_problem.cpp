@@ -61,8 +61,8 @@ void Dynamics::slip_motion(int f, const double* dy, double* rate, double* accele
   }
 }
 
-// A candidate's row in the coordinates of a layout: by clusters, or where a side is in a mechanism, by its coordinates. A row
-// between two clusters of one mechanism is all in the first side's.
+// A candidate's row in the coordinates of a layout: by clusters, or where a side is in a mechanism, by its coordinates.
+// A row between two clusters of one mechanism is all in the first side's.
 struct Dynamics::CandidateRow {
   SchurRow row;
   const Mechanism* mechanism[2] = {nullptr, nullptr};
@@ -79,8 +79,9 @@ struct Dynamics::CandidateRow {
         row.body[1] = -1;
         continue;
       }
-      if (const int other = row.body[1 - side]; other >= 0 &&
-          (other < layout.absolute_count || &layout.mechanism_of_cluster(other) != mechanism[side])) half.body[1 - side] = -1;
+      if (const int other = row.body[1 - side];
+          other >= 0 && (other < layout.absolute_count || &layout.mechanism_of_cluster(other) != mechanism[side]))
+        half.body[1 - side] = -1;
       mechanism[side]->reduce(half, gradient[side]);
       std::copy_n(gradient[side], Mechanism::k_most, response[side]);
       mechanism[side]->solve_mass(response[side]);

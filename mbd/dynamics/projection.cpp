@@ -190,7 +190,8 @@ Residual Dynamics::project_rows(double t, double* y, double tolerance) {
   const bool is_close = tolerance == 0.0;
   const Residual first = constraint_values(t, y);
   double farthest = 0.0;
-  for (const int slot : layout.slots) farthest = std::max({farthest, std::abs(motion_[slot].x), std::abs(motion_[slot].y)});
+  for (const int slot : layout.slots)
+    farthest = std::max({farthest, std::abs(motion_[slot].x), std::abs(motion_[slot].y)});
   const double least = 8.0 * std::numeric_limits<double>::epsilon() * farthest;
   Residual now = first;
   if (!reach_positions(t, y, is_close ? k_close * place_rounding(y) : std::max(tolerance, least), now))
@@ -238,7 +239,9 @@ void Dynamics::reach_velocities(double t, double* y, Residual now, double tolera
     factor_rows();
     const double before = now.velocity;
     move_by(row_rate_, y + coordinate_count());
-    if (layout_->schur.is_small() && layout_->smallest_pivot() >= SchurSolver::k_refined_pivot && !layout_->is_singular()) return;
+    if (layout_->schur.is_small() && layout_->smallest_pivot() >= SchurSolver::k_refined_pivot &&
+        !layout_->is_singular())
+      return;
     now = constraint_values(t, y);
     if (now.velocity >= 0.5 * before && --patience < 0) break; // rounding of fast motions
   }

@@ -15,6 +15,8 @@ constexpr double k_shorter = 0.2; // after a step that came to nothing
 constexpr double k_crossed_pivot = 2e-2;
 // Unless it begins so near that it would have to be tiny.
 constexpr double k_closest_start = 4e-4;
+// Rounding beside a singular position keeps stages from agreeing to tolerances below this one only.
+constexpr double k_near_rounding = 1e-10;
 // Of the way to the position: where the next attempt begins if one fails.
 constexpr double k_closer = 0.5;
 
@@ -32,7 +34,6 @@ ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& s
 void ExplicitPair::on_restart(Dynamics&) {
   control_.previous_error = 1e-4;
   start_pivot_ = highest_pivot_ = 1.0;
-  failed_crossings_ = 0;
 }
 
 bool ExplicitPair::end_step(Dynamics& dynamics) {
@@ -83,9 +84,9 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   const double error = crossing_->cross(dynamics, crossing_step(dynamics), y1_.data());
   is_crossing_ = error <= 1.0;
   const bool has_choice = dynamics.coordinates() == Coordinates::automatic && dynamics.layout().has_mechanisms();
-  failed_crossings_ = is_crossing_ ? 0 : failed_crossings_ + 1; // the first may have been too far away
-  if (has_choice && (failed_crossings_ > 1 || error == std::numeric_limits<double>::infinity()))
-    throw JointsNearSingular("a singular position of the joints behind t = " + std::to_string(t0_) + " s is not passed");
+  if (has_choice && error == std::numeric_limits<double>::infinity() && settings_.tolerance < k_near_rounding)
+    throw JointsNearSingular("a singular position of the joints behind t = " + std::to_string(t0_) +
+                             " s is not passed");
   return is_crossing_ ? 0.0 : std::min(h_tried, k_closer * ahead);
 }
 

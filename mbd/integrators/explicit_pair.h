@@ -6,8 +6,8 @@
 
 namespace steplap {
 
-/// A singular position of joints lies ahead that the step from here does not pass in joint coordinates, which bodies' own
-/// might: thrown where there is a choice, the state still that of the last step.
+/// A singular position of joints lies ahead that the step from here does not pass in joint coordinates, which bodies'
+/// own might: thrown where there is a choice, the state still that of the last step.
 struct JointsNearSingular : NumericalFailure {
   using NumericalFailure::NumericalFailure;
 };
@@ -66,7 +66,6 @@ private:
   double start_pivot_ = 1.0;                   ///< of the constraints at t0, 1: not known
   double highest_pivot_ = 1.0;                 ///< since the last restart
   bool is_crossing_ = false;                   ///< the step made is one
-  int failed_crossings_ = 0;                   ///< since one was made
 };
 
 } // namespace steplap

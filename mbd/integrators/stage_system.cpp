@@ -73,7 +73,8 @@ template <class Put> void StageSystem::assemble(double g, const Put& put) const 
     put_row(e, e.value());
     if (is_diagonal) put(e.col(), n_ + e.row(), is_redundant_[e.row()] ? 0.0 : -w[e.col()] * e.value());
   }
-  for (const auto& e : linearization_->response()) put(e.row(), n_ + e.col(), is_redundant_[e.col()] ? 0.0 : -e.value());
+  for (const auto& e : linearization_->response())
+    put(e.row(), n_ + e.col(), is_redundant_[e.col()] ? 0.0 : -e.value());
   for (const auto& e : linearization_->bias_by_pose()) put_row(e, -g * g * e.value());
   for (const auto& e : linearization_->bias_by_velocity()) put_row(e, -g * e.value());
   for (int r = 0; r < m_; ++r) put(n_ + r, n_ + r, is_redundant_[r] ? 1.0 : 0.0);

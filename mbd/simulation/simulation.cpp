@@ -40,7 +40,8 @@ SimulationOptions options_of(const Model& model) {
   options.settings.step = s.step.value_or(0.0);
   options.settings.tolerance = s.tolerance.value_or(1e-8);
   options.settings.projection_tolerance = s.projection_tolerance;
-  if (s.coordinates != "automatic") options.coordinates = s.coordinates == "joint" ? Coordinates::joint : Coordinates::absolute;
+  if (s.coordinates != "automatic")
+    options.coordinates = s.coordinates == "joint" ? Coordinates::joint : Coordinates::absolute;
   options.output_step = model.output.step;
   options.channels = model.output.channels;
   options.has_extremes = true;

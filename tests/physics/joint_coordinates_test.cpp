@@ -1,5 +1,6 @@
-// Mechanisms in joint coordinates (mbd/dynamics/mechanism.h) against the same bodies in absolute ones: two ways to the same
-// accelerations, reactions and motions, which share the forces of elements and nothing else of the way to accelerations.
+// Mechanisms in joint coordinates (mbd/dynamics/mechanism.h) against the same bodies in absolute ones: two ways to the
+// same accelerations, reactions and motions, which share the forces of elements and nothing else of the way to
+// accelerations.
 #include "mbd/analysis/assembly.h"
 #include "mbd/dynamics/linearization.h"
 #include "tests/physics/model_text.h"
@@ -21,27 +22,40 @@ std::string everything() {
   return "gravity = [1.0, -9.0]\n[simulation]\nstep = 1e-3\n" +
          body("post", "mass = 3; inertia = 0.4; position = [0.2, 0.5]; angle = 0.3; angular_velocity = 0.4") +
          body("arm", "mass = 2; inertia = 0.3; position = [0.9, 0.8]; velocity = [0.3, -0.2]; angular_velocity = 0.7") +
-         body("tip", "mass = 1; inertia = 0.1; position = [1.6, 0.3]; velocity = [-0.5, 0.4]; angular_velocity = -1.1") +
+         body("tip",
+              "mass = 1; inertia = 0.1; position = [1.6, 0.3]; velocity = [-0.5, 0.4]; angular_velocity = -1.1") +
          body("tail", "mass = 0.7; inertia = 0.05; position = [2.0, 0.7]") +
          body("strut", "mass = 0.9; inertia = 0.08; position = [1.2, -0.1]; angular_velocity = 0.5") +
          body("cart", "mass = 1.4; inertia = 0.2; position = [0.4, 1.5]; velocity = [0.2, 0.1]") +
-         body("bob", "mass = 0.6; inertia = 0.02; position = [2.2, -0.2]; velocity = [0.1, -0.3]; angular_velocity = 2.0") +
-         body("kite", "mass = 1.1; inertia = 0.15; position = [3.0, 2.0]; velocity = [0.4, 0.2]; angular_velocity = 0.6") +
+         body("bob",
+              "mass = 0.6; inertia = 0.02; position = [2.2, -0.2]; velocity = [0.1, -0.3]; angular_velocity = 2.0") +
+         body("kite",
+              "mass = 1.1; inertia = 0.15; position = [3.0, 2.0]; velocity = [0.4, 0.2]; angular_velocity = 0.6") +
          body("string", "mass = 0.5; inertia = 0.05; position = [3.4, 1.7]") +
          element("revolute", "foot", "a = { body = 'post', at = [0.0, 0.1] }") +
-         element("revolute", "shoulder", "a = { body = 'arm', at = [0.5, 0.9] }; b = { body = 'post', at = [0.5, 0.9] }") +
+         element("revolute", "shoulder",
+                 "a = { body = 'arm', at = [0.5, 0.9] }; b = { body = 'post', at = [0.5, 0.9] }") +
          element("revolute", "wrist", "a = { body = 'arm', at = [1.3, 0.6] }; b = { body = 'tip', at = [1.3, 0.6] }") +
          element("weld", "tail weld", "a = 'tail'; b = 'tip'") +
-         element("revolute", "strut top", "a = { body = 'strut', at = [1.7, 0.1] }; b = { body = 'tail', at = [1.7, 0.1] }") +
-         element("revolute", "strut foot", "a = { body = 'strut', at = [0.8, -0.3] }; b = { body = 'ground', at = [0.8, -0.3] }") +
+         element("revolute", "strut top",
+                 "a = { body = 'strut', at = [1.7, 0.1] }; b = { body = 'tail', at = [1.7, 0.1] }") +
+         element("revolute", "strut foot",
+                 "a = { body = 'strut', at = [0.8, -0.3] }; b = { body = 'ground', at = [0.8, -0.3] }") +
          element("prismatic", "guide", "a = 'cart'; b = { body = 'post', at = [0.4, 1.2] }; axis = [0.6, 0.8]") +
          element("distance", "rod", "a = { body = 'bob', at = [2.3, -0.1] }; b = { body = 'tail', at = [2.2, 0.6] }") +
-         element("revolute", "kite pin", "a = { body = 'string', at = [3.2, 1.8] }; b = { body = 'kite', at = [3.2, 1.8] }") +
-         element("spring_damper", "tie", "a = { body = 'kite', at = [2.8, 1.9] }; b = { body = 'tip', at = [1.8, 0.2] }; stiffness = 90; damping = 4") +
-         element("spring_damper", "return", "a = 'cart'; b = { body = 'bob', at = [2.1, -0.2] }; stiffness = 40; damping = 2") +
-         element("bushing", "mount", "a = { body = 'post', at = [0.1, 0.4] }; b = 'ground'; stiffness = [50, 90]; damping = [2, 3]; rotational_stiffness = 60; rotational_damping = 2") +
+         element("revolute", "kite pin",
+                 "a = { body = 'string', at = [3.2, 1.8] }; b = { body = 'kite', at = [3.2, 1.8] }") +
+         element("spring_damper", "tie",
+                 "a = { body = 'kite', at = [2.8, 1.9] }; b = { body = 'tip', at = [1.8, 0.2] }; stiffness = 90; "
+                 "damping = 4") +
+         element("spring_damper", "return",
+                 "a = 'cart'; b = { body = 'bob', at = [2.1, -0.2] }; stiffness = 40; damping = 2") +
+         element("bushing", "mount",
+                 "a = { body = 'post', at = [0.1, 0.4] }; b = 'ground'; stiffness = [50, 90]; damping = [2, 3]; "
+                 "rotational_stiffness = 60; rotational_damping = 2") +
          element("motor", "elbow", "a = 'arm'; b = 'post'; constant_effort = 3; derivative = 0.7") +
-         element("joint_friction", "stiff pin", "a = 'string'; b = 'kite'; coordinate = 'angle'; holds = 0.4; drags = 0.3");
+         element("joint_friction", "stiff pin",
+                 "a = 'string'; b = 'kite'; coordinate = 'angle'; holds = 0.4; drags = 0.3");
 }
 
 State start_of(const Model& model, const System& system) { return assembled_start(system, assemble(model, system)); }
@@ -193,8 +207,9 @@ TEST_CASE("joint coordinates: linearised as differences of the rates tell") {
   }
 }
 
-// Two runs at 1e-11 each, of some hundred steps, whose errors grow with the motion, most in double pendulum, squeezer and chain.
-// The four-bars up to their first flat position, where accelerations are known to rounding over the square of the distance.
+// Two runs at 1e-11 each, of some hundred steps, whose errors grow with the motion, most in double pendulum, squeezer
+// and chain. The four-bars up to their first flat position, where accelerations are known to rounding over the square
+// of the distance.
 TEST_CASE("joint coordinates: the same motion, reactions and energies") {
   struct Case {
     const char* model;
@@ -204,7 +219,8 @@ TEST_CASE("joint coordinates: the same motion, reactions and energies") {
   for (const Case& c : {Case{"simple_pendulum", 3.0, 1e-8}, {"double_pendulum", 2.0, 1e-7}, {"andrews", 0.03, 1e-7},
                         {"four_bar_2", 0.6, 1e-8}, {"robot_arm", 1.0, 1e-8}, {"chain_10", 0.5, 1e-7}}) {
     CAPTURE(std::string(c.model));
-    const Model model = read_model(std::string(STEPLAP_MODELS) + "/benchmarks/" + c.model + ".toml", transformer_catalog());
+    const Model model =
+        read_model(std::string(STEPLAP_MODELS) + "/benchmarks/" + c.model + ".toml", transformer_catalog());
     const auto system = compile(model);
     const RunResult absolute = run_in(model, *system, Coordinates::absolute, 1e-11, c.end);
     const RunResult joint = run_in(model, *system, Coordinates::joint, 1e-11, c.end);
@@ -234,9 +250,9 @@ TEST_CASE("joint coordinates: friction in a pin sticks and slides at the same ti
   CHECK(worst < 1e-6);
 }
 
-// Of a mechanism that the program may choose for itself: from a flat position on that joint coordinates do not pass bodies' own
-// serve, and where they do, too, the free end comes out where the exact solution has it (as in benchmarks_test.cpp, which
-// has tighter tolerances).
+// Of a mechanism that the program may choose for itself: from a flat position on that joint coordinates do not pass
+// bodies' own serve, and where they do, too, the free end comes out where the exact solution has it (as in
+// benchmarks_test.cpp, which has tighter tolerances).
 TEST_CASE("joint coordinates: flat positions of four-bars are passed, whatever describes them") {
   const Model model = read_model(STEPLAP_MODELS "/benchmarks/four_bar_2.toml", transformer_catalog());
   const auto system = compile(model);
@@ -249,7 +265,8 @@ TEST_CASE("joint coordinates: flat positions of four-bars are passed, whatever d
   }
 }
 
-// Free bodies keep their momentum to rounding, which is linear in absolute coordinates alone: there is no choice to make.
+// Free bodies keep their momentum to rounding, which is linear in absolute coordinates alone: there is no choice to
+// make.
 TEST_CASE("joint coordinates: chosen for what hangs on the ground, not for drives and free bodies") {
   const auto count = [](const std::string& text, Coordinates coordinates) {
     const auto system = compile(scene(text + "[simulation]\nstep = 1e-3\n"));
@@ -259,23 +276,28 @@ TEST_CASE("joint coordinates: chosen for what hangs on the ground, not for drive
     dynamics.set_state(state);
     return dynamics.coordinate_count();
   };
-  const std::string two = body("upper", "mass = 2; inertia = 0.3; position = [0.5, 0]") + body("lower", "mass = 1; inertia = 0.1; position = [1.5, 0]");
-  const std::string elbow = element("revolute", "elbow", "a = { body = 'lower', at = [1, 0] }; b = { body = 'upper', at = [1, 0] }");
+  const std::string two = body("upper", "mass = 2; inertia = 0.3; position = [0.5, 0]") +
+                          body("lower", "mass = 1; inertia = 0.1; position = [1.5, 0]");
+  const std::string elbow =
+      element("revolute", "elbow", "a = { body = 'lower', at = [1, 0] }; b = { body = 'upper', at = [1, 0] }");
   const std::string shoulder = element("revolute", "shoulder", "a = { body = 'upper', at = [0, 0] }");
   CHECK(count(two + elbow + shoulder, Coordinates::automatic) == 2);
   CHECK(count(two + elbow + shoulder, Coordinates::absolute) == 6);
   CHECK(count(two + elbow, Coordinates::automatic) == 6);
   CHECK(count(two + elbow, Coordinates::joint) == 4);
-  const std::string motor = signal_entry("constant", "speed", "value = 1") +
-                            element("prescribed_motion", "motor", "a = 'upper'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'");
+  const std::string motor =
+      signal_entry("constant", "speed", "value = 1") +
+      element("prescribed_motion", "motor", "a = 'upper'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'");
   CHECK(count(two + elbow + shoulder + motor, Coordinates::joint) == 6);
   std::string chain = two;
   for (int i = 0; i < 16; ++i) chain += body("b" + std::to_string(i), "mass = 1; inertia = 0.1; position = [0, 0]");
   for (int i = 0; i + 1 < 16; ++i)
-    chain += element("revolute", "j" + std::to_string(i), "a = 'b" + std::to_string(i + 1) + "'; b = 'b" + std::to_string(i) + "'");
+    chain += element("revolute", "j" + std::to_string(i),
+                     "a = 'b" + std::to_string(i + 1) + "'; b = 'b" + std::to_string(i) + "'");
   chain += element("revolute", "first", "a = 'b0'");
   CHECK(count(chain, Coordinates::automatic) == 16 + 6);
-  CHECK(count(chain + elbow + shoulder + element("revolute", "last", "a = 'upper'; b = 'b15'"), Coordinates::automatic) == 54);
+  CHECK(count(chain + elbow + shoulder + element("revolute", "last", "a = 'upper'; b = 'b15'"),
+              Coordinates::automatic) == 54);
 }
 
 // The implicit method's steps use the linearisation; 1e-7 is a hundred times its tolerance.
