@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace steplap {
@@ -17,7 +18,12 @@ constexpr double k_least_angle = 10.0 * std::numbers::pi / 180.0;
 constexpr double k_largest_angle = 80.0 * std::numbers::pi / 180.0;
 constexpr long k_most_sheets = 10'000'000; // more are a slip of the pen, and would not be counted in a long
 
-std::string metres(double value) { return number_text(value) + " m"; }
+// Computed lengths have more digits than anybody reads.
+std::string metres(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g m", value);
+  return text;
+}
 
 class DimensionCheck {
 public:
@@ -146,8 +152,8 @@ void DimensionCheck::check_stack() {
     return;
   }
   if (core_.packets.empty()) need(core_.stack_depth.has_value(), "stack_depth", "of steel and insulation; in m");
-  need(core_.stacking_factor.has_value(), "stacking_factor", "steel's share of the stack; usual are 0.94 to 0.97");
-  need(core_.sheet_thickness.has_value(), "sheet_thickness", "of the steel; in m; usual are 0.23 to 0.35 mm");
+  need(core_.stacking_factor.has_value(), "stacking_factor", "steel's share of the stack; usual are 0.91 to 0.98");
+  need(core_.sheet_thickness.has_value(), "sheet_thickness", "of the steel; in m; usual are 0.18 to 0.35 mm");
   need(core_.sheets_per_layer.has_value(), "sheets_per_layer",
        "equal sheets one on the other: 1 or 2; it has no default, since 2 halve what the joint bears");
   need(core_.steps.has_value(), "steps", "layers from one end of a book to the other; usual are 3 to 7");
@@ -160,7 +166,7 @@ void DimensionCheck::check_stack() {
        "\"saw_tooth\", \"zig_zag\" or \"zig_zag_doubled\"; it has no default: a zig-zag has about "
        "0.6 of a saw tooth's overlap");
   need(core_.clearance.has_value(), "clearance",
-       "between the sheets of one layer, across the mitre; in m; it has no default: usual are 0.5 to 2 mm");
+       "between the sheets of one layer, across the mitre; in m; it has no default: usual are 0.2 to 3 mm");
 }
 
 void DimensionCheck::check_strips() {
@@ -295,6 +301,7 @@ void DimensionCheck::check_cuts() {
         half = 0.5 * (geometry.pitch(p, is_middle) * static_cast<double>(stack.book.steps - 1) +
                       stack.book.clearance);
       check_cut(p, is_middle, -half, half);
+      if (!problems_.empty()) return; // said once
     }
 }
 
