@@ -45,8 +45,8 @@ bool jumps(double now, double wanted) {
 
 std::string start_message(const PrescribedMotion& e, const RowSpec& row, double now, double wanted) {
   const std::string unit = row.kind == MeasureKind::angle ? " rad" : " m";
-  std::string text = "the reference pose has " + number_text(now) + unit + " where the motion begins with " + number_text(wanted) +
-                     unit + " at t = 0: the body would have to jump. ";
+  std::string text = "the reference pose has " + number_text(now) + unit + " where the motion begins with " +
+                     number_text(wanted) + unit + " at t = 0: the body would have to jump. ";
   if (e.zero != "reference")
     return text + "A position counts from the coordinate's own zero: place the body there, or let it count from the reference "
                   "pose with zero = \"reference\"";

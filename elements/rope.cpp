@@ -82,7 +82,8 @@ public:
           const bool is_same = &one == &other;
           const Gradient h = is_same ? g : gradient_of(other, e.motion);
           // Of the tension by the other part's length, its own share of the rate included.
-          const D12 change = entry.law.force(-(h.length + D12(way.length - h.length.v)), -(h.rate + D12(way.rate - h.rate.v)), mode);
+          const D12 length = h.length + D12(way.length - h.length.v), rate = h.rate + D12(way.rate - h.rate.v);
+          const D12 change = entry.law.force(-length, -rate, mode);
           if (is_same) add_whole(one, g, f, change, out);
           else add_blocks(one, other, g, change, out);
         }
@@ -122,7 +123,8 @@ private:
     sum.fy += force.y;
     sum.m += cross(lever, force);
   }
-  static void add_whole(const RopePart& part, const Gradient& g, double f, const D12& change, std::vector<PairJacobian>& out) {
+  static void add_whole(const RopePart& part, const Gradient& g, double f, const D12& change,
+                        std::vector<PairJacobian>& out) {
     PairJacobian& j = out.emplace_back();
     j.a = part.a;
     j.b = part.b;

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // of the trust region: of the scene's length; rad
-constexpr double k_small_turn = 0.4, k_largest_turn = 1.5;  // rad: poses half a turn apart are not to be taken for each other
+// rad: poses half a turn apart are not to be taken for each other
+constexpr double k_small_turn = 0.4, k_largest_turn = 1.5;
 constexpr double k_balanced = 1e-11;  // Newton steps below this share of the length are the pose's rounding
 constexpr double k_nearly_balanced = 1e-8;
 constexpr double k_nudge = 1e-3;      // of the length, rad
@@ -63,7 +64,8 @@ void Descent::linearise() {
   gradient_ = scale_.cwiseProduct(statics_.force());
   lambda_ = multipliers_of(statics_, scale_, t);
   stiffness_ = scale_.asDiagonal() * statics_.stiffness(lambda_) * scale_.asDiagonal();
-  const VecX reactions = t.kept.empty() ? VecX(VecX::Zero(n_)) : VecX(t.held.cwiseAbs() * (t.held.transpose() * gradient_).cwiseAbs());
+  VecX reactions = VecX::Zero(n_);
+  if (!t.kept.empty()) reactions = t.held.cwiseAbs() * (t.held.transpose() * gradient_).cwiseAbs();
   VecX place(n_);
   for (int i = 0; i < n_; ++i) place[i] = std::max(length_, std::abs(state_.q[i + 3]) / scale_[i]);
   const VecX rounding =
@@ -240,7 +242,7 @@ double Descent::first_contact(const std::vector<double>& from, const VecX& step)
   double parts = 0.0; // in quarters of a body's size, and tenths of a radian
   for (int k = 0; k < n_; ++k) {
     const double inverse_size = scale_[k - k % 3 + 2];
-    parts = std::max(parts, k % 3 < 2 ? 4.0 * std::abs(step[k]) * inverse_size : 10.0 * std::abs(step[k]) * inverse_size);
+    parts = std::max(parts, (k % 3 < 2 ? 4.0 : 10.0) * std::abs(step[k]) * inverse_size);
   }
   if (system_.contact_count == 0 || parts <= 1.0) return 1.0;
   const int count = static_cast<int>(std::min(std::ceil(parts), k_most_looks));
@@ -289,8 +291,10 @@ double Descent::first_load(const std::vector<double>& from, const VecX& step, do
 // After a step that was taken at `factor` of what was planned.
 void Descent::adapt_region(double factor, const VecX& step, bool is_straight) {
   double moved = 0.0, turned = 0.0;
-  for (int k = 0; k < n_; ++k)
-    (k % 3 < 2 ? moved : turned) = std::max(k % 3 < 2 ? moved : turned, k % 3 < 2 ? std::abs(step[k]) : std::abs(step[k]) * scale_[k]);
+  for (int k = 0; k < n_; ++k) {
+    double& most = k % 3 < 2 ? moved : turned;
+    most = std::max(most, std::abs(step[k]) * scale_[k]); // the scale of a displacement is 1
+  }
   if (factor < 1.0) {
     radius_ = std::clamp(4.0 * moved, 0.25 * radius_, radius_);
     turn_ = std::min(k_small_turn, std::clamp(4.0 * turned, 0.25 * turn_, turn_));
@@ -423,7 +427,8 @@ bool Descent::leave_saddle() {
   if (value_.size() == 0 || !(value_.minCoeff(&worst) < -value_rounding_[worst])) return false;
   VecX direction = shape_.col(worst);
   const MotionPart part = largest_part(direction);
-  if (std::abs(share_[worst]) > 8.0 * share_rounding_[worst] ? share_[worst] < 0.0 : part.sign < 0.0) direction = -direction;
+  const bool is_pushed = std::abs(share_[worst]) > 8.0 * share_rounding_[worst];
+  if (is_pushed ? share_[worst] < 0.0 : part.sign < 0.0) direction = -direction;
   left_.push_back(largest_part(direction));
   radius_ = std::max(radius_, k_first_radius * length_);
   turn_ = k_first_turn;

@@ -192,7 +192,8 @@ private:
 
   void check_slides() const {
     for (const Slip& slip : slips_)
-      if (slip.gives_way && is_of_contacts(slip.friction) && std::abs(row_value(slip.friction) - slip.from) > k_stands * length_)
+      if (slip.gives_way && is_of_contacts(slip.friction) &&
+          std::abs(row_value(slip.friction) - slip.from) > k_stands * length_)
         fail_sliding(slip);
   }
 
@@ -292,7 +293,8 @@ std::vector<std::string> remarks_on(const System& system, const Equilibrium& fou
   for (const MotionPart& part : found.indifferent)
     remarks.push_back("indifferent: nothing holds " + part_text(system, part) + " or against it; it rests wherever it is");
   if (found.turned != 0.0)
-    remarks.push_back("'" + system.bodies[found.turned_body].name + "' turned by " + rounded(found.turned * 180.0 / std::numbers::pi) +
+    remarks.push_back("'" + system.bodies[found.turned_body].name + "' turned by " +
+                      rounded(found.turned * 180.0 / std::numbers::pi) +
                       "° on the way to this rest: it does not stand as given");
   for (const int f : found.slid)
     remarks.push_back("'" + system.element_names[system.frictions[f].element] +

@@ -75,7 +75,8 @@ FreeVibration free_vibration(const System& system, State state) {
   const MatX size = stiffness.cwiseAbs() * shapes.cwiseAbs();
   std::vector<Eigen::Index> held, loose;
   for (Eigen::Index i = 0; i < v.a.cols(); ++i) {
-    const double rounding = k_epsilon * (k_rounded_terms * shapes.col(i).cwiseAbs().dot(size.col(i)) + 4.0 * sizes.maxCoeff());
+    const double terms = shapes.col(i).cwiseAbs().dot(size.col(i));
+    const double rounding = k_epsilon * (k_rounded_terms * terms + 4.0 * sizes.maxCoeff());
     (sizes[i] <= rounding ? loose : held).push_back(i);
   }
   const auto columns = [&](const std::vector<Eigen::Index>& which) {
@@ -111,7 +112,8 @@ MatX steady_motions(const FreeVibration& v) {
   const Eigen::BDCSVD<MatX> svd(beyond, Eigen::ComputeThinV);
   std::vector<Eigen::Index> free;
   for (Eigen::Index i = 0; i < v.loose.cols(); ++i)
-    if (i >= svd.singularValues().size() || svd.singularValues()[i] <= k_rounded_terms * k_epsilon * size) free.push_back(i);
+    if (i >= svd.singularValues().size() || svd.singularValues()[i] <= k_rounded_terms * k_epsilon * size)
+      free.push_back(i);
   MatX motions(k + r, static_cast<Eigen::Index>(free.size()));
   for (std::size_t i = 0; i < free.size(); ++i) {
     const VecX rate = v.loose * svd.matrixV().col(free[i]);

@@ -206,6 +206,11 @@ TEST_CASE("a ladder holds from the friction of the closed form on, however it wa
         if (std::string(start) == "gap = 0.0" && friction < 0.5) CHECK(std::abs(margin.used * friction / limit - 1.0) < 1e-3);
       }
       CHECK(found.rest.moved < 1e-3);
+      if (friction != 0.3) continue;
+      // A run from there stays there: nothing slips, and what is left of the balance, 1e-10 m/s², moves it by as much.
+      const RunResult stays = simulate(*found.system, found.rest.state, options({"auto", 1e-8, 0.3}));
+      CHECK(stays.events.empty());
+      for (int k = 3; k < 6; ++k) CHECK(std::abs(stays.final_state.q[k] - found.rest.state.q[k]) < 1e-11);
     }
     for (const double friction : {0.2, 0.26}) {
       CAPTURE(friction);

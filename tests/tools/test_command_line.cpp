@@ -119,6 +119,27 @@ TEST_CASE("check names joints that hold what others hold already") {
   CHECK(has(outcome.out, "degrees of freedom  0\n"));
 }
 
+TEST_CASE("a foot that presses beyond the edge of what it stands on is told") {
+  const Workbench bench;
+  const auto text = [](const char* x) {
+    return std::string("[simulation]\nend = 0.01\nstep = 1e-3\n[[body]]\nname = \"shelf\"\nmass = 1.0\ninertia = 1.0\n"
+                       "fixed = true\noutline = [[-1.0, -0.1], [1.0, -0.1], [1.0, 0.0], [-1.0, 0.0]]\n"
+                       "[[body]]\nname = \"cup\"\nmass = 1.0\ninertia = 1.0\nposition = [") +
+           x + ", 0.1]\n[[element]]\nkind = \"unilateral_contact\"\nname = \"foot\"\na = { body = \"cup\", point = [0.0, -0.1] }\n"
+               "b = { body = \"shelf\", point = [0.0, 0.0] }\nstiffness = 1e4\ndamping = 100.0\npreload = 9.81\n";
+  };
+  const std::string on = bench.write("on.toml", text("0.9")), off = bench.write("off.toml", text("1.25"));
+  for (const char* command : {"simulate", "equilibrium"}) {
+    CAPTURE(std::string(command));
+    const auto outcome = [&](const std::string& model) {
+      return std::string(command) == "simulate" ? steplap_does({"simulate", model, "-o", bench.at("out"), "--force"})
+                                                : steplap_does({"equilibrium", model});
+    };
+    CHECK(has(outcome(off).err, "'foot' presses 0.25 m beyond the edge of 'shelf'"));
+    CHECK_FALSE(has(outcome(on).err, "beyond the edge"));
+  }
+}
+
 TEST_CASE("equilibrium gives the pose of rest and what holds it") {
   const Workbench bench;
   std::string text = k_oscillator;

@@ -1,5 +1,6 @@
 #include "tools/steplap/equilibrium.h"
 
+#include "tools/steplap/edges.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/run.h"
 #include "tools/steplap/summary.h"
@@ -88,6 +89,8 @@ ExitCode equilibrium(const EquilibriumOptions& options, Console& console) {
     try {
       const Equilibrium found = equilibrium_of(*loaded);
       if (console.verbosity != Verbosity::quiet) print_equilibrium(console.out, *loaded, found);
+      for (const std::string& text : feet_beyond_edges(*loaded, found.state))
+        log_warning("'" + loaded->path + "': at rest " + text);
     } catch (const NumericalFailure& failure) {
       log_error("'" + loaded->path + "': " + failure.what());
       code = ExitCode::numerical_failure;

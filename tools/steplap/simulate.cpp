@@ -2,6 +2,7 @@
 
 #include "mbd/analysis/assembly.h"
 #include "mbd/model/validate.h"
+#include "tools/steplap/edges.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/progress.h"
@@ -130,6 +131,8 @@ FinishedRun run_one(const SimulateOptions& options,
     Progress progress(console, loaded->name, loaded->model.simulation.end);
     finished.run = run_model(loaded, std::ref(progress));
   }
+  for (const std::string& text : feet_beyond_edges(*loaded, finished.run.result.final_state))
+    log_warning("'" + loaded->path + "': at the end " + text);
   finished.summary = summarise(finished.run);
   estimate_error(options, finished);
   finished.folder = options.folder_of(*loaded);

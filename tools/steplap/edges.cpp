@@ -1,0 +1,85 @@
+#include "tools/steplap/edges.h"
+
+#include "elements/unilateral_contact.h"
+#include "tools/steplap/text_table.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_beyond = 1e-3; // of the outline's width: feet may stand on an edge
+
+// A place on a body, from its centre of gravity in its own axes.
+struct Place {
+  const Body* body = nullptr; ///< null: the ground
+  Vec2 point = Vec2::Zero();
+  double angle = 0.0;
+};
+
+template <class T> const T* named(const std::vector<T>& list, const std::string& name) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const T& entry) { return entry.name == name; });
+  return found == list.end() ? nullptr : &*found;
+}
+
+Place place_of(const Model& model, const std::string& name) {
+  Place place;
+  const Marker* const marker = named(model.markers, name);
+  place.body = named(model.bodies, marker ? marker->body : name);
+  if (!marker) return place;
+  place.angle = marker->angle;
+  if (!place.body) {
+    place.point = marker->point.value_or(marker->at.value_or(Vec2::Zero()));
+    return place;
+  }
+  if (marker->point) place.point = *marker->point - place.body->cg;
+  else if (marker->at) {
+    const Vec3 pose = place.body->reference_pose();
+    place.point = rotated(*marker->at - Vec2(pose.x(), pose.y()), -pose.z());
+  }
+  return place;
+}
+
+// (x, y, θ) of a body's centre of gravity.
+Vec3 pose_of(const System& system, const State& state, const Body* body) {
+  if (!body) return Vec3::Zero();
+  for (std::size_t i = 1; i < system.bodies.size(); ++i)
+    if (system.bodies[i].name == body->name) return {state.q[3 * i], state.q[3 * i + 1], state.q[3 * i + 2]};
+  return body->reference_pose();
+}
+
+bool is_closed(const System& system, const State& state, const std::string& element) {
+  for (std::size_t u = 0; u < system.units.size(); ++u)
+    if (system.element_names[system.units[u].element] == element) return state.mode[u] != k_contact_open;
+  return false;
+}
+
+} // namespace
+
+std::vector<std::string> feet_beyond_edges(const LoadedModel& loaded, const State& state) {
+  std::vector<std::string> found;
+  for (const ElementEntry& entry : loaded.model.elements) {
+    const auto* const contact = dynamic_cast<const UnilateralContact*>(entry.element.get());
+    if (!contact) continue;
+    const Place a = place_of(loaded.model, contact->a), b = place_of(loaded.model, contact->b);
+    if (!b.body || b.body->outline.empty() || !is_closed(*loaded.system, state, contact->name)) continue;
+    const Vec3 at = pose_of(*loaded.system, state, a.body), on = pose_of(*loaded.system, state, b.body);
+    const Vec2 foot = Vec2(at.x(), at.y()) + rotated(a.point, at.z());
+    const Vec2 seen = rotated(foot - Vec2(on.x(), on.y()), -on.z());
+    const Vec2 normal = rotated(contact->normal, b.angle).normalized(), along(normal.y(), -normal.x());
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec2& corner : b.body->outline) {
+      low = std::min(low, along.dot(corner - b.body->cg));
+      high = std::max(high, along.dot(corner - b.body->cg));
+    }
+    const double beyond = std::max(low - along.dot(seen), along.dot(seen) - high);
+    if (beyond <= k_beyond * (high - low)) continue;
+    found.push_back("'" + contact->name + "' presses " + quantity_text(beyond, "m", 1e-3) + " beyond the edge of '" + b.body->name +
+                    "': the line of a unilateral_contact has no ends, the part has");
+  }
+  return found;
+}
+
+} // namespace steplap
