@@ -16,7 +16,8 @@ int run_study_program(char** words) {
   std::cout.flush();
   std::cerr.flush();
   execv(program.c_str(), words);
-  std::cerr << "steplap: error: '" << program << "', which runs studies, cannot be started: " << std::strerror(errno) << "\n";
+  std::cerr << "steplap: error: '" << program << "', which runs studies, cannot be started: " << std::strerror(errno)
+            << (errno == ENOENT ? " (the target steplap-study makes it)" : "") << "\n";
   return static_cast<int>(ExitCode::usage);
 }
 

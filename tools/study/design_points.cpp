@@ -189,10 +189,7 @@ void add_second_order(LimitFunction& limit, const OT::OptimizationAlgorithm& sea
   }
 }
 
-} // namespace
-
-DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
-  const ReliabilitySettings& settings = limit.run().study().reliability;
+OT::AbdoRackwitz search_algorithm() {
   OT::Log::Show(OT::Log::NONE);
   OT::AbdoRackwitz search;
   // Steps of 1e-6 standard deviations end it: beta is known to the square of that. Points that have not arrived are told
@@ -203,36 +200,68 @@ DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
   search.setMaximumRelativeError(1e-6);
   search.setMaximumConstraintError(1e-12);
   search.setMaximumResidualError(1e-12);
+  return search;
+}
+
+// True if the point is new.
+bool add_point(DesignPoint point, std::vector<DesignPoint>& points) {
+  for (DesignPoint& other : points)
+    if (is_same(point, other)) {
+      if (point.is_found && (!other.is_found || point.off_surface < other.off_surface)) other = std::move(point);
+      return false;
+    }
+  points.push_back(std::move(point));
+  return true;
+}
+
+// One search; what ends it early is noted.
+bool search_from(LimitFunction& limit, const OT::Point& start, DesignPoints& found) {
+  const double h = limit.run().study().reliability.difference;
+  ++found.starts;
+  try {
+    OT::FORM form(search_algorithm(), event_of(limit, h), start);
+    form.run();
+    DesignPoint point = point_of(form.getResult());
+    judge(limit, h, point);
+    return add_point(std::move(point), found.points);
+  } catch (const OT::Exception& error) {
+    if (found.failed_starts++ == 0) found.trouble = error.what();
+  } catch (const BadSample& error) {
+    if (found.failed_starts++ == 0) found.trouble = error.what();
+  }
+  return false;
+}
+
+void sort_points(std::vector<DesignPoint>& points) {
+  std::stable_sort(points.begin(), points.end(), [](const DesignPoint& a, const DesignPoint& b) {
+    return a.is_found != b.is_found ? a.is_found : std::abs(a.beta) < std::abs(b.beta);
+  });
+}
+
+} // namespace
+
+DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
+  const ReliabilitySettings& settings = limit.run().study().reliability;
   const CounterRandom random(static_cast<std::uint64_t>(limit.run().study().seed), 3);
   DesignPoints found;
   const long before = limit.asked();
-  for (long k = 0; k < settings.starts; ++k, ++found.starts) {
-    try {
-      OT::FORM form(search, event_of(limit, settings.difference), start_of(limit, random, k));
-      form.run();
-      DesignPoint point = point_of(form.getResult());
-      judge(limit, settings.difference, point);
-      bool is_new = true;
-      for (DesignPoint& other : found.points)
-        if (is_same(point, other)) {
-          is_new = false;
-          if (point.is_found && (!other.is_found || point.off_surface < other.off_surface)) other = point;
-        }
-      if (is_new) found.points.push_back(std::move(point));
-    } catch (const OT::Exception& error) {
-      if (found.failed_starts++ == 0) found.trouble = error.what();
-    } catch (const BadSample& error) {
-      if (found.failed_starts++ == 0) found.trouble = error.what();
-    }
-  }
-  std::stable_sort(found.points.begin(), found.points.end(), [](const DesignPoint& a, const DesignPoint& b) {
-    return a.is_found != b.is_found ? a.is_found : std::abs(a.beta) < std::abs(b.beta);
-  });
+  for (long k = 0; k < settings.starts; ++k) (void)search_from(limit, start_of(limit, random, k), found);
+  sort_points(found.points);
   if (is_second_order && !found.points.empty() && found.points.front().is_found)
     for (DesignPoint& point : found.points)
-      if (point.is_found) add_second_order(limit, search, settings.difference, point);
+      if (point.is_found) add_second_order(limit, search_algorithm(), settings.difference, point);
   found.samples = limit.asked() - before;
   return found;
+}
+
+bool search_again(LimitFunction& limit, const std::vector<double>& start, DesignPoints& found) {
+  const long before = limit.asked();
+  OT::Point u(start.size());
+  std::copy(start.begin(), start.end(), u.begin());
+  const bool is_new = search_from(limit, u, found);
+  sort_points(found.points);
+  found.samples += limit.asked() - before;
+  return is_new;
 }
 
 } // namespace steplap::study

@@ -26,4 +26,7 @@ struct DesignPoints {
 
 [[nodiscard]] DesignPoints find_design_points(LimitFunction& limit, bool is_second_order);
 
+/// Searches once more, from `start`. True if it came to a point that is not among `found`, which is put there.
+bool search_again(LimitFunction& limit, const std::vector<double>& start, DesignPoints& found);
+
 } // namespace steplap::study

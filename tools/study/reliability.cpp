@@ -55,7 +55,7 @@ private:
 
   void sample_around(const SamplingTarget& target) {
     if (!points_.points.empty()) {
-      estimates_.push_back(importance_sampling(limit_, points_.points, target));
+      estimates_.push_back(importance_sampling(limit_, points_, target));
       return;
     }
     Finding f{"importance_sampling", limit_.subject(), "probability"};

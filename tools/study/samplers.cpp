@@ -126,11 +126,12 @@ public:
     }
   }
 
+  /// Nearly nothing is drawn there but by the wide part: a failure there tells of a design point that is not known.
+  [[nodiscard]] bool is_stray(const double* u) const { return wide_part(u) * weight(u) > 0.9; }
+
   /// Density of the standard normal over that of the proposal.
   [[nodiscard]] double weight(const double* u) const {
-    double square = 0.0;
-    for (std::size_t d = 0; d < dimension_; ++d) square += u[d] * u[d];
-    double sum = k_wide * std::pow(wide_, -static_cast<double>(dimension_)) * std::exp(0.5 * square * (1.0 - 1.0 / (wide_ * wide_)));
+    double sum = wide_part(u);
     for (const auto& c : centres_) {
       double product = 0.0, own = 0.0;
       for (std::size_t d = 0; d < dimension_; ++d) product += u[d] * c[d], own += c[d] * c[d];
@@ -140,6 +141,12 @@ public:
   }
 
 private:
+  // Densities over that of the standard normal.
+  [[nodiscard]] double wide_part(const double* u) const {
+    const double distance = length_of(u, dimension_);
+    return k_wide * std::pow(wide_, -static_cast<double>(dimension_)) * std::exp(0.5 * distance * distance * (1.0 - 1.0 / (wide_ * wide_)));
+  }
+
   static constexpr double k_wide = 0.2;
   std::size_t dimension_;
   std::vector<std::vector<double>> centres_;
@@ -148,18 +155,21 @@ private:
 
 } // namespace
 
-Estimate importance_sampling(LimitFunction& limit, const std::vector<DesignPoint>& design, const SamplingTarget& target) {
+Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const SamplingTarget& target) {
   const std::size_t n = limit.dimension(), block = std::min<std::size_t>(block_of(limit, target), 1000);
   const CounterRandom random(static_cast<std::uint64_t>(limit.run().study().seed), 4);
-  const Proposal proposal(design, n);
+  Proposal proposal(design.points, n);
   const Clock clock(limit, target);
   Estimate e;
   e.method = "importance_sampling";
   WeightSum safe, unsafe;
   bool is_late = false;
-  std::vector<double> points;
+  int searches = 0;
+  constexpr int k_most_searches = 12;
+  std::vector<double> points, stray;
+  double nearest_stray = std::numeric_limits<double>::infinity();
   constexpr long k_fewest = 500; // before that an estimate of the scatter says little
-  while (e.samples < target.samples && !(e.samples >= k_fewest && e.cov <= target.cov) && !(is_late = clock.is_over())) {
+  while (e.samples < target.samples && !(safe.count >= k_fewest && e.cov <= target.cov) && !(is_late = clock.is_over())) {
     const std::size_t count = std::min(block, static_cast<std::size_t>(target.samples - e.samples));
     points.clear();
     for (std::size_t i = 0; i < count; ++i) proposal.draw(random, static_cast<std::uint64_t>(e.samples) + i, points);
@@ -170,8 +180,24 @@ Estimate importance_sampling(LimitFunction& limit, const std::vector<DesignPoint
       safe.add(fails ? w : 0.0);
       unsafe.add(w);
       e.bad += values[i].is_bad;
+      const double distance = fails ? length_of(&points[i * n], n) : nearest_stray;
+      if (distance >= nearest_stray || !proposal.is_stray(&points[i * n])) continue;
+      nearest_stray = distance;
+      stray.assign(&points[i * n], &points[i * n] + n);
     }
     e.samples += static_cast<long>(count);
+    if (!stray.empty() && searches < k_most_searches) {
+      ++searches;
+      const bool is_new = search_again(limit, stray, design);
+      stray.clear();
+      if (is_new) { // begun anew: what was drawn until now does not tell how it was chosen
+        proposal = Proposal(design.points, n);
+        safe = unsafe = {};
+        nearest_stray = e.cov = std::numeric_limits<double>::infinity();
+        e.bad = 0;
+        continue;
+      }
+    }
     e.safe = safe.mean();
     e.unsafe = unsafe.mean();
     e.safe_interval = safe.interval(target.confidence);

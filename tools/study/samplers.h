@@ -32,8 +32,9 @@ struct SamplingTarget {
 [[nodiscard]] SamplingTarget target_of(const ReliabilitySettings& settings);
 
 [[nodiscard]] Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target);
-/// Around `points`, of which there is at least one; a share of the samples is spread widely, for what lies elsewhere.
-[[nodiscard]] Estimate importance_sampling(LimitFunction& limit, const std::vector<DesignPoint>& points, const SamplingTarget& target);
+/// Around the design points, of which there is at least one. A share of the samples is spread widely: where one of them
+/// fails far from all design points a search begins there, and sampling begins anew around what it finds as well.
+[[nodiscard]] Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const SamplingTarget& target);
 [[nodiscard]] Estimate directional(LimitFunction& limit, const SamplingTarget& target);
 [[nodiscard]] Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target);
 
