@@ -56,6 +56,9 @@ public:
     e_.mode = state_.mode.data();
     e_.friction = state_.friction.data();
     e_.memory = state_.memory.data();
+    inner_rate_.assign(state_.inner.size(), 0.0);
+    e_.inner = state_.inner.data();
+    e_.inner_rate = inner_rate_.data();
     e_.scratch = scratch_pointers_.data();
     e_.contact_force = contact_force_.data();
     e_.watch = watch_.data();
@@ -99,7 +102,9 @@ public:
   }
   double potential(const Pose& pose) {
     place(pose);
-    return system_->potential_energy(motion_.data());
+    double energy = system_->potential_energy(motion_.data());
+    for (const ForceGroup* group : system_->inner_groups) energy += group->inner_energy(motion_.data(), state_.inner.data());
+    return energy;
   }
   MeasureValue<double> row(const RowSpec& spec, const Pose& pose) {
     place(pose);
@@ -124,7 +129,7 @@ private:
   State state_;
   std::vector<Motion<double>> motion_;
   std::vector<BodyForce> force_;
-  std::vector<double> contact_force_, watch_, watch_rate_;
+  std::vector<double> contact_force_, watch_, watch_rate_, inner_rate_;
   std::vector<std::unique_ptr<FrictionScratch>> scratch_;
   std::vector<FrictionScratch*> scratch_pointers_;
   Evaluation e_;

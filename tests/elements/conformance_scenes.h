@@ -102,6 +102,16 @@ inline const std::vector<ConformanceScene>& conformance_scenes() {
        "limb = [[@-0.4, -0.6], [@+0.3, -0.6], [@+0.3, 0.2], [@-0.4, 0.2]]\npressure = 1000.0\n"
        "static_friction = 0.3\ncount = 10.0\n"
        "[[element]]\nkind = \"step_lap_joint\"\nname = \"joint\"\nlimb = \"a\"\nactive_part = \"b\"\n"},
+      // Elastic, within its bound, with edges that bear.
+      {"step_lap_joint",
+       "limb = \"a\"\nactive_part = \"b\"\ntangential_stiffness = 700.0\nedge_stiffness = 900.0\n"
+       "[[element]]\nkind = \"step_lap_interface\"\nname = \"sheets\"\njoint = \"tested\"\nframe = \"body\"\n"
+       "yoke = [[@-0.5, 0.3], [@+0.6, 0.3], [@+0.6, 0.9], [@-0.5, 0.9]]\n"
+       "limb = [[@-0.4, -0.6], [@+0.3, -0.6], [@+0.3, 0.2], [@-0.4, 0.2]]\npressure = 1e9\n"
+       "static_friction = 0.3\nclearance = 0.01\n"},
+      {"tie", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\n", false, true},
+      {"tie", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\npreload = 9.0\nacts = \"both\"\nstrength = 1e6\n", false, true},
+      {"tie", "a = \"A\"\nb = \"B\"\naxis = [@+0.6, 0.8]\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\nacts = \"both\"\ncount = 2\n"},
       {"revolute", "a = \"A\"\nb = \"B\"\n"},
       {"prismatic", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
       {"weld", "a = \"A\"\nb = \"B\"\n"},

@@ -119,3 +119,72 @@ TEST_CASE("no step of a chain with sparse stage systems allocates") {
     CHECK(count.allocating == 0);
   }
 }
+
+TEST_CASE("no step of an elastic joint that yields allocates, with edges that bear and pressures that change") {
+  const std::string text = R"(
+gravity = [0.0, 0.0]
+[[signal]]
+name = "fading"
+kind = "trapezoid"
+peak = 1.0
+start = -10.0
+rise = 5.0
+fall = 10.0
+duration = 20.0
+[[signal]]
+name = "turn"
+kind = "harmonics"
+amplitudes = [8e-3]
+frequencies = [0.7]
+[[signal]]
+name = "along"
+kind = "harmonics"
+amplitudes = [1e-3]
+frequencies = [0.5]
+phases = [-1.5]
+[[body]]
+name = "limb"
+mass = 10.0
+inertia = 1.0
+[[element]]
+kind = "prescribed_motion"
+name = "drive y"
+a = "limb"
+coordinate = "y"
+signal = "along"
+[[element]]
+kind = "prescribed_motion"
+name = "drive turn"
+a = "limb"
+coordinate = "angle"
+signal = "turn"
+[[element]]
+kind = "step_lap_joint"
+name = "joint"
+limb = "limb"
+active_part = "ground"
+tangential_stiffness = 1e6
+edge_stiffness = 1e6
+pressure_signal = "fading"
+[[element]]
+kind = "step_lap_interface"
+name = "sheets"
+joint = "joint"
+yoke = [[-0.5, 0.0], [0.5, 0.0], [0.5, 0.4], [-0.5, 0.4]]
+limb = [[-0.25, -1.0], [0.25, -1.0], [0.25, 0.01], [-0.25, 0.01]]
+pressure = 1e5
+pressure_gradient = [1e5, 0.0]
+static_friction = 0.2
+clearance = 1e-4
+[simulation]
+step = 1e-3
+)";
+  const auto system = compile(scene(text));
+  for (const char* integrator : {"rk4", "dop853", "rodas5p"}) {
+    CAPTURE(std::string(integrator));
+    SimulationOptions o = options({integrator, std::string(integrator) == "rk4" ? 1e-4 : 1e-8, 0.3, 0.3});
+    const Count count = count_allocations(*system, o, 0.05);
+    CHECK(count.steps > 0);
+    CHECK(count.allocating == 0);
+  }
+}

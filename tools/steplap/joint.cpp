@@ -32,8 +32,33 @@ struct JointView {
   const StepLapJoint* joint = nullptr;
   std::vector<const StepLapInterface*> interfaces;
   Patch patch;               ///< by the static coefficients; reference: the limb's centre of gravity
+  std::vector<std::string> beside; ///< springs and ties between the same two bodies: "'tie plate' (tie)"
   std::vector<double> areas; ///< of one interface of each kind, m²
 };
+
+// The bodies that an element's markers sit on.
+std::vector<std::string> bodies_of(const ElementEntry& entry, const Model& model) {
+  std::vector<std::string> bodies;
+  for (const Field& field : entry.kind->fields.fields()) {
+    if (field.type != FieldType::marker) continue;
+    const auto name = std::get<std::string>(field.get(entry.element.get()));
+    const auto marker = std::find_if(model.markers.begin(), model.markers.end(), [&](const Marker& m) { return m.name == name; });
+    bodies.push_back(marker == model.markers.end() ? name : marker->body);
+  }
+  return bodies;
+}
+
+std::vector<std::string> beside(const StepLapJoint& joint, const Model& model) {
+  static const std::array<const char*, 4> springs = {"tie", "spring_damper", "rotational_spring_damper", "bushing"};
+  std::vector<std::string> found;
+  for (const ElementEntry& entry : model.elements) {
+    if (std::find(springs.begin(), springs.end(), entry.kind->name) == springs.end()) continue;
+    const std::vector<std::string> bodies = bodies_of(entry, model);
+    const auto joins = [&](const std::string& body) { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); };
+    if (joins(joint.limb) && joins(joint.active_part)) found.push_back("'" + entry.element->name + "' (" + entry.kind->name + ")");
+  }
+  return found;
+}
 
 JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, const LoadedModel& loaded) {
   JointView view;
@@ -41,6 +66,7 @@ JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, co
   for (const ElementEntry& entry : loaded.model.elements)
     if (const auto* e = dynamic_cast<const StepLapInterface*>(entry.element.get()); e && e->joint == joint.name)
       view.interfaces.push_back(e);
+  view.beside = beside(joint, loaded.model);
   const State state = loaded.system->initial_state();
   std::vector<Motion<double>> motion(static_cast<std::size_t>(loaded.system->body_count()));
   place_bodies(state.q, state.v, motion);
@@ -163,6 +189,19 @@ void print_usage(std::ostream& out, const JointView& view, const Vec3& wrench) {
   out << table;
 }
 
+// Whose capacity that is: a rigid joint bears the whole load until it slides.
+void print_sharing(std::ostream& out, const JointView& view) {
+  if (is_elastic(*view.joint)) out << "elastic: yields before it slides";
+  if (view.beside.empty()) {
+    if (is_elastic(*view.joint)) out << "; nothing bears beside it\n";
+    return;
+  }
+  std::string names;
+  for (const std::string& name : view.beside) names += (names.empty() ? "" : ", ") + name;
+  if (is_elastic(*view.joint)) out << ", shares its load with " << names << ": the capacity is the joint's part alone\n";
+  else out << "rigid: bears the whole load until it slides; only then bear " << names << "\n";
+}
+
 void print_joint(std::ostream& out, const JointView& view, const std::optional<Vec3>& wrench) {
   out << view.joint->name << ": '" << view.joint->limb << "' on '" << view.joint->active_part << "'"
       << (view.joint->mode == "monitor" ? ", never slides (monitor)" : "") << "\n";
@@ -177,6 +216,7 @@ void print_joint(std::ostream& out, const JointView& view, const std::optional<V
   table.add_row({"centre of friction", point_text(view.patch.centroid())});
   table.add_row({"radius of gyration", quantity_text(view.patch.gyration(), "m")});
   out << table;
+  print_sharing(out, view);
   if (!wrench) return;
   out << "\n";
   print_usage(out, view, *wrench);
