@@ -4,8 +4,9 @@
 // integrated as one body about their common centre of gravity; a coordinate that a drive prescribes is
 // locked (infinite mass); what remains are rows. A layout is found once for a set of modes.
 //
-// Coordinates are the clusters' own, x, y and θ of each, or, in small islands with pins, joint coordinates (mechanism.h).
-// Clusters and active rows are numbered so that those in absolute coordinates come first; coordinates likewise.
+// Coordinates are the clusters' own, x, y and θ of each, or, in small islands with pins, joint coordinates
+// (mechanism.h). Clusters and active rows are numbered so that those in absolute coordinates come first; coordinates
+// likewise.
 #pragma once
 
 #include "mbd/dynamics/load_sharing.h"
@@ -142,7 +143,8 @@ struct Layout {
   [[nodiscard]] bool has_mechanisms() const { return !mechanisms.empty(); }
   /// The mechanism of a cluster or row that is not absolute.
   [[nodiscard]] const Mechanism& mechanism_of_cluster(int cluster) const {
-    return *std::find_if(mechanisms.rbegin(), mechanisms.rend(), [cluster](const Mechanism& m) { return m.first_cluster <= cluster; });
+    return *std::find_if(mechanisms.rbegin(), mechanisms.rend(),
+                         [cluster](const Mechanism& m) { return m.first_cluster <= cluster; });
   }
   [[nodiscard]] const Mechanism& mechanism_of_row(int row) const {
     return *std::find_if(mechanisms.rbegin(), mechanisms.rend(),

@@ -10,9 +10,10 @@
 // own pair of bodies, one at a time; all that follows from geometry is exact there too. (Coulomb's law
 // depends on the normal forces alone, linearly: exact up to rounding.)
 //
-// In mechanisms (mechanism.h) M is not diagonal: there K and D are given as M⁻¹K and M⁻¹D, with inverse masses of 1, and M⁻¹Jᵀ
-// apart. They follow from those of the clusters, T being their velocities by the coordinates' rates, by
-//   δv = T δṡ + (∂(T ṡ)/∂s) δs,   K_s = Tᵀ(K T + D ∂(T ṡ)/∂s − m ∂a/∂s) + (∂Tᵀ/∂s)(Q + Jᵀλ − m a),   D_s = Tᵀ(D T − m ∂a/∂ṡ)
+// In mechanisms (mechanism.h) M is not diagonal: there K and D are given as M⁻¹K and M⁻¹D, with inverse masses of 1,
+// and M⁻¹Jᵀ apart. They follow from those of the clusters, T being their velocities by the coordinates' rates, by
+//   δv = T δṡ + (∂(T ṡ)/∂s) δs,   D_s = Tᵀ(D T − m ∂a/∂ṡ)
+//   K_s = Tᵀ(K T + D ∂(T ṡ)/∂s − m ∂a/∂s) + (∂Tᵀ/∂s)(Q + Jᵀλ − m a)
 // with a = T s̈ + b at constant s̈: all in closed form, since a coordinate turns but its own member's vectors.
 //
 // Inner states of force elements (roles.h) bring forces of their own and follow rates of their own,
@@ -46,7 +47,8 @@ public:
   [[nodiscard]] const std::vector<Triplet>& stiffness() const { return stiffness_; } ///< K, n × n
   [[nodiscard]] const std::vector<Triplet>& damping() const { return damping_; }     ///< D, n × n
   [[nodiscard]] const std::vector<Triplet>& gradient() const { return gradient_; }   ///< J, m × n
-  [[nodiscard]] const std::vector<Triplet>& response() const { return response_; }   ///< M⁻¹ Jᵀ, n × m; empty without mechanisms
+  /// M⁻¹ Jᵀ, n × m; empty without mechanisms.
+  [[nodiscard]] const std::vector<Triplet>& response() const { return response_; }
   [[nodiscard]] const std::vector<Triplet>& bias_by_pose() const { return bias_q_; } ///< G_q, m × n
   [[nodiscard]] const std::vector<Triplet>& bias_by_velocity() const { return bias_v_; } ///< G_v, m × n
 
@@ -98,8 +100,8 @@ private:
     double omega = 0.0, alpha = 0.0;
     Pair<double> arm;      ///< what it turns
   };
-  /// By what a cluster's coordinate changes: its rate by that of a lever's coordinate, its rate and its acceleration by the
-  /// coordinate, its acceleration by the rate.
+  /// By what a cluster's coordinate changes: its rate by that of a lever's coordinate, its rate and its acceleration by
+  /// the coordinate, its acceleration by the rate.
   struct LeverRates {
     double rate, rate_by_pose, acceleration_by_pose, acceleration_by_rate;
   };

@@ -1,21 +1,22 @@
 // A small mechanism in joint coordinates: clusters pinned to one another or to the ground, described by the angles
 // that pins leave them.
 //
-// Its *members* hang on each other as a forest: each on one pin of another member or of the ground, or it is free and the
-// root of its tree. A distance joint is a member without mass, pinned at both its ends. Coordinates s are the members'
-// angles against the ground (so a pin passes no couple on), of a free member the place of its centre before it. With R_k the
-// turn of member k, e the member that k hangs on, d_k its pin there and c_k its own centre, both from pins and fixed:
+// Its *members* hang on each other as a forest: each on one pin of another member or of the ground, or it is free and
+// the root of its tree. A distance joint is a member without mass, pinned at both its ends. Coordinates s are the
+// members' angles against the ground (so a pin passes no couple on), of a free member the place of its centre before
+// it. With R_k the turn of member k, e the member that k hangs on, d_k its pin there and c_k its own centre, both from
+// pins and fixed:
 //   o_k = o_e + R_e d_k,   centre = o_k + R_k c_k
 //   v = T(s) ṡ,  a = T s̈ + b,   M s̈ = Tᵀ(Q − m b) + Jᵀλ,  M = Tᵀ m T
 //   M_ee = J_e + m_e c_e² + Σ m_below d²      constant
 //   M_fe = (R_e d) · (R_f p_f),  e above f, d the pin on e by which f hangs, p_f = m_f c_f + Σ m_below d   fixed in f
-// M couples a member with those above it alone: M = Lᵀ D L has no fill if the outermost are eliminated first (R. Featherstone,
-// Rigid Body Dynamics Algorithms, §6.5).
+// M couples a member with those above it alone: M = Lᵀ D L has no fill if the outermost are eliminated first
+// (R. Featherstone, Rigid Body Dynamics Algorithms, §6.5).
 //
-// What closes loops, and friction that sticks, are rows in these coordinates: J s̈ = γ − J_c b with the rows' gradients J_c
-// by the clusters' coordinates, J = J_c T. They are solved as SchurSolver does it, and mean the same: pivots count against the
-// diagonal of the bodies on their own, J_c W J_cᵀ, so that they tell of the distance from singular positions in the same
-// measure, with the pins eliminated before all other rows.
+// What closes loops, and friction that sticks, are rows in these coordinates: J s̈ = γ − J_c b with the rows' gradients
+// J_c by the clusters' coordinates, J = J_c T. They are solved as SchurSolver does it, and mean the same: pivots count
+// against the diagonal of the bodies on their own, J_c W J_cᵀ, so that they tell of the distance from singular
+// positions in the same measure, with the pins eliminated before all other rows.
 #pragma once
 
 #include "mbd/dynamics/schur.h"
@@ -34,7 +35,7 @@ struct Member {
   int parent = -1;         ///< member that it hangs on, −1: the ground or nothing
   bool is_free = false;
   int coordinate = 0;      ///< of its angle; of a free one x and y are the two before
-  int block = -1;          ///< rows of the joint by which it hangs, −1: none (free, or a rod, which leaves them to its end)
+  int block = -1; ///< rows of the joint by which it hangs, −1: none (free, or a rod, which leaves them to its end)
   bool is_rod_end = false; ///< that is a distance, its parent the rod
   double mass = 0.0, inertia = 0.0;
   Pair<double> pin;        ///< from its parent's pin, in the parent's axes; a place of the ground
@@ -57,8 +58,8 @@ public:
   int first_coordinate = 0;    ///< in the packed coordinates
   int first_cluster = 0;
   int first_row = 0, row_count = 0; ///< of the layout's active rows
-  /// Constants of the members, coordinates, sizes. Members, first_cluster and its rows, of which the bodies are filled in,
-  /// must be known.
+  /// Constants of the members, coordinates, sizes. Members, first_cluster and its rows, of which the bodies are filled
+  /// in, must be known.
   void close(int cluster_count, const Vec2& gravity, const SchurRow* rows);
 
   [[nodiscard]] int size() const { return n_; }
