@@ -71,10 +71,8 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   row.level = level_of(e.as);
   if (const auto jump = row.drive->first_jump(row.level, 0.0, builder.model().simulation.end))
     return builder.error(jump_message(e, *jump));
-  const double now = evaluate_row<false>(row, &builder.reference(0)).value, zero = e.zero == "reference" ? now : 0.0;
-  if (e.as == "position" && jumps(now, zero + row.drive->value(0.0)))
-    return builder.error(start_message(e, row, now, zero + row.drive->value(0.0)));
-  row.memory = builder.add_memory(zero);
+  const double now = evaluate_row<false>(row, &builder.reference(0)).value;
+  row.memory = builder.add_memory(e.zero == "reference" ? now : 0.0);
   const int r = builder.next_row();
   builder.add_channel("reaction", row.kind == MeasureKind::angle ? "N m" : "N",
                       "force or couple on a that the motion takes",
@@ -83,6 +81,23 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
 }
 
 } // namespace
+
+void refuse_initial_jumps(const Model& model, const System& system) {
+  State start = system.initial_state();
+  start_drives(system, start);
+  std::vector<Motion<double>> motion;
+  place_bodies(start.q, start.v, motion);
+  for (const RowSpec& row : system.rows) {
+    if (!row.drive || row.level != DriveLevel::position) continue;
+    const double now = evaluate_row<false>(row, motion.data()).value;
+    const double wanted = row_target(row, start.memory.data(), 0.0).value;
+    if (!jumps(now, wanted)) continue;
+    for (const ElementEntry& entry : model.elements)
+      if (const auto* const e = dynamic_cast<const PrescribedMotion*>(entry.element.get());
+          e && e->name == system.element_names[row.element])
+        throw ModelError(e->where, "prescribed_motion '" + e->name + "': " + start_message(*e, row, now, wanted));
+  }
+}
 
 const ElementKind& prescribed_motion_kind() {
   static const ElementKind kind = [] {
