@@ -229,4 +229,44 @@ EventKind ElasticGripGroup::transition(UnitMode from, UnitMode to) const {
   return (to & k_elastic_yields) != 0 ? EventKind::slips : EventKind::sticks;
 }
 
+// --- what StepLapFriction knows of it ---------------------------------------------------------------------
+
+void StepLapFriction::make_elastic(const Mat3& stiffness, int inner, int unit) {
+  stiffness_ = stiffness;
+  inner_ = inner;
+  unit_ = unit;
+}
+
+Mat3 StepLapFriction::spread_stiffness(const Pose& pose, double total) const {
+  OverlapWorkspace workspace;
+  Region region;
+  Patch area({pose.x, pose.y});
+  for (const SheetPair& s : sheets_) {
+    intersect_exactly(s.yoke, s.limb, pose, workspace, region);
+    area.add(region, s.count);
+  }
+  const Vec2 arm = area.centroid() - area.reference();
+  const double polar = area.gyration() * area.gyration() + arm.squaredNorm();
+  Mat3 k;
+  k << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x(), -arm.y(), arm.x(), polar;
+  return total * k;
+}
+
+Vec3 StepLapFriction::wrench(const Snapshot& s) const {
+  if (!is_elastic()) return Vec3::Map(s.friction_force + row_);
+  if (phase(s) == FrictionPhase::apart) return Vec3::Zero();
+  const Pose now = pose_of(s.motion), slid = slid_pose(s);
+  return -(stiffness_ * Vec3(now.x - slid.x, now.y - slid.y, now.theta - slid.theta));
+}
+
+FrictionPhase StepLapFriction::phase(const Snapshot& s) const {
+  return is_elastic() ? phase_of_elastic(s.evaluation->mode[unit_]) : s.evaluation->friction[index_].phase;
+}
+
+Pose StepLapFriction::slid_pose(const Snapshot& s) const {
+  if (!is_elastic()) return pose_of(s.motion);
+  const double* p = s.evaluation->inner + inner_;
+  return {p[0], p[1], p[2]};
+}
+
 } // namespace steplap
