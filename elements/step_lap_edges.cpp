@@ -52,7 +52,8 @@ void EdgeGroup::add_forces(Evaluation& e) const {
   for (const Entry& entry : entries) {
     const Motion<double>& link = e.link_motion[entry.link];
     const UnitMode mode = e.mode[entry.unit];
-    const auto one = entry.gap[0].at<false, double>(link, Origin{}), two = entry.gap[1].at<false, double>(link, Origin{});
+    const auto one = entry.gap[0].at<false, double>(link, Origin{}),
+               two = entry.gap[1].at<false, double>(link, Origin{});
     double* const watch = e.watch + entry.watch;
     double* const watch_rate = e.watch_rate + entry.watch;
     const double sign[2] = {(mode & k_edge_end_1) != 0 ? -1.0 : 1.0, (mode & k_edge_end_2) != 0 ? -1.0 : 1.0};
@@ -70,7 +71,9 @@ void EdgeGroup::add_forces(Evaluation& e) const {
 double EdgeGroup::potential(const Motion<double>* motion) const {
   double sum = 0.0;
   for (const Entry& entry : entries) {
-    const auto depth = [&](int end) { return -entry.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value; };
+    const auto depth = [&](int end) {
+      return -entry.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
+    };
     sum += energy(depth(0), depth(1), entry.stiffness, entry.length);
   }
   return sum;
@@ -84,21 +87,26 @@ void EdgeGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out
     const D12 gap[2] = {entry.gap[0].at<false, D12>(a, b).value, entry.gap[1].at<false, D12>(a, b).value};
     const auto p = press(-gap[0], -gap[1], entry.stiffness, entry.length, mode);
     for (int end = 0; end < 2; ++end)
-      add_pair_jacobian(entry.a, entry.b, entry.gap[end], e, [&](const D12&, const D12&) { return p.force[end]; }, out);
+      add_pair_jacobian(
+          entry.a, entry.b, entry.gap[end], e, [&](const D12&, const D12&) { return p.force[end]; }, out);
   }
 }
 
 void EdgeGroup::mark_bodies(std::vector<char>& is_used) const {
-  for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  for (const Entry& entry : entries)
+    is_used[entry.a] = is_used[entry.b] = 1;
 }
 
 void EdgeGroup::enter_links(LinkTable& links) {
-  for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+  for (Entry& entry : entries)
+    entry.link = links.add(entry.a, entry.b);
 }
 
 UnitMode EdgeGroup::initial_mode(int element, const Evaluation& e) const {
   const Entry& entry = entries[element];
-  const auto depth = [&](int end) { return -entry.gap[end].at<false, double>(e.motion[entry.a], e.motion[entry.b]).value; };
+  const auto depth = [&](int end) {
+    return -entry.gap[end].at<false, double>(e.motion[entry.a], e.motion[entry.b]).value;
+  };
   return mode_of(depth(0), depth(1));
 }
 
@@ -114,11 +122,13 @@ EventKind EdgeGroup::transition(UnitMode from, UnitMode to) const {
 EdgeGroup::Bearing EdgeGroup::bearing(int element, const Motion<double>* motion) const {
   const Entry& entry = entries[element];
   double depth[2];
-  for (int end = 0; end < 2; ++end) depth[end] = -entry.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
+  for (int end = 0; end < 2; ++end)
+    depth[end] = -entry.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
   const auto p = press(depth[0], depth[1], entry.stiffness, entry.length, mode_of(depth[0], depth[1]));
   Bearing bearing;
   bearing.force = p.force[0] + p.force[1];
-  for (int end = 0; end < 2; ++end) bearing.load[end] = entry.stiffness * std::max(0.0, depth[end]);
+  for (int end = 0; end < 2; ++end)
+    bearing.load[end] = entry.stiffness * std::max(0.0, depth[end]);
   return bearing;
 }
 

@@ -1,16 +1,17 @@
-// Edges of core sheets that bear on each other: a limb drawn towards its yoke by more than the clearance of a layer butts
-// along the mitre.
+// Edges of core sheets that bear on each other: a limb drawn towards its yoke by more than the clearance of a layer
+// butts along the mitre.
 //
-// One *edge line* for each interface that states its clearance: the side of its overlap where the limb's sheet ends, fixed
-// in the limb, against a parallel line fixed in the active part that lies the clearance beyond it in the reference pose.
-// The sheets' edges are a Winkler bed: a line load q = k d where they are pressed in by d ≥ 0, k in N/m per metre of line, of
-// all sheets at the corner together, shared among the interfaces of a corner as they are counted. With the depths d₁, d₂
-// at the line's ends (straight in between, length l; negative where it is open) the stored energy is
+// One *edge line* for each interface that states its clearance: the side of its overlap where the limb's sheet ends,
+// fixed in the limb, against a parallel line fixed in the active part that lies the clearance beyond it in the
+// reference pose. The sheets' edges are a Winkler bed: a line load q = k d where they are pressed in by d ≥ 0, k in N/m
+// per metre of line, of all sheets at the corner together, shared among the interfaces of a corner as they are counted.
+// With the depths d₁, d₂ at the line's ends (straight in between, length l; negative where it is open) the stored
+// energy is
 //   both pressed:      U = k l (d₁² + d₁d₂ + d₂²)/6
 //   only end 1:        U = k l d₁³/(6 (d₁ − d₂)),   over the length l d₁/(d₁ − d₂)
-// and the force on the limb −∂U/∂(pose): exactly conservative, whatever the limb turns by. Nothing is lost, no force acts
-// along the line (friction of edges is left out: it would hold the limb back), and edges never pull.
-// Events: where either end of a line begins or ceases to bear.
+// and the force on the limb −∂U/∂(pose): exactly conservative, whatever the limb turns by. Nothing is lost, no force
+// acts along the line (friction of edges is left out: it would hold the limb back), and edges never pull. Events: where
+// either end of a line begins or ceases to bear.
 #pragma once
 
 #include "elements/step_lap_interface.h"

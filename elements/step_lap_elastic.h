@@ -1,12 +1,12 @@
-// The force of elastic step-lap joints: springs in series with friction (step_lap_friction.h), as force elements with modes
-// and an inner state p, the relative pose as far as the sheets have slid.
+// The force of elastic step-lap joints: springs in series with friction (step_lap_friction.h), as force elements with
+// modes and an inner state p, the relative pose as far as the sheets have slid.
 //
 //   W = −K (s − p) on the limb about its centre of gravity, active part's axes; stored ½ (s − p)ᵀK (s − p).
-// Holding, p stands and the mode is valid while the wrench is within the limit surface; yielding, p flows along the surface's
-// normal. The wrench is continuous everywhere, so that neither velocities nor accelerations jump: K is bounded, and nothing
-// has to be decided together with other friction. Integration leaves u = 1 + its error while it yields: settle_inner()
-// moves p along the strain onto the surface (radial return) and books what that dissipates, F·Δp.
-// It comes apart where its overlaps have a hundredth of the capacity left that they had in the reference pose.
+// Holding, p stands and the mode is valid while the wrench is within the limit surface; yielding, p flows along the
+// surface's normal. The wrench is continuous everywhere, so that neither velocities nor accelerations jump: K is
+// bounded, and nothing has to be decided together with other friction. Integration leaves u = 1 + its error while it
+// yields: settle_inner() moves p along the strain onto the surface (radial return) and books what that dissipates,
+// F·Δp. It comes apart where its overlaps have a hundredth of the capacity left that they had in the reference pose.
 #pragma once
 
 #include "elements/step_lap_friction.h"

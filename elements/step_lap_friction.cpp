@@ -38,7 +38,7 @@ constexpr double k_rounding = 2.5e-13, k_time_rounding = 2e-12;
 // Share of its overlaps' capacity below which an elastic joint has come apart. The direction of flow follows the strain
 // within F/(K |ν|), which goes to zero with the overlap: to follow it to the end would take for ever.
 constexpr double k_last_grip = 1e-2;
-constexpr double k_trial = 1.01; // u beyond which a yielding joint is at a stage of a step, not at its end
+constexpr double k_trial = 1.01;     // u beyond which a yielding joint is at a stage of a step, not at its end
 constexpr double k_tilt_step = 1e-3; // m/s²: of pressures that are linear in it
 constexpr double k_slid_step = 1e-6; // m at a corner 1 m from the centre, of differences of the overlap
 
@@ -169,7 +169,8 @@ void StepLapFriction::build(const Pose& pose, GripLaw law, double tilt, OverlapW
   }
 }
 
-void StepLapFriction::add_pressed(const SheetPair& s, const Region& region, GripLaw law, double tilt, Patch& patch) const {
+void StepLapFriction::add_pressed(const SheetPair& s, const Region& region, GripLaw law, double tilt,
+                                  Patch& patch) const {
   const double pressed = s.transverse == 0.0 ? 1.0 : std::max(0.0, 1.0 + s.transverse * tilt);
   const double traction = pressed * (law == GripLaw::holding ? s.static_traction : s.kinetic_traction);
   if (s.gradient.isZero(0.0)) return patch.add(region, traction);
@@ -178,7 +179,8 @@ void StepLapFriction::add_pressed(const SheetPair& s, const Region& region, Grip
     try {
       patch.add(piece, Traction{traction * at_centroid, traction * s.gradient});
     } catch (const std::invalid_argument&) {
-      throw NumericalFailure("step_lap_joint '" + name_ + "': its linear pressure is negative somewhere in the overlap");
+      throw NumericalFailure("step_lap_joint '" + name_ +
+                             "': its linear pressure is negative somewhere in the overlap");
     }
   }
 }
@@ -208,7 +210,8 @@ PressureState StepLapFriction::pressure_at(double t) const {
     now.factor_rate = kept_ * pressure_signal_->drive(t, DriveLevel::position).rate;
     if (!(now.factor > 0.0))
       throw NumericalFailure("step_lap_joint '" + name_ + "', t = " + number_text(t) +
-                             " s: the factor of its pressures is " + number_text(now.factor) + ": it has to stay above zero");
+                             " s: the factor of its pressures is " + number_text(now.factor) +
+                             ": it has to stay above zero");
   }
   if (!acceleration_) return now;
   now.tilt = acceleration_->value(t) / now.factor;
@@ -227,11 +230,12 @@ Patch StepLapFriction::patch_at(const Pose& pose, GripLaw law) const {
   return patch;
 }
 
-StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, const Pose& pose,
-                                           GripLaw law, double tilt) const {
+StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, const Pose& pose, GripLaw law,
+                                           double tilt) const {
   auto& own = static_cast<Scratch&>(*scratch[index_]);
   Fit& f = own.fits[is_one_law_ || law == GripLaw::holding ? 0 : 1];
-  const bool is_same = f.is_valid && f.pose.x == pose.x && f.pose.y == pose.y && f.pose.theta == pose.theta && f.tilt == tilt;
+  const bool is_same =
+      f.is_valid && f.pose.x == pose.x && f.pose.y == pose.y && f.pose.theta == pose.theta && f.tilt == tilt;
   if (is_same) return f;
   build(pose, law, tilt, own.workspace, own.region, f.patch);
   f.pose = pose;
@@ -274,9 +278,10 @@ double StepLapFriction::yield_usage(const Evaluation& e, const Pose& slid, const
   return required(f.patch, wrench / now.factor, e.t).u;
 }
 
-// ∂h/∂p along n, and what h changes by as the pressures do: central differences, whose share in the balance is that of the
-// strain at the bound to the overlap's width.
-StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& slid, const Vec3& force, const Vec3& rate) const {
+// ∂h/∂p along n, and what h changes by as the pressures do: central differences, whose share in the balance is that of
+// the strain at the bound to the overlap's width.
+StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& slid, const Vec3& force,
+                                            const Vec3& rate) const {
   Flow flow;
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, slid, GripLaw::holding, now.tilt);
@@ -292,14 +297,18 @@ StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& sli
   Fit& moved = own.fits[1]; // free: an elastic joint has one law
   const double step = k_slid_step * std::min(1.0, gyration_);
   const auto power = [&](double way, double tilt) {
-    build({slid.x + way * n[0], slid.y + way * n[1], slid.theta + way * n[2]}, GripLaw::holding, tilt, own.workspace, own.region, moved.patch);
+    build({slid.x + way * n[0], slid.y + way * n[1], slid.theta + way * n[2]}, GripLaw::holding, tilt, own.workspace,
+          own.region, moved.patch);
     return moved.patch.empty() ? 0.0 : evaluate_gradient(moved.patch, n).h;
   };
   moved.is_valid = false;
   const double change = now.factor * (power(step, now.tilt) - power(-step, now.tilt)) / (2.0 * step);
-  double tightening = now.factor_rate == 0.0 ? 0.0 : now.factor_rate * evaluate_gradient(f.patch, n).h; // W: of h at a slip of 1 m/s, a second
+  double tightening = now.factor_rate == 0.0
+                          ? 0.0
+                          : now.factor_rate * evaluate_gradient(f.patch, n).h; // W: of h at a slip of 1 m/s, a second
   if (now.tilt_rate != 0.0)
-    tightening += now.factor * now.tilt_rate * (power(0.0, now.tilt + k_tilt_step) - power(0.0, now.tilt - k_tilt_step)) / (2.0 * k_tilt_step);
+    tightening += now.factor * now.tilt_rate *
+                  (power(0.0, now.tilt + k_tilt_step) - power(0.0, now.tilt - k_tilt_step)) / (2.0 * k_tilt_step);
   flow.direction = n;
   flow.resistance = n.dot(pull) + need.u * change;
   if (!(flow.resistance > 0.0) && need.u > k_trial) { // of a step that goes too far: it will be made again
@@ -307,50 +316,13 @@ StepLapFriction::Flow StepLapFriction::flow(const Evaluation& e, const Pose& sli
     return flow;
   }
   if (!(flow.resistance > 0.0))
-    throw NumericalFailure("step_lap_joint '" + name_ + "', t = " + number_text(e.t) +
-                           " s: loses overlap faster than its stiffness lets go of the load: it snaps through. Give it more "
-                           "tangential stiffness, or leave it rigid");
+    throw NumericalFailure(
+        "step_lap_joint '" + name_ + "', t = " + number_text(e.t) +
+        " s: loses overlap faster than its stiffness lets go of the load: it snaps through. Give it more "
+        "tangential stiffness, or leave it rigid");
   flow.speed = (pull.dot(rate) - need.u * tightening) / flow.resistance;
   flow.rate = flow.speed * n;
   return flow;
-}
-
-void StepLapFriction::make_elastic(const Mat3& stiffness, int inner, int unit) {
-  stiffness_ = stiffness;
-  inner_ = inner;
-  unit_ = unit;
-}
-
-Mat3 StepLapFriction::spread_stiffness(const Pose& pose, double total) const {
-  OverlapWorkspace workspace;
-  Region region;
-  Patch area({pose.x, pose.y});
-  for (const SheetPair& s : sheets_) {
-    intersect_exactly(s.yoke, s.limb, pose, workspace, region);
-    area.add(region, s.count);
-  }
-  const Vec2 arm = area.centroid() - area.reference();
-  const double second = area.gyration() * area.gyration() + arm.squaredNorm();
-  Mat3 k;
-  k << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x(), -arm.y(), arm.x(), second;
-  return total * k;
-}
-
-Vec3 StepLapFriction::wrench(const Snapshot& s) const {
-  if (!is_elastic()) return Vec3::Map(s.friction_force + row_);
-  if (phase(s) == FrictionPhase::apart) return Vec3::Zero();
-  const Pose now = pose_of(s.motion), slid = slid_pose(s);
-  return -(stiffness_ * Vec3(now.x - slid.x, now.y - slid.y, now.theta - slid.theta));
-}
-
-FrictionPhase StepLapFriction::phase(const Snapshot& s) const {
-  return is_elastic() ? phase_of_elastic(s.evaluation->mode[unit_]) : s.evaluation->friction[index_].phase;
-}
-
-Pose StepLapFriction::slid_pose(const Snapshot& s) const {
-  if (!is_elastic()) return pose_of(s.motion);
-  const double* p = s.evaluation->inner + inner_;
-  return {p[0], p[1], p[2]};
 }
 
 double StepLapFriction::support(const Evaluation& e, const FrictionState&, const double* rate) const {
@@ -376,7 +348,8 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const Pose pose = present(s);
   const PressureState now = pressure_at(s.t);
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y &&
-                       own.asked_at.theta == pose.theta && own.pressed.factor == now.factor && own.pressed.tilt == now.tilt;
+                       own.asked_at.theta == pose.theta && own.pressed.factor == now.factor &&
+                       own.pressed.tilt == now.tilt;
   if (is_same) return own.answer;
   Fit& f = fit(s.evaluation->scratch, pose, GripLaw::holding, now.tilt);
   const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
@@ -486,7 +459,8 @@ void StepLapFriction::slip_wrench(const Evaluation& e, const FrictionState& stat
                                   double* wrench) const {
   const PressureState now = pressure_at(e.t);
   const Fit& f = fit(e.scratch, pose_of(e.motion), GripLaw::sliding, now.tilt);
-  Vec3::Map(wrench) = -now.factor * evaluate_gradient(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).gradient;
+  Vec3::Map(wrench) =
+      -now.factor * evaluate_gradient(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).gradient;
 }
 
 void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
@@ -578,7 +552,8 @@ void StepLapFriction::change_place(const Evaluation& e, FrictionState& state) co
 }
 
 double StepLapFriction::grip_beyond_last(const Evaluation& e, const Pose& slid) const {
-  return fit(e.scratch, slid, GripLaw::holding, pressure_at(e.t).tilt).patch.force() / reference_->patch.force() - k_last_grip;
+  return fit(e.scratch, slid, GripLaw::holding, pressure_at(e.t).tilt).patch.force() / reference_->patch.force() -
+         k_last_grip;
 }
 
 std::uint32_t StepLapFriction::parted_at(const Pose& pose, bool& is_any_left) const {

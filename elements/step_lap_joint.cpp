@@ -36,7 +36,8 @@ const Signal* steady_signal(SystemBuilder& builder, const std::string& name, con
   if (!signal) return nullptr;
   for (std::size_t k = 0; k < signal->breakpoints().size(); ++k)
     if (signal->jumps_at(k)) {
-      builder.error("'" + std::string(field) + "': signal '" + name + "' jumps at t = " + std::to_string(signal->breakpoints()[k]) +
+      builder.error("'" + std::string(field) + "': signal '" + name +
+                    "' jumps at t = " + std::to_string(signal->breakpoints()[k]) +
                     " s; a clamping pressure changes within some time: a trapezoid, or a record between lines");
       break;
     }
@@ -46,17 +47,19 @@ const Signal* steady_signal(SystemBuilder& builder, const std::string& name, con
 void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction, const StepLapInterface& first) {
   const auto* self = &friction;
   // What the first interface is pressed by now, at the middle of its overlap.
-  const auto pressure_at = [self, nominal = first.pressure, share = first.transverse_pressure / first.pressure](double t) {
+  const auto pressure_at = [self, nominal = first.pressure,
+                            share = first.transverse_pressure / first.pressure](double t) {
     const PressureState now = self->pressure_at(t);
     return nominal * now.factor * std::max(0.0, 1.0 + share * now.tilt);
   };
   builder.add_channel("u", "", "share of the friction capacity in use; slides at 1",
                       [self](const Snapshot& s) { return self->usage(s).u; })
       .bounds = [self](const Snapshot& s) { return self->usage_between(s); };
-  builder.add_channel("p_req", "Pa",
-                      "required pressure: all pressures scaled together so that the joint just holds, "
-                      "that of its first interface",
-                      [self, pressure_at](const Snapshot& s) { return self->usage(s).u * pressure_at(s.t); })
+  builder
+      .add_channel("p_req", "Pa",
+                   "required pressure: all pressures scaled together so that the joint just holds, "
+                   "that of its first interface",
+                   [self, pressure_at](const Snapshot& s) { return self->usage(s).u * pressure_at(s.t); })
       .bounds = [self, pressure_at](const Snapshot& s) {
     const ValueBounds u = self->usage_between(s);
     const double pressure = pressure_at(s.t);
@@ -98,7 +101,9 @@ void add_loss_channels(SystemBuilder& builder, const StepLapFriction& friction, 
                         [self](const Snapshot& s) { return self->loss(s).clearance_left; });
 }
 
-double coordinate(const Pose& pose, int r) { return r == 0 ? pose.x : r == 1 ? pose.y : pose.theta; }
+double coordinate(const Pose& pose, int r) {
+  return r == 0 ? pose.x : r == 1 ? pose.y : pose.theta;
+}
 
 void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction) {
   const auto* self = &friction;
@@ -119,7 +124,8 @@ void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction)
   if (!is_elastic) return;
   static constexpr const char* strains[] = {"strain_x", "strain_y", "strain_angle"};
   for (int r = 0; r < 3; ++r)
-    builder.add_channel(strains[r], r < 2 ? "m" : "rad", "of the joint's spring: of the limb's centre of gravity, active part's axes",
+    builder.add_channel(strains[r], r < 2 ? "m" : "rad",
+                        "of the joint's spring: of the limb's centre of gravity, active part's axes",
                         [self, r](const Snapshot& s) {
                           return coordinate(self->pose_of(s.motion), r) - coordinate(self->slid_pose(s), r);
                         });
@@ -178,14 +184,18 @@ bool check_elastic(const StepLapJoint& e, SystemBuilder& builder, const StepLapF
     if (is_wrong) builder.error(message);
     return is_wrong;
   };
-  bool is_bad = fails(e.tangential_stiffness && e.contact_stiffness, "give either 'tangential_stiffness' or 'contact_stiffness', not both");
-  is_bad |= fails(e.sheet_thickness.has_value() != e.shear_modulus.has_value(), "give both 'sheet_thickness' and 'shear_modulus', or neither");
+  bool is_bad = fails(e.tangential_stiffness && e.contact_stiffness,
+                      "give either 'tangential_stiffness' or 'contact_stiffness', not both");
+  is_bad |= fails(e.sheet_thickness.has_value() != e.shear_modulus.has_value(),
+                  "give both 'sheet_thickness' and 'shear_modulus', or neither");
   is_bad |= fails(e.mode == "monitor", "an elastic joint cannot be a monitor: a monitored one is rigid");
-  is_bad |= fails(!friction.has_sheets(), "an elastic joint needs step_lap_interface elements, over which its stiffness is spread");
+  is_bad |= fails(!friction.has_sheets(),
+                  "an elastic joint needs step_lap_interface elements, over which its stiffness is spread");
   for (const SheetPair& s : friction.sheets())
-    is_bad |= fails(s.kinetic_traction != s.static_traction,
-                    "an elastic joint has one friction coefficient: leave out 'kinetic_friction' of its interfaces (the kinetic "
-                    "one as 'static_friction' is on the safe side)");
+    is_bad |= fails(
+        s.kinetic_traction != s.static_traction,
+        "an elastic joint has one friction coefficient: leave out 'kinetic_friction' of its interfaces (the kinetic "
+        "one as 'static_friction' is on the safe side)");
   return !is_bad;
 }
 
@@ -202,7 +212,8 @@ bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& b
   builder.add_inner(group, 0.0);
   group.entries.push_back(entry);
   builder.add_unit(group, ElasticGripGroup::k_watches);
-  friction.make_elastic(friction.spread_stiffness(reference, stiffness_of(e, friction, reference)), entry.inner, group.entries.back().unit);
+  friction.make_elastic(friction.spread_stiffness(reference, stiffness_of(e, friction, reference)), entry.inner,
+                        group.entries.back().unit);
   return true;
 }
 
@@ -219,7 +230,8 @@ EdgeGroup::Bearing bearing_of(const EdgeGroup& group, const EdgeCorner& corner, 
   for (const int line : corner.lines) {
     const auto b = group.bearing(line, motion);
     sum.force += b.force;
-    for (int end = 0; end < 2; ++end) sum.load[end] += b.load[end];
+    for (int end = 0; end < 2; ++end)
+      sum.load[end] += b.load[end];
   }
   return sum;
 }
@@ -233,19 +245,22 @@ double largest_load(const EdgeGroup& group, const std::vector<EdgeCorner>& corne
   return largest;
 }
 
-void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const EdgeGroup& group, const std::vector<EdgeCorner>& corners) {
+void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const EdgeGroup& group,
+                       const std::vector<EdgeCorner>& corners) {
   for (std::size_t c = 0; c < corners.size(); ++c) {
     const EdgeCorner corner = corners[c];
     const std::string number = "_" + std::to_string(c + 1);
     std::ostringstream at;
     at.precision(4);
-    at << "corner about (" << corner.middle.x() << ", " << corner.middle.y() << ") m from the active part's centre of gravity";
+    at << "corner about (" << corner.middle.x() << ", " << corner.middle.y()
+       << ") m from the active part's centre of gravity";
     builder.add_channel("edge_force" + number, "N", "with which sheet edges press the limb off the yoke, " + at.str(),
                         [&group, corner](const Snapshot& s) { return bearing_of(group, corner, s.motion).force; });
     for (const int end : {0, 1})
-      builder.add_channel("edge_load" + number + (end == 0 ? "_start" : "_end"), "N/m",
-                          "line load of sheet edges at one end of the mitre, " + at.str() + "; straight in between",
-                          [&group, corner, end](const Snapshot& s) { return bearing_of(group, corner, s.motion).load[end]; });
+      builder.add_channel(
+          "edge_load" + number + (end == 0 ? "_start" : "_end"), "N/m",
+          "line load of sheet edges at one end of the mitre, " + at.str() + "; straight in between",
+          [&group, corner, end](const Snapshot& s) { return bearing_of(group, corner, s.motion).load[end]; });
   }
   builder.add_channel("edge_load", "N/m", "largest line load of sheet edges at any corner",
                       [&group, corners](const Snapshot& s) { return largest_load(group, corners, s.motion); });
@@ -287,7 +302,8 @@ bool add_edges(const StepLapJoint& e, const Pose& reference, SystemBuilder& buil
     group.entries.push_back(entry);
     builder.add_unit(group, EdgeGroup::k_watches);
   }
-  corners.erase(std::remove_if(corners.begin(), corners.end(), [](const EdgeCorner& c) { return c.lines.empty(); }), corners.end());
+  corners.erase(std::remove_if(corners.begin(), corners.end(), [](const EdgeCorner& c) { return c.lines.empty(); }),
+                corners.end());
   if (corners.empty()) return fails("'edge_stiffness' needs the 'clearance' of its step_lap_interface elements");
   add_edge_channels(e, builder, group, corners);
   return true;
@@ -313,13 +329,16 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   friction->centre_pressures(reference);
   friction->set_pressure(steady_signal(builder, e.pressure_signal, "pressure_signal"), e.pressure_loss,
                          steady_signal(builder, e.transverse_acceleration, "transverse_acceleration"));
-  if (!e.transverse_acceleration.empty() && std::none_of(interfaces.begin(), interfaces.end(), [](const auto* i) { return i->transverse_pressure != 0.0; }))
-    return builder.error("'transverse_acceleration' changes nothing: give its step_lap_interface elements a 'transverse_pressure'");
+  if (!e.transverse_acceleration.empty() &&
+      std::none_of(interfaces.begin(), interfaces.end(), [](const auto* i) { return i->transverse_pressure != 0.0; }))
+    return builder.error(
+        "'transverse_acceleration' changes nothing: give its step_lap_interface elements a 'transverse_pressure'");
   try {
     static_cast<void>(friction->patch_at(reference, GripLaw::holding));
   } catch (const NumericalFailure&) {
-    return builder.error("the pressure of one of its step_lap_interface elements is negative somewhere in the overlap: a smaller "
-                         "'pressure_gradient', or more 'pressure'");
+    return builder.error(
+        "the pressure of one of its step_lap_interface elements is negative somewhere in the overlap: a smaller "
+        "'pressure_gradient', or more 'pressure'");
   }
   if (friction->has_sheets() && friction->patch_at(reference, GripLaw::holding).empty())
     return builder.error("its sheets do not overlap in the reference pose: check the polygons and the "
@@ -357,22 +376,42 @@ const ElementKind& step_lap_joint_kind() {
     f.add("on_apart", &T::on_apart)
         .one_of({"stop", "continue"})
         .doc("what happens when no overlap is left: the run ends, or goes on without friction");
-    f.add("tangential_stiffness", &T::tangential_stiffness).in("N/m").positive().doc(
-        "of the whole joint in translation, spread evenly over its overlaps: a spring in series with the friction. Without it "
-        "(and contact_stiffness) the joint sticks exactly");
-    f.add("contact_stiffness", &T::contact_stiffness).in("N/m^3").positive().doc(
-        "the same, of a square metre of one interface: tangential stiffness of two sheets pressed on each other");
-    f.add("sheet_thickness", &T::sheet_thickness).in("m").positive().doc("in series with contact_stiffness: sheets in shear");
+    f.add("tangential_stiffness", &T::tangential_stiffness)
+        .in("N/m")
+        .positive()
+        .doc("of the whole joint in translation, spread evenly over its overlaps: a spring in series with the "
+             "friction. Without it "
+             "(and contact_stiffness) the joint sticks exactly");
+    f.add("contact_stiffness", &T::contact_stiffness)
+        .in("N/m^3")
+        .positive()
+        .doc("the same, of a square metre of one interface: tangential stiffness of two sheets pressed on each other");
+    f.add("sheet_thickness", &T::sheet_thickness)
+        .in("m")
+        .positive()
+        .doc("in series with contact_stiffness: sheets in shear");
     f.add("shear_modulus", &T::shear_modulus).in("Pa").positive().doc("of the sheets, with sheet_thickness");
-    f.add("edge_stiffness", &T::edge_stiffness).in("N/m^2").positive().doc(
-        "of sheet edges that bear on each other once a clearance has closed: line load over depth, of all sheets at a corner. "
-        "Without it sheets pass each other freely, and a closed clearance is only reported");
-    f.add("allowed_line_load", &T::allowed_line_load).in("N/m").positive().doc(
-        "of all sheets at a corner, along the mitre: beyond it their edges are crushed and the joint is rejected");
-    f.add("pressure_signal", &T::pressure_signal).as(FieldType::signal).doc("factor of all its pressures in time, above 0; not given: 1");
-    f.add("pressure_loss", &T::pressure_loss).not_negative().at_most(0.99).doc("share of all its pressures that relaxation has taken");
-    f.add("transverse_acceleration", &T::transverse_acceleration).as(FieldType::signal).doc(
-        "across the sheets, m/s², out of the plane of motion: changes the pressure of each interface by its transverse_pressure");
+    f.add("edge_stiffness", &T::edge_stiffness)
+        .in("N/m^2")
+        .positive()
+        .doc("of sheet edges that bear on each other once a clearance has closed: line load over depth, of all sheets "
+             "at a corner. "
+             "Without it sheets pass each other freely, and a closed clearance is only reported");
+    f.add("allowed_line_load", &T::allowed_line_load)
+        .in("N/m")
+        .positive()
+        .doc("of all sheets at a corner, along the mitre: beyond it their edges are crushed and the joint is rejected");
+    f.add("pressure_signal", &T::pressure_signal)
+        .as(FieldType::signal)
+        .doc("factor of all its pressures in time, above 0; not given: 1");
+    f.add("pressure_loss", &T::pressure_loss)
+        .not_negative()
+        .at_most(0.99)
+        .doc("share of all its pressures that relaxation has taken");
+    f.add("transverse_acceleration", &T::transverse_acceleration)
+        .as(FieldType::signal)
+        .doc("across the sheets, m/s², out of the plane of motion: changes the pressure of each interface by its "
+             "transverse_pressure");
     f.add("least_margin", &T::least_margin).at_least(1.0).doc(
         "smallest margin (capacity over what is in use) that a run must leave: inspect below it");
     f.add("most_slide", &T::most_slide).positive().at_most(1.0).doc(

@@ -10,7 +10,8 @@ namespace steplap {
 
 namespace {
 
-// Modes: 0 slack; 1, 2 pulls, pulled but without force; 3, 4 the same pressed; 5 acts both ways without slack; 6 broken.
+// Modes: 0 slack; 1, 2 pulls, pulled but without force; 3, 4 the same pressed; 5 acts both ways without slack; 6
+// broken.
 constexpr UnitMode k_slack = 0, k_pulls = 1, k_presses = 3, k_linear = 5, k_broken = 6;
 
 struct TieLaw {
@@ -20,7 +21,9 @@ struct TieLaw {
   double strength = std::numeric_limits<double>::infinity(); ///< of all
   bool is_linear = false;
 
-  static UnitMode contact_mode(UnitMode mode) { return mode == k_pulls || mode == k_presses ? k_contact_pressed : k_contact_released; }
+  static UnitMode contact_mode(UnitMode mode) {
+    return mode == k_pulls || mode == k_presses ? k_contact_pressed : k_contact_released;
+  }
   static bool is_pull(UnitMode mode) { return mode == k_pulls || mode == k_pulls + 1; }
   static bool is_push(UnitMode mode) { return mode == k_presses || mode == k_presses + 1; }
   static UnitMode tie_mode(UnitMode contact, UnitMode side) {
@@ -117,17 +120,22 @@ public:
     inner[entry.inner] = 1.0;
     return entry.law.energy(value(entry, e.motion));
   }
-  [[nodiscard]] bool stops_in(int element, UnitMode to) const override { return to == k_broken && entries[element].stops; }
+  [[nodiscard]] bool stops_in(int element, UnitMode to) const override {
+    return to == k_broken && entries[element].stops;
+  }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries)
-      add_pair_jacobian(entry.a, entry.b, entry.measure, e,
-                        [&](const Dual<12>& v, const Dual<12>& rate) { return entry.law.force(v, rate, e.mode[entry.unit]); }, out);
+      add_pair_jacobian(
+          entry.a, entry.b, entry.measure, e,
+          [&](const Dual<12>& v, const Dual<12>& rate) { return entry.law.force(v, rate, e.mode[entry.unit]); }, out);
   }
   void mark_bodies(std::vector<char>& is_used) const override {
-    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+    for (const Entry& entry : entries)
+      is_used[entry.a] = is_used[entry.b] = 1;
   }
   void enter_links(LinkTable& links) override {
-    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+    for (Entry& entry : entries)
+      entry.link = links.add(entry.a, entry.b);
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const Entry& entry = entries[element];
@@ -187,11 +195,13 @@ template <class Measure> void add(const Tie& e, SystemBuilder& builder, int a, i
   builder.add_channel("elongation", "m", "measure minus free length", [&group, i](const Snapshot& s) {
     return group.measured(i, *s.evaluation).value - group.entries[i].law.free;
   });
-  builder.add_channel("force", "N", "of all, tension positive", [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
+  builder.add_channel("force", "N", "of all, tension positive",
+                      [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
   if (!e.strength) return;
-  builder.add_channel("strength_share", "", "size of its force, of its strength; breaks at 1", [&group, i](const Snapshot& s) {
-    return std::abs(group.force_of(i, *s.evaluation)) / group.entries[i].law.strength;
-  });
+  builder.add_channel("strength_share", "", "size of its force, of its strength; breaks at 1",
+                      [&group, i](const Snapshot& s) {
+                        return std::abs(group.force_of(i, *s.evaluation)) / group.entries[i].law.strength;
+                      });
   builder.add_channel("mode", "", "1 whole, 0 broken", [&group, i](const Snapshot& s) {
     return s.evaluation->mode[group.entries[i].unit] == k_broken ? 0.0 : 1.0;
   });
@@ -203,8 +213,10 @@ bool check(const Tie& e, SystemBuilder& builder) {
     return is_wrong;
   };
   bool is_bad = fails(e.preload && *e.preload != 0.0 && e.slack > 0.0, "give either 'preload' or 'slack', not both");
-  is_bad |= fails(e.preload.value_or(0.0) < 0.0 && e.acts == "tension", "a negative 'preload' presses: 'acts' has to be \"compression\" or \"both\"");
-  is_bad |= fails(e.preload.value_or(0.0) > 0.0 && e.acts == "compression", "a positive 'preload' pulls: 'acts' has to be \"tension\" or \"both\"");
+  is_bad |= fails(e.preload.value_or(0.0) < 0.0 && e.acts == "tension",
+                  "a negative 'preload' presses: 'acts' has to be \"compression\" or \"both\"");
+  is_bad |= fails(e.preload.value_or(0.0) > 0.0 && e.acts == "compression",
+                  "a positive 'preload' pulls: 'acts' has to be \"tension\" or \"both\"");
   is_bad |= fails(e.on_break == "stop" && !e.strength, "'on_break' needs a 'strength'");
   return !is_bad;
 }
@@ -230,7 +242,8 @@ const ElementKind& tie_kind() {
     using T = Tie;
     ElementKind k;
     k.name = "tie";
-    k.doc = "What bears beside a joint: tie plates, clamping bolts, bindings, resin, a winding round a limb. A spring between "
+    k.doc = "What bears beside a joint: tie plates, clamping bolts, bindings, resin, a winding round a limb. A spring "
+            "between "
             "two markers that pulls, presses or both, with slack, preload and a strength at which it breaks for good.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker on the first body");
@@ -242,7 +255,10 @@ const ElementKind& tie_kind() {
     f.add("count", &T::count).at_least(1).doc("equal ones side by side");
     f.add("slack", &T::slack).in("m").not_negative().doc("elongation without force, on each side on which it acts");
     f.add("preload", &T::preload).in("N").doc("of all in the reference pose, tension positive");
-    f.add("strength", &T::strength).in("N").positive().doc("size of the force at which one breaks; not given: it does not");
+    f.add("strength", &T::strength)
+        .in("N")
+        .positive()
+        .doc("size of the force at which one breaks; not given: it does not");
     f.add("on_break", &T::on_break).one_of({"continue", "stop"}).doc("whether the run goes on without it");
     k.holds<T>();
     k.compile = compile_tie;

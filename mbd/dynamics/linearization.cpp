@@ -111,8 +111,10 @@ void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
   for (const PairJacobian& part : parts_) add_forces(part);
   inner_parts_.clear();
   inner_.clear();
-  for (const ForceGroup* group : dynamics.system().inner_groups) group->add_inner_jacobian(dynamics.evaluation(), inner_parts_);
-  for (const InnerJacobian& part : inner_parts_) add_inner(part);
+  for (const ForceGroup* group : dynamics.system().inner_groups)
+    group->add_inner_jacobian(dynamics.evaluation(), inner_parts_);
+  for (const InnerJacobian& part : inner_parts_)
+    add_inner(part);
   for (std::size_t r = 0; r < layout_->active.size(); ++r) add_row(r);
   for (const int f : layout_->sliding) add_sliding(f);
   add_transport();
@@ -171,7 +173,8 @@ void Linearization::add_inner(const InnerJacobian& part) {
     Mat3 f = part.force.middleRows<3>(3 * side), p = part.by_pose.middleCols<3>(3 * side),
          v = part.by_velocity.middleCols<3>(3 * side);
     if (!place.is_trivial) { // as in add_body_block
-      const Motion<double>&m = dynamics_->motion()[body[side]], &centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
+      const Motion<double>&m = dynamics_->motion()[body[side]],
+            &centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
       const double x = m.x - centre.x, y = m.y - centre.y;
       f.row(2) += x * f.row(1) - y * f.row(0);
       p.col(2) += -y * p.col(0) + x * p.col(1) - centre.omega * (x * v.col(0) + y * v.col(1));

@@ -24,9 +24,9 @@ double point_speed(const Motion<double>& m, const Pair<double>& lever, double co
 std::string Event::words() const { return detail.empty() ? words_of(kind) : words_of(kind) + (" " + detail); }
 
 EventHandler::EventHandler(const System& system, Dynamics& dynamics)
-    : system_(system), dynamics_(dynamics), modes_(system, dynamics),
-      unit_of_slot_(system.watch_count, -1), friction_of_slot_(system.watch_count, -1),
-      fresh_(system.watch_count, 0), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
+    : system_(system), dynamics_(dynamics), modes_(system, dynamics), unit_of_slot_(system.watch_count, -1),
+      friction_of_slot_(system.watch_count, -1), fresh_(system.watch_count, 0),
+      y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   for (std::size_t u = 0; u < system.units.size(); ++u)
     for (int w = 0; w < system.units[u].watch_count; ++w)
       unit_of_slot_[system.units[u].watch + w] = static_cast<int>(u);
@@ -122,7 +122,8 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
     if (to == from) continue;
     state.mode[u] = to;
     state.dissipated += unit.group->enter_mode(unit.index, to, dynamics_.evaluation(), state.inner.data());
-    if (unit.group->stops_in(unit.index, to)) stop_reason_ = "'" + system_.element_names[unit.element] + "' " + words_of(unit.group->transition(from, to));
+    if (unit.group->stops_in(unit.index, to))
+      stop_reason_ = "'" + system_.element_names[unit.element] + "' " + words_of(unit.group->transition(from, to));
     is_any = true;
     for (int w = 0; w < unit.watch_count; ++w) fresh_[unit.watch + w] = 1;
     events.push_back({state.t, system_.element_names[unit.element], unit.group->transition(from, to)});

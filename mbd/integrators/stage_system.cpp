@@ -29,7 +29,8 @@ void StageSystem::add_inner_forces(const double* r) {
   for (std::size_t i = 0; i < inner_.size(); ++i) {
     const Linearization::InnerBlock& block = linearization_->inner()[i];
     Vec3 z = Vec3::Zero();
-    for (int k = 0; k < block.count; ++k) z[k] = r[2 * n_ + block.first + k];
+    for (int k = 0; k < block.count; ++k)
+      z[k] = r[2 * n_ + block.first + k];
     for (int c = 0; c < 6; ++c)
       if (block.cluster[c / 3] >= 0) z += g_ * block.by_pose.col(c) * r[3 * block.cluster[c / 3] + c % 3];
     const Eigen::Matrix<double, 6, 1> f = block.force * (inner_[i].answer * z);
@@ -40,15 +41,19 @@ void StageSystem::add_inner_forces(const double* r) {
 
 void StageSystem::solve_inner(const double* r, double* u) {
   const int count = linearization_->inner_count();
-  for (int k = 0; k < count; ++k) u[2 * n_ + k] = g_ * r[2 * n_ + k];
+  for (int k = 0; k < count; ++k)
+    u[2 * n_ + k] = g_ * r[2 * n_ + k];
   for (std::size_t i = 0; i < inner_.size(); ++i) {
     const Linearization::InnerBlock& block = linearization_->inner()[i];
     Vec3 z = Vec3::Zero();
-    for (int k = 0; k < block.count; ++k) z[k] = r[2 * n_ + block.first + k];
+    for (int k = 0; k < block.count; ++k)
+      z[k] = r[2 * n_ + block.first + k];
     for (int c = 0; c < 6; ++c)
-      if (const int at = 3 * block.cluster[c / 3] + c % 3; at >= 0) z += block.by_pose.col(c) * u[at] + block.by_velocity.col(c) * u[n_ + at];
+      if (const int at = 3 * block.cluster[c / 3] + c % 3; at >= 0)
+        z += block.by_pose.col(c) * u[at] + block.by_velocity.col(c) * u[n_ + at];
     z = inner_[i].answer * z;
-    for (int k = 0; k < block.count; ++k) u[2 * n_ + block.first + k] = z[k];
+    for (int k = 0; k < block.count; ++k)
+      u[2 * n_ + block.first + k] = z[k];
   }
 }
 

@@ -262,7 +262,8 @@ void ExtremeFinder::state_at(double t, Integrator& integrator, Dynamics& dynamic
   }
   const double h = step_t_[i + 1] - step_t_[i];
   const double *y = &step_y_[stride_ * i], *k = &step_k_[stride_ * i];
-  hermite_dense(dynamics.coordinate_count(), dynamics.dimension(), (t - step_t_[i]) / h, h, y, y + stride_, k, k + stride_, y_.data());
+  hermite_dense(dynamics.coordinate_count(), dynamics.dimension(), (t - step_t_[i]) / h, h, y, y + stride_, k,
+                k + stride_, y_.data());
 }
 
 Snapshot ExtremeFinder::look(double theta, Integrator& integrator, Dynamics& dynamics) {
