@@ -17,7 +17,8 @@ Linearization::LeverRates Linearization::rates_of(const Lever& lever, int c) {
 
 void Linearization::find_levers() {
   const double* const s = dy_.data() + n_;
-  levers_.assign(layout_->clusters.size(), {});
+  levers_.resize(layout_->clusters.size());
+  for (std::vector<Lever>& levers : levers_) levers.clear();
   for (const Mechanism& m : layout_->mechanisms)
     for (std::size_t i = 0; i < m.members.size(); ++i) {
       if (m.members[i].cluster < 0) continue;
