@@ -17,6 +17,13 @@ void couple(SceneWriter& w, const std::string& a, const std::string& b) {
     w.element("bushing", {{"a", quoted(a)}, {"b", quoted(b)}, {"stiffness", pair(k, k)}, {"damping", pair(c, c)}}, {a, b});
 }
 
+// On a rope that gets taut after a little way.
+void hang(SceneWriter& w, const std::string& a) {
+  const double k = w.stiffness_for(w.mass, 1.0, 8.0), c = w.damping_for(w.mass, k);
+  w.element("rope", {{"a", quoted(a)}, {"b", marker("ground", {0.5 * w.size, 3.0 * w.size})}, {"stiffness", number(k)},
+                     {"damping", number(c)}, {"slack", number(0.02 * w.size)}}, {a});
+}
+
 void add_cell(SceneWriter& w, const std::vector<NamedCell>& cells, At place, std::vector<std::string>& ends) {
   const NamedCell& cell = w.r.one_of(cells);
   w.scene.cells.insert(cell.name);
@@ -37,6 +44,8 @@ Scene random_scene(std::uint64_t seed) {
   }
   for (std::size_t i = 1; i < ends.size(); ++i)
     if (w.r.chance(0.5)) couple(w, ends[i - 1], ends[i]);
+  // Drawn last, and in few scenes: the others stay what they were.
+  if (seed % 100 == 77 && !ends.empty()) hang(w, ends.front());
   return w.scene;
 }
 
