@@ -24,7 +24,9 @@ install(DIRECTORY mbd elements transformer DESTINATION ${CMAKE_INSTALL_INCLUDEDI
   FILES_MATCHING PATTERN "*.h")
 install(TARGETS steplap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # bin/steplap looks for it at ../libexec, in the build tree as well.
-install(TARGETS steplap-study RUNTIME DESTINATION libexec)
+if(TARGET steplap-study)
+  install(TARGETS steplap-study RUNTIME DESTINATION libexec)
+endif()
 install(DIRECTORY models examples DESTINATION ${CMAKE_INSTALL_DATADIR}/steplap)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap)
 

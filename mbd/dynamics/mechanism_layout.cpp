@@ -138,6 +138,9 @@ private:
     for (const int k : island) rows += rows_[k];
     for (const int block : used_) rows -= system_.row_blocks[block].count;
     if (used_.empty() || coordinates > Mechanism::k_most || rows > Mechanism::k_most) return;
+    // As many rows as coordinates, and yet it moves: some say the same, and how they share a load hangs on rounding the
+    // more, the fewer of them are left. (redundant_loop: reactions at 1e-5 instead of 1e-6 between a step's ends.)
+    if (rows >= coordinates && choice_ == Coordinates::automatic) return;
     tree_.row_count = rows;
     for (const int k : island) found_.mechanism_of[k] = static_cast<int>(found_.mechanisms.size());
     for (const int block : used_) found_.is_pin[block] = 1;

@@ -75,7 +75,8 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
 
 TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
   const auto sources = product_sources();
-  const Reasons by_right = {{"tools/steplap/drawing.cpp", "symbols: a kind without one is drawn as a rod"}};
+  const Reasons by_right = {{"tools/steplap/drawing.cpp", "symbols: a kind without one is drawn as a rod"},
+                            {"tools/steplap/joint.cpp", "what bears beside a joint, for a remark"}};
   // Names that are words of others, too, or that somebody asks for all the same.
   const std::map<std::string, Reasons> besides = {
       {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"tools/study/needs.cpp", "what is made rigid is welded"}}},
