@@ -238,9 +238,11 @@ const std::vector<Figure>& accuracy_and_cost() {
 void print_place(std::ostream& out, const FinishedRun& finished) {
   const Trajectory& trajectory = *finished.run.result.trajectory;
   if (finished.folder.empty()) return;
-  out << "Written to " << finished.folder << ": "
-      << (finished.run.failure.empty() ? "" : "partial_") << "trajectory.csv (" << trajectory.size()
-      << " rows, " << trajectory.channels().size() << " channels), events.csv, summary.json, model.toml, drawing.json\n";
+  const char* const part = finished.run.failure.empty() ? "" : "partial_";
+  out << "Written to " << finished.folder << ": " << part << "trajectory.csv (" << trajectory.size() << " rows, "
+      << trajectory.channels().size() << " channels)";
+  for (const char* file : {"events.csv", "summary.json", "model.toml", "drawing.json"}) out << ", " << part << file;
+  out << "\n";
 }
 
 std::vector<std::string> cells(std::string name, const std::vector<FinishedRun>& runs,
