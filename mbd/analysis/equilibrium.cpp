@@ -14,6 +14,9 @@ namespace {
 
 constexpr double k_admissible = 1.0 + 1e-9; // share of what friction can bear: rounding of stiff contacts
 constexpr double k_least_used = 1e-9;       // less is rounding
+constexpr double k_flowed = 1e-12; // of the scene's length: what an elastic joint has slid in the search is rounding
+constexpr int k_most_flows = 200;
+constexpr double k_short = 0.999;
 constexpr int k_most_slips = 12;            // of one friction element, on the way to where it holds
 constexpr double k_tipped = 0.75; // rad
 // Of the scene's length: contacts that gave way so far, with nothing but friction to resist them, did not stand.
@@ -60,6 +63,7 @@ public:
       for (Slip& slip : slips_) slip.is_new = false;
       yielding_ = descent.yielding();
       if (end != DescentEnd::rest) fail(descent, end);
+      if (let_flow()) continue;
       find_margins(descent);
       if (overloads_.empty()) break;
       if (!share_anew(descent)) let_go();
@@ -83,6 +87,32 @@ private:
     for (std::size_t i = 3; i < start_.q.size(); ++i)
       if (i % 3 < 2) result_.moved = std::max(result_.moved, std::abs(state_.q[i] - start_.q[i]));
     return std::move(result_);
+  }
+
+  // Elastic joints beyond their bound slide back onto it; then the machine rests elsewhere. True if one did.
+  bool let_flow() {
+    if (system_.inner_groups.empty()) return false;
+    Statics statics(system_);
+    statics.evaluate(state_);
+    const std::vector<double> before = state_.inner;
+    for (const ForceGroup* group : system_.inner_groups) (void)group->settle_inner(statics.evaluation(), state_.inner.data());
+    double most = 0.0, along = 0.0, square = 0.0;
+    std::vector<double> flow(before.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      flow[i] = state_.inner[i] - before[i];
+      most = std::max(most, std::abs(flow[i]));
+      if (i < last_flow_.size()) along += flow[i] * last_flow_[i], square += last_flow_[i] * last_flow_[i];
+    }
+    if (most <= k_flowed * length_) return false;
+    // What a joint lets go it gets back but for the share of what stands beside it: flows fall off like a geometric series,
+    // whose sum is taken at every second one, short of it by a little.
+    const double ratio = square > 0.0 ? along / square : 0.0;
+    const double rest = ratio > 0.0 && ratio < 1.0 ? k_short * ratio / (1.0 - ratio) : 0.0;
+    if (++flows_ > k_most_flows || ratio >= 1.0 || rest * most > length_)
+      throw NumericalFailure("no static equilibrium found: an elastic joint slides on and on, since nothing beside it bears what it lets go");
+    last_flow_ = rest > 0.0 ? std::vector<double>() : flow;
+    for (std::size_t i = 0; i < flow.size(); ++i) state_.inner[i] += rest * flow[i];
+    return true;
   }
 
   // Rates of the drives are taken away, their values stay: the equations of motion are to see a machine at rest.
@@ -266,6 +296,8 @@ private:
   };
 
   const System& system_;
+  int flows_ = 0;                  ///< of elastic joints, in the search
+  std::vector<double> last_flow_;  ///< per inner state
   const State& start_;
   State state_;
   double length_ = 0.0;

@@ -84,6 +84,7 @@ Statics::Statics(const System& system) : system_(system), n_(3 * (system.body_co
   contact_force_.assign(system.contact_count, 0.0);
   watch_.assign(system.watch_count, 1.0);
   watch_rate_.assign(system.watch_count, 0.0);
+  inner_rate_.assign(static_cast<std::size_t>(system.inner_count()), 0.0);
   force_ = VecX::Zero(n_);
   for (const FrictionUnit& unit : system.frictions) {
     scratch_.push_back(unit.friction->make_scratch());
@@ -95,6 +96,7 @@ Statics::Statics(const System& system) : system_(system), n_(3 * (system.body_co
   evaluation_.contact_force = contact_force_.data();
   evaluation_.watch = watch_.data();
   evaluation_.watch_rate = watch_rate_.data();
+  evaluation_.inner_rate = inner_rate_.data();
 }
 
 void Statics::set_modes(State& state) {
@@ -108,6 +110,7 @@ void Statics::evaluate(State& state) {
   evaluation_.mode = state.mode.data();
   evaluation_.friction = state.friction.data();
   evaluation_.memory = state.memory.data();
+  evaluation_.inner = state.inner.data();
   for (int i = 0; i < system_.body_count(); ++i) {
     Motion<double>& m = motion_[i];
     m = {};

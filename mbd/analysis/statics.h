@@ -62,6 +62,7 @@ private:
   std::vector<BodyForce> body_force_;
   mutable std::vector<double> contact_force_;
   std::vector<double> watch_, watch_rate_;
+  std::vector<double> inner_rate_; ///< nobody asks for it: at rest nothing flows
   std::vector<StaticRow> rows_;
   VecX force_;
 };

@@ -353,3 +353,25 @@ TEST_CASE("a forklift with too much on its fork tips over, and is said to") {
   for (const std::string& remark : remarks_on(*tipped.system, tipped.rest)) is_told = is_told || has(remark, "does not stand as given");
   CHECK(is_told);
 }
+
+// A limb of weight W on an elastic joint of stiffness K and capacity F, with a plate of stiffness k beside it: it hangs at
+// W/K while that is below F/K (the plate slack), else the joint bears F and the plate the rest.
+TEST_CASE("a limb rests on its elastic joint, and beyond its bound on what stands beside it") {
+  const double weight = 9000.0 * 9.81;
+  const auto sunk = [](const std::vector<std::string>& overrides) {
+    const Model model = read_model(STEPLAP_MODELS "/../examples/ratcheting.toml", transformer_catalog(), overrides);
+    const auto system = compile(model);
+    const Equilibrium rest = find_equilibrium(*system, system->initial_state());
+    return -rest.state.q[3 * 2 + 1];
+  };
+  const double stuck = weight / 2e9;
+  CHECK(sunk({}) == doctest::Approx(stuck).epsilon(1e-9)); // the plate of 1 N/m bears 5e-10 of it
+  // Half the pressure bears 60 kN: what the corner above loses of its overlap the one below wins. Radial returns come as
+  // near as the searches between them, 1e-9 of the way.
+  const double plate = 5e7, left = (weight - 60e3) / plate;
+  CHECK(sunk({"element.tie plate.stiffness=5e7", "element.top corner.pressure=5e4", "element.bottom corner.pressure=5e4"}) ==
+        doctest::Approx(left).epsilon(1e-6));
+  // With as good as nothing beside it the limb falls.
+  CHECK_THROWS_AS((void)sunk({"element.top corner.pressure=5e4", "element.bottom corner.pressure=5e4"}),
+                  NumericalFailure);
+}
