@@ -155,7 +155,8 @@ private:
       result_.margins.push_back(margin);
       if (phase == FrictionPhase::slip || margin.used <= k_admissible) continue;
       if (group < 0) {
-        overloads_.push_back({f, {own[0], own[1], own[2]}, margin.used});
+        overloads_.push_back({f, {0.0, 0.0, 0.0}, margin.used});
+        std::copy_n(own, unit.friction->dimension(), overloads_.back().wrench);
         continue;
       }
       for (const Release& release : sharing->releases(group))

@@ -383,3 +383,15 @@ TEST_CASE("reading is linear in the number of bodies") {
   MESSAGE("read " << k_bodies << " bodies and elements in " << took.count() << " s");
   CHECK(took.count() < 60.0); // a quadratic reader would take many minutes under a sanitizer
 }
+
+// Blanks beyond ASCII share blocks of code points with letters: those are letters.
+TEST_CASE("letters beyond ASCII are told from blanks wherever they stand") {
+  for (const char* const given : {"µ", "°", "é", "ÿ", "\u1681", "\u180F", "\u2010", "\u2070", "\u3001", "\uFEFE"}) {
+    const std::string letter = given;
+    CAPTURE(letter);
+    CHECK(parse_model("title = \"a" + letter + " " + letter + "\"\n[simulation]\nstep = 1e-3\n[[body]]\nname = \"" + letter +
+                          "\"\nmass = \"1 t\"\ninertia = 1\n", "a.toml", small_catalogue()).header.title == "a" + letter + " " + letter);
+    for (const std::string& text : {"title =" + letter + "\"a\"\n", letter + "title = \"a\"\n", "title = \"a\"" + letter + "\n", "[" + letter + "simulation]\n"})
+      CHECK_THROWS_AS((void)parse_model(text, "a.toml", small_catalogue()), ModelError);
+  }
+}
