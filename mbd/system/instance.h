@@ -17,7 +17,7 @@ using ModelValues = std::vector<std::pair<std::string, double>>;
 /// file. Throws ModelError for what is wrong with a path, a value or the model. May be called from several threads.
 [[nodiscard]] std::unique_ptr<System> instantiate(const Model& given, const ModelValues& values);
 
-/// The same model with other values many times: what does not hang on the values is done once. Refers to nothing but its
+/// The same model with other values many times: completion and validation are done once where they do not hang on the values. Refers to nothing but its
 /// own copies; one object per thread.
 class Variants {
 public:

@@ -5,6 +5,7 @@
 #include "transformer/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "mbd/system/instance.h"
 
 #include <benchmark/benchmark.h>
 
@@ -93,6 +94,18 @@ void whole_run(benchmark::State& state, const std::string& path, const std::stri
       static_cast<double>(statistics.evaluations) * runs, benchmark::Counter::kIsRate);
 }
 
+// A system with another mass, by instantiate() and from variants of the model without channels.
+void make_system(benchmark::State& state, bool has_variants) {
+  const Model given = read_given_model(STEPLAP_MODELS "/paper/interference.toml", transformer_catalog());
+  const std::string path = "body.active part.mass";
+  const std::vector<std::string> none;
+  Variants variants(given, {path}, &none);
+  for (auto _ : state) {
+    const auto system = has_variants ? variants.make({47e3}) : instantiate(given, {{path, 47e3}});
+    benchmark::DoNotOptimize(system.get());
+  }
+}
+
 void add_scene(const std::string& name, const std::string& path) {
   benchmark::RegisterBenchmark((name + "/evaluation").c_str(), evaluation, path);
   for (const std::string method : {"rk4", "tsit5", "dop853"}) {
@@ -107,6 +120,8 @@ void add_scene(const std::string& name, const std::string& path) {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   add_scene("transformer", "paper/no_interference.toml");
+  benchmark::RegisterBenchmark("transformer/system/instantiate", make_system, false);
+  benchmark::RegisterBenchmark("transformer/system/variants", make_system, true);
   add_scene("springs", "benchmarks/paper_springs_only.toml");
   benchmark::RunSpecifiedBenchmarks();
 }

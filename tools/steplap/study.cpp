@@ -17,7 +17,7 @@ int run_study_program(char** words) {
   std::cerr.flush();
   execv(program.c_str(), words);
   std::cerr << "steplap: error: '" << program << "', which runs studies, cannot be started: " << std::strerror(errno)
-            << (errno == ENOENT ? " (the target steplap-study makes it)" : "") << "\n";
+            << (errno == ENOENT ? " (it is built by: cmake --build --preset release --target steplap-study)" : "") << "\n";
   return static_cast<int>(ExitCode::usage);
 }
 
@@ -34,7 +34,7 @@ Command study_command() {
   Command command;
   command.name = "study";
   command.summary = "what if, how likely, how much does it matter: many runs of a model; see steplap study --help";
-  command.examples = "  steplap study models/studies/friction_and_pressure.toml\n  mpirun -n 8 steplap study FILE\n  steplap study show FILE\n";
+  command.examples = "  steplap study models/studies/slip_probability.toml\n  mpirun -n 8 steplap study FILE\n  steplap study show FILE\n";
   command.run = [](Console&) { return static_cast<ExitCode>(run_study_program({"--help"})); };
   return command;
 }
