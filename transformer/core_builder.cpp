@@ -220,7 +220,10 @@ void CoreBuilder::press(StepLapInterface& face, std::size_t i, const CoreCorner&
   face.pressure = pressure.middle;
   face.pressure_gradient = rotated(pressure.gradient, active_part().angle);
   face.transverse_pressure = pressure.transverse;
-  if (pressure.least >= 0.0 || !problems_.empty()) return; // once is enough
+  if (pressure.least >= 0.0) return;
+  face.pressure = core_.pressure; // what is wrong with it is said here
+  face.pressure_gradient = Vec2::Zero();
+  if (!problems_.empty()) return; // once is enough
   const std::string field = !corner.is_top && core_.bottom_pressure_gradient ? "bottom_pressure_gradient" : "pressure_gradient";
   const std::string level = !corner.is_top && core_.bottom_pressure ? "bottom_pressure" : "pressure";
   error("'" + field + "' is too steep for '" + level + "': at " + corner.place + " of '" + limbs_[i] +

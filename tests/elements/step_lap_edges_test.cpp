@@ -184,9 +184,11 @@ TEST_CASE("the line where edges bear is found by the direction that the interfac
     steplap::Dynamics dynamics(*system);
     steplap::State state = system->initial_state();
     state.q[4] += 1e-4; // towards the yoke, 0.1 mm
-    std::vector<double> y(static_cast<std::size_t>(dynamics.dimension()));
+    state.friction[0].phase = steplap::FrictionPhase::free;
     dynamics.set_state(state);
+    std::vector<double> y(dynamics.dimension()), dy(y.size());
     dynamics.pack(state, y.data());
+    dynamics.rates(0.0, y.data(), dy.data());
     return dynamics.mechanical_energy(0.0, y.data());
   };
   CHECK(press("across = [0.0, -1.0]") == doctest::Approx(0.5 * 2e8 * k_line * 1e-8).epsilon(1e-9));
