@@ -137,7 +137,8 @@ EdgeLine find_edge_line(const SheetPair& sheets, const Pose& reference) {
   Region region;
   EdgeLine line;
   intersect_exactly(sheets.yoke, sheets.limb, reference, workspace, region);
-  Vec2 to_yoke = centroid(sheets.yoke.polygon) - placed(centroid(sheets.limb.polygon), reference);
+  Vec2 to_yoke = sheets.across ? Vec2(-*sheets.across)
+                               : Vec2(centroid(sheets.yoke.polygon) - placed(centroid(sheets.limb.polygon), reference));
   if (region.empty() || to_yoke.isZero(0.0)) return line;
   to_yoke.normalize();
   double longest = 0.0;

@@ -264,6 +264,11 @@ void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const Edge
   }
   builder.add_channel("edge_load", "N/m", "largest line load of sheet edges at any corner",
                       [&group, corners](const Snapshot& s) { return largest_load(group, corners, s.motion); });
+  if (e.steel_thickness)
+    builder.add_channel("edge_pressure", "Pa", "largest pressure on sheet edges, the line load over the steel's thickness",
+                        [&group, corners, thickness = *e.steel_thickness](const Snapshot& s) {
+                          return largest_load(group, corners, s.motion) / thickness;
+                        });
   if (e.allowed_line_load)
     builder.add_channel("edge_share", "", "largest line load of sheet edges, of the allowed one",
                         [&group, corners, allowed = *e.allowed_line_load](const Snapshot& s) {
@@ -276,7 +281,9 @@ bool add_edges(const StepLapJoint& e, const Pose& reference, SystemBuilder& buil
     builder.error(message);
     return false;
   };
-  if (!e.edge_stiffness) return !e.allowed_line_load || fails("'allowed_line_load' needs 'edge_stiffness'");
+  if (!e.edge_stiffness)
+    return (!e.allowed_line_load || fails("'allowed_line_load' needs 'edge_stiffness'")) &&
+           (!e.steel_thickness || fails("'steel_thickness' needs 'edge_stiffness'"));
   const std::vector<SheetPair>& sheets = friction.sheets();
   const OverlapReference& overlaps = friction.overlaps();
   std::vector<EdgeCorner> corners(overlaps.corner_count());
@@ -401,6 +408,10 @@ const ElementKind& step_lap_joint_kind() {
         .in("N/m")
         .positive()
         .doc("of all sheets at a corner, along the mitre: beyond it their edges are crushed and the joint is rejected");
+    f.add("steel_thickness", &T::steel_thickness)
+        .in("m")
+        .positive()
+        .doc("of all sheets at a corner, over which the line load of their edges is spread: reported as edge_pressure");
     f.add("pressure_signal", &T::pressure_signal)
         .as(FieldType::signal)
         .doc("factor of all its pressures in time, above 0; not given: 1");

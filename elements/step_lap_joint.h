@@ -24,6 +24,7 @@ struct StepLapJoint : Element {
   std::optional<double> sheet_thickness, shear_modulus; ///< m, Pa: what a sheet adds to its compliance, t/G
   std::optional<double> edge_stiffness;       ///< N/m²: line load over depth, of all sheets at a corner
   std::optional<double> allowed_line_load;    ///< N/m, of all sheets at a corner
+  std::optional<double> steel_thickness;      ///< m, of all sheets at a corner: a line load over it is a pressure
   std::string pressure_signal;         ///< factor of all pressures in time; empty: 1
   double pressure_loss = 0.0;          ///< share of all pressures that is lost by relaxation
   std::string transverse_acceleration; ///< signal, m/s²; empty: none

@@ -101,6 +101,56 @@ void add_friction(FieldTable& f) {
       .positive()
       .doc("of each packet: its pressure over 'pressure' (or 'bottom_pressure'); where packets "
            "meet the mean of both; default: all 1");
+  f.add("joint_pressure_shares", &T::joint_pressure_shares)
+      .positive()
+      .doc("of each joint, in the order of 'joints': all its pressures over those given; default: all 1");
+  f.add("pressure_gradient", &T::pressure_gradient)
+      .in("Pa/m")
+      .doc("by which the pressure grows outwards (at a T-joint: off the limb's axis, to either side) and away from the "
+           "window; 'pressure' is then that at the middle of the mitre. Default: uniform over a corner");
+  f.add("bottom_pressure_gradient", &T::bottom_pressure_gradient).in("Pa/m").doc("at the bottom corners, if different");
+}
+
+void add_joints(FieldTable& f) {
+  using T = Core;
+  f.add("pressure_signal", &T::pressure_signal)
+      .as(FieldType::signal)
+      .doc("of the joints added: factor of all their pressures in time, above 0");
+  f.add("pressure_loss", &T::pressure_loss)
+      .not_negative()
+      .at_most(0.99)
+      .doc("of the joints added: share of all their pressures that relaxation has taken");
+  f.add("transverse_acceleration", &T::transverse_acceleration)
+      .as(FieldType::signal)
+      .doc("across the sheets, from the front face to the back, m/s²: packets' pressures follow, by what leans on them");
+  f.add("transverse_support", &T::transverse_support)
+      .one_of({"both", "front", "back"})
+      .doc("what holds the stack against it: both faces alike (one gains what the other loses), or one face while the other is "
+           "pressed by a force that does not change; with 'transverse_acceleration', without a default");
+  f.add("transverse_slices", &T::transverse_slices)
+      .at_least(1)
+      .at_most(100)
+      .doc("of each packet, every one with a pressure of its own; default: 1, right until a packet has lost all its pressure");
+  f.add("tangential_stiffness", &T::tangential_stiffness)
+      .in("N/m")
+      .positive()
+      .doc("of each of the joints added, in translation: they yield before they slide, see step_lap_joint");
+  f.add("contact_stiffness", &T::contact_stiffness)
+      .in("N/m^3")
+      .positive()
+      .doc("the same, of a square metre of one interface");
+  f.add("shear_modulus", &T::shear_modulus)
+      .in("Pa")
+      .positive()
+      .doc("of the sheets, of 'sheet_thickness', in series with 'contact_stiffness'");
+  f.add("edge_stiffness", &T::edge_stiffness)
+      .in("N/m^2")
+      .positive()
+      .doc("of sheet edges once 'clearance' has closed, of all sheets at a corner, see step_lap_joint");
+  f.add("allowed_line_load", &T::allowed_line_load)
+      .in("N/m")
+      .positive()
+      .doc("of all sheets at a corner, along the mitre: a joint is rejected whose edges bear more");
   f.add("mode", &T::mode).one_of({"slip", "monitor"}).doc("of the joints added, see step_lap_joint");
   f.add("on_apart", &T::on_apart).one_of({"stop", "continue"}).doc("of the joints added, see step_lap_joint");
   f.add("least_margin", &T::least_margin).at_least(1.0).doc("of the joints added, see step_lap_joint");
@@ -119,6 +169,7 @@ const TableKind& core_kind() {
     add_dimensions(k.fields);
     add_stack(k.fields);
     add_friction(k.fields);
+    add_joints(k.fields);
     k.holds<Core>();
     k.reads_masses = k.reads_elements = false; // of elements names, and outlines of sheets
     k.apply = [](const Element& table, Model& model) {

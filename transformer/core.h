@@ -6,7 +6,7 @@
 // is the middle of the limb: on its axis, at half the core's height. Its centre of gravity, and its mass and
 // inertia unless they are given, are those of its sheets.
 // An outer limb has one mitre at either end, a middle limb ends in a point between two (T-joint).
-// Assumes rectangular packets, and pressure uniform over a corner. What is assumed, and its source: docs/core.md.
+// Assumes rectangular packets, and pressure uniform over a corner or linear. What is assumed, and its source: docs/core.md.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -49,16 +49,31 @@ struct Core : TableObject {
   double static_friction = 0.0;
   std::optional<double> kinetic_friction;
   std::optional<double> bottom_pressure, bottom_static_friction, bottom_kinetic_friction;
+  std::vector<double> joint_pressure_shares; ///< of each joint, of all its pressures; none: all 1
+  /// Pa/m outwards and away from the window, `pressure` being that at the middle of the mitre; at the bottom if different.
+  std::optional<Vec2> pressure_gradient, bottom_pressure_gradient;
+  std::string transverse_support;           ///< what holds the stack across: "both" faces, "front" or "back"
+  std::optional<long> transverse_slices;    ///< of each packet, whose pressures follow the acceleration on their own
 
+  // Of the joints added, see step_lap_joint.
+  std::optional<double> tangential_stiffness, contact_stiffness, shear_modulus; ///< N/m, N/m³, Pa
+  std::optional<double> edge_stiffness, allowed_line_load; ///< N/m², N/m
+  std::string pressure_signal, transverse_acceleration;    ///< signals
+  double pressure_loss = 0.0;
   std::string mode = "slip", on_apart = "stop"; ///< of the joints added
   std::optional<double> least_margin, most_slide; ///< of the joints added
 
   [[nodiscard]] bool is_counted() const { return overlap || interfaces; }
+  [[nodiscard]] bool is_elastic() const { return tangential_stiffness || contact_stiffness; }
   [[nodiscard]] bool has_strips() const { return sheet_outlines == "strips"; }
   [[nodiscard]] bool is_middle(std::size_t limb) const { return limb >= limbs.size(); }
   /// Outer limbs, then middle ones.
   [[nodiscard]] std::vector<std::string> all_limbs() const;
   [[nodiscard]] std::string joint_name(std::size_t limb) const;
+  /// Its share of the clamping pressures.
+  [[nodiscard]] double joint_share(std::size_t limb) const {
+    return limb < joint_pressure_shares.size() ? joint_pressure_shares[limb] : 1.0;
+  }
 };
 
 [[nodiscard]] const TableKind& core_kind();

@@ -37,7 +37,7 @@ public:
     } catch (const PolygonError& wrong) {
       error(wrong.what(), "bolt_holes");
     }
-    check_yokes(geometry);
+    check_yokes();
     stop_if_wrong();
     draw_limbs(geometry);
     draw_active_part(geometry);
@@ -69,10 +69,12 @@ private:
   [[nodiscard]] bool is_given(const std::string& field) const { return core_.places.count(field) > 0; }
 
   void add_joint(std::size_t i, const CoreGeometry& geometry);
-  void add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap);
+  void give_settings(StepLapJoint& joint, const CoreGeometry& geometry) const;
+  void add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry);
+  void press(StepLapInterface& face, std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry);
   void refuse_repetition(const StepLapInterface& face);
   void give_steel(std::size_t i, const CoreGeometry& geometry);
-  void check_yokes(const CoreGeometry& geometry);
+  void check_yokes();
   void check_steel(const Body& body, const char* field, double given, double steel, const std::string& unit);
 
   [[nodiscard]] std::vector<Vec2> limb_corners(std::size_t i, const CoreGeometry& geometry) const;
@@ -161,6 +163,19 @@ void CoreBuilder::check_settings(const StepLapJoint& joint) {
   check("on_apart", core_.on_apart == joint.on_apart);
   check("least_margin", core_.least_margin == joint.least_margin);
   check("most_slide", core_.most_slide == joint.most_slide);
+  // What the joint says itself of these counts for it alone; what it leaves out would be passed over in silence.
+  const auto check_said = [&](const char* field, bool is_said) {
+    if (is_given(field) && !is_said)
+      error("'" + std::string(field) + "' is for joints that this table adds; step_lap_joint '" + joint.name +
+            "' exists already and does not say its own: give it there, too", field);
+  };
+  check_said("tangential_stiffness", is_elastic(joint));
+  check_said("contact_stiffness", is_elastic(joint));
+  check_said("edge_stiffness", joint.edge_stiffness.has_value());
+  check_said("allowed_line_load", joint.allowed_line_load.has_value());
+  check_said("pressure_signal", !joint.pressure_signal.empty());
+  check_said("pressure_loss", joint.pressure_loss != 0.0 || core_.pressure_loss == 0.0);
+  check_said("transverse_acceleration", !joint.transverse_acceleration.empty());
 }
 
 // --- into the model -----------------------------------------------------------------------------------
@@ -176,15 +191,47 @@ void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
     joint->on_apart = core_.on_apart;
     joint->least_margin = core_.least_margin.value_or(joint->least_margin);
     joint->most_slide = core_.most_slide.value_or(joint->most_slide);
+    give_settings(*joint, geometry);
     model_.elements.push_back({&step_lap_joint_kind(), joint});
   }
   const double reach = std::abs(middle_of_limb(core_, limb(i), active_part()).x());
   for (const CoreCorner& corner :
        geometry.corners(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()), reach))
-    for (const Lap& lap : corner.laps) add_interface(i, corner, lap);
+    for (const Lap& lap : corner.laps) add_interface(i, corner, lap, geometry);
 }
 
-void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap) {
+void CoreBuilder::give_settings(StepLapJoint& joint, const CoreGeometry& geometry) const {
+  joint.tangential_stiffness = core_.tangential_stiffness;
+  joint.contact_stiffness = core_.contact_stiffness;
+  joint.shear_modulus = core_.shear_modulus;
+  if (core_.shear_modulus) joint.sheet_thickness = core_.sheet_thickness;
+  joint.edge_stiffness = core_.edge_stiffness;
+  joint.allowed_line_load = core_.allowed_line_load;
+  if (core_.edge_stiffness && !core_.is_counted())
+    joint.steel_thickness = static_cast<double>(sheets_in(geometry.stack())) * geometry.stack().sheet_thickness;
+  joint.pressure_signal = core_.pressure_signal;
+  joint.pressure_loss = core_.pressure_loss;
+  joint.transverse_acceleration = core_.transverse_acceleration;
+}
+
+void CoreBuilder::press(StepLapInterface& face, std::size_t i, const CoreCorner& corner, const Lap& lap,
+                        const CoreGeometry& geometry) {
+  const LapPressure pressure = geometry.pressure(corner, lap, core_.joint_share(i));
+  face.pressure = pressure.middle;
+  face.pressure_gradient = rotated(pressure.gradient, active_part().angle);
+  face.transverse_pressure = pressure.transverse;
+  if (pressure.least >= 0.0) return;
+  face.pressure = core_.pressure; // what is wrong with it is said here
+  face.pressure_gradient = Vec2::Zero();
+  if (!problems_.empty()) return; // once is enough
+  const std::string field = !corner.is_top && core_.bottom_pressure_gradient ? "bottom_pressure_gradient" : "pressure_gradient";
+  const std::string level = !corner.is_top && core_.bottom_pressure ? "bottom_pressure" : "pressure";
+  error("'" + field + "' is too steep for '" + level + "': at " + corner.place + " of '" + limbs_[i] +
+            "' sheets would be pressed by " + number_text(std::round(pressure.least)) + " Pa",
+        field);
+}
+
+void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry) {
   const double turn = active_part().angle;
   const Vec2 middle = limb(i).position + rotated(middle_in_frame(core_, limb(i)), limb(i).angle);
   const auto placed = [&](const Ring& ring) {
@@ -204,7 +251,7 @@ void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const L
   if (!core_.has_strips()) e->across = rotated(corner.frame.across, turn);
   e->count = lap.count;
   e->clearance = core_.clearance;
-  e->pressure = lap.pressure * (corner.is_top ? core_.pressure : core_.bottom_pressure.value_or(core_.pressure));
+  press(*e, i, corner, lap, geometry);
   e->static_friction = corner.is_top ? core_.static_friction
                                      : core_.bottom_static_friction.value_or(core_.static_friction);
   e->kinetic_friction = !corner.is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction
@@ -264,9 +311,13 @@ void CoreBuilder::give_steel(std::size_t i, const CoreGeometry& geometry) {
 }
 
 // The active part holds the yokes, and more.
-void CoreBuilder::check_yokes(const CoreGeometry& geometry) {
-  if (count_cores_at(model_, core_.active_part) > 1 || active_part().mass <= 0.0) return;
-  const double steel = geometry.yoke_steel(places_of_limbs(core_, model_));
+void CoreBuilder::check_yokes() {
+  const Core* last = nullptr; // of several tables the last one says it
+  for (const TableEntry& entry : model_.tables)
+    if (const auto* core = dynamic_cast<const Core*>(entry.table.get()); core && core->active_part == core_.active_part)
+      last = core;
+  if (!problems_.empty() || (last && last->name != core_.name) || active_part().mass <= 0.0) return;
+  const double steel = yoke_steel(model_, core_.active_part).value_or(0.0);
   if (active_part().mass < steel)
     problems_.push_back(
         {active_part().where, "'mass' of body '" + core_.active_part + "', " + number_text(active_part().mass) +
@@ -353,12 +404,72 @@ std::vector<LimbPlace> places_of_limbs(const Core& core, const Model& model) {
   return places;
 }
 
-std::size_t count_cores_at(const Model& model, const std::string& active_part) {
-  return static_cast<std::size_t>(
-      std::count_if(model.tables.begin(), model.tables.end(), [&](const TableEntry& entry) {
-        const auto* core = dynamic_cast<const Core*>(entry.table.get());
-        return core && core->active_part == active_part;
-      }));
+namespace {
+
+// Can its yokes be those of the other table: as many sheets of the same heights?
+bool has_same_yokes(const Core& a, const Core& b) {
+  const Stack one = stack_of(a), two = stack_of(b);
+  const auto is_same = [](const Packet& p, const Packet& q) { return p.yoke_height == q.yoke_height && p.depth == q.depth; };
+  return a.core_height == b.core_height && a.density == b.density && a.yoke_steps == b.yoke_steps &&
+         one.sheet_thickness == two.sheet_thickness && one.stacking_factor == two.stacking_factor &&
+         std::equal(one.packets.begin(), one.packets.end(), two.packets.begin(), two.packets.end(), is_same);
+}
+
+bool shares_limb(const Core& a, const Core& b) {
+  for (const std::string& limb : a.all_limbs())
+    for (const std::string& other : b.all_limbs())
+      if (limb == other) return true;
+  return false;
+}
+
+// Tables of one pair of yokes, with what their limbs take of it.
+struct Yokes {
+  struct Limb {
+    LimbPlace place;
+    const Core* core;
+  };
+  std::vector<const Core*> cores;
+  std::vector<Limb> limbs;
+
+  [[nodiscard]] std::optional<double> steel() const {
+    if (limbs.empty()) return {};
+    const auto is_before = [](const Limb& a, const Limb& b) { return a.place.x < b.place.x; };
+    const auto [rear, front] = std::minmax_element(limbs.begin(), limbs.end(), is_before);
+    if (rear->place.is_middle || front->place.is_middle || rear->place.side > 0.0 || front->place.side < 0.0) return {};
+    double mass = CoreGeometry(*front->core).yoke_strip(front->place) + CoreGeometry(*rear->core).yoke_strip(rear->place);
+    for (const Limb& limb : limbs) mass -= CoreGeometry(*limb.core).yoke_cut(limb.place);
+    return mass;
+  }
+};
+
+} // namespace
+
+std::optional<double> yoke_steel(const Model& model, const std::string& active_part) {
+  std::vector<Yokes> all;
+  for (const TableEntry& entry : model.tables) {
+    const auto* core = dynamic_cast<const Core*>(entry.table.get());
+    if (!core || core->active_part != active_part) continue;
+    const std::vector<std::string> names = core->all_limbs();
+    const auto is_body = [&](const std::string& name) { return model.find_body(name) != nullptr; };
+    if (!is_body(active_part) || !std::all_of(names.begin(), names.end(), is_body)) return {};
+    if (core->is_counted() || !check_dimensions(*core).empty()) return {};
+    const auto is_own = [&](const Yokes& yokes) {
+      return has_same_yokes(*yokes.cores.front(), *core) &&
+             std::none_of(yokes.cores.begin(), yokes.cores.end(), [&](const Core* other) { return shares_limb(*other, *core); });
+    };
+    auto yokes = std::find_if(all.begin(), all.end(), is_own);
+    if (yokes == all.end()) yokes = all.insert(all.end(), Yokes());
+    yokes->cores.push_back(core);
+    for (const LimbPlace& place : places_of_limbs(*core, model)) yokes->limbs.push_back({place, core});
+  }
+  if (all.empty()) return {};
+  double mass = 0.0;
+  for (const Yokes& yokes : all) {
+    const std::optional<double> steel = yokes.steel();
+    if (!steel) return {};
+    mass += *steel;
+  }
+  return mass;
 }
 
 std::size_t count_cores_of(const Model& model, const std::string& limb) {

@@ -32,6 +32,8 @@ public:
   std::vector<Diagnostic> run() {
     check_section();
     check_friction();
+    check_pressure();
+    check_elastic();
     if (core_.is_counted()) check_counted();
     else check_stack();
     check_strips();
@@ -55,6 +57,8 @@ private:
 
   void check_section();
   void check_friction();
+  void check_pressure();
+  void check_elastic();
   void check_counted();
   void check_stack();
   void check_strips();
@@ -120,6 +124,63 @@ void DimensionCheck::check_friction() {
           "bottom_kinetic_friction");
   if (core_.kinetic_friction && core_.bottom_static_friction && !core_.bottom_kinetic_friction)
     error("needs 'bottom_kinetic_friction' besides 'bottom_static_friction'", "bottom_static_friction");
+}
+
+void DimensionCheck::check_pressure() {
+  const std::size_t limbs = core_.all_limbs().size();
+  if (!core_.joint_pressure_shares.empty() && core_.joint_pressure_shares.size() != limbs)
+    error("'joint_pressure_shares' must give one share for each of the " + std::to_string(limbs) + " joints, got " +
+              std::to_string(core_.joint_pressure_shares.size()),
+          "joint_pressure_shares");
+  if (core_.bottom_pressure_gradient && !core_.pressure_gradient)
+    error("'bottom_pressure_gradient' needs 'pressure_gradient', that at the top ([0, 0] if there is none)",
+          "bottom_pressure_gradient");
+  if (core_.transverse_acceleration.empty()) {
+    for (const char* field : {"transverse_support", "transverse_slices"})
+      if (field == std::string("transverse_support") ? !core_.transverse_support.empty() : core_.transverse_slices.has_value())
+        error("'" + std::string(field) + "' needs 'transverse_acceleration', a signal", field);
+    return;
+  }
+  if (core_.is_counted())
+    return error("'transverse_acceleration' needs how the stack is built, and '" +
+                     std::string(core_.overlap ? "overlap" : "interfaces") + "' says that overlaps are counted",
+                 "transverse_acceleration");
+  if (core_.transverse_support.empty())
+    return error("'transverse_acceleration' needs 'transverse_support', what holds the stack across: \"both\" faces alike, "
+                 "\"front\" or \"back\"; it has no default: between them lies all that a corner gains or loses",
+                 "transverse_acceleration");
+  if (core_.transverse_support == "both" && core_.packets.size() < 2 && core_.transverse_slices.value_or(1) < 2)
+    error("'transverse_acceleration' changes nothing: held by both faces, a stack of one packet gains in front what it loses "
+          "behind; give 'transverse_slices' to see when its sheets come loose, or another 'transverse_support'",
+          "transverse_acceleration");
+}
+
+void DimensionCheck::check_elastic() {
+  if (core_.tangential_stiffness && core_.contact_stiffness)
+    error("'tangential_stiffness' and 'contact_stiffness' say the same: give one of them", "contact_stiffness");
+  if (core_.shear_modulus && !core_.contact_stiffness)
+    error("'shear_modulus' is in series with 'contact_stiffness', which is not given", "shear_modulus");
+  if (core_.shear_modulus && core_.is_counted())
+    error("'shear_modulus' is of sheets of 'sheet_thickness', and 'overlap' says that overlaps are counted: give the whole as "
+          "'contact_stiffness'",
+          "shear_modulus");
+  if (core_.allowed_line_load && !core_.edge_stiffness)
+    error("'allowed_line_load' needs 'edge_stiffness': without it no edge bears", "allowed_line_load");
+  if (core_.edge_stiffness && !core_.clearance)
+    error("'edge_stiffness' needs 'clearance', which has to close before edges bear", "edge_stiffness");
+  if (!core_.is_elastic()) return;
+  const std::string stiffness = core_.tangential_stiffness ? "tangential_stiffness" : "contact_stiffness";
+  if (core_.mode == "monitor")
+    error("'mode' = \"monitor\" contradicts '" + stiffness + "': a joint that is only monitored is rigid", "mode");
+  const double at_bottom = core_.bottom_static_friction.value_or(core_.static_friction);
+  if (core_.kinetic_friction.value_or(core_.static_friction) != core_.static_friction)
+    error("'kinetic_friction' contradicts '" + stiffness + "': an elastic joint has one coefficient, 'static_friction' (the "
+          "kinetic one is on the safe side)",
+          "kinetic_friction");
+  if (core_.bottom_kinetic_friction.value_or(at_bottom) != at_bottom)
+    error("'bottom_kinetic_friction' contradicts '" + stiffness + "': an elastic joint has one coefficient, "
+          "'bottom_static_friction' or 'static_friction'",
+          "bottom_kinetic_friction");
 }
 
 void DimensionCheck::check_counted() {

@@ -7,8 +7,11 @@
 #include "mbd/math/portable_math.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <set>
 
 namespace steplap {
 
@@ -18,12 +21,16 @@ constexpr double k_usual_notch = 45.0 * std::numbers::pi / 180.0;
 constexpr double k_strip_tongue = 0.05, k_strip_margin = 0.02; // m, of strips that do not say: matter once slid so far
 constexpr long k_hole_sides = 24;
 
-double overlap_area(const Polygon& yoke, const Polygon& limb) {
-  if (yoke.outer.size() < 3 || limb.outer.size() < 3) return 0.0;
+// Area, middle and vertices of where its sheets overlap.
+void find_overlap(Lap& lap) {
+  if (lap.yoke.outer.size() < 3 || lap.limb.outer.size() < 3) return;
   OverlapWorkspace workspace;
   Region region;
-  intersect_exactly(make_outline(yoke), make_outline(limb), {}, workspace, region);
-  return area(region);
+  intersect_exactly(make_outline(lap.yoke), make_outline(lap.limb), {}, workspace, region);
+  lap.area = area(region);
+  if (!(lap.area > 0.0)) return;
+  lap.middle = centroid(region);
+  for (const Polygon& piece : region) lap.overlap.insert(lap.overlap.end(), piece.outer.begin(), piece.outer.end());
 }
 
 // Is the circle wholly inside the convex ring, or wholly outside?
@@ -83,6 +90,8 @@ Stack stack_of(const Core& core) {
   stack.book.steps = core.steps.value_or(2);
   stack.book.pitch = core.step_pitch.value_or(0.0);
   stack.book.clearance = core.clearance.value_or(0.0);
+  stack.is_by_place = !core.transverse_acceleration.empty();
+  stack.slices = core.transverse_slices.value_or(1);
   return stack;
 }
 
@@ -184,7 +193,7 @@ Lap CoreGeometry::lap(std::size_t limb_packet, double inner, std::size_t yoke_pa
   lap.outer = outer;
   lap.limb = limb_sheet(limb_packet, end, inner);
   lap.yoke = yoke_sheet(yoke_packet, end, outer);
-  lap.area = overlap_area(lap.yoke, lap.limb);
+  find_overlap(lap);
   return lap;
 }
 
@@ -195,46 +204,62 @@ void CoreGeometry::add_counted(const End& end, std::vector<Lap>& laps) const {
   laps.push_back(std::move(only));
 }
 
+// "packet 2, slice 3", "": within a packet, of a stack by place within the zone.
+std::string CoreGeometry::zone_name(std::size_t packet, std::size_t zone) const {
+  if (!stack_.is_by_place) return stack_.packets.size() == 1 ? "" : "packet " + std::to_string(packet + 1);
+  const auto slices = static_cast<std::size_t>(stack_.slices);
+  std::string name = "packet " + std::to_string(zone / slices + 1);
+  if (slices > 1) name += ", slice " + std::to_string(zone % slices + 1);
+  return name;
+}
+
 // Of two layers the yoke sheet of either may cover the limb sheet of the other.
 void CoreGeometry::add_built(const End& end, std::vector<Lap>& laps) const {
   const double half_gap = 0.5 * stack_.book.clearance;
-  std::vector<long> number(stack_.packets.size() * stack_.packets.size(), 0);
-  const auto add = [&](const LayerShape& yoke, const LayerShape& limb, long count) {
+  std::map<std::array<std::size_t, 3>, long> number; // in a zone, of two packets
+  const auto add = [&](const LayerShape& yoke, const LayerShape& limb, const LayerPair& pair) {
     const double inner = line(limb, end.is_middle) + half_gap, outer = line(yoke, end.is_middle) - half_gap;
     const bool is_one_packet = yoke.packet == limb.packet;
     if (is_one_packet && outer <= inner) return;
     Lap found = lap(limb.packet, inner, yoke.packet, outer, end);
     if (!(found.area > 0.0)) return;
     const auto [first, second] = std::minmax(yoke.packet, limb.packet);
-    const std::string k = std::to_string(++number[first * stack_.packets.size() + second]);
-    const std::string one = std::to_string(first + 1), two = std::to_string(second + 1);
-    found.name = stack_.packets.size() == 1 ? k
-                 : is_one_packet            ? "packet " + one + ", " + k
-                                            : "packets " + one + " and " + two + ", " + k;
-    found.count = static_cast<double>(count);
+    const std::string k = std::to_string(++number[{pair.zone, first, second}]);
+    const std::string own = zone_name(first, pair.zone);
+    const std::size_t front = pair.zone / static_cast<std::size_t>(stack_.slices);
+    const std::string one = std::to_string((stack_.is_by_place ? front : first) + 1),
+                      two = std::to_string((stack_.is_by_place ? front + 1 : second) + 1);
+    found.name = !is_one_packet ? "packets " + one + " and " + two + ", " + k : own.empty() ? k : own + ", " + k;
+    found.packet = first;
+    found.is_between = !is_one_packet;
+    found.zone = pair.zone;
+    found.before = pair.before;
+    found.count = static_cast<double>(pair.count);
     found.pressure = 0.5 * (stack_.packets[yoke.packet].pressure + stack_.packets[limb.packet].pressure);
     laps.push_back(std::move(found));
   };
   for (const LayerPair& pair : layer_pairs(stack_)) {
-    add(pair.a, pair.b, pair.count);
-    if (!(pair.a == pair.b)) add(pair.b, pair.a, pair.count);
+    add(pair.a, pair.b, pair);
+    if (!(pair.a == pair.b)) add(pair.b, pair.a, pair);
   }
   if (core_.bands == "each") return;
-  for (std::size_t p = 0; p < stack_.packets.size(); ++p)
-    if (likeness(stack_, p) == p) merge(end, p, laps);
+  std::set<std::pair<std::size_t, std::size_t>> kinds; // packet, zone
+  for (const Lap& lap : laps)
+    if (!lap.is_between) kinds.insert({lap.packet, lap.zone});
+  for (const auto& [packet, zone] : kinds) merge(end, packet, zone, laps);
 }
 
 // The laps of one packet as one of their mean area, about the middle of the mitre: its width is found by secants, the
 // area being all but proportional to it.
-void CoreGeometry::merge(const End& end, std::size_t packet, std::vector<Lap>& laps) const {
-  const std::string own = stack_.packets.size() == 1 ? "" : "packet " + std::to_string(packet + 1);
-  const auto is_own = [&](const Lap& lap) { return own.empty() || lap.name.rfind(own + ",", 0) == 0; };
-  double count = 0.0, area = 0.0, width = 0.0;
+void CoreGeometry::merge(const End& end, std::size_t packet, std::size_t zone, std::vector<Lap>& laps) const {
+  const auto is_own = [&](const Lap& lap) { return !lap.is_between && lap.packet == packet && lap.zone == zone; };
+  double count = 0.0, area = 0.0, width = 0.0, before = 0.0;
   for (const Lap& lap : laps) {
     if (!is_own(lap)) continue;
     count += lap.count;
     area += lap.count * lap.area;
     width += lap.count * (lap.outer - lap.inner);
+    before += lap.count * lap.area * lap.before; // as the pressures add up
   }
   if (!(area > 0.0)) return;
   std::erase_if(laps, is_own);
@@ -251,7 +276,10 @@ void CoreGeometry::merge(const End& end, std::size_t packet, std::vector<Lap>& l
     w = next;
     mean = std::move(better);
   }
-  mean.name = own;
+  mean.name = zone_name(packet, zone);
+  mean.packet = packet;
+  mean.zone = zone;
+  mean.before = before / area;
   mean.count = count;
   mean.pressure = stack_.packets[packet].pressure;
   laps.push_back(std::move(mean));
@@ -263,6 +291,7 @@ CoreCorner CoreGeometry::corner(const End& end) const {
   corner.place = corner.is_top ? "top" : "bottom";
   if (end.is_middle) corner.place += end.side > 0.0 ? " front" : " rear";
   corner.frame = frame(largest_, end);
+  corner.out = Vec2(end.side, end.level);
   if (core_.is_counted()) add_counted(end, corner.laps);
   else add_built(end, corner.laps);
   return corner;
@@ -297,28 +326,51 @@ LimbSteel CoreGeometry::limb_steel(bool is_middle, double side) const {
   return steel;
 }
 
-// What the yoke's strip has left where no limb and no clearance is: of each limb, the part of it that crosses the strip.
-double CoreGeometry::yoke_steel(const std::vector<LimbPlace>& limbs) const {
-  const auto is_before = [](const LimbPlace& a, const LimbPlace& b) { return a.x < b.x; };
-  if (core_.is_counted() || limbs.size() < 2) return 0.0;
-  const auto [rear, front] = std::minmax_element(limbs.begin(), limbs.end(), is_before);
-  if (rear->is_middle || front->is_middle) return 0.0;
+double CoreGeometry::yoke_strip(const LimbPlace& outer) const {
   double mass = 0.0;
+  if (core_.is_counted()) return mass;
+  for (const Packet& packet : stack_.packets)
+    mass += 2.0 * core_.density * stack_.sheet_thickness * static_cast<double>(sheets_in(stack_, packet)) *
+            packet.yoke_height * (outer.side * outer.x + 0.5 * packet.width);
+  return mass;
+}
+
+double CoreGeometry::yoke_cut(const LimbPlace& limb) const {
+  double mass = 0.0;
+  if (core_.is_counted()) return mass;
   for (const LayerCount& layer : layer_counts(stack_)) {
-    Moments left;
-    for (const LimbPlace& limb : limbs) {
-      const Mitre m = mitre(layer.shape.packet, limb.is_middle);
-      const double half = 0.5 * m.limb_width, top = 0.5 * m.core_height, low = top - m.yoke_height;
-      const double q = line(layer.shape, limb.is_middle) - 0.5 * stack_.book.clearance;
-      std::vector<Vec2> crossing = {{-half, low}, {half, low}, {half, top}, {-half, top}};
-      if (limb.is_middle) crossing = beyond(crossing, notch_frame(m, -1.0, 1.0), q);
-      left.add(beyond(crossing, limb.is_middle ? notch_frame(m, 1.0, 1.0) : corner_frame(m, limb.side, 1.0), q), -1.0);
-    }
-    const Packet& packet = stack_.packets[layer.shape.packet];
-    left.area += packet.yoke_height * (front->x - rear->x + packet.width);
-    mass += 2.0 * core_.density * stack_.sheet_thickness * static_cast<double>(layer.sheets) * left.area;
+    const Mitre m = mitre(layer.shape.packet, limb.is_middle);
+    const double half = 0.5 * m.limb_width, top = 0.5 * m.core_height, low = top - m.yoke_height;
+    const double q = line(layer.shape, limb.is_middle) - 0.5 * stack_.book.clearance;
+    std::vector<Vec2> crossing = {{-half, low}, {half, low}, {half, top}, {-half, top}};
+    if (limb.is_middle) crossing = beyond(crossing, notch_frame(m, -1.0, 1.0), q);
+    Moments taken;
+    taken.add(beyond(crossing, limb.is_middle ? notch_frame(m, 1.0, 1.0) : corner_frame(m, limb.side, 1.0), q), 1.0);
+    mass += 2.0 * core_.density * stack_.sheet_thickness * static_cast<double>(layer.sheets) * taken.area;
   }
   return mass;
+}
+
+// Accelerated by a from the front face towards the back, sheets bear the more on each other the more of them are pushed
+// from in front. Held by the front face alone, a force that does not change on the back, an interface gains what lies behind
+// it; held by the back it loses what lies in front; held by both alike, the mean of the two.
+LapPressure CoreGeometry::pressure(const CoreCorner& corner, const Lap& lap, double share) const {
+  const double level = corner.is_top ? core_.pressure : core_.bottom_pressure.value_or(core_.pressure);
+  const std::optional<Vec2>& given =
+      !corner.is_top && core_.bottom_pressure_gradient ? core_.bottom_pressure_gradient : core_.pressure_gradient;
+  const Vec2 gradient = given.value_or(Vec2(0.0, 0.0)).cwiseProduct(corner.out);
+  const Vec2 origin = corner.frame.origin + 0.5 * corner.frame.length * corner.frame.along;
+  const double factor = share * lap.pressure;
+  const auto at = [&](const Vec2& place) { return factor * (level + gradient.dot(place - origin)); };
+  LapPressure pressure;
+  pressure.gradient = factor * gradient;
+  pressure.least = pressure.middle = gradient.isZero(0.0) ? factor * level : at(lap.middle);
+  for (const Vec2& place : lap.overlap) pressure.least = std::min(pressure.least, at(place));
+  if (!stack_.is_by_place) return pressure;
+  const double all = static_cast<double>(sheets_in(stack_));
+  const double held = core_.transverse_support == "front" ? all : core_.transverse_support == "back" ? 0.0 : 0.5 * all;
+  pressure.transverse = core_.density * stack_.sheet_thickness * (held - lap.before);
+  return pressure;
 }
 
 } // namespace steplap

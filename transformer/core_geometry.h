@@ -9,6 +9,9 @@
 #include "transformer/corner.h"
 #include "transformer/stack.h"
 
+#include <string>
+#include <vector>
+
 namespace steplap {
 
 /// One kind of interface at a corner: where a yoke sheet of one layer and a limb sheet of a neighbouring layer overlap.
@@ -19,6 +22,12 @@ struct Lap {
   double count = 0.0; ///< of such interfaces in the stack
   double area = 0.0;  ///< m², of one
   double pressure = 1.0; ///< share of the corner's
+  std::size_t packet = 0; ///< the one that both layers are like
+  bool is_between = false; ///< layers of two packets instead
+  std::size_t zone = 0;   ///< of a stack by place (stack.h)
+  double before = 0.0;    ///< sheets in front of it, in the mean; of a stack by place
+  Vec2 middle = Vec2::Zero();     ///< of the overlap
+  std::vector<Vec2> overlap;      ///< its vertices
 };
 
 /// One mitre: an outer limb has one at either end, a middle limb two.
@@ -26,7 +35,16 @@ struct CoreCorner {
   bool is_top = true;
   std::string place; ///< "top", "bottom front"
   CornerFrame frame; ///< of the widest packet
+  Vec2 out = Vec2::Ones(); ///< signs of x outwards (at a T-joint off the limb's axis) and of y away from the window
   std::vector<Lap> laps;
+};
+
+/// By which the sheets of one kind of interface are pressed on each other; active part's axes.
+struct LapPressure {
+  double middle = 0.0;           ///< Pa, at the middle of the overlap
+  Vec2 gradient = Vec2::Zero();  ///< Pa/m
+  double least = 0.0;            ///< Pa, anywhere in the overlap
+  double transverse = 0.0;       ///< Pa per m/s² of acceleration across the stack, from the front face to the back
 };
 
 struct LimbPlace {
@@ -61,9 +79,13 @@ public:
   /// bolt hole cuts a sheet in two.
   [[nodiscard]] std::vector<CoreCorner> corners(bool is_middle, double side, double reach) const;
   [[nodiscard]] LimbSteel limb_steel(bool is_middle, double side) const;
-  /// Of both yokes between the outer faces of outer limbs, kg, without taking off bolt holes; zero where the stack or
-  /// one of the outer limbs is not of this core.
-  [[nodiscard]] double yoke_steel(const std::vector<LimbPlace>& limbs) const;
+  /// Of both yokes from x = 0 to the outer face of an outer limb, as if no limb stood there, kg; negative where that face
+  /// lies behind x = 0 as seen from its side. Zero where the stack is not known (overlaps counted).
+  [[nodiscard]] double yoke_strip(const LimbPlace& outer) const;
+  /// What a limb takes of both yokes: where its sheets and the clearance are, kg. Bolt holes are not taken off.
+  [[nodiscard]] double yoke_cut(const LimbPlace& limb) const;
+  /// `share`: of the joint.
+  [[nodiscard]] LapPressure pressure(const CoreCorner& corner, const Lap& lap, double share) const;
 
 private:
   struct End; // of a limb: which of its corners
@@ -75,7 +97,8 @@ private:
                         double outer, const End& end) const;
   void add_built(const End& end, std::vector<Lap>& laps) const;
   void add_counted(const End& end, std::vector<Lap>& laps) const;
-  void merge(const End& end, std::size_t packet, std::vector<Lap>& laps) const;
+  void merge(const End& end, std::size_t packet, std::size_t zone, std::vector<Lap>& laps) const;
+  [[nodiscard]] std::string zone_name(std::size_t packet, std::size_t zone) const;
   [[nodiscard]] Polygon punched(const std::vector<Vec2>& ring, double side, std::initializer_list<double> levels) const;
 
   const Core& core_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace steplap {
 
@@ -37,6 +38,8 @@ void read_extremes(const RunResult& result, JointAssessment& a) {
   a.slid_share = extreme(".slid_share", &ChannelRange::high);
   a.overlap_left = extreme(".overlap_left", &ChannelRange::low);
   a.edge_share = extreme(".edge_share", &ChannelRange::high);
+  a.edge_load = extreme(".edge_load", &ChannelRange::high);
+  a.edge_pressure = extreme(".edge_pressure", &ChannelRange::high);
   a.clearance_left = extreme(".clearance_left", &ChannelRange::low);
   a.slid_x = final_of(result, a.joint + ".dx");
   a.slid_y = final_of(result, a.joint + ".dy");
@@ -65,6 +68,32 @@ void read_modes(const RunResult& result, JointAssessment& a) {
   a.has_slipped = true;
   if (!a.first_slip) a.first_slip = mode->high.t;
   if (mode->high.value > slip) a.has_come_apart = true;
+}
+
+// Bodies that the element's fields name, by themselves or by markers on them.
+std::set<std::string> bodies_of(const ElementEntry& entry, const Model& model) {
+  std::set<std::string> bodies;
+  for (const Field& field : entry.kind->fields.fields()) {
+    if (field.type != FieldType::body && field.type != FieldType::marker) continue;
+    const FieldValue value = field.get(entry.element.get());
+    const auto* name = std::get_if<std::string>(&value);
+    if (!name || name->empty()) continue;
+    const auto marker = std::find_if(model.markers.begin(), model.markers.end(), [&](const Marker& m) { return m.name == *name; });
+    bodies.insert(field.type == FieldType::marker && marker != model.markers.end() ? marker->body : *name);
+  }
+  return bodies;
+}
+
+std::vector<SharedLoad> shared_with(const StepLapJoint& joint, const Model& model, const RunResult& result) {
+  std::vector<SharedLoad> shared;
+  const std::set<std::string> both = {joint.limb, joint.active_part};
+  for (const ElementEntry& entry : model.elements) {
+    if (entry.element->name == joint.name || bodies_of(entry, model) != both) continue;
+    const ChannelRange* force = find_range(result, entry.element->name + ".force");
+    shared.push_back({entry.element->name,
+                      force ? std::max(std::abs(force->low.value), std::abs(force->high.value)) : k_unknown});
+  }
+  return shared;
 }
 
 JointVerdict verdict_of(const JointAssessment& a, bool has_interfaces) {
@@ -112,6 +141,9 @@ std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& 
     a.least_margin = joint->least_margin;
     a.has_edges = joint->edge_stiffness.has_value();
     a.most_slide = joint->most_slide;
+    a.allowed_line_load = joint->allowed_line_load;
+    a.shared_with = shared_with(*joint, model, result);
+    a.is_elastic = is_elastic(*joint);
     read_extremes(result, a);
     read_events(result.events, a);
     read_modes(result, a);

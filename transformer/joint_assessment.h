@@ -30,6 +30,12 @@ enum class JointVerdict : std::uint8_t {
 /// "a corner parted"
 [[nodiscard]] const char* words_of(JointVerdict verdict);
 
+/// What bears between the same two bodies as a joint.
+struct SharedLoad {
+  std::string element;
+  double largest = 0.0; ///< N, of its force over the run, either way; not-a-number if it reports none
+};
+
 struct JointAssessment {
   static constexpr double k_touching = 1e-9; ///< m: a clearance of zero is not closed by rounding
   static constexpr double k_held_beyond = 1e-6; ///< of the margin: what locating an onset of slip may leave
@@ -49,13 +55,20 @@ struct JointAssessment {
   Extreme overlap_left;                    ///< least share of its overlap that a corner had left
   Extreme clearance_left;                  ///< m, the least; not-a-number if the model states no clearance
   Extreme edge_share;                      ///< largest line load of sheet edges, of the allowed one; not-a-number without
+  Extreme edge_load;                       ///< N/m, the largest; not-a-number without edges
+  Extreme edge_pressure;                   ///< Pa, the same over the steel's thickness; not-a-number where that is not known
+  std::optional<double> allowed_line_load; ///< N/m
   bool has_edges = false;                  ///< edges that bear are part of the model
+  std::vector<SharedLoad> shared_with;     ///< its own margin is of what these leave it
+  bool is_elastic = false;                 ///< if not, what is beside it bears nothing until it slides
   bool has_come_apart = false;
   bool is_monitored = false;
 
   [[nodiscard]] bool has_parted() const { return overlap_left.value <= 0.0; } ///< a whole corner
   [[nodiscard]] bool has_slid_too_far() const { return slid_share.value > most_slide; }
   [[nodiscard]] bool has_crushed_edges() const { return edge_share.value > 1.0; }
+  /// Allowed line load over the largest; infinite if no edge bore. Not-a-number without an allowed one.
+  [[nodiscard]] double edge_margin() const { return 1.0 / edge_share.value; }
   /// It has closed its clearance: sheets butt, of which the model knows nothing (unless it has edges).
   [[nodiscard]] bool has_left_range() const;
   /// It is part of the motion, never slipped, and yet had less than it needed to hold.

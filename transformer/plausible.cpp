@@ -64,8 +64,20 @@ private:
     }
   }
 
+  // Of pressures: the least and the largest.
+  void look_at_shares(const std::string& field, const std::vector<double>& shares) {
+    if (shares.empty()) return;
+    const auto [least, most] = std::minmax_element(shares.begin(), shares.end());
+    for (const double share : {*least, *most})
+      for (const UsualRange& usual : usual_ranges())
+        if (const double p = share * core_.pressure; usual.field == std::string("pressure") && (p < usual.low || p > usual.high) &&
+                                                    core_.pressure >= usual.low && core_.pressure <= usual.high)
+          say(field, "'" + field + "': " + number_text(share) + " of 'pressure' is " + number_text(p) + " Pa, which is unusual: " +
+                         usual.text + " are usual (" + usual.source + ")");
+  }
+
   void look_at_packets() {
-    double width = 0.0, depth = 0.0;
+    double width = 0.0, depth = 0.0, highest = 0.0;
     for (const Vec2& packet : core_.packets) {
       width = std::max(width, packet.x());
       depth += packet.y();
@@ -74,6 +86,10 @@ private:
       look_at("limb_width", width, "m", "the widest of 'packets'");
       look_at("stack_depth", depth, "m", "the depth of all 'packets'");
     }
+    for (const double height : core_.yoke_heights) highest = std::max(highest, height);
+    if (!core_.yoke_heights.empty()) look_at("yoke_height", highest, "m", "the highest of 'yoke_heights'");
+    look_at_shares("pressure_shares", core_.pressure_shares);
+    look_at_shares("joint_pressure_shares", core_.joint_pressure_shares);
     for (const Vec2& duct : core_.ducts) look_at("ducts", duct.y(), "m", "the width of a duct in 'ducts'");
   }
 
@@ -152,6 +168,12 @@ const std::vector<UsualRange>& usual_ranges() {
       {"density", 7600, 7700, "7600 to 7700 kg/m³", "iron with 3 % silicon, 7650"},
       {"pressure", 0.05e6, 0.4e6, "0.05 MPa to 0.4 MPa", k_assumed},
       {"bottom_pressure", 0.05e6, 0.4e6, "0.05 MPa to 0.4 MPa", k_assumed},
+      {"pressure_loss", 0.0, 0.5, "0 to 0.5", k_assumed},
+      {"tangential_stiffness", 1e9, 1e13, "1e9 to 1e13 N/m", "assumed: 'contact_stiffness' over 1 to 50 m² of interfaces"},
+      {"contact_stiffness", 2e9, 2e11, "2e9 to 2e11 N/m³", "assumed: a micrometre of micro-slip at 20 kPa, and a factor of ten"},
+      {"shear_modulus", 60e9, 130e9, "60 to 130 GPa", "crystals of iron with 3 % silicon, by direction"},
+      {"edge_stiffness", 1e8, 6e12, "1e8 to 6e12 N/m²", "assumed; at most that of sheets in compression, E h/(b/2)"},
+      {"allowed_line_load", 1e5, 4.5e8, "1e5 to 4.5e8 N/m", "assumed; at most yield, 300 MPa times the steel's thickness"},
       {"static_friction", 0.1, 0.3, "0.1 to 0.3", "assumed: of coated sheets nobody has published any"},
       {"kinetic_friction", 0.07, 0.3, "0.07 to 0.3", "assumed: of coated sheets nobody has published any"},
       {"bottom_static_friction", 0.1, 0.3, "0.1 to 0.3", "assumed: of coated sheets nobody has published any"},

@@ -34,6 +34,38 @@ public:
     return pairs;
   }
 
+  // One interface after the other.
+  std::vector<LayerPair> count_by_place() {
+    std::set<long> gaps;
+    for (const Duct& duct : stack_.ducts) gaps.insert(sheets_before(stack_, duct));
+    std::map<std::pair<std::size_t, Shapes>, LayerPair> found;
+    long before = 0;
+    const auto add = [&](std::size_t zone, const Shapes& shapes) {
+      if (gaps.count(before) > 0) return;
+      LayerPair& pair = found.try_emplace({zone, shapes}, LayerPair{shapes.first, shapes.second, 0, zone, 0.0}).first->second;
+      pair.before += static_cast<double>(before); // a sum until the end
+      ++pair.count;
+    };
+    const auto slices = static_cast<std::size_t>(stack_.slices);
+    for (std::size_t p = 0; p < stack_.packets.size(); ++p) {
+      const long first = before, layers = layers_in(stack_, stack_.packets[p]);
+      for (long i = 0; i + 1 < layers; ++i) {
+        before = first + (i + 1) * stack_.book.sheets_per_layer;
+        add(p * slices + static_cast<std::size_t>(i * stack_.slices / (layers - 1)), ordered(shape(p, i), shape(p, i + 1)));
+      }
+      before = first + sheets_in(stack_, stack_.packets[p]);
+      if (p + 1 < stack_.packets.size()) add(p * slices + slices - 1, seam(p));
+    }
+    std::vector<LayerPair> pairs;
+    for (const bool is_same_packet : {true, false})
+      for (auto& [key, pair] : found)
+        if ((pair.a.packet == pair.b.packet) == is_same_packet) {
+          pairs.push_back(pair);
+          pairs.back().before /= static_cast<double>(pair.count);
+        }
+    return pairs;
+  }
+
 private:
   using Shapes = std::pair<LayerShape, LayerShape>;
 
@@ -125,7 +157,10 @@ std::size_t likeness(const Stack& stack, std::size_t packet) {
   return packet;
 }
 
-std::vector<LayerPair> layer_pairs(const Stack& stack) { return PairCounter(stack).count(); }
+std::vector<LayerPair> layer_pairs(const Stack& stack) {
+  PairCounter counter(stack);
+  return stack.is_by_place ? counter.count_by_place() : counter.count();
+}
 
 std::vector<LayerCount> layer_counts(const Stack& stack) {
   std::map<LayerShape, long> counts;

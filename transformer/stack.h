@@ -32,6 +32,10 @@ struct Stack {
   double sheet_thickness = 0.0; ///< of the steel, m
   std::vector<Duct> ducts;
   Book book;
+  /// Do interfaces alike in different packets, and in as many slices of each, count apart? For pressures that differ with
+  /// the place in the stack.
+  bool is_by_place = false;
+  long slices = 1;
 };
 
 /// Sheets of one outline: the packet that they are like, and the line at which they are cut.
@@ -50,6 +54,8 @@ struct LayerShape {
 struct LayerPair {
   LayerShape a, b;
   long count = 0; ///< times in the stack
+  std::size_t zone = 0; ///< of a stack by place: packet · slices + slice
+  double before = 0.0;  ///< of a stack by place: sheets in front of it, in the mean
 };
 
 struct LayerCount {
@@ -69,7 +75,7 @@ struct LayerCount {
 /// The first packet of the same width, yoke height and pressure.
 [[nodiscard]] std::size_t likeness(const Stack& stack, std::size_t packet);
 
-/// All pairs of layers that touch, each kind once, those of one packet first.
+/// All pairs of layers that touch, each kind once (by place: once in a zone), those of one packet first.
 [[nodiscard]] std::vector<LayerPair> layer_pairs(const Stack& stack);
 /// All sheets by their outline.
 [[nodiscard]] std::vector<LayerCount> layer_counts(const Stack& stack);

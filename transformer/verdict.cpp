@@ -159,10 +159,12 @@ void judge_overlap(const JointAssessment& joint, std::vector<CriterionResult>& c
     parted.reserve = joint.overlap_left.value;
     criteria.push_back(parted);
   }
-  if (!std::isnan(joint.edge_share.value)) {
+  if (joint.allowed_line_load) {
     CriterionResult crushed = joint_result(joint, "line load of its sheet edges, of the allowed one <= 1");
     crushed.consequence = Verdict::reject;
-    crushed.outcome = joint.has_crushed_edges() ? Verdict::reject : Verdict::hold;
+    crushed.outcome = std::isnan(joint.edge_share.value) ? Verdict::open
+                      : joint.has_crushed_edges()        ? Verdict::reject
+                                                         : Verdict::hold;
     crushed.value = joint.edge_share.value;
     crushed.limit = 1.0;
     crushed.t = joint.edge_share.t;

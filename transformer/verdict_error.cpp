@@ -175,6 +175,8 @@ JointErrors joint_errors(const JointAssessment& joint, const System& system, con
   e.slid_share = of(".slid_share", &ChannelError::high);
   e.overlap_left = of(".overlap_left", &ChannelError::low);
   e.clearance_left = of(".clearance_left", &ChannelError::low);
+  e.edge_load = of(".edge_load", &ChannelError::high);
+  e.edge_share = of(".edge_share", &ChannelError::high);
   if (!joint.first_slip) return e;
   const std::optional<double> at_event = event_error(joint.joint, *joint.first_slip, run, estimate);
   if (at_event) e.first_slip = *at_event;

@@ -16,7 +16,7 @@ namespace steplap {
 struct JointErrors {
   double first_slip = 0.0, largest_required_pressure = 0.0, time_of_largest = 0.0, smallest_margin = 0.0;
   double slid_x = 0.0, slid_y = 0.0, slid_angle = 0.0, area_lost = 0.0;
-  double slid_share = 0.0, overlap_left = 0.0, clearance_left = 0.0;
+  double slid_share = 0.0, overlap_left = 0.0, clearance_left = 0.0, edge_load = 0.0, edge_share = 0.0;
 };
 
 [[nodiscard]] JointErrors joint_errors(const JointAssessment& joint, const System& system, const RunResult& run,

@@ -31,6 +31,7 @@ constexpr int k_most_sections = 40;
 constexpr double k_fine = 3e-4, k_about = 1e-3; // of a stretch, near the top of a polynomial
 constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
 constexpr double k_same_crossing = 1e-10; // of a stretch
+constexpr double k_at_pole = 1e9; // numbers without a unit beyond it
 constexpr double k_golden = 0.3819660112501051;
 // Error of a straight line through two ends against the third, of a channel's range: below and above which the
 // stretches of a fixed-step method become longer and shorter.
@@ -77,6 +78,18 @@ Extreme vertex(const Extreme& a, const Extreme& b, const Extreme& c) {
   return {b.value + shift * (slope + bend * shift), b.t + shift};
 }
 
+// Numbers without a unit have nothing in common but that 1 means something to most of them. Some have poles, as a margin
+// has where nothing loads a joint, and a range that says nothing of their least value: that is located to a millionth of
+// itself. Before a load has come such a number is one over rounding, of which no more than its size is followed.
+double tolerance_of_number(const ChannelRange& channel, double resolution, double rounding) {
+  const double range = channel.high.value - channel.low.value;
+  const double near = std::min(std::abs(channel.low.value), std::abs(channel.high.value));
+  if (std::isinf(near)) return 0.0;
+  if (near > k_at_pole) return 0.5 * near;
+  const double size = std::max(1.0, near);
+  return resolution * (range < size ? range : size) + rounding * size;
+}
+
 } // namespace
 
 const Extreme& ChannelRange::largest() const {
@@ -111,6 +124,7 @@ ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
 }
 
 double ExtremeFinder::tolerance(std::size_t c) const {
+  if (ranges_[c].channel->unit.empty()) return tolerance_of_number(ranges_[c], k_resolution, k_rounding);
   const Kind& kind = kinds_[kind_[c]];
   const double range = ranges_[c].high.value - ranges_[c].low.value;
   return k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounding * std::max(kind.largest, kind.scale);

@@ -1,5 +1,7 @@
 #include "mbd/system/system.h"
 
+#include "mbd/model/method.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -263,6 +265,12 @@ int SystemBuilder::add_memory(double base, double base_rate) {
 }
 
 int SystemBuilder::add_inner(const ForceGroup& group, double start) {
+  const std::string& integrator = model_.simulation.integrator;
+  const bool is_first = system_->inner_elements.empty() || system_->inner_elements.back() != element_; // said once an element
+  const auto cannot = [&](const Method& m) { return m.name == integrator && m.is_time_stepping; };
+  if (is_first && std::any_of(methods().begin(), methods().end(), cannot))
+    error("'" + integrator + "' does not follow what it remembers (the slid distance of an elastic joint, whether a tie has "
+          "broken): choose another 'integrator', auto for one");
   if (std::find(system_->inner_groups.begin(), system_->inner_groups.end(), &group) == system_->inner_groups.end())
     system_->inner_groups.push_back(&group);
   system_->initial_inner.push_back(start);

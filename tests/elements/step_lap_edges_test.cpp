@@ -174,6 +174,27 @@ TEST_CASE("crushed edges reject a joint; a closed clearance does no more") {
   CHECK(verdict("").has_left_range());
 }
 
+// A yoke that reaches far to one side: from its middle the limb's seems to lie beside it. `across` says where it lies.
+TEST_CASE("the line where edges bear is found by the direction that the interface gives") {
+  const auto press = [](const std::string& more) {
+    const auto system = steplap::compile(steplap::parse_model(
+        header("end = 1.0", 1.0) + body("limb", 10.0, 1.0, {0.0, -0.5}) + joint("limb", "ground", "edge_stiffness = 2e8") +
+            interface(rectangle(-10.0, 0.0, 0.3, 0.4), k_limb, 1e5, 0.2, "clearance = 0.0\n" + more),
+        "scene.toml", steplap::transformer_catalog()));
+    steplap::Dynamics dynamics(*system);
+    steplap::State state = system->initial_state();
+    state.q[4] += 1e-4; // towards the yoke, 0.1 mm
+    state.friction[0].phase = steplap::FrictionPhase::free;
+    dynamics.set_state(state);
+    std::vector<double> y(dynamics.dimension()), dy(y.size());
+    dynamics.pack(state, y.data());
+    dynamics.rates(0.0, y.data(), dy.data());
+    return dynamics.mechanical_energy(0.0, y.data());
+  };
+  CHECK(press("across = [0.0, -1.0]") == doctest::Approx(0.5 * 2e8 * k_line * 1e-8).epsilon(1e-9));
+  CHECK(press("across = [1.0, 0.0]") == doctest::Approx(0.0).scale(1.0).epsilon(1e-12)); // beside it: nothing closes
+}
+
 TEST_CASE("edges without a clearance, or an allowance without edges, are refused") {
   const auto refusal = [](const std::string& fields, const std::string& clearance) -> std::string {
     try {

@@ -287,8 +287,9 @@ TEST_CASE("what an elastic joint cannot be is refused with the reason") {
     }
     return "";
   };
-  CHECK(refusal("end = 1.0\nstep = 1e-3\nintegrator = \"moreau\"", k_of(1e6), "").find("'moreau' does not follow") !=
-        std::string::npos);
+  const std::string stepping = refusal("end = 1.0\nstep = 1e-3\nintegrator = \"moreau\"", k_of(1e6), "");
+  CHECK(stepping.find("'moreau' does not follow") != std::string::npos);
+  CHECK(stepping.rfind("scene.toml:16:1: error: step_lap_joint 'joint'", 0) == 0); // where the joint stands, before a run begins
   CHECK(refusal("end = 1.0", k_of(1e6), "kinetic_friction = 0.1").find("one friction coefficient") !=
         std::string::npos);
   CHECK(refusal("end = 1.0", k_of(1e6) + "\ncontact_stiffness = 1e9", "").find("not both") != std::string::npos);

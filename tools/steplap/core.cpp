@@ -8,6 +8,7 @@
 #include "transformer/core_geometry.h"
 #include "transformer/plausible.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -97,6 +98,36 @@ double interfaces_between_layers(const Stack& stack) {
   return count;
 }
 
+// How it gives way, where that is said; `area` of all its overlaps, m².
+void print_compliance(std::ostream& out, const Core& core, const CoreGeometry& geometry, double area) {
+  if (core.is_elastic()) {
+    double compliance = core.contact_stiffness ? 1.0 / *core.contact_stiffness : 0.0;
+    if (core.shear_modulus) compliance += core.sheet_thickness.value_or(0.0) / *core.shear_modulus;
+    out << "  yields by " << quantity_text(core.tangential_stiffness.value_or(area / compliance), "N/m")
+        << " before it slides\n";
+  }
+  if (!core.edge_stiffness) return;
+  out << "  edges bear " << quantity_text(*core.edge_stiffness, "N/m^2") << " along the mitre once "
+      << metres(core.clearance.value_or(0.0)) << " have closed";
+  if (core.allowed_line_load) out << ", allowed " << quantity_text(*core.allowed_line_load, "N/m");
+  if (const long sheets = core.is_counted() ? 0 : sheets_in(geometry.stack()); core.allowed_line_load && sheets > 0)
+    out << ", " << quantity_text(*core.allowed_line_load / (static_cast<double>(sheets) * *core.sheet_thickness), "Pa");
+  out << "\n";
+}
+
+// Packets whose pressure follows the acceleration across the stack, of its first corner.
+void print_transverse(std::ostream& out, const Core& core, const CoreGeometry& geometry, const CoreCorner& corner) {
+  if (core.transverse_acceleration.empty()) return;
+  double most = -1e300, least = 1e300;
+  for (const Lap& lap : corner.laps) {
+    const double gain = geometry.pressure(corner, lap, 1.0).transverse;
+    most = std::max(most, gain);
+    least = std::min(least, gain);
+  }
+  out << "  pressed by " << number_text(std::round(least)) << " to " << number_text(std::round(most))
+      << " Pa more for every m/s² from the front face to the back\n";
+}
+
 void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geometry,
                    std::size_t limb, const Model& model) {
   const Body &body = *model.find_body(core.all_limbs()[limb]), &part = *model.find_body(core.active_part);
@@ -104,26 +135,28 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
   table.add_row({"corner", "kinds", "interfaces", "overlap, mean", "area", "capacity"});
   double all = 0.0, capacity = 0.0;
-  for (const CoreCorner& corner : geometry.corners(core.is_middle(limb), side_of_limb(core, body, part), reach)) {
-    double count = 0.0, area = 0.0, width = 0.0, pressed = 0.0; // area times share of the pressure
+  const std::vector<CoreCorner> corners = geometry.corners(core.is_middle(limb), side_of_limb(core, body, part), reach);
+  for (const CoreCorner& corner : corners) {
+    double count = 0.0, area = 0.0, width = 0.0, pressed = 0.0; // area times pressure
     for (const Lap& lap : corner.laps) {
       count += lap.count;
       area += lap.count * lap.area;
-      pressed += lap.count * lap.area * lap.pressure;
+      pressed += lap.count * lap.area * geometry.pressure(corner, lap, core.joint_share(limb)).middle * (1.0 - core.pressure_loss);
       width += lap.count * (lap.outer - lap.inner);
     }
-    const double pressure = corner.is_top ? core.pressure : core.bottom_pressure.value_or(core.pressure);
     const double friction = corner.is_top
                                 ? core.static_friction
                                 : core.bottom_static_friction.value_or(core.static_friction);
     table.add_row({corner.place, std::to_string(corner.laps.size()), whole(count),
                    metres(width / count), quantity_text(area, "m²"),
-                   quantity_text(pressed * pressure * friction, "N")});
+                   quantity_text(pressed * friction, "N")});
     all += area;
-    capacity += pressed * pressure * friction;
+    capacity += pressed * friction;
   }
   table.add_row({"together", "", "", "", quantity_text(all, "m²"), quantity_text(capacity, "N")});
   out << table;
+  print_compliance(out, core, geometry, all);
+  print_transverse(out, core, geometry, corners.front());
 }
 
 void print_steel(std::ostream& out, const Core& core, const CoreGeometry& geometry,
@@ -153,8 +186,8 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
     out << "  interfaces between layers: " << whole(interfaces_between_layers(geometry.stack()))
         << " at every corner\n";
   }
-  if (const double steel = geometry.yoke_steel(places_of_limbs(core, model)); steel > 0.0 && count_cores_at(model, core.active_part) == 1)
-    out << "  yokes: " << quantity_text(steel, "kg") << " of the " << quantity_text(model.find_body(core.active_part)->mass, "kg") << " of '"
+  if (const auto steel = yoke_steel(model, core.active_part))
+    out << "  yokes: " << quantity_text(*steel, "kg") << " of the " << quantity_text(model.find_body(core.active_part)->mass, "kg") << " of '"
         << core.active_part << "'\n";
   for (std::size_t i = 0; i < core.all_limbs().size(); ++i) {
     out << "\n"

@@ -167,7 +167,7 @@ void add_texts(Json& summary) {
     for (Json& entry : summary["joints"]) {
       const std::pair<const char*, const char*> figures[] = {
           {"first_slip", "s"}, {"smallest_margin", ""}, {"largest_required_pressure", "Pa"}, {"slid_x", "m"},
-          {"slid_y", "m"},     {"slid_angle", "rad"},   {"area_lost", "m^2"}};
+          {"slid_y", "m"},     {"slid_angle", "rad"},   {"area_lost", "m^2"},  {"largest_edge_load", "N/m"}, {"largest_edge_share", ""}};
       for (const auto& [key, unit] : figures) add_text(entry, key, std::string("error_") + key, unit);
     }
   if (summary.contains("judgement"))

@@ -118,6 +118,23 @@ void print_slides(std::ostream& out, const RunSummary& summary) {
   if (!table.is_empty()) out << "\nLargest slides\n" << table;
 }
 
+// Edges that bore, and what bears beside a joint.
+void print_beside(std::ostream& out, const JointAssessment& a, const std::optional<JointErrors>& e) {
+  if (a.has_edges && a.edge_load.value > 0.0) {
+    out << "  " << a.joint << ": sheet edges bore up to "
+        << measured_text(a.edge_load.value, e ? std::optional(e->edge_load) : std::nullopt, "N/m");
+    if (a.allowed_line_load) out << ", allowed are " << quantity_text(*a.allowed_line_load, "N/m");
+    out << "\n";
+  }
+  if (a.shared_with.empty()) return;
+  out << "  " << a.joint << ": margin of its own share; beside it";
+  for (const SharedLoad& shared : a.shared_with) {
+    out << (&shared == &a.shared_with.front() ? " '" : ", '") << shared.element << "'";
+    if (!std::isnan(shared.largest)) out << " with up to " << quantity_text(shared.largest, "N");
+  }
+  out << (a.is_elastic ? "\n" : " (the joint is rigid: they take no part before it slides)\n");
+}
+
 void print_joints(std::ostream& out, const FinishedRun& finished) {
   const auto joints = assess_joints(finished.run.loaded->model, finished.run.result);
   TextTable table({Align::left, Align::left, Align::right, Align::right, Align::right, Align::right,
@@ -138,6 +155,12 @@ void print_joints(std::ostream& out, const FinishedRun& finished) {
                    e ? measured_text(a.area_lost, e->area_lost, "m^2") : quantity_text(a.area_lost, "m^2", 1.0)});
   }
   if (!joints.empty()) out << "\nStep-lap joints\n" << table;
+  for (const JointAssessment& a : joints) {
+    std::optional<JointErrors> e;
+    if (const auto& estimate = finished.summary.global_error)
+      e = joint_errors(a, *finished.run.loaded->system, finished.run.result, *estimate);
+    print_beside(out, a, e);
+  }
 }
 
 std::string value_beside_limit(const CriterionResult& c) {

@@ -100,6 +100,31 @@ void add_errors(Json& entry, const JointAssessment& a, const JointErrors& e) {
   entry["error_largest_slide_share"] = number_json(e.slid_share);
   entry["error_least_overlap_left"] = number_json(e.overlap_left);
   entry["error_least_clearance_left"] = number_json(e.clearance_left);
+  if (!a.has_edges) return;
+  entry["error_largest_edge_load"] = number_json(e.edge_load);
+  if (a.allowed_line_load) entry["error_largest_edge_share"] = number_json(e.edge_share);
+}
+
+// Of a joint whose edges can bear; the margin is infinite, null, while none does.
+void add_edges(Json& entry, const JointAssessment& a) {
+  if (!a.has_edges) return;
+  entry["largest_edge_load"] = number_json(a.edge_load.value);
+  entry["t_largest_edge_load"] = a.edge_load.t;
+  entry["largest_edge_pressure"] = number_json(a.edge_pressure.value);
+  entry["allowed_line_load"] = a.allowed_line_load ? Json(*a.allowed_line_load) : Json();
+  if (!a.allowed_line_load) return;
+  entry["largest_edge_share"] = number_json(a.edge_share.value);
+  entry["smallest_edge_margin"] = number_json(a.edge_margin());
+  entry["crushed_edges"] = std::isnan(a.edge_share.value) ? Json() : Json(a.has_crushed_edges());
+}
+
+// Of a joint with others beside it: its figures are of its own share of the load.
+void add_shared(Json& entry, const JointAssessment& a) {
+  if (a.shared_with.empty()) return;
+  entry["shares_before_it_slides"] = a.is_elastic;
+  entry["shared_with"] = Json::array();
+  for (const SharedLoad& shared : a.shared_with)
+    entry["shared_with"].push_back({{"element", shared.element}, {"largest_force", number_json(shared.largest)}});
 }
 
 Json joints_json(const Run& run, const RunSummary& summary) {
@@ -123,6 +148,8 @@ Json joints_json(const Run& run, const RunSummary& summary) {
                      {"most_slide_share", a.most_slide},
                      {"least_overlap_left", number_json(a.overlap_left.value)},
                      {"least_clearance_left", number_json(a.clearance_left.value)}};
+    add_edges(entry, a);
+    add_shared(entry, a);
     if (summary.global_error)
       add_errors(entry, a, joint_errors(a, *run.loaded->system, run.result, *summary.global_error));
   }

@@ -78,7 +78,24 @@ steplap.tables = (() => {
     if (!list.length) return [];
     const rows = list.map(([name, j]) => [name, { text: j.verdict, class: { hold: 'met', reject: 'reject' }[j.outcome] || 'inspect' }, j.first_slip === null ? '–' : instant(j, 'first_slip'),
       known(j, 'smallest_margin', ''), known(j, 'largest_required_pressure', 'Pa'), known(j, 'slid_x', 'm'), known(j, 'slid_y', 'm'), known(j, 'slid_angle', 'rad'), known(j, 'area_lost', 'm^2', 4)]);
-    return [make('h3', {}, 'Step-lap joints: least margin, largest pressure needed, slid distances at the end'), scroll(table(['', '', 'first slip', 'margin', 'needs', 'dx', 'dy', 'turn', 'area lost'], tidy(rows), [2, 3, 4, 5, 6, 7, 8]))];
+    return [make('h3', {}, 'Step-lap joints: least margin, largest pressure needed, slid distances at the end'), scroll(table(['', '', 'first slip', 'margin', 'needs', 'dx', 'dy', 'turn', 'area lost'], tidy(rows), [2, 3, 4, 5, 6, 7, 8])),
+      ...edges(list), ...shared(list)];
+  }
+  // Where limbs were drawn towards their yokes and sheet edges can bear.
+  function edges(list) {
+    const bearing = list.filter(([, j]) => j.largest_edge_load !== undefined);
+    if (!bearing.length) return [];
+    const rows = bearing.map(([name, j]) => [name, known(j, 'largest_edge_load', 'N/m'), j.largest_edge_load ? seconds(j.t_largest_edge_load) : '–',
+      j.largest_edge_pressure === null ? '–' : number(j.largest_edge_pressure, 'Pa'), j.allowed_line_load === null ? '–' : number(j.allowed_line_load, 'N/m'),
+      j.largest_edge_share === undefined ? '–' : j.largest_edge_share === 0 ? '∞' : number(j.smallest_edge_margin, ''),
+      j.crushed_edges === undefined || j.crushed_edges === null ? '–' : { text: j.crushed_edges ? 'crushed' : 'borne', class: j.crushed_edges ? 'reject' : 'met' }]);
+    return [make('h3', {}, 'Sheet edges along the mitres: largest line load, of all sheets at a corner'), scroll(table(['', 'line load', 'at', 'pressure', 'allowed', 'margin', ''], rows, [1, 3, 4, 5]))];
+  }
+  // What bears beside a joint: its margin is of its own share.
+  function shared(list) {
+    return list.filter(([, j]) => j.shared_with).map(([name, j]) => make('p', { class: 'note' },
+      `${name}: the margin is that of its own share; beside it bear ${j.shared_with.map((s) => s.element + (s.largest_force === null ? '' : ` (up to ${quantity(s.largest_force, 'N')})`)).join(', ')}` +
+      (j.shares_before_it_slides ? '.' : ', which take no part before the joint slides: it is rigid.')));
   }
   // What is rounding beside a micrometre or a microradian is shown as zero; data-value keeps the digits.
   function tidy(rows) {

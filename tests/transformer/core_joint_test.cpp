@@ -1,0 +1,315 @@
+// What a [[core]] says of the joints it adds: compliance, edges, pressures in time and across the stack; what it says of
+// joints that are declared elsewhere; yokes that several tables share; what bears beside a joint.
+#include "elements/step_lap_interface.h"
+#include "elements/step_lap_joint.h"
+#include "mbd/io/reader.h"
+#include "mbd/simulation/simulation.h"
+#include "mbd/system/system.h"
+#include "transformer/catalog.h"
+#include "transformer/core_builder.h"
+#include "transformer/joint_assessment.h"
+#include "transformer/plausible.h"
+#include "transformer/verdict.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace steplap;
+
+namespace {
+
+const std::string k_text = R"(gravity = [0.0, 0.0]
+[simulation]
+end = 0.05
+tolerance = 1e-8
+[output]
+step = 1e-3
+[[body]]
+name = "active part"
+mass = 47000
+inertia = 65200
+position = [0.0, 1.95]
+[[body]]
+name = "front limb"
+position = [1.25, 1.95]
+[[body]]
+name = "back limb"
+position = [-1.25, 1.95]
+[[signal]]
+name = "shock"
+kind = "half_sine"
+peak = 30.0
+duration = 0.05
+[[core]]
+name = "core"
+active_part = "active part"
+limbs = ["front limb", "back limb"]
+limb_width = 0.5
+core_height = 3.3
+yoke_height = 0.5
+stack_depth = 0.585
+stacking_factor = 0.96
+sheet_thickness = "0.27 mm"
+sheets_per_layer = 1
+steps = 5
+step_pitch = "5 mm"
+pitch_direction = "across"
+book = "saw_tooth"
+clearance = "0.5 mm"
+pressure = "0.1 MPa"
+static_friction = 0.2
+)";
+constexpr double k_sheet = 0.27e-3;
+constexpr long k_sheets = 2080; // ⌊0.96 · 0.585 m/0.27 mm⌋
+
+Model model_of(const std::string& more, const std::vector<std::string>& overrides = {}) {
+  return parse_model(k_text + more, "core.toml", transformer_catalog(), overrides);
+}
+
+template <class T> std::vector<const T*> all_of(const Model& model) {
+  std::vector<const T*> found;
+  for (const ElementEntry& entry : model.elements)
+    if (const auto* e = dynamic_cast<const T*>(entry.element.get())) found.push_back(e);
+  return found;
+}
+
+std::string refusal(const std::string& more, const std::vector<std::string>& overrides = {}) {
+  try {
+    static_cast<void>(compile(model_of(more, overrides)));
+  } catch (const ModelError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+const std::string k_joint = "[[element]]\nkind = \"step_lap_joint\"\nname = \"front limb joint\"\n"
+                            "limb = \"front limb\"\nactive_part = \"active part\"\n";
+
+} // namespace
+
+TEST_CASE("all joints of a core are as compliant, pressed and bounded as it says, by path as by file") {
+  const std::string fields = "contact_stiffness = 2e10\nshear_modulus = \"80 GPa\"\nedge_stiffness = 1e11\n"
+                             "allowed_line_load = 2e7\npressure_loss = 0.2\npressure_signal = \"fading\"\n"
+                             "[[signal]]\nname = \"fading\"\nkind = \"trapezoid\"\npeak = 1.0\nstart = -10.0\nrise = 5.0\n"
+                             "fall = 10.0\nduration = 20.0\n";
+  const std::vector<std::string> paths = {"core.core.contact_stiffness=2e10", "core.core.shear_modulus=80 GPa",
+                                          "core.core.edge_stiffness=1e11", "core.core.allowed_line_load=2e7",
+                                          "core.core.pressure_loss=0.2"};
+  for (const Model& model : {model_of(fields), model_of("", paths)}) {
+    REQUIRE(all_of<StepLapJoint>(model).size() == 2);
+    for (const StepLapJoint* joint : all_of<StepLapJoint>(model)) {
+      CHECK(joint->contact_stiffness == 2e10);
+      CHECK(joint->shear_modulus == 80e9);
+      CHECK(joint->sheet_thickness == k_sheet);
+      CHECK(joint->edge_stiffness == 1e11);
+      CHECK(joint->allowed_line_load == 2e7);
+      CHECK(joint->pressure_loss == 0.2);
+      CHECK(joint->steel_thickness.value() == doctest::Approx(k_sheets * k_sheet).epsilon(1e-14));
+    }
+    static_cast<void>(compile(model));
+  }
+  CHECK(all_of<StepLapJoint>(model_of(fields))[0]->pressure_signal == "fading");
+  CHECK(all_of<StepLapJoint>(model_of("", {"core.core.tangential_stiffness=3 GN/m"}))[1]->tangential_stiffness == 3e9);
+  // Rigid, without edges, uniform unless it says so.
+  const StepLapJoint plain;
+  for (const StepLapJoint* joint : all_of<StepLapJoint>(model_of(""))) {
+    CHECK_FALSE(is_elastic(*joint));
+    CHECK_FALSE(joint->edge_stiffness);
+    CHECK_FALSE(joint->steel_thickness);
+    CHECK(joint->pressure_loss == plain.pressure_loss);
+  }
+}
+
+TEST_CASE("joints pressed differently, and a gradient by path: a change of sign mirrors it") {
+  const Model model = model_of("joint_pressure_shares = [1.0, 0.5]\n", {"core.core.pressure_gradient=[1e5,0.0]"});
+  for (const StepLapInterface* face : all_of<StepLapInterface>(model)) {
+    const bool is_front = face->joint == "front limb joint";
+    // Outwards is +x in front, −x behind; shares are of all of it.
+    CHECK(face->pressure_gradient.x() == (is_front ? 1e5 : -0.5e5));
+    // The middles of the bands lie within a hundredth of a metre of the mitre's middle: a kilopascal.
+    CHECK(std::abs(face->pressure - (is_front ? 1e5 : 0.5e5)) < 1e3);
+  }
+}
+
+TEST_CASE("what of it contradicts itself or is missing is refused where it stands") {
+  CHECK(has(refusal("tangential_stiffness = 1e9\ncontact_stiffness = 1e10\n"),
+            "core.toml:42:21: error: core 'core': 'tangential_stiffness' and 'contact_stiffness' say the same"));
+  CHECK(has(refusal("shear_modulus = 8e10\n"), "'shear_modulus' is in series with 'contact_stiffness', which is not given"));
+  CHECK(has(refusal("allowed_line_load = 1e7\n"), "'allowed_line_load' needs 'edge_stiffness'"));
+  CHECK(has(refusal("tangential_stiffness = 1e9\nmode = \"monitor\"\n"), "'mode' = \"monitor\" contradicts 'tangential_stiffness'"));
+  CHECK(has(refusal("tangential_stiffness = 1e9\nkinetic_friction = 0.15\n"), "'kinetic_friction' contradicts 'tangential_stiffness'"));
+  CHECK(refusal("tangential_stiffness = 1e9\nkinetic_friction = 0.2\n") == "");
+  CHECK(has(refusal("joint_pressure_shares = [1.0]\n"), "one share for each of the 2 joints, got 1"));
+  CHECK(has(refusal("joint_pressure_shares = [1.0, 0.0]\n"), "must be greater than 0"));
+  CHECK(has(refusal("bottom_pressure_gradient = [0.0, 0.0]\n"), "'bottom_pressure_gradient' needs 'pressure_gradient'"));
+  CHECK(has(refusal("pressure_gradient = [6e5, 0.0]\n"), "core.toml:41:21: error: core 'core': 'pressure_gradient' is too steep for 'pressure'"));
+  CHECK(refusal("pressure_gradient = [3.9e5, 0.0]\n") == ""); // a mitre reaches 0.25 m to either side
+  CHECK(has(refusal("pressure_loss = 1.0\n"), "0.99"));
+  CHECK(has(refusal("pressure_signal = \"shok\"\n"), "(did you mean 'shock'?)"));
+  CHECK(has(refusal("edge_stiffness = \"1 GN/m\"\n"), "core.toml:41:18: error: 'edge_stiffness' of core 'core': '1 GN/m' has the unit 'GN/m', but a unit like 'N/m^2'"));
+  CHECK(has(refusal("pressure_gradient = [\"1 kPa\", 0.0]\n"), "Pa/m"));
+  // across the stack
+  CHECK(has(refusal("transverse_support = \"front\"\n"), "'transverse_support' needs 'transverse_acceleration'"));
+  CHECK(has(refusal("transverse_slices = 2\n"), "'transverse_slices' needs 'transverse_acceleration'"));
+  const std::string shock = "transverse_acceleration = \"shock\"\n";
+  CHECK(has(refusal(shock), "needs 'transverse_support'"));
+  CHECK(has(refusal(shock + "transverse_support = \"both\"\n"), "changes nothing: held by both faces, a stack of one packet"));
+  CHECK(refusal(shock + "transverse_support = \"both\"\ntransverse_slices = 4\n") == "");
+  CHECK(refusal(shock + "transverse_support = \"back\"\n") == "");
+}
+
+TEST_CASE("a joint declared by itself may say its own; what it leaves out is not passed over") {
+  const std::string all = "edge_stiffness = 1e11\ntangential_stiffness = 2e9\n";
+  CHECK(has(refusal(all + k_joint), "'tangential_stiffness' is for joints that this table adds; step_lap_joint 'front limb joint' exists "
+                                    "already and does not say its own"));
+  const Model model = model_of(all + k_joint + "edge_stiffness = 3e11\ntangential_stiffness = 5e9\n");
+  for (const StepLapJoint* joint : all_of<StepLapJoint>(model)) {
+    CHECK(joint->edge_stiffness == (joint->name == "front limb joint" ? 3e11 : 1e11));
+    CHECK(joint->tangential_stiffness == (joint->name == "front limb joint" ? 5e9 : 2e9));
+  }
+  CHECK(has(refusal("pressure_loss = 0.1\n" + k_joint), "'pressure_loss' is for joints that this table adds"));
+}
+
+// 3 g across, held by the back face: the front loses nothing, the back face's interfaces 30 · 7650 · 0.5616 m = 129 kPa.
+TEST_CASE("a shock across the stack takes the pressure off, slice by slice") {
+  const auto least_margin = [](const std::string& slices) {
+    const Model model = model_of("transverse_acceleration = \"shock\"\ntransverse_support = \"back\"\ntransverse_slices = " + slices +
+                                 "\n[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"front limb\"\nforce = [20000.0, 0.0]\n"
+                                 "[[element]]\nkind = \"weld\"\nname = \"held\"\na = \"active part\"\nb = \"ground\"\n");
+    const auto system = compile(model);
+    const RunResult result = simulate(*system, system->initial_state(), options_of(model));
+    return assess_joints(model, result).at(0).smallest_margin;
+  };
+  const Model model = model_of("");
+  double capacity = 0.0;
+  for (const LapPressure& p : {LapPressure{1e5, {0, 0}, 1e5, 0}}) {
+    const auto* core = dynamic_cast<const Core*>(model.tables.front().table.get());
+    REQUIRE(core);
+    for (const CoreCorner& corner : CoreGeometry(*core).corners(false, 1.0, 1.25))
+      for (const Lap& lap : corner.laps) capacity += 0.2 * p.middle * lap.count * lap.area;
+  }
+  // In the mean p₀ − a ρ z̄; of many slices ∫ max(0, p₀ − a ρ z) dz/h, which is more, since pressures are not negative.
+  const double lost = 30.0 * 7650.0 * k_sheets * k_sheet / 1e5; // of the pressure, at the back face
+  CHECK(least_margin("1") == doctest::Approx(capacity / 20000.0 * (1.0 - 0.5 * lost)).epsilon(1e-3));
+  CHECK(least_margin("20") == doctest::Approx(capacity / 20000.0 * 0.5 / lost).epsilon(2e-3));
+}
+
+// A return limb takes half of the rectangle where it crosses each yoke, a wound limb a triangle 0.4 m high; all of it 0.25 mm
+// (half the clearance) more along each mitre.
+TEST_CASE("yokes that two tables share are weighed: five limbs") {
+  const Model model = read_model(std::string(STEPLAP_MODELS) + "/layouts/five_limb.toml", transformer_catalog());
+  const double strip = 0.48 * (2 * 2.8 + 0.44), half_gap = 0.25e-3;
+  const double cuts = 2 * (0.5 * 0.44 * 0.48 + half_gap * std::hypot(0.44, 0.48)) +
+                      3 * (0.5 * 0.8 * 0.4 + half_gap * 2 * 0.4 * std::sqrt(2.0));
+  const double surface = 7650 * std::floor(0.62 * 0.96 / k_sheet) * k_sheet;
+  const auto steel = yoke_steel(model, "active part");
+  REQUIRE(steel);
+  // The lines of a book lie to either side of the mitre: areas differ by their squares, (10 mm)² at each of ten corners' ends
+  CHECK(*steel == doctest::Approx(2 * surface * (strip - cuts)).epsilon(3e-4));
+  CHECK_FALSE(yoke_steel(model, "nobody"));
+  try {
+    static_cast<void>(read_model(std::string(STEPLAP_MODELS) + "/layouts/five_limb.toml", transformer_catalog(),
+                                 {"body.active part.mass=19000"}));
+    CHECK(false);
+  } catch (const ModelError& error) {
+    CHECK(has(error.what(), "19000 kg, is less than the yokes of core 'return limbs' weigh alone, 20"));
+  }
+}
+
+TEST_CASE("two tables that are parts of one stack have yokes each; a table without both ends leaves the weight unknown") {
+  const double one = yoke_steel(model_of(""), "active part").value();
+  std::string second = k_text.substr(k_text.find("[[core]]"));
+  second.replace(second.find("\"core\""), 6, "\"more\"");
+  second.replace(second.find("limb_width = 0.5"), 16, "limb_width = 0.4");
+  second.replace(second.find("yoke_height = 0.5"), 17, "yoke_height = 0.4");
+  const std::string masses = "[[body]]\nname = \"spare\"\nposition = [9.0, 9.0]\nmass = 1.0\ninertia = 1.0\n";
+  const std::vector<std::string> given = {"body.front limb.mass=9000", "body.front limb.inertia=9000", "body.back limb.mass=9000",
+                                          "body.back limb.inertia=9000"};
+  const double both = yoke_steel(model_of(masses + second, given), "active part").value();
+  // The second: two yokes of 2.9 m × 0.4 m less half of 0.16 m² at each of four crossings, and the clearances' 8 · 0.14e-3 m².
+  const double more = 7650 * k_sheets * k_sheet * 2 * (0.4 * 2.9 - 0.16 - 2 * 0.25e-3 * 0.4 * std::sqrt(2.0));
+  CHECK(both - one == doctest::Approx(more).epsilon(3e-4));
+  CHECK_FALSE(yoke_steel(model_of("", {"core.core.limbs=[\"front limb\"]", "body.back limb.mass=1", "body.back limb.inertia=1"}),
+                         "active part"));
+}
+
+TEST_CASE("what bears between a limb and the active part is named beside the joint, with what it bore") {
+  const auto assess = [](const std::string& more) {
+    const Model model =
+        model_of(more + "[[marker]]\nname = \"plate end\"\nbody = \"active part\"\nat = [1.25, 0.0]\n"
+                        "[[element]]\nkind = \"tie\"\nname = \"tie plate\"\na = \"front limb\"\nb = \"plate end\"\n"
+                        "axis = [0.0, 1.0]\nacts = \"both\"\nstiffness = 1e9\n"
+                        "[[element]]\nkind = \"weld\"\nname = \"held\"\na = \"active part\"\nb = \"ground\"\n"
+                        "[[element]]\nkind = \"load\"\nname = \"pull\"\nat = \"front limb\"\nforce = [0.0, -20000.0]\n");
+    const auto system = compile(model);
+    return assess_joints(model, simulate(*system, system->initial_state(), options_of(model)));
+  };
+  const auto rigid = assess("");
+  REQUIRE(rigid.at(0).shared_with.size() == 1);
+  CHECK(rigid[0].shared_with[0].element == "tie plate");
+  CHECK(rigid[0].shared_with[0].largest == 0.0); // nothing before it slides
+  CHECK_FALSE(rigid[0].is_elastic);
+  CHECK(rigid.at(1).shared_with.empty());
+  // A load that is there at once swings about its rest, undamped: twice what each bears of it at rest, half.
+  const auto elastic = assess("tangential_stiffness = 1e9\n");
+  CHECK(elastic[0].is_elastic);
+  CHECK(elastic[0].shared_with.at(0).largest == doctest::Approx(20000.0).epsilon(0.02)); // 2 k/(K + k)
+  // The other half, twice, and a little turning. Before the load came the margin was infinite: what is found of it later must
+  // not be measured by that.
+  CHECK(elastic[0].smallest_margin == doctest::Approx(rigid[0].smallest_margin).epsilon(0.05));
+  CHECK(elastic[0].smallest_margin == doctest::Approx(1e5 / elastic[0].largest_required_pressure).epsilon(2e-6));
+}
+
+TEST_CASE("edges of a core: an allowed line load is a criterion, met, not met, or open") {
+  const auto judged = [](const std::string& more) {
+    const Model model = model_of("edge_stiffness = 1e11\n" + more +
+                                 "[[element]]\nkind = \"weld\"\nname = \"held\"\na = \"active part\"\nb = \"ground\"\n"
+                                 "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"front limb\"\nforce_x = \"push\"\n"
+                                 "[[signal]]\nname = \"push\"\nkind = \"half_sine\"\npeak = -1.2e6\nduration = 0.03\n");
+    const auto system = compile(model);
+    const RunResult result = simulate(*system, system->initial_state(), options_of(model));
+    return std::pair{assess_joints(model, result).at(0), judge(model, *system, result, "")};
+  };
+  const auto [bare, without] = judged("");
+  REQUIRE(bare.edge_load.value > 1e4); // it butted
+  CHECK(bare.edge_pressure.value == doctest::Approx(bare.edge_load.value / (k_sheets * k_sheet)).epsilon(1e-9));
+  CHECK(std::isnan(bare.edge_margin()));
+  const auto find = [](const Judgement& judgement) {
+    for (const CriterionResult& c : judgement.criteria)
+      if (c.name == "front limb joint" && has(c.text, "line load")) return c;
+    return CriterionResult();
+  };
+  CHECK(find(without).text.empty()); // nothing allowed, nothing asked
+  const auto with = [](double allowed) { return "allowed_line_load = " + std::to_string(allowed) + "\n"; };
+  const auto [borne, good] = judged(with(2.0 * bare.edge_load.value));
+  CHECK(borne.edge_margin() == doctest::Approx(2.0).epsilon(1e-6));
+  CHECK(find(good).outcome == Verdict::hold);
+  const auto [crushed, bad] = judged(with(0.5 * bare.edge_load.value));
+  CHECK(crushed.has_crushed_edges());
+  CHECK(find(bad).outcome == Verdict::reject);
+  CHECK(bad.verdict == Verdict::reject);
+  // Figures that are not known leave it open.
+  const Model model = model_of("edge_stiffness = 1e11\nallowed_line_load = 1e7\n");
+  const auto system = compile(model);
+  CHECK(find(judge(model, *system, RunResult(), "")).outcome == Verdict::open);
+}
+
+TEST_CASE("stiffnesses, losses and shares that no core has are told of") {
+  const auto said = [](const std::string& more) {
+    std::string all;
+    for (const std::string& text : implausible_cores(model_of(more))) all += text + "\n";
+    return all;
+  };
+  CHECK(said("") == "");
+  CHECK(said("contact_stiffness = 2e10\nshear_modulus = 8e10\nedge_stiffness = 1e11\nallowed_line_load = 1e7\npressure_loss = 0.1\n") == "");
+  CHECK(has(said("contact_stiffness = 2e5\n"), "'contact_stiffness' = 2e+05 N/m^3 is unusual"));
+  CHECK(has(said("tangential_stiffness = 2e5\n"), "'tangential_stiffness' ="));
+  CHECK(has(said("contact_stiffness = 2e10\nshear_modulus = 8e6\n"), "'shear_modulus' = 8e+06 Pa is unusual"));
+  CHECK(has(said("edge_stiffness = 1e3\n"), "'edge_stiffness' ="));
+  CHECK(has(said("edge_stiffness = 1e11\nallowed_line_load = 1e12\n"), "'allowed_line_load' ="));
+  CHECK(has(said("pressure_loss = 0.9\n"), "'pressure_loss' = 0.9 is unusual"));
+  CHECK(has(said("joint_pressure_shares = [1.0, 0.1]\n"), "'joint_pressure_shares': 0.1 of 'pressure' is 10000 Pa"));
+}
