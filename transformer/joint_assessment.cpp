@@ -158,4 +158,12 @@ std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& 
   return assessments;
 }
 
+std::vector<std::string> channels_of_trust(const Model& model) {
+  std::vector<std::string> names;
+  for (const ElementEntry& entry : model.elements)
+    if (const auto* joint = dynamic_cast<const StepLapJoint*>(entry.element.get()))
+      for (const char* channel : {".margin", ".mode"}) names.push_back(joint->name + channel);
+  return names;
+}
+
 } // namespace steplap

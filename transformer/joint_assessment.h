@@ -84,4 +84,8 @@ struct JointAssessment {
 /// look for extremes.
 [[nodiscard]] std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& result);
 
+/// Names of the channels that tell whether joints contradict themselves: who leaves out channels keeps these, or takes a run
+/// for trusted that is not.
+[[nodiscard]] std::vector<std::string> channels_of_trust(const Model& model);
+
 } // namespace steplap

@@ -67,7 +67,8 @@ std::unique_ptr<System> Variants::make(const std::vector<double>& values) {
   Model& model = is_direct_ ? completed_ : given_;
   for (std::size_t i = 0; i < paths_.size(); ++i) set_value(model, paths_[i], values[i]);
   const std::vector<std::string>* const wanted = channels_ ? &*channels_ : nullptr;
-  return is_direct_ ? compile(completed_, wanted) : compile(completed(given_), wanted);
+  if (!is_direct_) completed_ = completed(given_);
+  return compile(completed_, wanted);
 }
 
 } // namespace steplap

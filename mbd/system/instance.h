@@ -28,6 +28,8 @@ public:
   /// The system that instantiate(given, …) gives, byte for byte but for the channels left out. `values`: one per path, in SI.
   /// Throws ModelError for a value that is out of range, or makes no model with the others.
   [[nodiscard]] std::unique_ptr<System> make(const std::vector<double>& values);
+  /// The completed model of the system made last: what starts, options and verdicts are read from.
+  [[nodiscard]] const Model& model() const { return completed_; }
 
 private:
   Model given_, completed_;

@@ -23,7 +23,7 @@ namespace {
 struct Options {
   std::string file;
   std::optional<std::string> store, sample, output, threads;
-  bool is_restarted = false, is_changed = false, is_findings = false, is_growth = false;
+  bool is_restarted = false, is_changed = false, is_findings = false, is_growth = false, is_histories = false;
 };
 
 std::string default_store(const std::string& file) { return (std::filesystem::path("out") / (std::filesystem::path(file).stem().string() + ".sqlite")).string(); }
@@ -193,12 +193,14 @@ Command export_command() {
   command.options = {{"FILE", &o->file, "FILE", "study file or store", true},
                      store_option(o),
                      {"--findings", &o->is_findings, "", "what was found instead of the samples"},
-                     {"--growth", &o->is_growth, "", "estimates as they grew instead of the samples"}};
+                     {"--growth", &o->is_growth, "", "estimates as they grew instead of the samples"},
+                     {"--histories", &o->is_histories, "", "of a fit: what was measured, and what was found to fit it"}};
   command.run = [o](Console& console) {
     return guarded([&] {
       Store store(store_of(*o));
       if (o->is_findings) export_findings(store.findings(), console.out);
       else if (o->is_growth) export_findings(store.growth(), console.out);
+      else if (o->is_histories) export_histories(store.histories(), console.out);
       else export_samples(store, console.out);
       if (!console.out.flush()) throw UsageError("the export could not be written to its end");
       return ExitCode::done;

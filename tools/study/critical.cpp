@@ -78,9 +78,21 @@ std::string monotonic_text(const Look& look) {
     rises = rises || look.g[i] > look.g[i - 1];
     falls = falls || look.g[i] < look.g[i - 1];
   }
-  if (!is_known) return "not known whether it is monotonic: some runs gave no value";
-  if (rises && falls) return "not monotonic over the range: all crossings that the looks tell apart are given";
-  return rises ? "rises all over the range" : falls ? "falls all over the range" : "constant over the range";
+  if (!is_known) return "may be monotonic or not: some runs gave no value";
+  if (rises && falls) return "is not monotonic over the range: all crossings that the looks tell apart are given";
+  return rises ? "rises all over the range" : falls ? "falls all over the range" : "is constant over the range";
+}
+
+// Where the expression is zero at two neighbouring looks, it is at all values between; neighbours are joined.
+void add_flat(double low, double high, const std::string& variable, long samples, Answer& answer) {
+  answer.degrade(Standing::not_met);
+  if (!answer.findings.empty() && answer.findings.back().high == low) {
+    answer.findings.back().high = high;
+    return;
+  }
+  Finding f{"critical", variable, "critical value", std::nan(""), low, high, samples};
+  f.status = "the expression is zero all over this interval: no value of it is critical";
+  answer.findings.push_back(f);
 }
 
 } // namespace
@@ -104,15 +116,19 @@ Answer run_critical(StudyRun& run) {
   look_closer(line, look);
 
   std::vector<Crossing> crossings;
+  Answer answer;
   for (std::size_t i = 1; i < look.x.size(); ++i) {
     const double a = look.g[i - 1], b = look.g[i];
     if (std::isnan(a) || std::isnan(b)) continue;
+    if (a == 0.0 && b == 0.0) {
+      add_flat(look.x[i - 1], look.x[i], s.variable, run.evaluator.asked(), answer);
+      continue;
+    }
     if (a == 0.0 && i > 1) continue; // the end of the interval before
     if ((a < 0.0) != (b < 0.0) || a == 0.0 || b == 0.0) crossings.push_back({look.x[i - 1], look.x[i], a, b});
   }
   close_crossings(crossings, s.tolerance * width, [&](const std::vector<std::size_t>&, const std::vector<double>& at) { return line.at(at); });
 
-  Answer answer;
   for (const Crossing& c : crossings) {
     Finding f{"critical", s.variable, "critical value", c.root(), c.low, c.high, run.evaluator.asked()};
     if (c.is_jump) f.status = "the expression jumps past zero there: it is discontinuous";
@@ -120,7 +136,7 @@ Answer run_critical(StudyRun& run) {
     if (c.is_bad) answer.degrade(Standing::not_met);
     answer.findings.push_back(f);
   }
-  if (crossings.empty()) {
+  if (answer.findings.empty()) {
     Finding f{"critical", s.variable, "critical value"};
     f.samples = run.evaluator.asked();
     const auto known = std::find_if(look.g.begin(), look.g.end(), [](double g) { return !std::isnan(g); });

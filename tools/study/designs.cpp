@@ -206,11 +206,12 @@ std::unique_ptr<Design> design_of(const Study& study, std::size_t dimension) {
 
 // Mean and variance as they come in (Welford), of finite values.
 struct Moments {
-  long count = 0, missing = 0;
+  long count = 0, missing = 0, unknown = 0; ///< missing: infinite (what never happened) or unknown
   double mean = 0.0, squares = 0.0;
   void add(double x) {
     if (!std::isfinite(x)) {
       ++missing;
+      unknown += std::isnan(x);
       return;
     }
     const double difference = x - mean;
@@ -254,7 +255,10 @@ public:
       deviation.status = status;
       answer.findings.push_back(deviation);
       for (const double p : {0.05, 0.5, 0.95}) answer.findings.push_back(quantile(run, i, p, is_random));
+      // Those that are left out are not like the others: what is found of these alone is not what was asked for.
+      if (m.unknown > 0) answer.degrade(m.unknown == total_ ? Standing::not_trusted : Standing::not_met);
     }
+    if (bad_ > 0) answer.degrade(Standing::not_met);
     report_failures(run, is_random, answer);
   }
 
@@ -266,6 +270,7 @@ private:
     Finding f{run.study().sample.design, loaded_.number_names()[i], text};
     const long n = run.store.count_of(i);
     f.samples = n;
+    if (n < total_) f.status = std::to_string(total_ - n) + " of " + std::to_string(total_) + " runs gave no value and are left out";
     if (n == 0) return f;
     const auto place = [n](double share) { return std::clamp(static_cast<long>(std::floor(share * static_cast<double>(n))), 0L, n - 1); };
     f.value = run.store.order_statistic(i, place(p));

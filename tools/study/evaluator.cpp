@@ -19,12 +19,14 @@ void pack(const Outcome& o, std::vector<char>& bytes) {
     const char* first = static_cast<const char*>(data);
     bytes.insert(bytes.end(), first, first + size);
   };
-  const long head[] = {static_cast<long>(o.status), static_cast<long>(o.reason.size()), static_cast<long>(o.numbers.size())};
+  const long head[] = {static_cast<long>(o.status), static_cast<long>(o.reason.size()), static_cast<long>(o.numbers.size()),
+                       static_cast<long>(o.curve.size())};
   const double costs[] = {o.error, o.evaluations, o.cpu_seconds};
   add(head, sizeof head);
   add(costs, sizeof costs);
   add(o.reason.data(), o.reason.size());
   add(o.numbers.data(), o.numbers.size() * sizeof(double));
+  add(o.curve.data(), o.curve.size() * sizeof(double));
 }
 
 const char* unpack(const char* bytes, Outcome& o) {
@@ -32,7 +34,7 @@ const char* unpack(const char* bytes, Outcome& o) {
     std::memcpy(data, bytes, size);
     bytes += size;
   };
-  long head[3];
+  long head[4];
   double costs[3];
   take(head, sizeof head);
   take(costs, sizeof costs);
@@ -44,6 +46,8 @@ const char* unpack(const char* bytes, Outcome& o) {
   bytes += head[1];
   o.numbers.resize(static_cast<std::size_t>(head[2]));
   take(o.numbers.data(), o.numbers.size() * sizeof(double));
+  o.curve.resize(static_cast<std::size_t>(head[3]));
+  take(o.curve.data(), o.curve.size() * sizeof(double));
   return bytes;
 }
 

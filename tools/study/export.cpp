@@ -34,6 +34,19 @@ void export_samples(Store& store, std::ostream& out) {
   out << text;
 }
 
+void export_histories(const std::vector<Store::CurvePoint>& points, std::ostream& out) {
+  std::string text = "history,t,measured,fitted\n";
+  for (const Store::CurvePoint& p : points) {
+    text += csv_field(p.history);
+    for (const double x : {p.t, p.measured, p.fitted}) {
+      text += ",";
+      append_number(text, x);
+    }
+    text += "\n";
+  }
+  out << text;
+}
+
 void export_findings(const std::vector<Finding>& findings, std::ostream& out) {
   std::string text = "method,subject,quantity,value,low,high,samples,status\n";
   for (const Finding& f : findings) {

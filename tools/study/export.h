@@ -9,6 +9,7 @@
 namespace steplap::study {
 
 void export_samples(Store& store, std::ostream& out);
+void export_histories(const std::vector<Store::CurvePoint>& points, std::ostream& out);
 void export_findings(const std::vector<Finding>& findings, std::ostream& out);
 
 } // namespace steplap::study

@@ -17,6 +17,16 @@ std::vector<std::string> function_names() {
   return names;
 }
 
+// A '=' that is no part of a comparison.
+bool has_assignment(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    if (i + 1 < text.size() && text[i + 1] == '=') ++i;
+    else if (i == 0 || std::string("<>!").find(text[i - 1]) == std::string::npos) return true;
+  }
+  return false;
+}
+
 } // namespace
 
 struct Expression::Parser {
@@ -31,6 +41,8 @@ struct Expression::Parser {
 Expression::Expression(const std::string& text, const std::vector<std::string>& names, const Location& where)
     : parser_(std::make_unique<Parser>()) {
   mu::Parser& parser = parser_->parser;
+  if (has_assignment(text))
+    throw ModelError(where, "the expression '" + text + "' assigns with '=': variables and responses are what they are; equality is '=='");
   try {
     parser.DefineConst("pi", std::numbers::pi);
     std::vector<double> all(names.size(), 1.0);

@@ -2,6 +2,7 @@
 
 #include "tools/study/critical.h"
 #include "tools/study/designs.h"
+#include "tools/study/fit.h"
 #include "tools/study/needs.h"
 #include "tools/study/reliability.h"
 #include "tools/study/sensitivity.h"
@@ -25,7 +26,8 @@ const std::vector<StudyKind>& study_kinds() {
       {"sensitivity", "how much each variable matters: elasticities, Morris' screening, Sobol indices, a tornado", check_sensitivity, run_sensitivity},
       {"critical", "the values of a variable at which an expression is zero", check_critical, run_critical},
       {"map", "the curve in the plane of two variables on which an expression is zero", check_map, run_map},
-      {"needs", "what the scene needs: every element and body in turn left out, rigid or fixed", check_needs, run_needs}};
+      {"needs", "what the scene needs: every element and body in turn left out, rigid or fixed", check_needs, run_needs},
+      {"fit", "parameters from measured histories by least squares, with what they are known to", check_fit, run_fit}};
   return kinds;
 }
 

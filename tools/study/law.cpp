@@ -109,8 +109,11 @@ OT::Distribution by_parameters(const Variable& v) {
       const double half = std::sqrt(3.0) * m.deviation;
       return OT::Uniform(m.mean - half, m.mean + half);
     }
-    return OT::Uniform(needed(v, v.low, "low"), needed(v, v.high, "high"));
+    if (needed(v, v.low, "low") >= needed(v, v.high, "high")) complain(v, "'low' must be below 'high'");
+    return OT::Uniform(*v.low, *v.high);
   }
+  if (v.low && v.high && *v.low >= *v.high) complain(v, "'low' must be below 'high'");
+  if (v.mode && v.low && v.high && (*v.mode < *v.low || *v.mode > *v.high)) complain(v, "'mode' must lie between 'low' and 'high'");
   if (kind == "triangular") return OT::Triangular(needed(v, v.low, "low"), needed(v, v.mode, "mode"), needed(v, v.high, "high"));
   if (kind == "weibull") {
     if (!v.mean) return OT::WeibullMin(needed(v, v.scale, "scale"), needed(v, v.shape, "shape"), location);

@@ -6,11 +6,14 @@
 #include "mbd/io/presentation.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
+#include "mbd/system/instance.h"
+#include "tools/study/history.h"
 #include "transformer/verdict.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace steplap::study {
 
@@ -103,6 +106,60 @@ Model model_with(const LoadedStudy& loaded, const StudyModel& model, const doubl
   return changed;
 }
 
+// What is the same in all runs of a model. A quarter of a run's time would go into extremes of channels that nobody asks for:
+// only those asked for are made, and those that tell whether a run is to be trusted.
+struct Scene::Runner {
+  /// Number `variable` of the study is set at a path, times what the model has there or as it is.
+  struct Setting {
+    std::size_t variable;
+    double factor;
+  };
+  const StudyModel& model;
+  bool is_judged = false;             ///< a response is the verdict, for which criteria may look at any channel
+  std::vector<std::string> channels;  ///< names
+  std::set<std::string> extremes;     ///< of these, those whose extremes are asked for
+  std::vector<std::string> sampled;   ///< patterns
+  Sampling sampling;                  ///< for histories
+  std::vector<Setting> settings;
+  std::vector<double> numbers;        ///< for the settings
+  std::unique_ptr<Variants> variants;
+
+  Runner(const LoadedStudy& loaded, const StudyModel& which) : model(which), sampling(sampling_of(loaded.study, which)) {
+    for (const Response& r : loaded.study.responses)
+      if (r.model == model.name && r.expression.empty()) ask(r);
+    for (const History& h : loaded.study.histories)
+      if (h.model == model.name) channels.push_back(h.channel), sampled.push_back(h.channel);
+    std::vector<std::string> paths;
+    for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
+      const Variable& v = loaded.study.variables[i];
+      if (!is_set_in(v, model)) continue;
+      for (const std::string& path : v.paths) {
+        settings.push_back({i, v.is_factor ? number_of(model.given, path) : 1.0});
+        paths.push_back(path);
+      }
+    }
+    for (const std::string& name : channels_of_trust(completed(model.given))) {
+      channels.push_back(name);
+      extremes.insert(name);
+    }
+    numbers.resize(settings.size());
+    variants = std::make_unique<Variants>(model.given, std::move(paths), wanted());
+  }
+
+  [[nodiscard]] const std::vector<std::string>* wanted() const { return is_judged ? nullptr : &channels; }
+
+private:
+  void ask(const Response& r) {
+    is_judged = is_judged || r.what == "verdict";
+    if (needs_samples(r)) sampled.push_back(r.channel);
+    const bool is_extreme = r.what.find("est") != std::string::npos;
+    for (const Channel* c : channels_of(r, *model.system)) {
+      channels.push_back(c->name);
+      if (is_extreme) extremes.insert(c->name);
+    }
+  }
+};
+
 Scene::Scene(const LoadedStudy& loaded) : loaded_(loaded) {
   std::vector<std::string> names = loaded.variable_names();
   const Study& study = loaded.study;
@@ -117,9 +174,21 @@ Scene::Scene(const LoadedStudy& loaded) : loaded_(loaded) {
     names.push_back(l.name);
   }
   values_.resize(names.size());
+  for (const auto& model : loaded.models) runners_.push_back(std::make_unique<Runner>(loaded, *model));
 }
 
-void Scene::look(const StudyModel& model, const Model& whole, const System& system, const RunResult& result, Outcome& outcome) {
+Scene::~Scene() = default;
+
+// The channels of histories at their times, in their places among all.
+void Scene::compare(const Runner& runner, const RunResult& result, Outcome& outcome) const {
+  std::size_t place = 0;
+  for (const History& h : loaded_.study.histories) {
+    if (h.model == runner.model.name) compare_times(h, runner.sampling, *result.trajectory, &outcome.curve[place]);
+    place += h.t.size();
+  }
+}
+
+void Scene::look(const Runner& runner, const Model& whole, const System& system, const RunResult& result, Outcome& outcome) {
   const Judgement judgement = judge(whole, system, result, "");
   if (!result.stop_reason.empty()) worsen(outcome, SampleStatus::stopped, result.stop_reason);
   if (!judgement.distrust.empty()) worsen(outcome, SampleStatus::untrusted, judgement.distrust);
@@ -127,51 +196,47 @@ void Scene::look(const StudyModel& model, const Model& whole, const System& syst
   if (s.energy_scale > 0.0) outcome.error = std::max(outcome.error, s.energy_residual / s.energy_scale);
   for (std::size_t i = 0; i < loaded_.study.responses.size(); ++i) {
     const Response& r = loaded_.study.responses[i];
-    if (r.expression.empty() && r.model == model.name) outcome.numbers[i] = value_of(r, result, judgement);
+    if (r.expression.empty() && r.model == runner.model.name) outcome.numbers[i] = value_of(r, result, judgement);
   }
+  if (!loaded_.study.histories.empty()) compare(runner, result, outcome);
 }
 
-// A quarter of a run's time goes into extremes that nobody asks for. Joints that are judged keep theirs: whether a run is to
-// be trusted hangs on them.
-void Scene::look_only_where_asked(const StudyModel& model, System& system) const {
-  std::vector<std::string> asked;
-  for (const Response& r : loaded_.study.responses) {
-    if (r.model != model.name || !r.expression.empty()) continue;
-    if (r.what == "verdict") return; // of any channel that the model has a criterion for
-    asked.push_back(r.channel);
-  }
-  for (std::size_t e = 0; e < system.element_names.size(); ++e)
-    if (system.element_kinds[e] == "step_lap_joint") asked.push_back(system.element_names[e] + ".*");
-  for (Channel& c : system.channels)
-    c.has_extremes = c.has_extremes && std::any_of(asked.begin(), asked.end(), [&](const std::string& pattern) { return matches_pattern(c.name, pattern); });
-}
-
-void Scene::run_model(const StudyModel& model, const double* values, Outcome& outcome) {
-  const auto& responses = loaded_.study.responses;
+void Scene::run_system(const Runner& runner, const Model& whole, System& system, Outcome& outcome) {
+  if (!runner.is_judged)
+    for (Channel& c : system.channels) c.has_extremes = c.has_extremes && runner.extremes.contains(c.name);
+  SimulationOptions options = options_of(whole);
+  options.channels = runner.sampled;
+  options.has_extremes = true;
+  if (runner.sampling.step > 0.0) options.output_step = runner.sampling.step;
+  else if (runner.sampled.empty()) options.output_step = 0.0;
+  Simulation simulation(system, start_of(whole, system), std::move(options));
+  std::string failure;
   try {
-    Model whole = completed(model_with(loaded_, model, values));
-    const std::unique_ptr<System> system = compile(whole);
-    (void)check_presentation(whole, *system); // reads the limits of criteria
-    look_only_where_asked(model, *system);
-    SimulationOptions options = options_of(whole);
-    options.channels = {"*"};
-    options.has_extremes = true;
-    std::vector<std::string> sampled;
-    for (const Response& r : responses)
-      if (r.model == model.name && needs_samples(r)) sampled.push_back(r.channel);
-    if (sampled.empty()) options.output_step = 0.0;
-    else options.channels = sampled;
-    Simulation simulation(*system, start_of(whole, *system), std::move(options));
-    std::string failure;
-    try {
-      simulation.run();
-    } catch (const NumericalFailure& error) {
-      failure = error.what();
+    simulation.run();
+  } catch (const NumericalFailure& error) {
+    failure = error.what();
+  }
+  const RunResult result = std::move(simulation).result();
+  outcome.evaluations += static_cast<double>(result.statistics.evaluations);
+  if (failure.empty()) look(runner, whole, system, result, outcome);
+  else worsen(outcome, SampleStatus::gave_up, failure);
+}
+
+void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
+  try {
+    const std::size_t variant = loaded_.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded_.study.variables.size() - 1]);
+    std::unique_ptr<System> system;
+    std::optional<Model> changed; // the variants' own model does where nothing of it is changed
+    if (variant == 0) {
+      for (std::size_t i = 0; i < runner.settings.size(); ++i) runner.numbers[i] = runner.settings[i].factor * values[runner.settings[i].variable];
+      system = runner.variants->make(runner.numbers);
+      if (runner.is_judged) changed = runner.variants->model();
+    } else {
+      changed = completed(model_with(loaded_, runner.model, values));
+      system = compile(*changed, runner.wanted());
     }
-    const RunResult result = std::move(simulation).result();
-    outcome.evaluations += static_cast<double>(result.statistics.evaluations);
-    if (failure.empty()) look(model, whole, *system, result, outcome);
-    else worsen(outcome, SampleStatus::gave_up, failure);
+    if (runner.is_judged) (void)check_presentation(*changed, *system); // reads the limits of criteria
+    run_system(runner, changed ? *changed : runner.variants->model(), *system, outcome);
   } catch (const NumericalFailure& error) {
     worsen(outcome, SampleStatus::gave_up, error.what());
   } catch (const ModelError& error) {
@@ -186,10 +251,11 @@ void Scene::run(const double* values, Outcome& outcome) {
   outcome.status = SampleStatus::ok;
   outcome.reason.clear();
   outcome.numbers.assign(numbers, k_nan);
+  outcome.curve.assign(loaded_.curve_size(), k_nan);
   outcome.error = outcome.evaluations = outcome.cpu_seconds = 0.0;
-  const bool has_models = !loaded_.models.empty();
+  const bool has_models = !runners_.empty();
   const double begin = has_models ? thread_cpu_seconds() : 0.0;
-  for (const auto& model : loaded_.models) run_model(*model, values, outcome);
+  for (const auto& runner : runners_) run_model(*runner, values, outcome);
   std::copy(values, values + variables, values_.begin());
   std::copy(outcome.numbers.begin(), outcome.numbers.end(), values_.begin() + static_cast<long>(variables));
   for (const auto& [place, expression] : expressions_)

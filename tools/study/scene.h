@@ -5,6 +5,7 @@
 #include "tools/study/expression.h"
 #include "tools/study/study_reader.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct Outcome {
   SampleStatus status = SampleStatus::ok;
   std::string reason;
   std::vector<double> numbers; ///< responses, then limit states; not-a-number where unknown
+  std::vector<double> curve;   ///< at the measured times of all histories, one after the other
   double error = 0.0;          ///< energy residual, of what was turned over; the largest of the models
   double evaluations = 0.0;    ///< of the equations of motion
   double cpu_seconds = 0.0;
@@ -40,12 +42,19 @@ public:
   /// Never throws for what a sample may do.
   void run(const double* values, Outcome& outcome);
 
+  ~Scene();
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
 private:
-  void run_model(const StudyModel& model, const double* values, Outcome& outcome);
-  void look_only_where_asked(const StudyModel& model, System& system) const;
-  void look(const StudyModel& model, const Model& whole, const System& system, const RunResult& result, Outcome& outcome);
+  struct Runner;
+  void run_model(Runner& runner, const double* values, Outcome& outcome);
+  void run_system(const Runner& runner, const Model& whole, System& system, Outcome& outcome);
+  void look(const Runner& runner, const Model& whole, const System& system, const RunResult& result, Outcome& outcome);
+  void compare(const Runner& runner, const RunResult& result, Outcome& outcome) const;
 
   const LoadedStudy& loaded_;
+  std::vector<std::unique_ptr<Runner>> runners_;                ///< one a model
   std::vector<std::pair<std::size_t, Expression>> expressions_; ///< of numbers, in their order
   std::vector<double> values_;                                  ///< variables and numbers
 };

@@ -56,18 +56,6 @@ Derivative derivative_of(const Quotients& q, double noise) {
   return d;
 }
 
-// What a number of a run is known to: by its tolerance; of fixed steps by how events are located, since errors of steps
-// themselves change smoothly with the variables.
-double run_error_of(const LoadedStudy& loaded) {
-  constexpr double k_formula = 1e-15, k_located = 1e-10, k_default = 1e-8;
-  double error = k_formula;
-  for (const auto& model : loaded.models) {
-    const SimulationSettings& s = model->given.simulation;
-    error = std::max(error, s.step ? k_located : s.tolerance.value_or(k_default));
-  }
-  return error;
-}
-
 Answer elasticities(StudyRun& run) {
   const double run_error = run_error_of(run.loaded);
   const std::vector<double>& nominal = run.law.nominal();
@@ -202,6 +190,7 @@ Answer morris(StudyRun& run) {
       answer.findings.push_back({"morris", names[r], "mu* of " + variable, e.mean(true), std::max(0.0, e.mean(true) - half), e.mean(true) + half, run.evaluator.asked(), status});
       answer.findings.push_back({"morris", names[r], "sigma of " + variable, e.deviation(false), std::nan(""), std::nan(""), run.evaluator.asked(), status});
     }
+  if (missing) answer.degrade(Standing::not_met);
   if (missing) answer.notes.push_back(std::to_string(missing) + " effects are not known: runs beside them have no result");
   return answer;
 }
@@ -292,6 +281,16 @@ Answer tornado(StudyRun& run) {
 }
 
 } // namespace
+
+double run_error_of(const LoadedStudy& loaded) {
+  constexpr double k_formula = 1e-15, k_located = 1e-10, k_default = 1e-8;
+  double error = k_formula;
+  for (const auto& model : loaded.models) {
+    const SimulationSettings& s = model->given.simulation;
+    error = std::max(error, s.step ? k_located : s.tolerance.value_or(k_default));
+  }
+  return error;
+}
 
 void check_sensitivity(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   const SensitivitySettings& s = loaded.study.sensitivity;

@@ -2,6 +2,7 @@
 
 #include "tools/steplap/text_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 
@@ -21,6 +22,37 @@ std::string interval_text(const Finding& f) {
   return "[" + digits(f.low) + ", " + digits(f.high) + "]";
 }
 
+// Reasons that differ by their numbers only are one: the first is told, and how many there are of them.
+void show_reasons(Store& store, std::ostream& out) {
+  constexpr std::size_t k_most = 20;
+  struct Group {
+    std::string key;
+    Store::Reason first;
+    bool is_alike = true;
+  };
+  std::vector<Group> groups;
+  for (const Store::Reason& reason : store.reasons()) {
+    if (reason.status == "ok") continue;
+    std::string key = reason.status + " ";
+    for (const char c : reason.reason)
+      if (std::string("0123456789.+-e").find(c) == std::string::npos) key += c;
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.key == key; });
+    if (same == groups.end()) {
+      groups.push_back({key, reason});
+      continue;
+    }
+    same->is_alike = false;
+    const long count = same->first.count + reason.count;
+    if (reason.first < same->first.first) same->first = reason;
+    same->first.count = count;
+  }
+  for (std::size_t i = 0; i < std::min(groups.size(), k_most); ++i) {
+    const Store::Reason& r = groups[i].first;
+    out << "  " << r.count << " " << r.status << ", first sample " << r.first << ": " << r.reason << (groups[i].is_alike ? "" : " (others alike, with other numbers)") << "\n";
+  }
+  if (groups.size() > k_most) out << "  and " << groups.size() - k_most << " more reasons\n";
+}
+
 } // namespace
 
 void show(Store& store, const std::string& title, std::ostream& out) {
@@ -28,13 +60,7 @@ void show(Store& store, const std::string& title, std::ostream& out) {
   const std::string standing = store.setting("standing");
   out << "Study of the kind '" << store.identity().kind << "', version " << store.identity().version << ": " << store.size() << " samples"
       << (standing.empty() ? ", not finished" : "") << "\n";
-  constexpr int k_most = 20;
-  int shown = 0;
-  for (const Store::Reason& reason : store.reasons()) {
-    if (reason.status == "ok" || ++shown > k_most) continue;
-    out << "  " << reason.count << " " << reason.status << ", first sample " << reason.first << ": " << reason.reason << "\n";
-  }
-  if (shown > k_most) out << "  and " << shown - k_most << " more reasons\n";
+  show_reasons(store, out);
   std::vector<Finding> findings = store.findings();
   if (standing.empty()) {
     findings = store.growth();

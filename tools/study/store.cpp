@@ -40,6 +40,13 @@ struct Store::Statement {
   void bind(int i, double x) { std::isnan(x) ? sqlite3_bind_null(statement, i) : sqlite3_bind_double(statement, i, x); }
   void bind(int i, long n) { sqlite3_bind_int64(statement, i, n); }
   void bind(int i, const std::string& text) { sqlite3_bind_text(statement, i, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT); }
+  void bind(int i, const std::vector<double>& numbers) {
+    sqlite3_bind_blob(statement, i, numbers.data(), static_cast<int>(numbers.size() * sizeof(double)), SQLITE_TRANSIENT);
+  }
+  void take(int i, std::vector<double>& numbers) const {
+    numbers.resize(static_cast<std::size_t>(sqlite3_column_bytes(statement, i)) / sizeof(double));
+    if (!numbers.empty()) std::memcpy(numbers.data(), sqlite3_column_blob(statement, i), numbers.size() * sizeof(double));
+  }
   bool step() {
     const int code = sqlite3_step(statement);
     if (code != SQLITE_ROW && code != SQLITE_DONE) store_.fail("used");
@@ -84,6 +91,11 @@ StoreIdentity identity_of(const LoadedStudy& loaded) {
     scene += "\n";
   }
   for (const LimitState& l : study.limit_states) scene += "# limit state " + l.name + " | " + l.expression + "\n";
+  identity.has_curves = !study.histories.empty();
+  for (const History& h : study.histories) {
+    scene += "# history " + h.name + " | " + h.model + " | " + h.channel + (h.noise ? " | " + number_text(*h.noise) : "") + "\n";
+    for (std::size_t i = 0; i < h.t.size(); ++i) scene += number_text(h.t[i]) + " " + number_text(h.measured[i]) + "\n";
+  }
   return identity;
 }
 
@@ -148,7 +160,7 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
   open(path, true);
   if (mode == StoreMode::restart && is_there) {
     read_identity(); // never overwrites what is no store
-    for (const char* table : {"sample", "finding", "growth", "note", "setting"}) execute("DROP TABLE IF EXISTS " + quoted(table));
+    for (const char* table : {"sample", "finding", "growth", "note", "setting", "curve", "history"}) execute("DROP TABLE IF EXISTS " + quoted(table));
   }
   if (!is_there || mode == StoreMode::restart) {
     create(identity);
@@ -202,6 +214,10 @@ void Store::create(const StoreIdentity& identity) {
   for (const char* table : {"finding", "growth"})
     execute("CREATE TABLE " + quoted(table) +
             " (place INTEGER PRIMARY KEY, method TEXT, subject TEXT, quantity TEXT, value REAL, low REAL, high REAL, samples INTEGER, status TEXT)");
+  if (identity.has_curves) {
+    execute("CREATE TABLE curve (number INTEGER PRIMARY KEY, data BLOB NOT NULL)");
+    execute("CREATE TABLE history (place INTEGER PRIMARY KEY, name TEXT, t REAL, measured REAL, fitted REAL)");
+  }
   execute("CREATE TABLE note (place INTEGER PRIMARY KEY, text TEXT)");
   set("version", identity.version);
   set("study", identity.study);
@@ -248,6 +264,8 @@ void Store::read_identity() {
     return names;
   };
   identity_ = {setting("version"), setting("study"), setting("kind"), setting("scene"), split(setting("variables")), split(setting("numbers"))};
+  Statement curves(*this, "SELECT 1 FROM sqlite_master WHERE name = 'curve'");
+  identity_.has_curves = curves.step();
   Statement s(*this, "SELECT count(*), max(number) FROM sample");
   (void)s.step();
   size_ = s.integer(0);
@@ -273,6 +291,17 @@ void Store::read(long first, long count, std::vector<StoredSample>& rows) {
     row.outcome.numbers.resize(identity_.numbers.size());
     for (double& x : row.outcome.numbers) x = s.number(c++);
   }
+  if (identity_.has_curves) read_curves(first, rows);
+}
+
+void Store::read_curves(long first, std::vector<StoredSample>& rows) {
+  Statement s(*this, "SELECT data FROM curve WHERE number >= ? AND number < ? ORDER BY number");
+  s.bind(1, first);
+  s.bind(2, first + static_cast<long>(rows.size()));
+  for (StoredSample& row : rows) {
+    if (!s.step()) throw StoreError("the store '" + path_ + "' is damaged: histories of samples are missing in it");
+    s.take(0, row.outcome.curve);
+  }
 }
 
 void Store::append(const StoredSample* rows, std::size_t count) {
@@ -281,6 +310,8 @@ void Store::append(const StoredSample* rows, std::size_t count) {
   for (std::size_t i = 1; i < columns; ++i) marks += ", ?";
   begin();
   Statement s(*this, "INSERT INTO sample (" + sample_columns() + ") VALUES (" + marks + ")");
+  std::optional<Statement> curves;
+  if (identity_.has_curves) curves.emplace(*this, "INSERT INTO curve VALUES (?, ?)");
   for (std::size_t i = 0; i < count; ++i) {
     const StoredSample& row = rows[i];
     int c = 1;
@@ -294,6 +325,10 @@ void Store::append(const StoredSample* rows, std::size_t count) {
     for (const double x : row.values) s.bind(c++, x);
     for (const double x : row.outcome.numbers) s.bind(c++, x);
     s.once();
+    if (!curves) continue;
+    curves->bind(1, row.number);
+    curves->bind(2, row.outcome.curve);
+    curves->once();
   }
   size_ += static_cast<long>(count);
   commit_if_due();
@@ -305,6 +340,7 @@ void Store::forget_from(long number) {
   Statement s(*this, "DELETE FROM sample WHERE number >= ?");
   s.bind(1, number);
   s.once();
+  if (identity_.has_curves) execute("DELETE FROM curve WHERE number >= " + std::to_string(number));
   size_ = number - 1;
 }
 
@@ -326,6 +362,27 @@ void Store::note(long place, const Finding& finding) {
   begin();
   put("growth", place, finding);
   commit_if_due();
+}
+
+void Store::set_histories(const std::vector<CurvePoint>& points) {
+  begin();
+  execute("DELETE FROM history");
+  Statement s(*this, "INSERT INTO history (name, t, measured, fitted) VALUES (?, ?, ?, ?)");
+  for (const CurvePoint& p : points) {
+    s.bind(1, p.history);
+    s.bind(2, p.t);
+    s.bind(3, p.measured);
+    s.bind(4, p.fitted);
+    s.once();
+  }
+}
+
+std::vector<Store::CurvePoint> Store::histories() {
+  if (!identity_.has_curves) return {};
+  Statement s(*this, "SELECT name, t, measured, fitted FROM history ORDER BY place");
+  std::vector<CurvePoint> points;
+  while (s.step()) points.push_back({s.text(0), s.number(1), s.number(2), s.number(3)});
+  return points;
 }
 
 void Store::set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes, const std::string& standing) {

@@ -31,6 +31,7 @@ struct StoreIdentity {
   std::string kind;
   std::string scene;    ///< all that a sample's numbers depend on: models, variables, responses, limit states
   std::vector<std::string> variables, numbers; ///< names of columns
+  bool has_curves = false; ///< every sample has the values of its run at measured times
 };
 [[nodiscard]] StoreIdentity identity_of(const LoadedStudy& loaded);
 
@@ -61,6 +62,13 @@ public:
   void forget_from(long number);
   /// An estimate as it grew: `place` counts them within the study.
   void note(long place, const Finding& finding);
+  /// Measured records beside what was found to fit them.
+  struct CurvePoint {
+    std::string history;
+    double t = 0.0, measured = 0.0, fitted = 0.0; ///< s; in the unit of the channel
+  };
+  void set_histories(const std::vector<CurvePoint>& points);
+  [[nodiscard]] std::vector<CurvePoint> histories(); ///< empty if there are none
   void set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes, const std::string& standing);
   [[nodiscard]] std::vector<Finding> findings();
   [[nodiscard]] std::vector<Finding> growth();
@@ -87,6 +95,7 @@ private:
   void commit_if_due();
   void set(const std::string& key, const std::string& value);
   void read_identity();
+  void read_curves(long first, std::vector<StoredSample>& rows);
   void put(const std::string& table, long place, const Finding& finding);
   [[nodiscard]] std::vector<Finding> all_of(const std::string& table);
   [[noreturn]] void fail(const std::string& doing);

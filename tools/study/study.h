@@ -55,6 +55,22 @@ struct Response {
   Location where;
 };
 
+/// [[history]]: a measured record that a fit compares a channel with.
+struct History {
+  std::string name;
+  std::string model;   ///< needed where there are several
+  std::string channel; ///< its name
+  std::string file;    ///< CSV
+  std::string time = "1", column = "2"; ///< columns, by name or number
+  std::string unit, time_unit;          ///< of the columns; "": the channel's, seconds
+  std::string noise_text;               ///< as given
+  std::optional<double> from, to;       ///< s: other rows are left out
+  std::optional<double> noise;          ///< standard deviation of a measured value, in the channel's unit
+  std::string channel_unit;
+  std::vector<double> t, measured;      ///< as read: s, and the channel's unit
+  Location where;
+};
+
 /// [[limit_state]]: fails where its expression is negative.
 struct LimitState {
   std::string name;
@@ -122,6 +138,13 @@ struct NeedsSettings {
   Location where;
 };
 
+struct FitSettings {
+  long starts = 8;       ///< places where the search may begin; it does from the best of them
+  long iterations = 100; ///< of one search
+  double confidence = 0.95;
+  Location where;
+};
+
 struct Study {
   std::string file;
   std::string text;
@@ -134,6 +157,7 @@ struct Study {
   std::vector<Correlation> correlations;
   std::vector<Response> responses;
   std::vector<LimitState> limit_states;
+  std::vector<History> histories;
   SweepSettings sweep;
   SampleSettings sample;
   ReliabilitySettings reliability;
@@ -141,6 +165,7 @@ struct Study {
   CriticalSettings critical;
   MapSettings map;
   NeedsSettings needs;
+  FitSettings fit;
   Location where;
 
   /// -1 if there is none.
@@ -161,6 +186,7 @@ struct StudyTable {
 [[nodiscard]] FieldTable correlation_fields();
 [[nodiscard]] FieldTable response_fields();
 [[nodiscard]] FieldTable limit_state_fields();
+[[nodiscard]] FieldTable history_fields();
 [[nodiscard]] FieldTable sweep_fields();
 [[nodiscard]] FieldTable sample_fields();
 [[nodiscard]] FieldTable reliability_fields();
@@ -168,6 +194,7 @@ struct StudyTable {
 [[nodiscard]] FieldTable critical_fields();
 [[nodiscard]] FieldTable map_fields();
 [[nodiscard]] FieldTable needs_fields();
+[[nodiscard]] FieldTable fit_fields();
 /// All of them, in the order of a file.
 [[nodiscard]] std::vector<StudyTable> study_tables();
 

@@ -84,6 +84,23 @@ FieldTable limit_state_fields() {
   return t;
 }
 
+FieldTable history_fields() {
+  FieldTable t;
+  t.add("name", &History::name).required().doc("letters, digits and _");
+  t.add("model", &History::model).doc("the model it was measured of, where there are several: the file's name without ending");
+  t.add("channel", &History::channel).required().doc("channel of the run that was measured: its name");
+  t.add("file", &History::file).required().as(FieldType::file).doc("CSV file of the record");
+  t.add("time", &History::time).doc("column of the times, by name or number");
+  t.add("column", &History::column).doc("column of the measured values, by name or number");
+  t.add("unit", &History::unit).doc("of the measured values; the channel's if not given");
+  t.add("time_unit", &History::time_unit).doc("of the times; s if not given");
+  t.add("from", &History::from).in("s").not_negative().doc("earlier rows are left out");
+  t.add("to", &History::to).in("s").not_negative().doc("later rows are left out");
+  t.add("noise", &History::noise_text).as(FieldType::quantity).doc(
+      "standard deviation of a measured value, in the unit of the channel or with one of its own; found from what is left over if not given");
+  return t;
+}
+
 FieldTable sweep_fields() {
   FieldTable t;
   t.add("design", &SweepSettings::design).one_of({"grid", "list", "one_at_a_time"}).doc(
@@ -156,19 +173,29 @@ FieldTable needs_fields() {
   return t;
 }
 
+FieldTable fit_fields() {
+  FieldTable t;
+  t.add("starts", &FitSettings::starts).at_least(1).at_most(10000).doc("places looked at first; searches begin at the best of them");
+  t.add("iterations", &FitSettings::iterations).at_least(1).at_most(10000).doc("of one search, at most");
+  t.add("confidence", &FitSettings::confidence).at_least(0.5).at_most(0.9999).doc("of the intervals");
+  return t;
+}
+
 std::vector<StudyTable> study_tables() {
   return {{"", "top-level keys of a study file", false, header_fields()},
           {"variable", "a number that is not known, or that is to be tried", true, variable_fields("*")},
           {"correlation", "of two variables with distributions", true, correlation_fields()},
           {"response", "a number made of a run", true, response_fields()},
           {"limit_state", "fails where its expression is negative", true, limit_state_fields()},
+          {"history", "a measured record that a fit compares a channel with", true, history_fields()},
           {"sweep", "settings of kind = \"sweep\"", false, sweep_fields()},
           {"sample", "settings of kind = \"sample\"", false, sample_fields()},
           {"reliability", "settings of kind = \"reliability\"", false, reliability_fields()},
           {"sensitivity", "settings of kind = \"sensitivity\"", false, sensitivity_fields()},
           {"critical", "settings of kind = \"critical\"", false, critical_fields()},
           {"map", "settings of kind = \"map\"", false, map_fields()},
-          {"needs", "settings of kind = \"needs\"", false, needs_fields()}};
+          {"needs", "settings of kind = \"needs\"", false, needs_fields()},
+          {"fit", "settings of kind = \"fit\"", false, fit_fields()}};
 }
 
 } // namespace steplap::study

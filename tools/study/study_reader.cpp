@@ -13,6 +13,7 @@
 #include "mbd/model/validate.h"
 #include "tools/steplap/catalogue.h"
 #include "tools/study/expression.h"
+#include "tools/study/history.h"
 #include "tools/study/kinds.h"
 #include "tools/study/law.h"
 #include "tools/study/needs.h"
@@ -22,6 +23,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -63,6 +65,7 @@ public:
     read_array("variable", [this](Node& entry) { read_variable(entry); });
     read_array("response", [this](Node& entry) { read_response(entry); });
     read_array("limit_state", [this](Node& entry) { read_limit_state(entry); });
+    read_array("history", [this](Node& entry) { read_history(entry); });
     read_array("correlation", [this](Node& entry) { read_correlation(entry); });
     read_settings("sweep", sweep_fields(), study_.sweep);
     read_settings("sample", sample_fields(), study_.sample);
@@ -71,6 +74,7 @@ public:
     read_settings("critical", critical_fields(), study_.critical);
     read_settings("map", map_fields(), study_.map);
     read_settings("needs", needs_fields(), study_.needs);
+    read_settings("fit", fit_fields(), study_.fit);
     stop_if_wrong();
     add_border();
     add_variants();
@@ -328,6 +332,24 @@ private:
     study_.limit_states.push_back(std::move(l));
   }
 
+  void read_history(const Node& entry) {
+    History h;
+    h.where = entry.where();
+    TableReading reading;
+    reading.subject = subject_text("history", entry_name(entry));
+    const std::size_t before = problems_.size();
+    read_table(entry, history_fields(), &h, reading);
+    if (study_.kind != "fit") add(h.where, "a [[history]] is for studies of the kind 'fit'");
+    else if (models_.empty()) add(h.where, "the study has no model to compare history '" + h.name + "' with");
+    else if (h.model.empty() && models_.size() > 1) add(h.where, "history '" + h.name + "': say which 'model' was measured: " + list_text(model_names()));
+    if (problems_.size() != before) return;
+    const StudyModel* model = h.model.empty() ? models_.front().get() : find_model(h.model);
+    if (!model) return add(entry.find("model")->where(), "there is no model '" + h.model + "'" + did_you_mean(h.model, model_names()));
+    h.model = model->name;
+    load_history(entry, *model, h, problems_);
+    study_.histories.push_back(std::move(h));
+  }
+
   void read_correlation(const Node& entry) {
     Correlation c;
     c.where = entry.where();
@@ -372,16 +394,21 @@ private:
     const auto check = [&](const std::string& noun, const std::string& name, const Location& where) {
       const std::string problem = name_problem(name);
       if (!problem.empty()) add(where, "the name of " + noun + " '" + name + "' " + problem);
-      else if (!taken.insert(name).second) add(where, noun + " '" + name + "': the name is taken; variables, responses and limit states share their names");
+      else if (!taken.insert(name).second) add(where, noun + " '" + name + "': the name is taken; variables, responses, limit states and histories share their names");
     };
     for (const Variable& v : study_.variables) check("variable", v.name, v.where);
     for (const Response& r : study_.responses) check("response", r.name, r.where);
     for (const LimitState& l : study_.limit_states) check("limit state", l.name, l.where);
-    std::set<std::pair<std::string, std::string>> paths;
+    for (const History& h : study_.histories) check("history", h.name, h.where);
+    std::map<std::pair<std::string, std::string>, const Variable*> paths;
     for (const Variable& v : study_.variables)
       for (const std::string& path : v.paths)
-        for (const auto& m : models_)
-          if (is_set_in(v, *m) && !paths.insert({m->name, path}).second) add(v.where, "'" + path + "' is set by two variables");
+        for (const auto& m : models_) {
+          if (!is_set_in(v, *m)) continue;
+          const auto [other, is_new] = paths.try_emplace({m->name, path}, &v);
+          if (!is_new && other->second == &v) add(v.where, "variable '" + v.name + "' names the path '" + path + "' twice");
+          else if (!is_new) add(v.where, "'" + path + "' is set by two variables, '" + other->second->name + "' and '" + v.name + "'");
+        }
   }
 
   void check_expressions() {
@@ -496,6 +523,12 @@ std::vector<std::string> LoadedStudy::number_units() const {
   for (const Response& r : study.responses) units.push_back(r.unit);
   units.resize(number_count());
   return units;
+}
+
+std::size_t LoadedStudy::curve_size() const {
+  std::size_t size = 0;
+  for (const History& h : study.histories) size += h.t.size();
+  return size;
 }
 
 int LoadedStudy::index_of_number(const std::string& name) const {

@@ -35,6 +35,8 @@ struct LoadedStudy {
   [[nodiscard]] std::vector<std::string> variable_names() const;
   [[nodiscard]] std::vector<std::string> number_names() const; ///< responses, then limit states
   [[nodiscard]] std::vector<std::string> number_units() const;
+  /// Values of all histories, one after the other.
+  [[nodiscard]] std::size_t curve_size() const;
   [[nodiscard]] std::size_t number_count() const { return study.responses.size() + study.limit_states.size(); }
   /// Place among the numbers of a response or limit state; −1 if there is none.
   [[nodiscard]] int index_of_number(const std::string& name) const;

@@ -9,7 +9,9 @@
 #include <openturns/SubsetSampling.hxx>
 #include <openturns/ThresholdEvent.hxx>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace steplap::study {
 
@@ -34,9 +36,24 @@ public:
     const OT::Point flat = sample.getImplementation()->getData();
     const std::vector<LimitValue>& values = limit_->at({flat.begin(), flat.end()});
     OT::Sample result(sample.getSize(), 1);
-    for (OT::UnsignedInteger i = 0; i < sample.getSize(); ++i) result(i, 0) = values[i].is_bad ? (is_bad_unsafe_ ? -k_extreme : k_extreme) : values[i].g;
+    for (OT::UnsignedInteger i = 0; i < sample.getSize(); ++i) {
+      result(i, 0) = values[i].is_bad ? (is_bad_unsafe_ ? -k_extreme : k_extreme) : values[i].g;
+      tally_->add(result(i, 0));
+    }
     return result;
   }
+
+  // What was met, of all copies of the function together.
+  struct Tally {
+    long first_level = 0;                       // samples of the first level, which is crude Monte Carlo
+    long samples = 0, failures = 0, early = 0;  // early: failures in the first level
+    void add(double g) {
+      early += samples < first_level && g < 0.0;
+      failures += g < 0.0;
+      ++samples;
+    }
+  };
+  std::shared_ptr<Tally> tally_ = std::make_shared<Tally>();
 
 private:
   LimitFunction* limit_;
@@ -45,20 +62,40 @@ private:
 
 struct Repetition {
   double probability = 0.0, cov = 0.0;
+  long failures = 0, samples = 0; ///< of the first level, where it was all there was to it; else 0
+  std::string problem;
 };
 
 Repetition repeat(LimitFunction& limit, bool is_bad_unsafe, long k) {
   const Study& study = limit.run().study();
   OT::RandomGenerator::SetSeed(static_cast<OT::UnsignedInteger>(study.seed * 1000003 + k * 7919 + (is_bad_unsafe ? 1 : 0)));
-  const OT::Function function{OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new SubsetEvaluation(limit, is_bad_unsafe)))};
+  SubsetEvaluation evaluation(limit, is_bad_unsafe);
+  const auto tally = evaluation.tally_;
+  const auto samples = static_cast<OT::UnsignedInteger>(study.reliability.subset_samples);
+  const OT::UnsignedInteger block = std::max<OT::UnsignedInteger>(1, samples / 10), blocks = (samples + block - 1) / block;
+  tally->first_level = static_cast<long>(blocks * block);
+  const OT::Function function{OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new SubsetEvaluation(evaluation)))};
   const OT::RandomVector input{OT::Distribution(OT::Normal(limit.dimension()))};
   OT::SubsetSampling subset(OT::ThresholdEvent(OT::CompositeRandomVector(function, input), OT::Less(), 0.0));
-  const auto samples = static_cast<OT::UnsignedInteger>(study.reliability.subset_samples), block = std::max<OT::UnsignedInteger>(1, samples / 10);
-  subset.setMaximumOuterSampling((samples + block - 1) / block);
+  subset.setMaximumOuterSampling(blocks);
   subset.setBlockSize(block);
-  subset.run();
+  std::string problem;
+  try {
+    subset.run();
+  } catch (const OT::Exception& error) {
+    problem = error.what();
+  }
+  // Where the first level is all, it is crude Monte Carlo, and counted as such (OpenTURNS finds no variance there now and then).
+  const double share = static_cast<double>(tally->early) / static_cast<double>(tally->first_level);
+  if (tally->samples >= tally->first_level && share >= subset.getConditionalProbability())
+    return {share, std::sqrt((1.0 - share) / static_cast<double>(tally->early)), tally->early, tally->first_level, ""};
+  if (!problem.empty()) return {0.0, 0.0, 0, 0, problem};
+  // Levels that come no nearer end without a failure, which OpenTURNS counts as if they had arrived.
+  if (tally->failures == 0) return {0.0, 0.0, 0, 0, "no failure was met: its levels came no nearer"};
+  const OT::Point thresholds = subset.getThresholdPerStep();
+  if (thresholds.getSize() == 0 || thresholds[thresholds.getSize() - 1] > 0.0) return {0.0, 0.0, 0, 0, "its levels did not arrive at failure"};
   const OT::ProbabilitySimulationResult result = subset.getResult();
-  return {result.getProbabilityEstimate(), result.getCoefficientOfVariation()};
+  return {result.getProbabilityEstimate(), result.getCoefficientOfVariation(), 0, 0, ""};
 }
 
 struct Mean {
@@ -73,6 +110,11 @@ Mean mean_of(const std::vector<Repetition>& all, double confidence) {
   double least = 1.0;
   for (const Repetition& r : all) mean.value += r.probability / n, least = std::min(least, r.probability);
   if (least <= 0.0 || all.size() < 2) return mean;
+  if (std::all_of(all.begin(), all.end(), [](const Repetition& r) { return r.samples > 0; })) {
+    double failures = 0.0, samples = 0.0;
+    for (const Repetition& r : all) failures += static_cast<double>(r.failures), samples += static_cast<double>(r.samples);
+    return {failures / samples, std::sqrt((1.0 - failures / samples) / failures), proportion_interval(failures, samples, confidence)};
+  }
   double squares = 0.0, inner = 0.0;
   for (const Repetition& r : all) {
     squares += (r.probability - mean.value) * (r.probability - mean.value);
@@ -83,6 +125,17 @@ Mean mean_of(const std::vector<Repetition>& all, double confidence) {
   const double half = student_quantile(n - 1.0, 0.5 * (1.0 + confidence)) * mean.cov;
   mean.interval = {mean.value * std::exp(-half), std::min(1.0, mean.value * std::exp(half))};
   return mean;
+}
+
+// Where all repetitions met nothing, a probability of zero with the bounds of nothing known is an honest answer; where some
+// did, their mean is none.
+void add_problems(const std::vector<Repetition>& all, Estimate& e) {
+  const auto failed = std::count_if(all.begin(), all.end(), [](const Repetition& r) { return !r.problem.empty(); });
+  if (failed == 0) return;
+  const auto first = std::find_if(all.begin(), all.end(), [](const Repetition& r) { return !r.problem.empty(); });
+  e.status = std::to_string(failed) + " of " + std::to_string(all.size()) + " repetitions have no result: " + first->problem;
+  e.is_target_met = false;
+  e.is_trusted = e.is_trusted && failed == static_cast<long>(all.size());
 }
 
 } // namespace
@@ -117,6 +170,8 @@ Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target) {
     std::snprintf(text, sizeof text, "%zu repetitions: coefficient of variation %.3g, %.3g was asked for", unsafe.size(), e.cov, target.cov);
     e.status = text;
   }
+  add_problems(unsafe, e);
+  add_problems(safe, e);
   return e;
 }
 
