@@ -63,6 +63,7 @@ public:
     e_.contact_force = contact_force_.data();
     e_.watch = watch_.data();
     e_.watch_rate = watch_rate_.data();
+    choose_places();
   }
 
   [[nodiscard]] const System& system() const { return *system_; }
@@ -117,7 +118,7 @@ public:
       for (std::uint8_t foot = 0; foot < 2; ++foot) {
         if (foot == 1 && system_->element_kinds[system_->frictions[f].element] != "coulomb_stick") continue;
         FrictionState state = state_.friction[f];
-        state.foot = foot;
+        if (system_->element_kinds[system_->frictions[f].element] == "coulomb_stick") state.foot = foot;
         for (int r = 0; r < system_->frictions[f].friction->dimension(); ++r)
           all.push_back(system_->frictions[f].friction->rows(state)[r]);
       }
@@ -125,6 +126,18 @@ public:
   }
 
 private:
+  // Where friction acts in the reference pose, for what has more places than feet: those of the mirrored scene are its
+  // images then.
+  void choose_places() {
+    Pose start;
+    for (int i = 0; i < 3; ++i) start.q.segment<3>(3 * i) = system_->bodies[i].pose;
+    place(start);
+    for (std::size_t f = 0; f < system_->frictions.size(); ++f) {
+      const FrictionElement& friction = *system_->frictions[f].friction;
+      if (system_->element_kinds[system_->frictions[f].element] == "polygon_contact") friction.change_place(e_, state_.friction[f]);
+    }
+  }
+
   std::unique_ptr<System> system_;
   State state_;
   std::vector<Motion<double>> motion_;
