@@ -11,6 +11,8 @@
 // whatever corners and edges come and go, but for one case: sides of a and b that lie on one line while faces across them
 // press (bricks stacked flush) have a ridge there, and the force along the face jumps by k d², a share d/w of the normal one.
 //
+// So the elastic force is taken from the side with fewer edges: of a face under a box it is normal to that face to the last bit.
+//
 // Dissipation as of Hunt and Crossley in every point: the pressure is (1 + α c)₊ times the elastic one, c the speed at which
 // the two bodies close along the cell's edge normal. It never pulls and is zero where they part. Both sets of cells cover O,
 // each takes half.
@@ -171,10 +173,11 @@ template <class S> struct EdgeLine {
 
 } // namespace overlap_detail
 
-/// Of outlines placed about one origin. `stiffness` k in N/m², `dissipation` α in s/m.
+/// Of outlines placed about one origin. `stiffness` k in N/m², `dissipation` α in s/m. The volume is that of the whole roof only
+/// if `is_whole`; else cells that no force is asked of are left out.
 template <class S>
 OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>& b, const RelativeVelocity<S>& velocity,
-                              double stiffness, double dissipation) {
+                              double stiffness, double dissipation, bool is_whole = false) {
   using overlap_detail::EdgeLine;
   OverlapForce<S> result;
   CutRing<S> rings[3];
@@ -195,16 +198,21 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
   for (int i = 0; i < overlap.size; ++i) overlap.corner[i] = overlap.corner[i] - origin;
   const Pair<S> u = velocity.u + velocity.spin * perp(origin);
   std::array<EdgeLine<S>, k_most_ring> line;
+  int of_a = 0;
   for (int i = 0; i < overlap.size; ++i) {
     const int edge = overlap.edge[i];
     const bool is_a = edge < a.edge_count;
+    of_a += is_a ? 1 : 0;
     line[i].normal = is_a ? a.normal[edge] : b.normal[edge - a.edge_count];
     line[i].offset = (is_a ? a.offset[edge] : b.offset[edge - a.edge_count]) - dot(line[i].normal, origin);
   }
   CutRing<S>*cell = &rings[1 - now], *spare = &rings[2]; // `cell` is the one written last
   const S k(stiffness), alpha(dissipation);
+  const bool is_from_a = 2 * of_a < overlap.size;
   S moment(0);
   for (int i = 0; i < overlap.size; ++i) {
+    const bool is_a = overlap.edge[i] < a.edge_count, is_elastic = is_a == is_from_a;
+    if (!is_elastic && dissipation == 0.0 && !is_whole) continue;
     const CutRing<S>* source = &overlap;
     for (int j = 0; j < overlap.size && source->size > 0; ++j) {
       if (overlap.edge[j] == overlap.edge[i]) continue;
@@ -213,24 +221,24 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
       source = cell;
     }
     if (source == &overlap || source->size < 3) continue;
-    const bool is_a = overlap.edge[i] < a.edge_count;
     const Pair<S> n = S(is_a ? -1.0 : 1.0) * line[i].normal; // along which a is pushed
     const auto whole = overlap_detail::sums_of(*cell, n);
     const S closing = -dot(u, n), turning = -velocity.spin; // c = closing + turning τ
     result.volume += line[i].offset * whole.area + (is_a ? whole.along : -whole.along);
-    if (dissipation == 0.0) {
-      result.force = result.force + (k * whole.area) * n;
-      moment += k * whole.across;
-      continue;
+    if (is_elastic) {
+      result.force = result.force + (S(2) * k * whole.area) * n;
+      moment += S(2) * k * whole.across;
     }
+    if (dissipation == 0.0) continue;
     const auto pressure = [&](const Pair<S>& x) { return S(1) + alpha * (closing + turning * cross(x, n)); };
     cut(*cell, pressure, -1, *spare);
     const auto part = overlap_detail::sums_of(*spare, n);
     const S rest = S(1) + alpha * closing, slope = alpha * turning;
-    const S f = rest * part.area + slope * part.across, m = rest * part.across + slope * part.across2;
+    // What the dissipation adds; nothing, to the last bit, at rest.
+    const S f = rest * part.area + slope * part.across - whole.area, m = rest * part.across + slope * part.across2 - whole.across;
     result.force = result.force + (k * f) * n;
     moment += k * m;
-    result.dissipation += k * (closing * (f - whole.area) + turning * (m - whole.across));
+    result.dissipation += k * (closing * f + turning * m);
   }
   result.moment = moment + cross(origin, result.force);
   return result;

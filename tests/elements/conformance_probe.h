@@ -86,6 +86,12 @@ public:
     for (std::size_t u = 0; u < system_->units.size(); ++u)
       state_.mode[u] = system_->units[u].group->initial_mode(system_->units[u].index, e_);
   }
+  /// As if the run had begun at this pose: whether a foot is past the end of its face.
+  void start_at(const Pose& pose) {
+    place(pose);
+    for (const ForceGroup* group : system_->inner_groups) group->start_inner(motion_.data(), state_.inner.data());
+    choose_modes(pose);
+  }
   /// Generalised forces on ground, a and b, each about its own centre.
   Vec9 forces(const Pose& pose) {
     place(pose);

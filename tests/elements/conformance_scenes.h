@@ -72,6 +72,8 @@ inline const std::vector<ConformanceScene>& conformance_scenes() {
        "a = \"A\"\nb = \"B\"\naxis = [@+0.1, 1.0]\nlaw = \"literal\"\nstiffness = 900.0\ndamping = 25.0\npreload = 10.0\n"},
       {"unilateral_contact",
        "a = \"A\"\nb = \"B\"\nlaw = \"hunt_crossley\"\nexponent = 1.5\ndissipation = 0.6\nstiffness = 9000.0\npreload = 15.0\n"},
+      {"unilateral_contact", // on a face with ends, past which its poses reach
+       "a = \"A\"\nb = \"B\"\nstiffness = 900.0\ndamping = 25.0\ninterference = 0.02\nends = [-0.64, 0.64]\n"},
       {"circle_contact", "a = \"A\"\nb = \"B\"\nradius_a = 0.3\nradius_b = 0.58\nstiffness = 900.0\ndamping = 25.0\n"},
       {"circle_contact",
        "a = \"A\"\nb = \"B\"\nradius_a = 0.05\nradius_b = 0.9\ninside = true\nlaw = \"hunt_crossley\"\nexponent = 1.5\n"
@@ -101,7 +103,7 @@ inline const std::vector<ConformanceScene>& conformance_scenes() {
       {"polygon_contact",
        "a = \"A\"\nb = \"B\"\nstiffness = 900.0\ndissipation = 0.6\nstatic_friction = 0.4\nkinetic_friction = 0.3\n"
        "outline_a = [[@-1.2, -0.2], [@+0.5, -0.2], [@+0.2, 0.2]]\n"
-       "outline_b = [[@-0.5, 0.0], [@+0.2, -0.6], [@+0.62, 0.355]]\n"},
+       "outline_b = [[@+0.4, -0.3], [@+0.9, -0.3], [@+0.62, 0.378]]\n"},
       {"coulomb_stick",
        "contacts = [\"roller\"]\nstatic_friction = 0.4\nkinetic_friction = 0.3\n"
        "[[element]]\nkind = \"circle_contact\"\nname = \"roller\"\na = \"A\"\nb = \"B\"\nradius_a = 0.3\nradius_b = 0.58\n"
