@@ -8,6 +8,7 @@
 #include "elements/limit.h"
 #include "elements/load.h"
 #include "elements/motor.h"
+#include "elements/polygon_contact.h"
 #include "elements/prescribed_motion.h"
 #include "elements/rope.h"
 #include "elements/round_contacts.h"
@@ -27,6 +28,7 @@ const Catalogue& element_catalog() {
     c.elements = {&spring_damper_kind(),     &rotational_spring_damper_kind(),
                   &bushing_kind(),           &unilateral_contact_kind(),
                   &circle_contact_kind(),    &segment_contact_kind(),
+                  &polygon_contact_kind(),
                   &tie_kind(),
                   &coulomb_stick_kind(),     &step_lap_joint_kind(),
                   &step_lap_interface_kind(),

@@ -1,6 +1,7 @@
 #include "elements/unilateral_contact.h"
 
 #include "elements/contact_laws.h"
+#include "elements/ended_contact.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/system/system.h"
 
@@ -25,6 +26,34 @@ void add(const ContactGeometry& g, const Measure& measure, const Law& law, Syste
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 
+template <class Law>
+void add_ended(const ContactGeometry& g, const Vec2& ends, const Law& law, SystemBuilder& builder) {
+  using Group = EndedContactGroup<Law>;
+  Group& group = builder.group<Group>();
+  typename Group::Entry entry;
+  entry.a = g.a;
+  entry.b = g.b;
+  entry.gap = g.gap;
+  entry.law = law;
+  entry.low = ends.x();
+  entry.high = ends.y();
+  const bool is_off = entry.is_off_at(builder.reference(g.a), builder.reference(g.b));
+  entry.inner = builder.add_inner(group, is_off ? 1.0 : 0.0);
+  group.entries.push_back(entry);
+  builder.add_unit(group, Group::k_watches);
+  group.entries.back().contact = builder.add_contact(group.entries.back().unit);
+  const int i = static_cast<int>(group.entries.size()) - 1;
+  builder.add_channel("gap", "m", "δ, negative while closed or off", [&group, i](const Snapshot& s) {
+    return group.measured(i, *s.evaluation).value - group.entries[i].law.offset;
+  });
+  builder.add_channel("rate", "m/s", "of the gap",
+                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
+  builder.add_channel("force", "N", "normal force, positive in compression",
+                      [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
+  builder.add_channel("along", "m", "place of the foot along the face, from marker b",
+                      [&group, i](const Snapshot& s) { return group.along_of(i, *s.evaluation); });
+}
+
 bool check(const UnilateralContact& e, SystemBuilder& builder) {
   const int given = e.preload.has_value() + e.interference.has_value() + e.gap.has_value();
   bool is_bad = false;
@@ -39,6 +68,7 @@ bool check(const UnilateralContact& e, SystemBuilder& builder) {
   if (e.law == "hunt_crossley" && e.damping != 0.0) fail("Hunt-Crossley takes 'dissipation' instead of 'damping'");
   if (e.law != "hunt_crossley" && (e.exponent != 1.0 || e.dissipation != 0.0))
     fail("'exponent' and 'dissipation' belong to law = \"hunt_crossley\"");
+  if (e.ends && !(e.ends->x() < e.ends->y())) fail("'ends' are the lower and the higher end: the first must be less");
   return !is_bad;
 }
 
@@ -59,6 +89,12 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   if (e.interference) offset = now + *e.interference;
   if (e.preload) offset = now + portable::pow(*e.preload / k, 1.0 / e.exponent);
   const KelvinVoigtContact kelvin_voigt{k, n * e.damping, offset};
+  if (e.ends) {
+    if (e.law == "literal") add_ended(g, *e.ends, LiteralContact{k, n * e.damping, offset}, builder);
+    else if (e.law == "hunt_crossley") add_ended(g, *e.ends, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
+    else add_ended(g, *e.ends, kelvin_voigt, builder);
+    return;
+  }
   if (e.law == "literal") add(g, g.gap, LiteralContact{k, n * e.damping, offset}, builder);
   else if (e.law == "hunt_crossley")
     add(g, g.gap, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
@@ -88,7 +124,7 @@ const ElementKind& unilateral_contact_kind() {
     using T = UnilateralContact;
     ElementKind k;
     k.name = "unilateral_contact";
-    k.doc = "A marker on a against a line through marker b: it presses, it never holds. Closed while the gap "
+    k.doc = "A marker on a against a line through marker b, endless or with ends: it presses, it never holds. Closed while the gap "
             "is negative; the normal force is positive in compression.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker that touches");
@@ -106,6 +142,8 @@ const ElementKind& unilateral_contact_kind() {
     f.add("preload", &T::preload).in("N").not_negative().doc("force of all in the reference pose");
     f.add("interference", &T::interference).in("m").not_negative().doc("depth in the reference pose");
     f.add("gap", &T::gap).in("m").not_negative().doc("gap in the reference pose");
+    f.add("ends", &T::ends).in("m").doc(
+        "where the face ends, [low, high] along (n_y, -n_x) from marker b; beyond it nothing is carried; default: endless");
     k.holds<T>();
     k.compile = compile_contact;
     return k;

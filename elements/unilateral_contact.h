@@ -5,6 +5,7 @@
 // The contact axis a is the normal itself, or fixed in body a (a shaft whose tip rests on b's line: the
 // foot of Eq. 8). Laws: Kelvin–Voigt without adhesion f = max(0, −kδ − cδ̇); the paper's literal
 // f = −kδ − cδ̇, which may pull; Hunt–Crossley f = k|δ|ⁿ(1 − α δ̇). Source: physics.md §2.
+// The line is endless, or a face from ends[0] to ends[1] of the coordinate along t = (n_y, −n_x) from marker b.
 #pragma once
 
 #include "mbd/system/measure.h"
@@ -25,6 +26,7 @@ struct UnilateralContact : Element {
   std::optional<double> preload;  ///< force in the reference pose
   std::optional<double> interference; ///< −δ in the reference pose
   std::optional<double> gap;      ///< δ in the reference pose
+  std::optional<Vec2> ends;       ///< where the face ends, along it from marker b (ended_contact.h)
   long count = 1;
 };
 

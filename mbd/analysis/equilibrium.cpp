@@ -172,10 +172,17 @@ private:
     return used < k_least_used ? 0.0 : used;
   }
 
-  // Does its bound come from contacts, which it needs to be loaded at all?
+  // Does its bound come from contacts: does it bear nothing where all of them are open? (Of three dimensions are joints.)
   [[nodiscard]] bool is_of_contacts(int f) const {
-    const std::string& kind = system_.element_kinds[system_.frictions[f].element];
-    return kind == "coulomb_stick";
+    const FrictionElement& friction = *system_.frictions[f].friction;
+    if (friction.dimension() > 1) return false;
+    Statics statics(system_);
+    State state = state_;
+    statics.evaluate(state);
+    const std::vector<UnitMode> open(system_.units.size(), k_contact_open);
+    Evaluation apart = statics.evaluation();
+    apart.mode = open.data();
+    return !friction.is_loaded(apart, state.friction[f]);
   }
   [[nodiscard]] double row_value(int f) const {
     std::vector<Motion<double>> motion;

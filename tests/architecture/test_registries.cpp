@@ -83,7 +83,6 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
       {"limit", {{"tools/steplap/summary_json.cpp", "of a criterion"}}},
       {"distance", {{"elements/motor.cpp", "a coordinate"}, {"elements/prescribed_motion.cpp", "a coordinate"},
                     {"elements/limit.cpp", "a coordinate"}, {"elements/joint_friction.cpp", "a coordinate"}}},
-      {"coulomb_stick", {{"mbd/analysis/equilibrium.cpp", "friction that only contacts load"}}},
       {"step_lap_joint", {{"tools/study/scene.cpp", "channels that every verdict needs"}}},
       {"spring_damper", {{"mbd/model/model.h", "an example"}}},
   };

@@ -63,6 +63,7 @@ public:
     e_.contact_force = contact_force_.data();
     e_.watch = watch_.data();
     e_.watch_rate = watch_rate_.data();
+    choose_places();
   }
 
   [[nodiscard]] const System& system() const { return *system_; }
@@ -84,6 +85,12 @@ public:
     place(pose);
     for (std::size_t u = 0; u < system_->units.size(); ++u)
       state_.mode[u] = system_->units[u].group->initial_mode(system_->units[u].index, e_);
+  }
+  /// As if the run had begun at this pose: whether a foot is past the end of its face.
+  void start_at(const Pose& pose) {
+    place(pose);
+    for (const ForceGroup* group : system_->inner_groups) group->start_inner(motion_.data(), state_.inner.data());
+    choose_modes(pose);
   }
   /// Generalised forces on ground, a and b, each about its own centre.
   Vec9 forces(const Pose& pose) {
@@ -117,7 +124,7 @@ public:
       for (std::uint8_t foot = 0; foot < 2; ++foot) {
         if (foot == 1 && system_->element_kinds[system_->frictions[f].element] != "coulomb_stick") continue;
         FrictionState state = state_.friction[f];
-        state.foot = foot;
+        if (system_->element_kinds[system_->frictions[f].element] == "coulomb_stick") state.foot = foot;
         for (int r = 0; r < system_->frictions[f].friction->dimension(); ++r)
           all.push_back(system_->frictions[f].friction->rows(state)[r]);
       }
@@ -125,6 +132,18 @@ public:
   }
 
 private:
+  // Where friction acts in the reference pose, for what has more places than feet: those of the mirrored scene are its
+  // images then.
+  void choose_places() {
+    Pose start;
+    for (int i = 0; i < 3; ++i) start.q.segment<3>(3 * i) = system_->bodies[i].pose;
+    place(start);
+    for (std::size_t f = 0; f < system_->frictions.size(); ++f) {
+      const FrictionElement& friction = *system_->frictions[f].friction;
+      if (system_->element_kinds[system_->frictions[f].element] == "polygon_contact") friction.change_place(e_, state_.friction[f]);
+    }
+  }
+
   std::unique_ptr<System> system_;
   State state_;
   std::vector<Motion<double>> motion_;

@@ -141,7 +141,7 @@ template <class Check> void for_each_friction(const Check& check) {
       check(scene, probe, friction);
     }
   }
-  CHECK(count == 6); // three coulomb_stick, a step_lap_joint with sheets, two joint_friction
+  CHECK(count == 8); // three coulomb_stick, two polygon_contact, a step_lap_joint with sheets, two joint_friction
 }
 
 using Wrench = std::array<double, 3>;

@@ -72,6 +72,8 @@ inline const std::vector<ConformanceScene>& conformance_scenes() {
        "a = \"A\"\nb = \"B\"\naxis = [@+0.1, 1.0]\nlaw = \"literal\"\nstiffness = 900.0\ndamping = 25.0\npreload = 10.0\n"},
       {"unilateral_contact",
        "a = \"A\"\nb = \"B\"\nlaw = \"hunt_crossley\"\nexponent = 1.5\ndissipation = 0.6\nstiffness = 9000.0\npreload = 15.0\n"},
+      {"unilateral_contact", // on a face with ends, past which its poses reach
+       "a = \"A\"\nb = \"B\"\nstiffness = 900.0\ndamping = 25.0\ninterference = 0.02\nends = [-0.64, 0.64]\n"},
       {"circle_contact", "a = \"A\"\nb = \"B\"\nradius_a = 0.3\nradius_b = 0.58\nstiffness = 900.0\ndamping = 25.0\n"},
       {"circle_contact",
        "a = \"A\"\nb = \"B\"\nradius_a = 0.05\nradius_b = 0.9\ninside = true\nlaw = \"hunt_crossley\"\nexponent = 1.5\n"
@@ -82,6 +84,26 @@ inline const std::vector<ConformanceScene>& conformance_scenes() {
       {"segment_contact", // on the end
        "a = \"A\"\nb = \"B\"\nradius = 0.38\nfrom = [@-0.6, 0.2]\nto = [@+0.45, 0.3]\nthickness = 0.02\nstiffness = 900.0\n"
        "damping = 25.0\n"},
+      {"polygon_contact", // a corner on a face
+       "a = \"A\"\nb = \"B\"\nstiffness = 900.0\ndissipation = 0.6\n"
+       "outline_a = [[@-0.2, -0.2], [@+0.2, -0.2], [@+0.2, 0.2], [@-0.2, 0.2]]\n"
+       "outline_b = [[@-1.0, -0.5], [@+1.2, -0.5], [@+1.2, 0.37], [@-1.0, 0.37]]\n"},
+      {"polygon_contact", // a corner on a corner
+       "a = \"A\"\nb = \"B\"\nstiffness = 9000.0\n"
+       "outline_a = [[@-0.2, -0.2], [@+0.2, -0.2], [@+0.2, 0.2], [@-0.2, 0.2]]\n"
+       "outline_b = [[@-0.5, 0.0], [@+0.2, -0.6], [@+0.62, 0.38]]\n"},
+      {"polygon_contact", // a face on a face, where that ends
+       "a = \"A\"\nb = \"B\"\nstiffness = 900.0\ndissipation = 0.6\n"
+       "outline_a = [[@-0.2790, 0.0463], [@-0.0463, -0.2790], [@+0.2790, -0.0463], [@+0.0463, 0.2790]]\n"
+       "outline_b = [[@-1.0, -0.5], [@+0.7, -0.5], [@+0.7, 0.42], [@-1.0, 0.42]]\n"},
+      {"polygon_contact", // on a half-plane
+       "a = \"A\"\nb = \"B\"\nnormal = [@+0.1, 1.0]\nstiffness = 900.0\ndissipation = 0.6\n"
+       "static_friction = 0.4\nkinetic_friction = 0.3\n"
+       "outline_a = [[@-0.2, -0.83], [@+0.2, -0.83], [@+0.2, 0.2], [@-0.2, 0.2]]\n"},
+      {"polygon_contact",
+       "a = \"A\"\nb = \"B\"\nstiffness = 900.0\ndissipation = 0.6\nstatic_friction = 0.4\nkinetic_friction = 0.3\n"
+       "outline_a = [[@-1.2, -0.2], [@+0.5, -0.2], [@+0.2, 0.2]]\n"
+       "outline_b = [[@+0.4, -0.3], [@+0.9, -0.3], [@+0.62, 0.378]]\n"},
       {"coulomb_stick",
        "contacts = [\"roller\"]\nstatic_friction = 0.4\nkinetic_friction = 0.3\n"
        "[[element]]\nkind = \"circle_contact\"\nname = \"roller\"\na = \"A\"\nb = \"B\"\nradius_a = 0.3\nradius_b = 0.58\n"

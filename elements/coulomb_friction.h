@@ -1,0 +1,93 @@
+// Coulomb friction as a friction element: |λ| ≤ μ_s N while it sticks, μ_k N against the slip, N the sum of the normal forces
+// of contacts. Which rows it sticks along, and where, is up to who makes one (coulomb_stick, polygon_contact).
+#pragma once
+
+#include "mbd/system/system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace steplap {
+
+class CoulombFriction : public FrictionElement {
+public:
+  // θ_A = θ_B exactly is the normal state at rest: the foot is kept within this dead band, rad.
+  static constexpr double k_foot_dead_band = 1e-13;
+  // |λ| may pass the bound by rounding, relative: ten times below the 1e-12 that a load can resolve.
+  static constexpr double k_bound_slack = 1e-13;
+  // Acceleration beside which an error of friction counts, m/s²: that of the motion to which tolerances are absolute.
+  static constexpr double k_floor_acceleration = 3.6;
+  static constexpr double k_no_motion = 1e-12; // m/s or m/s²: rounding of a coordinate that a drive keeps at rest
+
+  std::vector<ContactIndex> contacts;
+  std::vector<RowSpec> feet; ///< rear-most, front-most; the same twice for one contact
+  bool has_two_feet = false;
+  double mu_static = 0.0, mu_kinetic = 0.0;
+  double damping = 0.0, mass = 0.0, lever = 0.0; ///< of the contacts; of the lighter body; from its centre
+
+  [[nodiscard]] int dimension() const override { return 1; }
+  [[nodiscard]] const RowSpec* rows(const FrictionState& state) const override {
+    return &feet[state.foot];
+  }
+  void mark_bodies(std::vector<char>& is_used) const override {
+    is_used[feet[0].a] = is_used[feet[0].b] = 1;
+  }
+  [[nodiscard]] double normal_force(const Evaluation& e) const {
+    double sum = 0.0;
+    for (const ContactIndex& contact : contacts) sum += e.contact_force[contact.force];
+    return std::max(0.0, sum); // the paper's literal contact law may pull
+  }
+  [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
+    return std::any_of(contacts.begin(), contacts.end(), [&e](const ContactIndex& contact) {
+      return e.mode[contact.unit] == k_contact_pressed;
+    });
+  }
+  void slip_wrench(const Evaluation& e, const FrictionState& state, const double*,
+                   double* wrench) const override {
+    wrench[0] = -mu_kinetic * normal_force(e) * state.sign;
+  }
+  [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
+    return mu_static * normal_force(e) * std::abs(rate[0]);
+  }
+  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench,
+                   double* watch) const override {
+    const double bound = mu_static * normal_force(e) * (1.0 + k_bound_slack);
+    watch[0] = bound - wrench[0];
+    watch[1] = bound + wrench[0];
+  }
+  void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
+    state.sign = wrench[0] > 0.0 ? -1 : 1;
+  }
+  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
+    if (!has_two_feet) return 1.0;
+    const double turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
+    return k_foot_dead_band + (state.foot == 0 ? turn : -turn);
+  }
+  void change_place(const Evaluation&, FrictionState& state) const override {
+    state.foot = state.foot == 0 ? 1 : 0;
+  }
+  // The contacts' dampers make forces of errors of velocity, and friction with μ > 1 larger ones of these: against what
+  // would accelerate the body as the motion does to which tolerances are absolute. Else the contact rattles: it would
+  // lose and regain, by errors alone, a normal force so small that the tolerance does not show it and yet enough to
+  // carry the body by its friction.
+  [[nodiscard]] SlipScale slip_scale(const Evaluation&, const FrictionState&, const double*) const override {
+    SlipScale scale;
+    scale.lever = lever;
+    if (mu_kinetic > 1.0 && damping > 0.0) scale.speed = k_floor_acceleration * mass / ((mu_kinetic - 1.0) * damping);
+    return scale;
+  }
+  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a,
+                                          const double* b, bool is_kinetic) const override {
+    FrictionBlock block;
+    const double bound = (is_kinetic ? mu_kinetic : mu_static) * normal_force(e);
+    const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? -bound : bound);
+    // Where a drive prescribes the coordinate no force changes its motion: it rests or it does not.
+    block.is_inside = a[0] > 0.0 ? std::abs(wanted) <= bound * (1.0 + k_bound_slack) : std::abs(b[0]) <= k_no_motion;
+    block.wrench[0] = std::clamp(wanted, -bound, bound);
+    block.direction[0] = wanted > 0.0 ? -1.0 : 1.0;
+    return block;
+  }
+};
+
+} // namespace steplap

@@ -1,0 +1,136 @@
+// A unilateral contact whose face ends: a foot that runs past an end is carried no more.
+//
+// Modes: those of its law (contact_laws.h), and *off*: behind the face's line, but past an end of the face or come from there.
+// A foot that is pressed and passes an end goes off: the strain of its contact, ½ k δ², is lost, and booked as dissipated; the
+// force vanishes at once. Energy is never made so: a foot that is off is not carried again before it has risen over the line.
+// What lies beside the face is not there: a part that has sides is a polygon_contact.
+#pragma once
+
+#include "elements/contact_laws.h"
+
+#include <algorithm>
+
+namespace steplap {
+
+inline constexpr UnitMode k_contact_off = 3;
+
+template <class Law> class EndedContactGroup final : public ForceGroup {
+public:
+  struct Entry {
+    int a = k_ground, b = k_ground;
+    GapMeasure gap;
+    Law law;
+    double low = 0.0, high = 0.0; ///< of the coordinate along the face, from point_b
+    int inner = 0;                ///< 1 while it is off
+    int link = 0, unit = 0, watch = 0, contact = 0;
+
+    [[nodiscard]] SlideMeasure slide() const { return {gap.point_a, gap.point_b, gap.normal, gap.axis, gap.is_axis_in_a}; }
+    [[nodiscard]] bool is_on_face(double along) const { return along >= low && along <= high; }
+    /// Of a foot that nothing has carried yet.
+    [[nodiscard]] bool is_off_at(const Motion<double>& at_a, const Motion<double>& at_b) const {
+      return gap.at<false, double>(at_a, at_b).value < law.offset && !is_on_face(slide().template at<false, double>(at_a, at_b).value);
+    }
+  };
+  static constexpr int k_watches = Law::k_watches + 1;
+  std::vector<Entry> entries;
+
+  void add_forces(Evaluation& e) const override {
+    for (const Entry& entry : entries) {
+      const Motion<double>& a = e.link_motion[entry.link];
+      const auto m = entry.gap.template at<false, double>(a, Origin{});
+      const UnitMode mode = e.mode[entry.unit], of_law = law_mode(mode);
+      watch(entry, m, along(entry, a, Origin{}), mode, e.watch + entry.watch, e.watch_rate + entry.watch);
+      const double f = entry.law.force(m.value, m.rate, of_law);
+      e.contact_force[entry.contact] = f;
+      if (f != 0.0) apply_force(e.link_force[entry.link], m, f);
+      e.dissipation += (entry.law.elastic_force(m.value, of_law) - f) * m.rate;
+    }
+  }
+  [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
+  [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override {
+    double sum = 0.0;
+    for (const Entry& entry : entries)
+      if (inner[entry.inner] == 0.0) sum += entry.law.energy(gap(entry, motion).value);
+    return sum;
+  }
+  void start_inner(const Motion<double>* motion, double* inner) const override {
+    for (const Entry& entry : entries) inner[entry.inner] = entry.is_off_at(motion[entry.a], motion[entry.b]) ? 1.0 : 0.0;
+  }
+  double enter_mode(int element, UnitMode to, const Evaluation& e, double* inner) const override {
+    const Entry& entry = entries[element];
+    const bool was_carried = inner[entry.inner] == 0.0;
+    inner[entry.inner] = to == k_contact_off ? 1.0 : 0.0;
+    // Onto the line from before it there is no strain yet.
+    return to == k_contact_off && was_carried ? entry.law.energy(gap(entry, e.motion).value) : 0.0;
+  }
+  void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
+    for (const Entry& entry : entries) {
+      const UnitMode mode = law_mode(e.mode[entry.unit]);
+      const Dual<12> f = add_pair_jacobian(
+          entry.a, entry.b, entry.gap, e, [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, mode); }, out);
+      out.back().contact = entry.contact;
+      out.back().normal = f.d.matrix();
+    }
+  }
+  void mark_bodies(std::vector<char>& is_used) const override {
+    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  }
+  void enter_links(LinkTable& links) override {
+    for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
+  }
+  [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
+    const auto m = measured(element, e);
+    return closed_mode(element, e, entries[element].law.mode_at(m.value, m.rate));
+  }
+  [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    if (mode == k_contact_off) return k_contact_open;
+    if (slot == Law::k_watches) return k_contact_off;
+    const auto m = measured(element, e);
+    const UnitMode next = entries[element].law.next_mode(mode, slot, m.value, m.rate);
+    return mode == k_contact_open ? closed_mode(element, e, next) : next;
+  }
+  [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
+    const UnitMode was = law_mode(from), is = law_mode(to);
+    return was == is ? EventKind::none : Law::transition(was, is);
+  }
+
+  [[nodiscard]] MeasureValue<double> measured(int element, const Evaluation& e) const { return gap(entries[element], e.motion); }
+  [[nodiscard]] double force_of(int element, const Evaluation& e) const {
+    const auto m = measured(element, e);
+    return entries[element].law.force(m.value, m.rate, law_mode(e.mode[entries[element].unit]));
+  }
+  [[nodiscard]] double along_of(int element, const Evaluation& e) const {
+    const Entry& entry = entries[element];
+    return along(entry, e.motion[entry.a], e.motion[entry.b]).value;
+  }
+
+private:
+  static UnitMode law_mode(UnitMode mode) { return mode == k_contact_off ? k_contact_open : mode; }
+  static MeasureValue<double> gap(const Entry& entry, const Motion<double>* motion) {
+    return entry.gap.template at<false, double>(motion[entry.a], motion[entry.b]);
+  }
+  template <class B> static MeasureValue<double> along(const Entry& entry, const Motion<double>& a, const B& b) {
+    return entry.slide().template at<false, double>(a, b);
+  }
+  [[nodiscard]] UnitMode closed_mode(int element, const Evaluation& e, UnitMode mode) const {
+    if (mode == k_contact_open) return mode;
+    return e.inner[entries[element].inner] == 0.0 && entries[element].is_on_face(along_of(element, e)) ? mode : k_contact_off;
+  }
+  static void watch(const Entry& entry, const MeasureValue<double>& m, const MeasureValue<double>& at, UnitMode mode,
+                    double* watch, double* rate) {
+    std::fill_n(watch, k_watches, 1.0);
+    std::fill_n(rate, k_watches, std::numeric_limits<double>::quiet_NaN());
+    if (mode == k_contact_off) {
+      watch[0] = entry.law.offset - m.value;
+      rate[0] = -m.rate;
+      return;
+    }
+    entry.law.watch(m.value, m.rate, mode, watch, rate);
+    if (mode == k_contact_open) return;
+    const double before = at.value - entry.low, after = entry.high - at.value;
+    watch[Law::k_watches] = std::min(before, after);
+    rate[Law::k_watches] = before < after ? at.rate : -at.rate;
+  }
+};
+
+} // namespace steplap

@@ -1,0 +1,387 @@
+#include "elements/polygon_contact.h"
+
+#include "elements/convex_outline.h"
+#include "elements/coulomb_friction.h"
+#include "mbd/system/law_group.h"
+#include "mbd/system/system.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+namespace steplap {
+
+namespace {
+
+using D12 = Dual<12>;
+
+struct Outlines {
+  ConvexOutline a, b;
+};
+
+template <class S, class B> struct Placed {
+  PlacedOutline<S> a, b;
+  Pair<S> centre; ///< of body a, seen from body b's
+
+  Placed(const Outlines& outlines, const Motion<S>& at_a, const B& at_b) : centre(offset(at_a, at_b)) {
+    place_outline(outlines.a, at_a, centre, a);
+    place_outline(outlines.b, at_b, Pair<S>{}, b);
+  }
+};
+
+class PolygonGroup final : public ForceGroup {
+public:
+  struct Entry {
+    int a = k_ground, b = k_ground;
+    std::shared_ptr<const Outlines> outlines;
+    double stiffness = 0.0, dissipation = 0.0;
+    bool has_friction = false;
+    int link = 0, unit = 0, watch = 0, contact = 0;
+  };
+  std::vector<Entry> entries;
+
+  void add_forces(Evaluation& e) const override {
+    for (const Entry& entry : entries) {
+      const Motion<double>& m = e.link_motion[entry.link];
+      const Placed<double, Origin> placed(*entry.outlines, m, Origin{});
+      const UnitMode mode = e.mode[entry.unit];
+      const Approach now = approach(placed, relative(m, placed.centre));
+      const double sign = mode == k_contact_open ? 1.0 : -1.0;
+      e.watch[entry.watch] = sign * now.gap;
+      e.watch_rate[entry.watch] = sign * now.rate;
+      e.contact_force[entry.contact] = 0.0;
+      if (mode == k_contact_open) continue;
+      BodyForce& sum = e.link_force[entry.link];
+      if (now.gap > 0.0) {
+        pull_back(entry, placed, now, sum);
+        continue;
+      }
+      const OverlapForce<double> f = force(entry, placed, relative(m, placed.centre));
+      sum.fx += f.force.x;
+      sum.fy += f.force.y;
+      sum.m += f.moment - cross(placed.centre, f.force);
+      e.contact_force[entry.contact] = size_of(f.force);
+      e.dissipation += f.dissipation;
+    }
+  }
+
+  [[nodiscard]] double potential(const Motion<double>* motion) const override {
+    double sum = 0.0;
+    for (const Entry& entry : entries) {
+      const Placed<double, Motion<double>> placed(*entry.outlines, motion[entry.a], motion[entry.b]);
+      if (separation_of(placed.a, placed.b).gap < 0.0)
+        sum += 2.0 * entry.stiffness * overlap_force(placed.a, placed.b, RelativeVelocity<double>{}, entry.stiffness, 0.0, true).volume;
+    }
+    return sum;
+  }
+
+  void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
+    for (const Entry& entry : entries) {
+      PairJacobian& j = out.emplace_back();
+      j.a = entry.a;
+      j.b = entry.b;
+      j.contact = entry.contact;
+      j.stiffness.setZero();
+      j.damping.setZero();
+      j.normal.setZero();
+      if (e.mode[entry.unit] == k_contact_open) continue;
+      const Motion<D12> a = seeded(e.motion[entry.a], 0), b = seeded(e.motion[entry.b], 3);
+      const Placed<D12, Motion<D12>> placed(*entry.outlines, a, b);
+      RelativeVelocity<D12> velocity;
+      velocity.u = Pair<D12>{a.vx - b.vx, a.vy - b.vy} - a.omega * perp(placed.centre);
+      velocity.spin = a.omega - b.omega;
+      const OverlapForce<D12> f = force(entry, placed, velocity);
+      const D12 couple_a = f.moment - cross(placed.centre, f.force);
+      const D12 rows[6] = {f.force.x, f.force.y, couple_a, -f.force.x, -f.force.y, -f.moment};
+      for (int i = 0; i < 6; ++i) {
+        j.stiffness.row(i) = rows[i].d.head<6>().matrix().transpose();
+        j.damping.row(i) = rows[i].d.tail<6>().matrix().transpose();
+      }
+      if (size_of(Pair<double>{f.force.x.v, f.force.y.v}) > 0.0) j.normal = size_of(f.force).d.matrix();
+    }
+  }
+
+  void mark_bodies(std::vector<char>& is_used) const override {
+    for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
+  }
+  // Friction on a face of a sees b's corners from there.
+  void enter_links(LinkTable& links) override {
+    for (Entry& entry : entries) {
+      entry.link = links.add(entry.a, entry.b);
+      if (entry.has_friction && entry.a != k_ground) (void)links.add(entry.b, entry.a);
+    }
+  }
+  [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
+    return measured(element, e).gap < 0.0 ? k_contact_pressed : k_contact_open;
+  }
+  [[nodiscard]] UnitMode next_mode(int, UnitMode mode, int, const Evaluation&) const override {
+    return mode == k_contact_open ? k_contact_pressed : k_contact_open;
+  }
+  [[nodiscard]] EventKind transition(UnitMode, UnitMode to) const override {
+    return to == k_contact_open ? EventKind::opens : EventKind::closes;
+  }
+
+  struct Approach {
+    double gap = 0.0, rate = 0.0;
+    Pair<double> corner, normal; ///< where that is, and along which a would be pushed
+  };
+  /// Rates are of the corner against the face.
+  [[nodiscard]] Approach measured(int element, const Evaluation& e) const {
+    const Entry& entry = entries[element];
+    const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b];
+    const Placed<double, Motion<double>> placed(*entry.outlines, a, b);
+    RelativeVelocity<double> velocity;
+    velocity.u = Pair<double>{a.vx - b.vx, a.vy - b.vy} - a.omega * perp(placed.centre);
+    velocity.spin = a.omega - b.omega;
+    return approach(placed, velocity);
+  }
+
+private:
+  // While the mode says pressed the force goes on beyond the gap's zero with its sign changed, as that of a corner would:
+  // stages of a step that is too long may be thrown out of the contact, on the far side of a thin part, too, and where they
+  // felt nothing the step's error would be seen as zero. No step ends there.
+  static void pull_back(const Entry& entry, const Placed<double, Origin>& placed, const Approach& now, BodyForce& sum) {
+    const Pair<double> f = (-entry.stiffness * now.gap * now.gap) * now.normal;
+    sum.fx += f.x;
+    sum.fy += f.y;
+    sum.m += cross(now.corner - placed.centre, f);
+  }
+  static double size_of(const Pair<double>& f) { return std::sqrt(dot(f, f)); }
+  static D12 size_of(const Pair<D12>& f) { return sqrt(dot(f, f)); }
+  static RelativeVelocity<double> relative(const Motion<double>& m, const Pair<double>& centre) {
+    return {Pair<double>{m.vx, m.vy} - m.omega * perp(centre), m.omega};
+  }
+  template <class S, class B>
+  static OverlapForce<S> force(const Entry& entry, const Placed<S, B>& placed, const RelativeVelocity<S>& velocity) {
+    return overlap_force(placed.a, placed.b, velocity, entry.stiffness, entry.dissipation);
+  }
+  // The gap's rate is that of the corner against the face: seen from a point of b at the same place, whichever owns which.
+  template <class B> static Approach approach(const Placed<double, B>& placed, const RelativeVelocity<double>& velocity) {
+    const Separation s = separation_of(placed.a, placed.b);
+    const int faces = placed.a.edge_count;
+    const bool is_of_b = s.face >= faces;
+    const Pair<double> corner = is_of_b ? placed.a.corner[s.corner] : placed.b.corner[s.corner];
+    const Pair<double> n = is_of_b ? placed.b.normal[s.face - faces] : -1.0 * placed.a.normal[s.face];
+    return {s.gap, dot(n, velocity.u + velocity.spin * perp(corner)), corner, n};
+  }
+};
+
+// Where friction holds: a face, and a corner of the other body or the edge that begins there.
+struct HoldingPlace {
+  int face = 0, corner = 0;
+  bool is_edge = false;
+};
+
+class PolygonFriction final : public CoulombFriction {
+public:
+  std::shared_ptr<const Outlines> outlines;
+  int a = k_ground, b = k_ground;
+  std::vector<HoldingPlace> places; ///< as `feet`
+  std::vector<int> first;           ///< of each face
+
+  static constexpr double k_dead_band = 1e-13; // m, as of feet
+
+  void make_places(int memory) {
+    const int of_a = outlines->a.edge_count(), of_b = outlines->b.edge_count();
+    for (int face = 0; face < of_a + of_b; ++face) {
+      first.push_back(static_cast<int>(places.size()));
+      const ConvexOutline& other = face < of_a ? outlines->b : outlines->a;
+      for (int corner = 0; corner < other.corner_count(); ++corner)
+        for (const bool is_edge : {false, true}) {
+          places.push_back({face, corner, is_edge});
+          feet.push_back(row_of(places.back(), memory));
+        }
+    }
+    lever = 0.0;
+    for (const ConvexOutline* outline : {&outlines->a, &outlines->b})
+      for (const Vec2& corner : outline->corners) lever = std::max(lever, corner.norm());
+  }
+
+  void mark_bodies(std::vector<char>& is_used) const override { is_used[a] = is_used[b] = 1; }
+
+  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
+    const Placed<double, Motion<double>> placed(*outlines, e.motion[a], e.motion[b]);
+    const HoldingPlace& place = places[state.foot];
+    const Heights h = heights(placed, place.face);
+    const double best = separation_of(placed.a, placed.b).gap, own = h.least();
+    const double face_left = own - 2.0 * best; // both negative while pressed
+    return k_dead_band + std::min(face_left, left_of(h, place));
+  }
+  void change_place(const Evaluation& e, FrictionState& state) const override {
+    const Placed<double, Motion<double>> placed(*outlines, e.motion[a], e.motion[b]);
+    const Separation s = separation_of(placed.a, placed.b);
+    const Heights h = heights(placed, s.face);
+    const int before = h.before(s.corner), after = h.after(s.corner);
+    int corner = s.corner;
+    bool is_edge = false;
+    if (std::min(h.of[before], h.of[after]) < 0.0) {
+      is_edge = true;
+      if (h.of[before] < h.of[after]) corner = before;
+    }
+    state.foot = static_cast<std::uint32_t>(first[s.face] + 2 * corner + (is_edge ? 1 : 0));
+  }
+
+private:
+  // Of the other body's corners over a face's line.
+  struct Heights {
+    int count = 0;
+    std::array<double, k_most_corners> of;
+    [[nodiscard]] int before(int i) const { return i > 0 ? i - 1 : count - 1; }
+    [[nodiscard]] int after(int i) const { return i + 1 < count ? i + 1 : 0; }
+    [[nodiscard]] double least() const { return *std::min_element(of.begin(), of.begin() + count); }
+  };
+  template <class B> Heights heights(const Placed<double, B>& placed, int face) const {
+    const int of_a = placed.a.edge_count;
+    const PlacedOutline<double>&own = face < of_a ? placed.a : placed.b, &other = face < of_a ? placed.b : placed.a;
+    const int edge = face < of_a ? face : face - of_a;
+    Heights h;
+    h.count = other.corner_count;
+    for (int i = 0; i < h.count; ++i) h.of[i] = dot(own.normal[edge], other.corner[i]) - own.offset[edge];
+    return h;
+  }
+  // A corner holds while its neighbours are out and higher, an edge while both its corners are in and lower than the next.
+  static double left_of(const Heights& h, const HoldingPlace& place) {
+    const int i = place.corner, next = h.after(i);
+    if (!place.is_edge) {
+      const double least = std::min(h.of[h.before(i)], h.of[next]);
+      return std::min(least, least - h.of[i]);
+    }
+    const double highest = std::max(h.of[i], h.of[next]);
+    return std::min(-highest, std::min(h.of[h.before(i)], h.of[h.after(next)]) - highest);
+  }
+  [[nodiscard]] RowSpec row_of(const HoldingPlace& place, int memory) const {
+    const int of_a = outlines->a.edge_count();
+    const bool is_of_a = place.face < of_a;
+    const ConvexOutline &own = is_of_a ? outlines->a : outlines->b, &other = is_of_a ? outlines->b : outlines->a;
+    const int edge = is_of_a ? place.face : place.face - of_a, next = (place.corner + 1) % other.corner_count();
+    RowSpec row;
+    row.kind = MeasureKind::slide;
+    row.a = is_of_a ? b : a;
+    row.b = is_of_a ? a : b;
+    row.point_a = place.is_edge ? Vec2(0.5 * (other.corners[place.corner] + other.corners[next])) : other.corners[place.corner];
+    row.direction = own.normals[edge];
+    row.point_b = own.offsets[edge] * row.direction;
+    row.memory = memory;
+    row.quantity = "slide";
+    return row;
+  }
+};
+
+// Its own corners, or those of its body.
+std::optional<ConvexOutline> outline_of(const std::vector<Vec2>& given, const std::string& marker, const char* field,
+                                        SystemBuilder& builder) {
+  const std::string body = body_of(marker, builder);
+  const std::vector<Vec2>& points = given.empty() ? outline_of_body(body, builder) : given;
+  try {
+    if (points.empty()) {
+      builder.error("'" + body + "' has no outline: give it one, or '" + field + "'");
+      return std::nullopt;
+    }
+    return convex_outline(points, builder.marker(given.empty() ? body : marker));
+  } catch (const OutlineError& error) {
+    builder.error((given.empty() ? "the outline of '" + body + "' " : "'" + std::string(field) + "' ") + error.what());
+    return std::nullopt;
+  }
+}
+
+bool is_half_plane(const PolygonContact& e, const SystemBuilder& builder) {
+  return e.normal.has_value() || (e.outline_b.empty() && builder.marker(e.b).body == k_ground &&
+                                  outline_of_body(body_of(e.b, builder), builder).empty());
+}
+
+bool check(const PolygonContact& e, SystemBuilder& builder) {
+  bool is_bad = false;
+  const auto fail = [&](const char* message) {
+    builder.error(message);
+    is_bad = true;
+  };
+  if (builder.marker(e.a).body == builder.marker(e.b).body)
+    fail("touches its own body: name markers on two different bodies");
+  if (e.normal && !e.outline_b.empty()) fail("give one of 'normal' (b is a half-plane) and 'outline_b'");
+  if (e.normal && !(e.normal->norm() > 0.0)) fail("'normal' has no direction");
+  if (e.kinetic_friction && !e.static_friction) fail("'kinetic_friction' needs 'static_friction'");
+  if (e.static_friction && e.kinetic_friction.value_or(0.0) > *e.static_friction)
+    fail("'kinetic_friction' must not exceed 'static_friction'");
+  return !is_bad;
+}
+
+void add_friction(const PolygonContact& e, const PolygonGroup::Entry& entry, SystemBuilder& builder) {
+  auto friction = std::make_unique<PolygonFriction>();
+  friction->outlines = entry.outlines;
+  friction->a = entry.a;
+  friction->b = entry.b;
+  friction->contacts.push_back({entry.contact, entry.unit});
+  friction->make_places(builder.add_memory());
+  for (RowSpec& row : friction->feet) row.element = builder.element_index();
+  friction->mu_static = *e.static_friction;
+  friction->mu_kinetic = e.kinetic_friction.value_or(*e.static_friction);
+  const int f = builder.next_friction(), row = builder.next_friction_row();
+  const PolygonFriction* const self = friction.get();
+  builder.add_channel("friction", "N", "friction force on a, along the face that it sticks or slides on",
+                      [row](const Snapshot& s) { return s.friction_force[row]; });
+  builder.add_channel("capacity", "N", "largest friction force that holds",
+                      [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
+  builder.add_channel("slip_rate", "m/s", "of a against b along that face", [self, f](const Snapshot& s) {
+    return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate;
+  });
+  builder.add_channel("mode", "", "0 free, 1 sticks, 2 slips",
+                      [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
+  builder.add_friction(std::move(friction));
+}
+
+void compile_polygon(const Element& element, SystemBuilder& builder) {
+  const auto& e = static_cast<const PolygonContact&>(element);
+  if (!check(e, builder)) return;
+  const bool is_plane = is_half_plane(e, builder);
+  const std::optional<ConvexOutline> a = outline_of(e.outline_a, e.a, "outline_a", builder);
+  const std::optional<ConvexOutline> b = is_plane ? half_plane(e.normal.value_or(Vec2(0.0, 1.0)), builder.marker(e.b))
+                                                  : outline_of(e.outline_b, e.b, "outline_b", builder);
+  if (!a || !b) return;
+  PolygonGroup& group = builder.group<PolygonGroup>();
+  PolygonGroup::Entry entry;
+  entry.a = builder.marker(e.a).body;
+  entry.b = builder.marker(e.b).body;
+  entry.outlines = std::make_shared<const Outlines>(Outlines{*a, *b});
+  entry.stiffness = e.stiffness;
+  entry.dissipation = e.dissipation;
+  entry.has_friction = e.static_friction.has_value() && !is_plane;
+  group.entries.push_back(std::move(entry));
+  builder.add_unit(group, 1);
+  group.entries.back().contact = builder.add_contact(group.entries.back().unit);
+  const int i = static_cast<int>(group.entries.size()) - 1, contact = group.entries.back().contact;
+  builder.add_channel("gap", "m", "between the outlines, negative while closed: the least way that would part them",
+                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).gap; });
+  builder.add_channel("force", "N", "size of the normal force, which presses the two apart",
+                      [contact](const Snapshot& s) { return s.evaluation->contact_force[contact]; });
+  if (e.static_friction) add_friction(e, group.entries.back(), builder);
+}
+
+} // namespace
+
+const ElementKind& polygon_contact_kind() {
+  static const ElementKind kind = [] {
+    using T = PolygonContact;
+    ElementKind k;
+    k.name = "polygon_contact";
+    k.doc = "The convex outline of a against that of b, or against a half-plane of b (the ground): corners and edges, "
+            "wherever they touch. They press, they never hold; with 'static_friction' they stick.";
+    FieldTable& f = k.fields;
+    f.add("a", &T::a).as(FieldType::marker).required().doc("body that touches, or a marker of it");
+    f.add("b", &T::b).as(FieldType::marker).doc("body that it touches, or a marker of it");
+    f.add("outline_a", &T::outline_a).in("m").doc("corners in marker a's axes; default: the outline of its body");
+    f.add("outline_b", &T::outline_b).in("m").doc(
+        "corners in marker b's axes; default: the outline of its body, of the ground the half-plane below marker b");
+    f.add("normal", &T::normal).doc("b is the half-plane behind the line through marker b; in marker b's axes, towards a");
+    f.add("stiffness", &T::stiffness).in("N/m^2").positive().required().doc(
+        "pressure of faces on each other for each metre of depth: k of a width w is w times this");
+    f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
+    f.add("static_friction", &T::static_friction).not_negative().doc("mu_s; default: no friction");
+    f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
+    k.holds<T>();
+    k.compile = compile_polygon;
+    return k;
+  }();
+  return kind;
+}
+
+} // namespace steplap

@@ -1,0 +1,325 @@
+// Boxes and other convex outlines that press on each other: against closed forms, conservation, other ways to say the same.
+#include "mbd/analysis/assembly.h"
+#include "mbd/analysis/equilibrium.h"
+#include "tests/physics/model_text.h"
+#include "tests/physics/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <doctest/doctest.h>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+constexpr double k_g = 9.81;
+
+std::string number(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+std::string point(double x, double y) { return "[" + number(x) + ", " + number(y) + "]"; }
+std::string gravity(double angle) { return "gravity = " + point(k_g * std::sin(angle), -k_g * std::cos(angle)) + "\n"; }
+
+struct Box {
+  std::string name;
+  double x = 0.0, y = 0.0, w = 1.0, h = 1.0, angle = 0.0, mass = 1000.0;
+  std::string more;
+};
+
+std::string text_of(const Box& b) {
+  return body(b.name, "mass = " + number(b.mass) + "; inertia = " + number(b.mass * (b.w * b.w + b.h * b.h) / 12.0) + "; position = " +
+                          point(b.x, b.y) + "; angle = " + number(b.angle) + "; outline = [" + point(-0.5 * b.w, -0.5 * b.h) + ", " +
+                          point(0.5 * b.w, -0.5 * b.h) + ", " + point(0.5 * b.w, 0.5 * b.h) + ", " + point(-0.5 * b.w, 0.5 * b.h) + "]" +
+                          (b.more.empty() ? "" : "; " + b.more));
+}
+
+std::string touch(const std::string& a, const std::string& b, const std::string& more) {
+  return element("polygon_contact", a + " on " + b, "a = \"" + a + "\"; b = \"" + b + "\"; " + more);
+}
+
+struct Found {
+  std::unique_ptr<System> system;
+  Equilibrium rest;
+};
+
+Found settle(const std::string& text) {
+  const Model model = scene(text + "\n[simulation]\nstep = 1e-3\n");
+  Found found{compile(model), {}};
+  State start = assembled_start(*found.system, assemble(model, *found.system));
+  std::fill(start.v.begin(), start.v.end(), 0.0);
+  found.rest = find_equilibrium(*found.system, start);
+  return found;
+}
+
+// As initial = "equilibrium" does: what begins without its contacts' forces begins with a blow.
+Run run_from_rest(const std::string& text, const Settings& settings) {
+  Found found = settle(text);
+  Run r;
+  r.system = std::move(found.system);
+  r.result = simulate(*r.system, found.rest.state, options(settings));
+  return r;
+}
+
+double largest_change(const Run& r, const std::vector<std::string>& channels) {
+  double most = 0.0;
+  for (const std::string& channel : channels) {
+    const std::vector<double> values = r.series(channel);
+    most = std::max(most, std::abs(values.back() - values.front()));
+  }
+  return most;
+}
+
+} // namespace
+
+// The cell of the floor under the roof of a rectangle w × d is a trapezoid of height d/2 with the sides w and w − d:
+// m g = 2 k ½ (w + w − d) d/2 = k d (w − d/2).
+TEST_CASE("a box on the ground and a stack of boxes rest at the depths of the closed form") {
+  const double k = 1e7, m = 1000.0, w = 1.5;
+  const auto depth = [&](double load) { return w - std::sqrt(w * w - 2.0 * load / k); };
+  std::string text;
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = "b" + std::to_string(i);
+    text += text_of({name, 0.01 * i, 0.25 + 0.5 * i, w, 0.5, 0.0, m, ""}) +
+            touch(name, i == 0 ? "ground" : "b" + std::to_string(i - 1), "stiffness = 1e7; static_friction = 0.4");
+  }
+  const Found one = settle(text_of({"b", 0.0, 0.5, w, 0.5, 0.0, m, ""}) + touch("b", "ground", "stiffness = 1e7"));
+  CHECK(std::abs(one.rest.state.q[4] - (0.25 - depth(m * k_g))) < 1e-11); // forces to 1e-9 of a depth of a millimetre, and less
+  // Boxes of the stack stand 1 cm aside of each other: the uppermost is free of couples, its overlap ends in two sides of
+  // different boxes, so that the roof's ends are the same and so is the force.
+  const Found stack = settle(text);
+  CHECK(std::abs(stack.rest.state.q[4] - (0.25 - depth(3.0 * m * k_g))) < 1e-4);
+  CHECK(stack.rest.state.q[10] < stack.rest.state.q[7] + 0.5);
+  CHECK(stack.rest.state.q[10] > stack.rest.state.q[7] + 0.5 - 2.0 * depth(m * k_g));
+  for (int i = 1; i <= 3; ++i) CHECK(std::abs(stack.rest.state.q[3 * i + 2]) < 1e-3);
+}
+
+// Under small motion a face of width w is a bed of springs: k w across, k w³/12 in turning. Two feet of stiffness k w/2 at
+// ±w/(2 √3) are the same, but for the share d/w by which the ends of the roof are lower.
+TEST_CASE("a box on its face moves as on two feet made by hand") {
+  const double k = 1e8, w = 1.0, m = 1000.0;
+  const double foot = w / (2.0 * std::sqrt(3.0));
+  const auto start = [&](double share) { return text_of({"box", 0.0, 0.5 - m * k_g / (k * w), w, 1.0, share * m * k_g / (k * w), m, ""}); };
+  std::string feet;
+  for (const double x : {-foot, foot})
+    feet += element("unilateral_contact", x < 0.0 ? "left" : "right",
+                    "a = { body = \"box\", point = " + point(x, -0.5) + " }; b = \"ground\"; stiffness = " + number(0.5 * k * w));
+  const Settings settings{"dop853", 1e-10, 0.1, 1e-3};
+  const Run one = run(start(0.3) + touch("box", "ground", "stiffness = 1e8"), settings), two = run(start(0.3) + feet, settings);
+  const std::vector<double> p = one.series("box.theta"), q = two.series("box.theta");
+  REQUIRE(p.size() == q.size());
+  const double amplitude = 0.3 * m * k_g / (k * w);
+  // ω = √(k w³/12/J) = 224 /s for 0.1 s: 22 rad of phase, of which d/w = 1e-4 is off at most; doubled for the second order.
+  for (std::size_t i = 0; i < p.size(); ++i) CHECK(std::abs(p[i] - q[i]) < 2.0 * 22.0 * 1e-4 * amplitude);
+  const double omega = std::sqrt(k * w * w * w / 12.0 / (m / 6.0));
+  CHECK(std::abs(p.back() - amplitude * std::cos(omega * 0.1)) < 2.0 * 22.0 * 1e-4 * amplitude);
+}
+
+// On a slope of angle α a box of w × h stands up to tan α = w/h, and holds up to tan α = μ. Short of the first by a share ε it
+// presses with a wedge of length ℓ = 3 ε w/2 at its toe and leans by 2 N/(k ℓ²): 4e-4 rad here, of the ε w/h that it may lean
+// before it goes over, 1e-2.
+TEST_CASE("on a slope a box tips at atan(w/h) and slides at atan μ, with the acceleration of the closed form") {
+  const auto on_slope = [](double tangent, double mu) {
+    return gravity(std::atan(tangent)) + text_of({"box", 0.0, 0.5, 0.4, 1.0, 0.0, 500.0, ""}) +
+           touch("box", "ground", "stiffness = 1e11; dissipation = 20.0; static_friction = " + number(mu));
+  };
+  const Settings settings{"auto", 1e-7, 1.5};
+  const Run stands = run_from_rest(on_slope(0.39, 2.0), settings), tips = run(on_slope(0.41, 2.0), settings);
+  CHECK(std::abs(stands.last("box.theta")) < 1e-3);
+  CHECK(std::abs(stands.last("box.omega")) < 1e-6);
+  CHECK(tips.last("box.theta") < -0.05); // it goes over downhill
+  const Run holds = run_from_rest(on_slope(0.195, 0.2), settings), slides = run(on_slope(0.205, 0.2), settings);
+  CHECK(std::abs(holds.last("box.vx")) < 1e-9);
+  // While it settles at the start the normal force is not m g cos α: over 2/(α_HC g), 10 ms, or some such.
+  const double angle = std::atan(0.205), a = k_g * (std::sin(angle) - 0.2 * std::cos(angle));
+  CHECK(slides.last("box.vx") == doctest::Approx(a * 1.5).epsilon(0.02));
+  CHECK(slides.last("box on ground.mode") == 2.0);
+}
+
+TEST_CASE("equilibrium: friction of outlines that cannot hold is told, what can holds") {
+  const auto on_slope = [](double tangent) {
+    return gravity(std::atan(tangent)) + text_of({"box", 0.0, 0.5, 1.0, 1.0, 0.0, 500.0, ""}) +
+           touch("box", "ground", "stiffness = 1e9; static_friction = 0.3");
+  };
+  const Found found = settle(on_slope(0.29));
+  REQUIRE(found.rest.margins.size() == 1);
+  CHECK(found.rest.margins[0].used == doctest::Approx(0.29 / 0.3).epsilon(1e-6));
+  CHECK_THROWS_AS(settle(on_slope(0.31)), NumericalFailure);
+}
+
+TEST_CASE("a box pushed past the edge of a table falls off it, one that is short of it stays") {
+  const auto on_table = [](double x) {
+    return body("table", "mass = 1; inertia = 1; fixed = true; outline = [[-2.0, -0.2], [0.0, -0.2], [0.0, 0.0], [-2.0, 0.0]]") +
+           text_of({"box", x, 0.25, 0.8, 0.5, 0.0, 100.0, ""}) +
+           touch("box", "table", "stiffness = 1e8; dissipation = 5.0; static_friction = 0.5");
+  };
+  const Settings settings{"auto", 1e-7, 2.0};
+  const Run stays = run_from_rest(on_table(-0.02), settings), falls = run(on_table(0.02), settings);
+  CHECK(std::abs(stays.last("box.y") - 0.25) < 1e-3);
+  CHECK(std::abs(stays.last("box.omega")) < 1e-6);
+  CHECK(falls.last("box.y") < -1.0);
+  CHECK_FALSE(falls.event_times("box on table", "opens").empty());
+  for (const Run* r : {&stays, &falls})
+    CHECK(r->result.statistics.energy_residual < 1e-4 * std::max(1.0, r->result.statistics.energy_exchanged));
+}
+
+TEST_CASE("without dissipation energy is kept, and momentum without the ground: corners on faces, corners and edges") {
+  // Three bodies fly into each other; a triangle, a box, a hexagon.
+  std::string text = k_no_gravity;
+  text += body("tri", "mass = 3; inertia = 0.1; position = [-1.0, 0.1]; velocity = [2.0, 0.1]; angular_velocity = 1.5; "
+                      "outline = [[-0.2, -0.2], [0.4, -0.2], [-0.2, 0.4]]");
+  text += body("box", "mass = 5; inertia = 0.3; position = [0.0, 0.0]; angular_velocity = -2.0; "
+                      "outline = [[-0.3, -0.4], [0.3, -0.4], [0.3, 0.4], [-0.3, 0.4]]");
+  text += body("hex", "mass = 4; inertia = 0.2; position = [1.1, -0.1]; velocity = [-2.5, 0.2]; "
+                      "outline = [[0.3, 0.0], [0.15, 0.26], [-0.15, 0.26], [-0.3, 0.0], [-0.15, -0.26], [0.15, -0.26]]");
+  for (const auto& [a, b] : {std::pair{"tri", "box"}, {"box", "hex"}, {"tri", "hex"}}) text += touch(a, b, "stiffness = 2e6");
+  const double masses[] = {3.0, 5.0, 4.0}, inertias[] = {0.1, 0.3, 0.2};
+  const auto momenta = [&](const std::vector<double>& q, const std::vector<double>& v) {
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < 3; ++i) {
+      const double* const p = &q[3 * i + 3];
+      const double* const u = &v[3 * i + 3];
+      sum += Vec3(masses[i] * u[0], masses[i] * u[1], inertias[i] * u[2] + masses[i] * (p[0] * u[1] - p[1] * u[0]));
+    }
+    return sum;
+  };
+  for (const char* method : {"dop853", "rodas5p", "auto"}) {
+    CAPTURE(std::string(method));
+    const Run r = run(text, {method, 1e-9, 1.2});
+    REQUIRE(r.result.events.size() >= 4); // two blows at least, and their ends
+    const RunStatistics& s = r.result.statistics;
+    CHECK(s.energy_residual < 1e-6 * s.energy_exchanged); // some hundred steps of 1e-9, some ten times that in one blow
+    const State first = r.system->initial_state();
+    const Vec3 before = momenta(first.q, first.v), after = momenta(r.result.final_state.q, r.result.final_state.v);
+    CHECK((after - before).norm() < 1e-7); // forces are equal and opposite to rounding; places of application as exact as steps
+  }
+}
+
+TEST_CASE("with friction and dissipation energy never grows") {
+  std::string text = text_of({"box", 0.0, 1.0, 0.6, 0.3, 0.7, 50.0, "angular_velocity = 3.0; velocity = [2.0, 0.0]"}) +
+                     touch("box", "ground", "stiffness = 1e7; dissipation = 2.0; static_friction = 0.5; kinetic_friction = 0.3");
+  const Run r = run(text, {"auto", 1e-8, 5.0, 1e-3});
+  const std::vector<double> x = r.series("box.vx"), y = r.series("box.vy"), w = r.series("box.omega"), at = r.series("box.y");
+  double lowest = 1e300;
+  // Stored in the contact is not counted here: it comes back as motion, but never beyond what was before.
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double energy = 25.0 * (x[i] * x[i] + y[i] * y[i]) + 0.5 * 50.0 * 0.45 / 12.0 * w[i] * w[i] + 50.0 * k_g * at[i];
+    if (r.series("box on ground.force")[i] == 0.0) {
+      CHECK(energy < lowest + 1e-4 * 700.0); // of the energy at the start; steps of 1e-8
+      lowest = std::min(lowest, energy);
+    }
+  }
+  CHECK(r.result.statistics.energy_residual < 1e-6 * r.result.statistics.energy_exchanged);
+  CHECK(std::abs(r.last("box.omega")) < 1e-3);
+  CHECK(std::abs(std::remainder(r.last("box.theta"), 1.57079632679489662)) < 1e-3); // on one of its faces
+}
+
+TEST_CASE("the same scene turned by any angle moves the same way, and with a and b exchanged too") {
+  const auto at = [](double angle, bool is_swapped) {
+    const auto place = [angle](double x, double y) { return point(std::cos(angle) * x - std::sin(angle) * y, std::sin(angle) * x + std::cos(angle) * y); };
+    std::string text = "gravity = " + place(0.0, -k_g) + "\n";
+    text += body("lower", "mass = 50; inertia = 2.0; position = " + place(0.0, 0.2) + "; angle = " + number(angle) +
+                              "; outline = [[-0.4, -0.2], [0.4, -0.2], [0.3, 0.2], [-0.3, 0.2]]");
+    text += body("upper", "mass = 20; inertia = 0.5; position = " + place(0.15, 0.75) + "; velocity = " + place(0.5, 0.0) + "; angle = " +
+                              number(angle + 0.2) + "; outline = [[-0.3, -0.2], [0.3, -0.2], [0.0, 0.3]]");
+    const std::string law = "stiffness = 1e7; dissipation = 2.0; static_friction = 0.4";
+    text += element("polygon_contact", "floor", "a = \"lower\"; normal = " + place(0.0, 1.0) + "; " + law);
+    text += element("polygon_contact", "ground", "a = \"upper\"; normal = " + place(0.0, 1.0) + "; " + law);
+    text += element("polygon_contact", "seat", (is_swapped ? "a = \"lower\"; b = \"upper\"; " : "a = \"upper\"; b = \"lower\"; ") + law);
+    return text;
+  };
+  const Settings settings{"dop853", 1e-10, 0.4};
+  const auto end = [&](double angle, bool is_swapped) {
+    const Run r = run(at(angle, is_swapped), settings);
+    const Vec2 p = rotated(Vec2(r.last("upper.x"), r.last("upper.y")), -angle);
+    return Vec3(p.x(), p.y(), r.last("upper.theta") - angle);
+  };
+  const Vec3 straight = end(0.0, false);
+  // A blow or two turn a tolerance into some thousand.
+  for (const double angle : {0.7, -2.5}) CHECK((end(angle, false) - straight).norm() < 1e-6);
+  CHECK((end(0.0, true) - straight).norm() < 1e-6);
+}
+
+TEST_CASE("a corner that falls exactly on a corner, and edges exactly on edges") {
+  const std::string diamond = "outline = [[0.0, -0.2], [0.2, 0.0], [0.0, 0.2], [-0.2, 0.0]]";
+  const std::string text = body("anvil", "mass = 1; inertia = 1; fixed = true; " + diamond) +
+                           body("drop", "mass = 10; inertia = 0.2; position = [0.0, 0.6]; " + diamond) + touch("drop", "anvil", "stiffness = 1e7");
+  const double fall = std::sqrt(2.0 * 0.2 / k_g);
+  const Run r = run(text, {"dop853", 1e-10, 2.0 * fall + 0.01});
+  REQUIRE(r.event_times("drop on anvil").size() >= 2);
+  CHECK(std::abs(r.event_times("drop on anvil", "closes")[0] - fall) < 1e-8);
+  CHECK(r.last("drop.x") == doctest::Approx(0.0)); // no side is the right one: it goes up again as it came
+  CHECK(r.result.statistics.energy_residual < 1e-6);
+  // Boxes of one width, stacked flush.
+  std::string flush;
+  for (int i = 0; i < 3; ++i)
+    flush += text_of({"b" + std::to_string(i), 0.0, 0.25 + 0.5 * i, 1.0, 0.5, 0.0, 500.0, ""}) +
+             touch("b" + std::to_string(i), i == 0 ? "ground" : "b" + std::to_string(i - 1), "stiffness = 1e9; dissipation = 10; static_friction = 0.4");
+  const Run stack = run(flush, {"auto", 1e-7, 5.0, 1.0});
+  for (int i = 0; i < 3; ++i) CHECK(std::abs(stack.last("b" + std::to_string(i) + ".x")) < 1e-6);
+  CHECK(std::abs(stack.last("b2.vy")) < 1e-6);
+}
+
+// ½ m v² = 5000 J against ½ k L d² = 10 kJ for the whole plate: it cannot go through, and comes back with what it had.
+TEST_CASE("a fast box is not through a thin plate before anyone looks") {
+  for (const char* method : {"dop853", "rodas5p", "auto"})
+    for (const double tolerance : {1e-9, 1e-6, 1e-4}) {
+      CAPTURE(std::string(method));
+      CAPTURE(tolerance);
+      const std::string text = k_no_gravity +
+                               body("plate", "mass = 1; inertia = 1; fixed = true; outline = [[0.0, -1.0], [0.001, -1.0], [0.001, 1.0], [0.0, 1.0]]") +
+                               text_of({"bullet", -7.0, 0.0, 0.02, 0.02, 0.0, 0.01, "velocity = [1000.0, 0.0]"}) +
+                               touch("bullet", "plate", "stiffness = 1e12");
+      const Run r = run(text, {method, tolerance, 0.0135});
+      CHECK(r.event_times("bullet on plate", "closes").size() == 1);
+      CHECK(std::abs(r.last("bullet.vx") + 1000.0) < 1000.0 * std::max(1e-6, 1e3 * tolerance));
+    }
+}
+
+// Half bricks at the ends of every other row, 1 mm apart.
+TEST_CASE("a wall of bricks rests for an hour without creep") {
+  std::string text;
+  std::vector<std::string> places;
+  std::vector<std::vector<Box>> rows(4);
+  for (int r = 0; r < 4; ++r) {
+    const std::vector<double> cuts = r % 2 == 0 ? std::vector{0.0, 0.25, 0.5, 0.75} : std::vector{0.0, 0.125, 0.375, 0.625, 0.75};
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      const double w = cuts[i + 1] - cuts[i];
+      rows[r].push_back({"r" + std::to_string(r) + "c" + std::to_string(i), cuts[i] + 0.5 * w, 0.035 + 0.07 * r, w - 0.001, 0.07, 0.0, 140.0 * w, ""});
+    }
+    for (const Box& brick : rows[r]) {
+      text += text_of(brick);
+      for (const char* c : {".x", ".y", ".theta"}) places.push_back(brick.name + c);
+      const std::string law = "stiffness = 1e10; dissipation = 10.0; static_friction = 0.5";
+      if (r == 0) text += touch(brick.name, "ground", law);
+      else
+        for (const Box& below : rows[r - 1])
+          if (std::abs(below.x - brick.x) < 0.5 * (below.w + brick.w)) text += touch(brick.name, below.name, law);
+    }
+  }
+  const Run r = run_from_rest(text, {"auto", 1e-6, 3600.0, 3600.0});
+  CHECK(r.result.events.empty());
+  CHECK(largest_change(r, places) < 1e-10); // constraints are kept to 1e-12 m
+}
+
+TEST_CASE("outlines that are none are refused") {
+  const auto error = [](const std::string& outline) -> std::string {
+    try {
+      (void)run(body("a", "mass = 1; inertia = 1; outline = " + outline) + touch("a", "ground", "stiffness = 1e6"), {"dop853", 1e-6, 0.1});
+    } catch (const ModelError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const auto has = [](const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; };
+  CHECK(has(error("[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]"), "has no area"));
+  CHECK(has(error("[[0.0, 0.0], [1.0, 0.0]]"), "has no area"));
+  CHECK(has(error("[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.5], [0.0, 2.0]]"), "is not convex at [1, 0.5]"));
+  CHECK(has(error("[[0.0, 1.0], [0.588, -0.809], [-0.951, 0.309], [0.951, 0.309], [-0.588, -0.809]]"), "crosses itself"));
+  CHECK(has(error("[]"), "has no outline"));
+  CHECK(has(error("[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]"), "scene.toml:"));
+  CHECK(error("[[0.0, 0.0], [0.0, 1.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.5], [1.0, 0.0]]").empty()); // clockwise, repeated, straight
+}
