@@ -17,7 +17,7 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, double k,
       measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
   group.entries.push_back({a, b, measure, LinearSpring{k, c, now}});
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel(channel, unit, "on a, in marker b's axes",
+  builder.add_channel(channel, unit, {"what it acts with on a", unit[1] == '\0' ? "along that axis of marker b" : "positive counter-clockwise"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 

@@ -41,7 +41,7 @@ const Catalogue& element_catalog() {
                   &load_kind()};
     c.signals = signal_kinds();
     c.signals.push_back(&record_signal_kind());
-    c.tables = {&plot_kind(), &acceptance_kind()};
+    c.tables = {&channel_kind(), &plot_kind(), &acceptance_kind()};
     return c;
   }();
   return catalogue;

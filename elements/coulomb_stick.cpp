@@ -82,17 +82,17 @@ bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactG
 void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
   const int f = builder.next_friction(), row = builder.next_friction_row();
   const auto* self = &friction;
-  builder.add_channel("friction", "N", "friction force on a along b's tangent",
+  builder.add_channel("friction", "N", {"friction force on a", "along b's tangent, its normal turned clockwise by a right angle"},
                       [row](const Snapshot& s) { return s.friction_force[row]; });
-  builder.add_channel("normal", "N", "sum of the contacts' normal forces",
+  builder.add_channel("normal", "N", {"sum of the contacts' normal forces", "positive: they press"},
                       [self](const Snapshot& s) { return self->normal_force(*s.evaluation); });
-  builder.add_channel("capacity", "N", "largest friction force that holds",
+  builder.add_channel("capacity", "N", {"largest friction force that holds", "never negative"},
                       [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
-  builder.add_channel("slip_rate", "m/s", "velocity of the last contact point along b's tangent",
+  builder.add_channel("slip_rate", "m/s", {"velocity of a's last contact point against b", "along b's tangent"},
                       [self, f](const Snapshot& s) {
                         return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate;
                       });
-  builder.add_channel("mode", "", "0 free, 1 sticks, 2 slips", [f](const Snapshot& s) {
+  builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"}, [f](const Snapshot& s) {
     return static_cast<double>(s.evaluation->friction[f].phase);
   });
 }
@@ -101,7 +101,7 @@ void add_channels(SystemBuilder& builder, const CoulombFriction& friction) {
 void add_slide_channel(SystemBuilder& builder, const char* name, const char* doc, const CoulombFriction& friction,
                        std::size_t place) {
   const double start = evaluate_row<false>(friction.feet[place], &builder.reference(0)).value;
-  builder.add_channel(name, "m", doc, [&friction, place, start](const Snapshot& s) {
+  builder.add_channel(name, "m", {doc, "along b's tangent"}, [&friction, place, start](const Snapshot& s) {
     return evaluate_row<false>(friction.feet[place], s.motion).value - start;
   });
 }
@@ -204,6 +204,18 @@ const ElementKind& coulomb_stick_kind() {
     f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
     k.holds<T>();
     k.compile = compile_coulomb;
+    k.example = R"([[element]]
+name = 'foot'
+kind = 'unilateral_contact'
+a = 'a'
+b = 'b'
+stiffness = 1e6
+[[element]]
+name = 'sole'
+kind = 'coulomb_stick'
+contacts = ['foot']
+static_friction = 0.5
+)";
     return k;
   }();
   return kind;

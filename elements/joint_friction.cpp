@@ -51,11 +51,11 @@ public:
 void add_channels(SystemBuilder& builder, const ConstantFriction& friction, bool is_angle) {
   const int f = builder.next_friction(), slot = builder.next_friction_row();
   const auto* row = &friction.row;
-  builder.add_channel("friction", is_angle ? "N m" : "N", "on a along the coordinate",
+  builder.add_channel("friction", is_angle ? "N m" : "N", {"friction on a along the coordinate", "positive: towards larger values"},
                       [slot](const Snapshot& s) { return s.friction_force[slot]; });
-  builder.add_channel("slip_rate", is_angle ? "rad/s" : "m/s", "of the coordinate",
+  builder.add_channel("slip_rate", is_angle ? "rad/s" : "m/s", {"rate of the coordinate", "positive: it grows"},
                       [row](const Snapshot& s) { return evaluate_row<false>(*row, s.motion).rate; });
-  builder.add_channel("mode", "", "1 sticks, 2 slips",
+  builder.add_channel("mode", "", {"what the friction does", "", "1 sticks, 2 slips"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
 }
 

@@ -2,6 +2,9 @@
 
 #include "mbd/system/system.h"
 
+#include <algorithm>
+#include <array>
+
 namespace steplap {
 
 namespace {
@@ -37,15 +40,49 @@ bool joins_two_bodies(const Ends& ends, SystemBuilder& builder) {
   return false;
 }
 
+std::string_view sign_of(const RowSpec& row) {
+  const std::string_view quantity = row.quantity;
+  if (row.kind == MeasureKind::angle) return "positive counter-clockwise";
+  if (row.kind == MeasureKind::distance) return "positive: it pushes a away from b";
+  if (quantity == "force_x") return "along x of marker b's axes";
+  return quantity == "force_y" ? "along y of marker b's axes" : "along the free axis turned counter-clockwise by a right angle";
+}
+
 void add(SystemBuilder& builder, std::vector<RowSpec> rows, bool is_rigid = false) {
   const int first = builder.next_row();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const int r = first + static_cast<int>(i);
-    const bool is_angle = rows[i].kind == MeasureKind::angle;
-    builder.add_channel(rows[i].quantity, is_angle ? "N m" : "N", "reaction on a along the direction held",
+    builder.add_channel(rows[i].quantity, rows[i].kind == MeasureKind::angle ? "N m" : "N", {"reaction on a", sign_of(rows[i])},
                         [r](const Snapshot& s) { return s.row_force[r]; });
   }
+  std::array<RowSpec, 3> held; // at most: no joint holds more
+  std::copy(rows.begin(), rows.end(), held.begin());
+  if (rows.size() > 1 && rows[1].kind == MeasureKind::axis)
+    builder.offer_channel("reaction", "N", {"size of the reaction force", "never negative"},
+                          [first](const Snapshot& s) { return portable::hypot(s.row_force[first], s.row_force[first + 1]); });
+  builder.offer_channel("power", "W", "power that the reactions give: none but error of the computation", [held, count = static_cast<int>(rows.size()), first](const Snapshot& s) {
+    double power = 0.0;
+    for (int i = 0; i < count; ++i) power += s.row_force[first + i] * evaluate_row<false>(held[i], s.motion).rate;
+    return power;
+  });
   builder.add_rows(std::move(rows), is_rigid);
+}
+
+void offer_angle(const Ends& ends, SystemBuilder& builder) {
+  builder.offer_channel("angle", "rad", {"of marker a's axes against marker b's", "positive: a turned counter-clockwise"},
+                        [a = ends.a, b = ends.b](const Snapshot& s) {
+                          return relative_angle(s.motion[a.body], s.motion[b.body]) + (a.angle - b.angle);
+                        });
+  builder.offer_channel("rate", "rad/s", {"of the angle", "positive: a turns counter-clockwise"}, [a = ends.a.body, b = ends.b.body](const Snapshot& s) {
+    return relative_spin(s.motion[a], s.motion[b]);
+  });
+}
+
+void offer_displacement(const Ends& ends, const Vec2& axis, SystemBuilder& builder) {
+  const AxisMeasure along{ends.a.point, ends.b.point, builder.direction(ends.b, axis)};
+  const auto measured = [along, a = ends.a.body, b = ends.b.body](const Snapshot& s) { return along.at<false>(s.motion[a], s.motion[b]); };
+  builder.offer_channel("displacement", "m", {"of marker a from marker b", "along the free axis"}, [measured](const Snapshot& s) { return measured(s).value; });
+  builder.offer_channel("rate", "m/s", {"of the displacement", "along the free axis"}, [measured](const Snapshot& s) { return measured(s).rate; });
 }
 
 void compile_revolute(const Element& element, SystemBuilder& builder) {
@@ -53,6 +90,7 @@ void compile_revolute(const Element& element, SystemBuilder& builder) {
   if (!joins_two_bodies(ends, builder)) return;
   add(builder, {row_between(ends, MeasureKind::axis, builder.direction(ends.b, {1.0, 0.0}), "force_x"),
                 row_between(ends, MeasureKind::axis, builder.direction(ends.b, {0.0, 1.0}), "force_y")});
+  offer_angle(ends, builder);
 }
 
 void compile_weld(const Element& element, SystemBuilder& builder) {
@@ -76,6 +114,7 @@ void compile_prismatic(const Element& element, SystemBuilder& builder) {
       row_between(ends, MeasureKind::angle, Vec2::Zero(), "couple")};
   for (RowSpec& row : rows) hold_as_given(row, builder);
   add(builder, rows);
+  offer_displacement(ends, e.axis, builder);
 }
 
 void compile_point_on_line(const Element& element, SystemBuilder& builder) {
@@ -84,6 +123,7 @@ void compile_point_on_line(const Element& element, SystemBuilder& builder) {
   if (!joins_two_bodies(ends, builder)) return;
   if (e.axis.norm() == 0.0) return builder.error("'axis' has no direction");
   add(builder, {row_between(ends, MeasureKind::axis, builder.direction(ends.b, perp(e.axis)), "force")});
+  offer_displacement(ends, e.axis, builder);
 }
 
 void compile_distance(const Element& element, SystemBuilder& builder) {

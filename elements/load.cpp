@@ -32,6 +32,7 @@ AppliedLoad load_at(const LoadEntry& entry, const Motion<double>& body, double t
 
 class LoadGroup final : public ForceGroup {
 public:
+  static constexpr bool k_does_work = true;
   std::vector<LoadEntry> entries;
 
   void add_forces(Evaluation& e) const override {
@@ -84,9 +85,9 @@ void compile_load(const Element& element, SystemBuilder& builder) {
   const auto load = [entries, i](const Snapshot& s) {
     return load_at((*entries)[i], s.motion[(*entries)[i].body], s.t);
   };
-  builder.add_channel("force_x", "N", "ground axes", [load](const Snapshot& s) { return load(s).force.x; });
-  builder.add_channel("force_y", "N", "ground axes", [load](const Snapshot& s) { return load(s).force.y; });
-  builder.add_channel("torque", "N m", "couple", [load](const Snapshot& s) { return load(s).couple; });
+  builder.add_channel("force_x", "N", {"its force", "along x of the ground axes"}, [load](const Snapshot& s) { return load(s).force.x; });
+  builder.add_channel("force_y", "N", {"its force", "along y of the ground axes"}, [load](const Snapshot& s) { return load(s).force.y; });
+  builder.add_channel("torque", "N m", {"its couple", "positive counter-clockwise"}, [load](const Snapshot& s) { return load(s).couple; });
 }
 
 } // namespace

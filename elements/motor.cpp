@@ -35,6 +35,7 @@ public:
     int link = 0;
   };
   std::vector<Entry> entries;
+  static constexpr bool k_does_work = true;
 
   void add_forces(Evaluation& e) const override {
     for (const Entry& entry : entries) {
@@ -68,15 +69,19 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, MotorLaw 
   law.start = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
   group.entries.push_back({a, b, measure, law});
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", "on a along the coordinate",
+  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", {"what it acts with on a along the coordinate", "positive: towards larger values of the coordinate"},
                       [&group, i](const Snapshot& s) {
                         const auto m = group.measured(i, *s.evaluation);
                         return group.entries[i].law.force(m.value, m.rate, s.t);
                       });
-  builder.add_channel("power", "W", "that it gives", [&group, i](const Snapshot& s) {
+  builder.add_channel("power", "W", {"power that it gives", "negative while it brakes"}, [&group, i](const Snapshot& s) {
     const auto m = group.measured(i, *s.evaluation);
     return m.rate * group.entries[i].law.force(m.value, m.rate, s.t);
   });
+  builder.offer_channel(is_angle ? "angle" : "displacement", is_angle ? "rad" : "m", {"its coordinate, since the reference pose", "as the coordinate counts"},
+                        [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.start; });
+  builder.offer_channel("rate", is_angle ? "rad/s" : "m/s", {"of its coordinate", "positive: it grows"},
+                        [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
 }
 
 bool check(const Motor& e, const Signal* target, SystemBuilder& builder) {

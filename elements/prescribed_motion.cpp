@@ -75,8 +75,15 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
   row.memory = builder.add_memory(e.zero == "reference" ? now : 0.0);
   const int r = builder.next_row();
   builder.add_channel("reaction", row.kind == MeasureKind::angle ? "N m" : "N",
-                      "force or couple on a that the motion takes",
+                      {"force or couple on a that the motion takes", "positive: towards larger values of the coordinate"},
                       [r](const Snapshot& s) { return s.row_force[r]; });
+  const bool is_angle = row.kind == MeasureKind::angle;
+  builder.offer_channel(is_angle ? "angle" : "displacement", is_angle ? "rad" : "m", {"its coordinate, since the reference pose", "as the coordinate counts"},
+                        [row, now](const Snapshot& s) { return evaluate_row<false>(row, s.motion).value - now; });
+  builder.offer_channel("rate", is_angle ? "rad/s" : "m/s", {"of its coordinate", "positive: it grows"},
+                        [row](const Snapshot& s) { return evaluate_row<false>(row, s.motion).rate; });
+  builder.offer_channel("power", "W", {"power that it gives", "negative while it brakes"},
+                        [row, r](const Snapshot& s) { return s.row_force[r] * evaluate_row<false>(row, s.motion).rate; });
   builder.add_rows({row}, false, lockable_coordinate(row, a));
 }
 

@@ -195,11 +195,11 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
   group.entries.push_back(std::move(entry));
   builder.add_unit(group, KelvinVoigtContact::k_watches);
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel("length", "m", "of the way over its points",
+  builder.add_channel("length", "m", "length of the way over its points",
                       [&group, i](const Snapshot& s) { return RopeGroup::way_of(group.entries[i], s.motion).length; });
-  builder.add_channel("rate", "m/s", "of that length",
+  builder.add_channel("rate", "m/s", {"of that length", "positive: it grows"},
                       [&group, i](const Snapshot& s) { return RopeGroup::way_of(group.entries[i], s.motion).rate; });
-  builder.add_channel("tension", "N", "all along it, zero while it is slack",
+  builder.add_channel("tension", "N", {"force all along it, zero while it is slack", "positive: it pulls"},
                       [&group, i](const Snapshot& s) { return group.tension(i, *s.evaluation); });
 }
 

@@ -46,13 +46,13 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Law
   if constexpr (Law::k_watches > 0) builder.add_unit(group, Law::k_watches);
   const int i = static_cast<int>(group.entries.size()) - 1;
   const bool is_angle = std::is_same_v<Measure, AngleMeasure>;
-  builder.add_channel("elongation", is_angle ? "rad" : "m", "measure minus free length",
+  builder.add_channel("elongation", is_angle ? "rad" : "m", {"its length or angle less the free one", "positive: stretched"},
                       [&group, i](const Snapshot& s) {
                         return group.measured(i, *s.evaluation).value - group.entries[i].law.free;
                       });
-  builder.add_channel("rate", is_angle ? "rad/s" : "m/s", "of the elongation",
+  builder.add_channel("rate", is_angle ? "rad/s" : "m/s", {"of the elongation", "positive: it grows"},
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
-  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", "on a along the measure: −k δ − c δ̇",
+  builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", {"what it acts with on a along its axis, away from b", "negative: it pulls a towards b"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 

@@ -18,15 +18,15 @@ constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 void add_wrench_channels(SystemBuilder& builder, const StepLapFriction& friction) {
   const auto* self = &friction;
   const int b = friction.hold[0].b;
-  builder.add_channel("fx", "N", "force on the limb, ground axes", [self, b](const Snapshot& s) {
+  builder.add_channel("fx", "N", {"force on the limb", "along x of the ground axes"}, [self, b](const Snapshot& s) {
     const Vec3 w = self->wrench(s);
     return s.motion[b].c * w[0] - s.motion[b].s * w[1];
   });
-  builder.add_channel("fy", "N", "force on the limb, ground axes", [self, b](const Snapshot& s) {
+  builder.add_channel("fy", "N", {"force on the limb", "along y of the ground axes"}, [self, b](const Snapshot& s) {
     const Vec3 w = self->wrench(s);
     return s.motion[b].s * w[0] + s.motion[b].c * w[1];
   });
-  builder.add_channel("m", "N m", "couple on the limb about its centre of gravity",
+  builder.add_channel("m", "N m", {"couple on the limb about its centre of gravity", "positive counter-clockwise"},
                       [self](const Snapshot& s) { return self->wrench(s)[2]; });
 }
 
@@ -52,7 +52,7 @@ void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction,
     const PressureState now = self->pressure_at(t);
     return nominal * now.factor * std::max(0.0, 1.0 + share * now.tilt);
   };
-  builder.add_channel("u", "", "share of the friction capacity in use; slides at 1",
+  builder.add_channel("u", "", {"share of the friction capacity in use; slides at 1", "never negative"},
                       [self](const Snapshot& s) { return self->usage(s).u; })
       .bounds = [self](const Snapshot& s) { return self->usage_between(s); };
   builder
@@ -66,7 +66,7 @@ void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction,
     return ValueBounds{u.low * pressure, u.high * pressure};
   };
   if (self->has_changing_pressure())
-    builder.add_channel("pressure", "Pa", "that the first interface has now, at the middle of its overlap",
+    builder.add_channel("pressure", "Pa", "clamping pressure that the first interface has now, at the middle of its overlap",
                         [pressure_at](const Snapshot& s) { return pressure_at(s.t); });
   builder.add_channel("margin", "", "capacity over what is in use, 1/u; infinite without load",
                       [self](const Snapshot& s) { return self->usage(s).margin(); })
@@ -76,8 +76,9 @@ void add_usage_channels(SystemBuilder& builder, const StepLapFriction& friction,
   };
   for (const int axis : {0, 1})
     builder.add_channel(axis == 0 ? "centre_x" : "centre_y", "m",
-                        "centre about which the limb would start to turn, active part's axes about its "
-                        "centre of gravity; not a number at infinity (translation)",
+                        {"centre about which the limb would start to turn, from the active part's centre of gravity; not a "
+                         "number at infinity (translation)",
+                         axis == 0 ? "along x of the active part's axes" : "along y of the active part's axes"},
                         [self, axis](const Snapshot& s) {
                           const auto& centre = self->usage(s).centre;
                           return centre ? (*centre)[axis] : k_nan;
@@ -97,7 +98,7 @@ void add_loss_channels(SystemBuilder& builder, const StepLapFriction& friction, 
   builder.add_channel("slid_share", "", "largest displacement of a corner, of the width of its overlap",
                       [self](const Snapshot& s) { return self->loss(s).slid_share; });
   if (has_clearance)
-    builder.add_channel("clearance_left", "m", "until the sheets of a layer butt; below zero the limb has closed beyond it",
+    builder.add_channel("clearance_left", "m", {"until the sheets of a layer butt", "negative: the limb has closed beyond it"},
                         [self](const Snapshot& s) { return self->loss(s).clearance_left; });
 }
 
@@ -113,19 +114,23 @@ void add_slide_channels(SystemBuilder& builder, const StepLapFriction& friction)
   for (int r = 0; r < 3; ++r) {
     const double start = evaluate_row<false>(hold[r], &builder.reference(0)).value;
     const double sign = r < 2 ? 1.0 : -1.0; // θ_acc is the active part's angle against the limb's (23)
-    builder.add_channel(names[r], r < 2 ? "m" : "rad", "slid since the reference pose",
+    builder.add_channel(names[r], r < 2 ? "m" : "rad",
+                        {"slid since the reference pose", r == 0   ? "of the limb, along x of the active part's axes"
+                                                          : r == 1 ? "of the limb, along y of the active part's axes"
+                                                                   : "of the active part against the limb, counter-clockwise"},
                         [self, hold, r, start, sign, is_elastic](const Snapshot& s) {
                           if (is_elastic) return sign * (coordinate(self->slid_pose(s), r) - start);
                           return sign * (evaluate_row<false>(hold[r], s.motion).value - start);
                         });
   }
-  builder.add_channel("mode", "", "1 sticks, 2 slips, 3 has come apart",
+  builder.add_channel("mode", "", {"what the joint does", "", "1 sticks, 2 slips, 3 has come apart"},
                       [self](const Snapshot& s) { return static_cast<double>(self->phase(s)); });
   if (!is_elastic) return;
   static constexpr const char* strains[] = {"strain_x", "strain_y", "strain_angle"};
   for (int r = 0; r < 3; ++r)
     builder.add_channel(strains[r], r < 2 ? "m" : "rad",
-                        "of the joint's spring: of the limb's centre of gravity, active part's axes",
+                        {"how far the joint's spring is strained: displacement of the limb's centre of gravity",
+                         r == 0 ? "along x of the active part's axes" : r == 1 ? "along y of the active part's axes" : "positive counter-clockwise"},
                         [self, r](const Snapshot& s) {
                           return coordinate(self->pose_of(s.motion), r) - coordinate(self->slid_pose(s), r);
                         });
@@ -364,6 +369,44 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   builder.add_friction(std::move(friction));
 }
 
+// A joint that sticks exactly and one with everything that may be given.
+constexpr const char* k_example = R"([[signal]]
+name = 'press'
+kind = 'constant'
+value = 1.0
+[[element]]
+name = 'stiff'
+kind = 'step_lap_joint'
+limb = 'a'
+active_part = 'b'
+[[element]]
+name = 'sheets of it'
+kind = 'step_lap_interface'
+joint = 'stiff'
+yoke = [[-1.0, -0.5], [1.0, -0.5], [1.0, 0.2], [-1.0, 0.2]]
+limb = [[-0.3, 0.0], [0.3, 0.0], [0.3, 1.0], [-0.3, 1.0]]
+pressure = 1e6
+static_friction = 0.3
+[[element]]
+name = 'soft'
+kind = 'step_lap_joint'
+limb = 'a'
+active_part = 'b'
+tangential_stiffness = 1e8
+edge_stiffness = 1e9
+allowed_line_load = 1e5
+pressure_signal = 'press'
+[[element]]
+name = 'sheets of that'
+kind = 'step_lap_interface'
+joint = 'soft'
+yoke = [[-1.0, -0.5], [1.0, -0.5], [1.0, 0.2], [-1.0, 0.2]]
+limb = [[-0.3, 0.0], [0.3, 0.0], [0.3, 1.0], [-0.3, 1.0]]
+pressure = 1e6
+static_friction = 0.3
+clearance = 0.001
+)";
+
 } // namespace
 
 const ElementKind& step_lap_joint_kind() {
@@ -429,6 +472,7 @@ const ElementKind& step_lap_joint_kind() {
         "largest displacement of a corner that is borne, a share of the width of its overlap: reject beyond it");
     k.holds<T>();
     k.compile = compile_joint;
+    k.example = k_example;
     return k;
   }();
   return kind;

@@ -192,17 +192,17 @@ template <class Measure> void add(const Tie& e, SystemBuilder& builder, int a, i
   group.entries.push_back(entry);
   builder.add_unit(group, TieLaw::k_watches);
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel("elongation", "m", "measure minus free length", [&group, i](const Snapshot& s) {
+  builder.add_channel("elongation", "m", {"its length less the free one", "positive: stretched"}, [&group, i](const Snapshot& s) {
     return group.measured(i, *s.evaluation).value - group.entries[i].law.free;
   });
-  builder.add_channel("force", "N", "of all, tension positive",
+  builder.add_channel("force", "N", {"force of all of them together", "positive: tension"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
   if (!e.strength) return;
-  builder.add_channel("strength_share", "", "size of its force, of its strength; breaks at 1",
+  builder.add_channel("strength_share", "", {"size of its force, of its strength; breaks at 1", "never negative"},
                       [&group, i](const Snapshot& s) {
                         return std::abs(group.force_of(i, *s.evaluation)) / group.entries[i].law.strength;
                       });
-  builder.add_channel("mode", "", "1 whole, 0 broken", [&group, i](const Snapshot& s) {
+  builder.add_channel("mode", "", {"whether it holds", "", "1 whole, 0 broken"}, [&group, i](const Snapshot& s) {
     return s.evaluation->mode[group.entries[i].unit] == k_broken ? 0.0 : 1.0;
   });
 }

@@ -17,12 +17,12 @@ void add(const ContactGeometry& g, const Measure& measure, const Law& law, Syste
   builder.add_unit(group, Law::k_watches);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1;
-  builder.add_channel("gap", "m", "δ, negative while closed", [&group, i](const Snapshot& s) {
+  builder.add_channel("gap", "m", {"distance that is left", "negative while it presses"}, [&group, i](const Snapshot& s) {
     return group.measured(i, *s.evaluation).value - group.entries[i].law.offset;
   });
-  builder.add_channel("rate", "m/s", "of the gap",
+  builder.add_channel("rate", "m/s", {"of the gap", "positive: it opens"},
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
-  builder.add_channel("force", "N", "normal force, positive in compression",
+  builder.add_channel("force", "N", {"normal force, zero while open", "positive: it presses"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 

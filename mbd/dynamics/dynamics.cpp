@@ -464,6 +464,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   finish_power(a);
   finish_watches();
   double* const power = dy + 2 * n + inner_count();
+  std::copy_n(y + 2 * n + inner_count(), 2, booked_);
   power[0] = evaluation_.dissipation;
   power[1] = evaluation_.work;
 }

@@ -110,6 +110,8 @@ public:
   void watch_merged(const double* dy);
   /// The same at a stage inside a step, where only values near their limit are worth the pass, unless `always`.
   void watch_merged_if_near(const double* dy, bool always = false);
+  /// Integrals that snapshots show; null: none.
+  void show_integrals(const Integrals* integrals) { integrals_ = integrals; }
   /// Accelerations of all bodies and all reactions; fills a snapshot valid until the next rates().
   [[nodiscard]] Snapshot snapshot(const double* dy);
   /// Power residual-free pieces of the energy balance: kinetic + potential at the last rates().
@@ -206,6 +208,8 @@ private:
   double lock_time_ = std::numeric_limits<double>::quiet_NaN();
   double placed_time_ = std::numeric_limits<double>::quiet_NaN(); ///< of motion_
   double lowest_pivot_ = 1.0;
+  double booked_[2] = {0.0, 0.0};       ///< dissipated energy and work at the last rates(), J
+  const Integrals* integrals_ = nullptr;
   std::vector<double> placed_;          ///< state of rates_nearby
   mutable std::vector<double> cluster_q_, cluster_v_; ///< 3 per cluster, where some are in mechanisms
   std::vector<double> cluster_a_;

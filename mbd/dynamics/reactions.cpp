@@ -201,6 +201,9 @@ Snapshot Dynamics::snapshot(const double* dy) {
   s.row_force = row_force_.data();
   s.friction_force = friction_force_.data();
   s.memory = state_->memory.data();
+  s.dissipated = booked_[0];
+  s.work = booked_[1];
+  s.integrals = integrals_;
   return s;
 }
 

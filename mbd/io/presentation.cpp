@@ -21,6 +21,14 @@ void add_named(const std::string& noun, const Table& table, std::vector<Table>& 
   tables.push_back(table);
 }
 
+// Formulas and trajectory.csv have to tell it from what stands around it.
+void check_channel_name(const DefinedChannel& channel) {
+  const std::string& name = channel.name;
+  const bool has_control = std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; });
+  if (!name.empty() && !has_control && name.find_first_of("{}") == std::string::npos && name.back() != ']') return;
+  throw ModelError(channel.place("name"), "channel: a 'name' has letters and no line breaks, no braces, no ']' at its end (there stands the unit)");
+}
+
 // A limit of a criterion: its field, as given, as read.
 struct Limit {
   const char* field;
@@ -219,6 +227,30 @@ private:
 };
 
 } // namespace
+
+const TableKind& channel_kind() {
+  static const TableKind kind = [] {
+    using T = DefinedChannel;
+    TableKind k;
+    k.name = "channel";
+    k.doc = "A channel that is a formula of others: written, plotted, limited and estimated like them. `docs/channels.md` tells "
+            "what formulas may hold.";
+    k.fields.add("expression", &T::expression).required().doc(
+        "the formula; names with spaces in braces, numbers with units in quotes: \"abs({front foot.force}) / '12 kN'\"");
+    k.fields.add("unit", &T::unit).doc("unit of its values, of the formula's dimension; SI if not given");
+    k.fields.add("meaning", &T::meaning).doc("what it is, for lists and reports; the formula if not given");
+    k.fields.add("sign", &T::sign).doc("when it is positive");
+    k.holds<T>();
+    k.reads_masses = k.reads_elements = false;
+    k.apply = [](const Element& table, Model& model) {
+      const auto& channel = static_cast<const T&>(table);
+      check_channel_name(channel);
+      add_named("channel", channel, model.channels);
+    };
+    return k;
+  }();
+  return kind;
+}
 
 const TableKind& plot_kind() {
   static const TableKind kind = [] {

@@ -1,4 +1,4 @@
-// What a model says about looking at its runs: [[plot]] and [[acceptance]].
+// What a model says about looking at its runs: [[channel]], [[plot]] and [[acceptance]].
 //
 // Neither changes the motion. Both name channels by patterns, which can only be compared with the
 // channels that a compiled system has: check_presentation() does that. Limits are read there too: what a
@@ -9,6 +9,7 @@
 
 namespace steplap {
 
+[[nodiscard]] const TableKind& channel_kind();
 [[nodiscard]] const TableKind& plot_kind();
 [[nodiscard]] const TableKind& acceptance_kind();
 

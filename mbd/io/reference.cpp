@@ -2,6 +2,7 @@
 
 #include "mbd/base/event_kind.h"
 #include "mbd/io/described.h"
+#include "mbd/io/kind_channels.h"
 #include "mbd/base/number_text.h"
 
 #include <algorithm>
@@ -84,6 +85,28 @@ std::string markdown(const std::vector<Row>& rows) {
   return text;
 }
 
+// What elements of a kind, bodies or markers write.
+std::vector<KindChannel> channels_of(const Catalogue& catalogue, const Described& kind) {
+  if (kind.role == "table" && kind.name == "body") return channels_of_bodies(catalogue);
+  if (kind.role == "table" && kind.name == "marker") return channels_of_markers(catalogue);
+  if (kind.role == "settings" && kind.name == "output") return channels_of_whole(catalogue);
+  if (kind.role != "element") return {};
+  const ElementKind* const element = catalogue.find_element(kind.name);
+  return element ? channels_of_kind(catalogue, *element) : std::vector<KindChannel>{};
+}
+
+std::string owner_of(const Described& kind) {
+  return kind.name == "output" ? "whole." : "NAME.";
+}
+
+std::vector<Row> rows_of(const std::string& owner, const std::vector<KindChannel>& channels) {
+  std::vector<Row> rows{{"channel", "unit", "made", "sign", "meaning"}};
+  for (const KindChannel& c : channels)
+    rows.push_back({owner + c.name, units_text(c), c.is_on_request ? "on request" : "always", c.sign,
+                    c.codes.empty() ? c.meaning : c.meaning + ": " + c.codes});
+  return rows;
+}
+
 std::string events_markdown() {
   std::vector<Row> rows{{"event", "what happens"}};
   for (std::size_t i = 1; i < k_event_kinds; ++i) {
@@ -105,7 +128,11 @@ std::string kinds_text(const Catalogue& catalogue) {
 std::string kind_text(const Catalogue& catalogue, const std::string& name) {
   std::vector<std::string> known;
   for (const Described& kind : describe(catalogue)) {
-    if (kind.name == name) return heading(kind) + "\n" + kind.doc + "\n\n" + aligned(rows_of(kind));
+    if (kind.name == name) {
+      const std::vector<KindChannel> channels = channels_of(catalogue, kind);
+      return heading(kind) + "\n" + kind.doc + "\n\n" + aligned(rows_of(kind)) +
+             (channels.empty() ? "" : "\n" + aligned(rows_of(owner_of(kind), channels)));
+    }
     known.push_back(kind.name);
   }
   throw ModelError(Location{}, "there is no kind '" + name + "'" + did_you_mean(name, known));
@@ -114,9 +141,13 @@ std::string kind_text(const Catalogue& catalogue, const std::string& name) {
 std::string reference_markdown(const Catalogue& catalogue) {
   std::string text =
       "# Model reference\n\nGenerated from the field tables. Numbers are SI; a string "
-      "may carry a unit, as in \"47 t\".\n";
-  for (const Described& kind : describe(catalogue))
+      "may carry a unit, as in \"47 t\".\n\nBelow the fields of a kind stand the channels of its elements (docs/channels.md): what a run "
+      "writes always, and what it writes if `also` of `[output]` asks for it.\n";
+  for (const Described& kind : describe(catalogue)) {
     text += "\n## " + heading(kind) + "\n" + kind.doc + "\n\n" + markdown(rows_of(kind));
+    if (const std::vector<KindChannel> channels = channels_of(catalogue, kind); !channels.empty())
+      text += "\n" + markdown(rows_of(owner_of(kind), channels));
+  }
   return text + events_markdown();
 }
 

@@ -71,6 +71,9 @@ const FieldTable& OutputSettings::fields() {
     f.add("step", &OutputSettings::step).in("s").positive().doc("time between two rows of the trajectory");
     f.add("channels", &OutputSettings::channels).doc(
         "channels to write, patterns with * and ?; all if not given");
+    f.add("also", &OutputSettings::also).doc(
+        "channels that are made on request only (`steplap channels MODEL` lists them), patterns with * and ?: motion of markers, "
+        "angle and power of joints, energies");
     f.add("most_numbers", &OutputSettings::most_numbers).positive().doc(
         "a run whose trajectory would have more numbers, rows times channels, is not begun: each takes 8 bytes of memory and "
         "some 20 of trajectory.csv; 1e8 if not given");

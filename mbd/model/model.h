@@ -71,6 +71,9 @@ struct ElementKind {
   std::string name; ///< as written in a model file, "spring_damper"
   std::string doc;  ///< a few sentences: what it models, sign convention
   FieldTable fields;
+  /// Elements of the kind in TOML, with whatever they need besides two bodies 'a' and 'b': for what is found out by making
+  /// them (kind_channels.h). "": required fields are enough.
+  std::string example = {};
   int stage = 0; ///< kinds that refer to other elements compile at stage 1
   std::shared_ptr<Element> (*create)() = nullptr;
   std::shared_ptr<Element> (*copy)(const Element& element) = nullptr;
@@ -137,6 +140,7 @@ struct SimulationSettings {
 struct OutputSettings {
   double step = 1e-3;                ///< s
   std::vector<std::string> channels; ///< patterns with * and ?; empty = all
+  std::vector<std::string> also;     ///< channels on request that there are besides, patterns
   double most_numbers = 1e8;         ///< rows times channels, beyond which a run is not begun: about 2 GB of text
   std::string seen_from;             ///< body that drawings stand still with; "" = chosen by the drawing
   Location where;
@@ -157,6 +161,13 @@ struct Plot : TableObject {
   std::string title;
   std::vector<std::string> channels; ///< patterns with * and ?
   std::vector<std::string> bounds;   ///< channels drawn dashed at plus and minus their value
+};
+
+/// [[channel]]: a formula of other channels (system/channel_expression.h).
+struct DefinedChannel : TableObject {
+  std::string expression;
+  std::string unit; ///< that it is given in; "": SI, as it follows from the operands
+  std::string meaning, sign;
 };
 
 /// [[acceptance]]: what the receiver of a machine may ask of a run. Either of channels (over the samples
@@ -221,6 +232,7 @@ struct Model {
   std::vector<Marker> markers;
   std::vector<SignalEntry> signals;
   std::vector<ElementEntry> elements;
+  std::vector<DefinedChannel> channels;
   std::vector<Plot> plots;
   std::vector<Criterion> criteria;
   std::vector<TableEntry> tables; ///< of other rooms, as given: complete() adds what they stand for

@@ -53,10 +53,12 @@ const std::array<double, k_last + 1>& thetas() {
   return values;
 }
 
-// Of each channel of a body's motion the one that is its rate.
+// Of each channel of a body's, marker's or joint's motion the one that is its rate.
 std::vector<int> rates_of(const System& system) {
   static constexpr std::array<std::pair<const char*, const char*>, 6> k_rates = {
       {{".x", ".vx"}, {".y", ".vy"}, {".theta", ".omega"}, {".vx", ".ax"}, {".vy", ".ay"}, {".omega", ".alpha"}}};
+  static constexpr std::array<std::pair<const char*, const char*>, 6> k_requested = {
+      {{".x", ".vx"}, {".y", ".vy"}, {".vx", ".ax"}, {".vy", ".ay"}, {".angle", ".rate"}, {".displacement", ".rate"}}};
   std::map<std::string, int> place;
   for (std::size_t c = 0; c < system.channels.size(); ++c) place[system.channels[c].name] = static_cast<int>(c);
   std::vector<int> rates(system.channels.size(), -1);
@@ -65,6 +67,14 @@ std::vector<int> rates_of(const System& system) {
       const auto of = place.find(body.name + value), its = place.find(body.name + rate);
       if (of != place.end() && its != place.end()) rates[of->second] = its->second;
     }
+  for (std::size_t c = 0; c < system.channels.size(); ++c) {
+    const std::string& name = system.channels[c].name;
+    if (!system.channels[c].is_on_request) continue;
+    for (const auto& [value, rate] : k_requested)
+      if (name.ends_with(value))
+        if (const auto its = place.find(name.substr(0, name.size() - std::string_view(value).size()) + rate); its != place.end())
+          rates[c] = its->second;
+  }
   return rates;
 }
 
@@ -188,7 +198,8 @@ void ExtremeFinder::set_scales() {
   const double v = std::sqrt(a * length);
   const std::pair<const char*, double> scales[] = {{"m", length},      {"rad", 1.0},           {"m/s", v},
                                                    {"rad/s", v / length}, {"m/s^2", a},         {"rad/s^2", a / length},
-                                                   {"N", force},       {"N m", force * length}, {"W", force * v}};
+                                                   {"N", force},       {"N m", force * length}, {"W", force * v},
+                                                   {"J", force * length}};
   for (const auto& [unit, scale] : scales)
     if (Kind* kind = kind_of(unit)) kind->scale = scale;
 }

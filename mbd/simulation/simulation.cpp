@@ -75,6 +75,10 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   }
   if (options_.has_extremes)
     extremes_ = std::make_unique<ExtremeFinder>(system, system.largest_dimension());
+  if (!system.integrands.empty()) {
+    ledger_ = std::make_unique<PowerLedger>(system, system.largest_dimension());
+    dynamics_.show_integrals(ledger_.get());
+  }
   restart();
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
   if (options_.output_step > 0.0) record_sample(state_.t);
@@ -111,6 +115,7 @@ void Simulation::restart() {
   dynamics_.pack(state_, y_.data());
   integrator_->restart(dynamics_, state_.t, y_.data());
   if (!integrator_->stepped_state()) check_holding(state_.t, integrator_->watch0());
+  if (ledger_) ledger_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
   if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
   is_between_events_ = true;
 }
@@ -152,6 +157,11 @@ void Simulation::record_sample(double t) {
   trajectory_->add(t, snapshot);
   ++sample_;
   if (options_.progress) options_.progress(t);
+}
+
+// Before anything is looked at in the step made, up to t.
+void Simulation::keep_ledger(double t) {
+  if (ledger_) ledger_->add_step(t, *integrator_, dynamics_);
 }
 
 // Samples due in the step made, up to t.
@@ -217,6 +227,10 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
   energy_.check_step(dynamics_, t, y_.data());
   dynamics_.unpack(t, y_.data(), state_);
   if (fired.empty()) dynamics_.set_time_limit(next_limit()); // on the far side of the breakpoint
+  if (ledger_ && ledger_->has_stored()) {
+    dynamics_.rates(t, y_.data(), dy_.data());
+    ledger_->end(dynamics_.snapshot(dy_.data()));
+  }
   const std::size_t known = events_.size();
   handler_.handle(state_, fired, events_);
   energy_.check_settled(state_.t, handler_.settled());
@@ -248,12 +262,11 @@ void Simulation::step_through_storm(const std::string& element) {
     if (is_sample) t1 = due;
     stepping_->step(dynamics_, state_, t1, options_.settings.projection_tolerance);
     ++statistics_.steps;
-    if (!is_sample && !extremes_) continue;
+    if (!is_sample && !extremes_ && !ledger_) continue;
     dynamics_.pack(state_, y_.data());
-    if (extremes_) {
-      dynamics_.rates(t1, y_.data(), dy_.data());
-      extremes_->begin(t1, dynamics_.snapshot(dy_.data()));
-    }
+    if (extremes_ || ledger_) dynamics_.rates(t1, y_.data(), dy_.data());
+    if (ledger_) ledger_->add_stepped(t1, dynamics_.snapshot(dy_.data()));
+    if (extremes_) extremes_->begin(t1, dynamics_.snapshot(dy_.data()));
     if (is_sample) record_sample(t1);
   }
   dynamics_.use_coordinates(chosen_coordinates());
@@ -296,6 +309,7 @@ bool Simulation::advance() {
     const double t = integrator_->t0() + finder_.theta() * integrator_->h();
     std::vector<double> at_event = finder_.state();
     if (are_joints(finder_.fired()) && integrator_->end_at(dynamics_, finder_.theta())) std::copy_n(integrator_->y1(), at_event.size(), at_event.begin());
+    keep_ledger(t);
     if (extremes_) extremes_->end_at(t, *integrator_, dynamics_);
     sample_until(std::nextafter(t, 0.0) - k_output_slack * options_.output_step);
     pass_event(t, at_event.data(), finder_.fired());
@@ -303,6 +317,7 @@ bool Simulation::advance() {
     return true;
   }
   const double t1 = integrator_->t1();
+  keep_ledger(t1);
   look_for_extremes(evaluations, t1 >= limit);
   sample_until(t1);
   handler_.clear_fresh();
@@ -341,6 +356,10 @@ void Simulation::end_run() {
 // A step that has decided the modes itself: they are taken over, and noted where they changed.
 bool Simulation::pass_stepped() {
   const double t1 = integrator_->t1();
+  if (ledger_) {
+    dynamics_.rates(t1, integrator_->y1(), dy_.data());
+    ledger_->add_stepped(t1, dynamics_.snapshot(dy_.data()));
+  }
   sample_until(t1);
   energy_.note(dynamics_, t1, integrator_->y1()); // in the layout of the step, which the next line may do away with
   const std::size_t known = events_.size();

@@ -6,6 +6,7 @@
 #include "mbd/events/event_handler.h"
 #include "mbd/events/event_storm.h"
 #include "mbd/simulation/extremes.h"
+#include "mbd/simulation/power_ledger.h"
 #include "mbd/integrators/integrator.h"
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/simulation/trajectory.h"
@@ -87,6 +88,7 @@ private:
   void look_for_extremes(long evaluations, bool is_last);
   void sample_until(double t);
   void record_sample(double t);
+  void keep_ledger(double t);
   void check_finite();
   void check_holding(double t, const std::vector<double>& watch) const;
   void pass_event(double t, const double* y, const std::vector<int>& fired);
@@ -110,6 +112,7 @@ private:
   std::unique_ptr<Integrator> integrator_;
   std::unique_ptr<Trajectory> trajectory_;
   std::unique_ptr<ExtremeFinder> extremes_; ///< null if they are not asked for
+  std::unique_ptr<PowerLedger> ledger_;     ///< null if no channel asks for one
   std::vector<Event> events_;
   EventStorm storm_;
   std::unique_ptr<TimeStepping> stepping_; ///< made where a storm asks for it

@@ -1,6 +1,8 @@
 #include "mbd/system/system.h"
 
 #include "mbd/model/method.h"
+#include "mbd/base/name_pattern.h"
+#include "mbd/system/requested_channels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -154,12 +156,6 @@ void SystemBuilder::compile_elements() {
     system_->element_names.push_back(element.name);
     system_->element_kinds.push_back(model_.elements[i].kind->name);
   }
-  for (const int stage : {0, 1})
-    for (std::size_t i = 0; i < model_.elements.size(); ++i) {
-      if (model_.elements[i].kind->stage != stage) continue;
-      element_ = static_cast<int>(i);
-      model_.elements[i].kind->compile(*model_.elements[i].element, *this);
-    }
 }
 
 void SystemBuilder::finish() {
@@ -187,22 +183,32 @@ void SystemBuilder::add_body_channels() {
   struct Coordinate {
     const char* name;
     const char* unit;
+    const char* meaning;
+    const char* sign;
     double Motion<double>::*member;
   };
+  static constexpr const char *k_x = "along x of the ground axes", *k_y = "along y of the ground axes", *k_turn = "positive counter-clockwise";
   static constexpr Coordinate coordinates[] = {
-      {"x", "m", &Motion<double>::x},         {"y", "m", &Motion<double>::y},
-      {"theta", "rad", &Motion<double>::theta}, {"vx", "m/s", &Motion<double>::vx},
-      {"vy", "m/s", &Motion<double>::vy},     {"omega", "rad/s", &Motion<double>::omega}};
-  static constexpr const char* accelerations[] = {"ax", "ay", "alpha"};
+      {"x", "m", "place of the centre of gravity", k_x, &Motion<double>::x},
+      {"y", "m", "place of the centre of gravity", k_y, &Motion<double>::y},
+      {"theta", "rad", "angle of the body's axes against the ground's", k_turn, &Motion<double>::theta},
+      {"vx", "m/s", "velocity of the centre of gravity", k_x, &Motion<double>::vx},
+      {"vy", "m/s", "velocity of the centre of gravity", k_y, &Motion<double>::vy},
+      {"omega", "rad/s", "angular velocity", k_turn, &Motion<double>::omega}};
+  static constexpr Coordinate accelerations[] = {
+      {"ax", "m/s^2", "acceleration of the centre of gravity", k_x, nullptr},
+      {"ay", "m/s^2", "acceleration of the centre of gravity", k_y, nullptr},
+      {"alpha", "rad/s^2", "angular acceleration", k_turn, nullptr}};
+  const auto enter = [this](const std::string& name, const Coordinate& c, std::function<double(const Snapshot&)> value) {
+    enter_channel(use_of(name, c.name, false), name, c.name, c.unit, {c.meaning, c.sign}, std::move(value));
+  };
   for (int i = 1; i < system_->body_count(); ++i) {
     const std::string& name = system_->bodies[i].name;
     for (const Coordinate& c : coordinates)
-      if (wants_channel(name, c.name)) system_->channels.push_back({name + "." + c.name, c.unit, "of the centre of gravity",
-                                   [i, member = c.member](const Snapshot& s) { return s.motion[i].*member; }});
+      if (use_of(name, c.name, false) != Use::none) enter(name, c, [i, member = c.member](const Snapshot& s) { return s.motion[i].*member; });
     for (int k = 0; k < 3; ++k)
-      if (wants_channel(name, accelerations[k])) system_->channels.push_back({name + "." + accelerations[k], k < 2 ? "m/s^2" : "rad/s^2",
-                                   "of the centre of gravity",
-                                   [i, k](const Snapshot& s) { return s.acceleration[3 * i + k]; }});
+      if (use_of(name, accelerations[k].name, false) != Use::none)
+        enter(name, accelerations[k], [i, k](const Snapshot& s) { return s.acceleration[3 * i + k]; });
   }
 }
 
@@ -306,11 +312,30 @@ bool SystemBuilder::wants_channel(std::string_view owner, std::string_view name)
   });
 }
 
-Channel& SystemBuilder::enter_channel(std::string_view name, std::string_view unit, std::string_view doc,
+SystemBuilder::Use SystemBuilder::use_of(std::string_view owner, std::string_view name, bool is_on_request) const {
+  const auto& also = model_.output.also;
+  if (!wanted_ && !is_on_request) return Use::channel;
+  if (wanted_ ? wants_channel(owner, name) : false) return Use::channel;
+  if (!also.empty() || !operand_names_.empty()) {
+    std::string whole(owner);
+    whole.append(1, '.').append(name);
+    if (!wanted_ && std::any_of(also.begin(), also.end(), [&](const std::string& pattern) { return matches_pattern(whole, pattern); }))
+      return Use::channel;
+    if (std::binary_search(operand_names_.begin(), operand_names_.end(), whole)) return Use::operand;
+  }
+  return Use::none;
+}
+
+Channel& SystemBuilder::enter_channel(Use use, std::string_view owner, std::string_view name, std::string_view unit, const ChannelText& text,
                                       std::function<double(const Snapshot&)> value) {
-  std::string whole = system_->element_names[element_];
-  whole.append(1, '.').append(name);
-  return system_->channels.emplace_back(Channel{std::move(whole), std::string(unit), std::string(doc), std::move(value)});
+  std::string whole(owner);
+  if (!whole.empty()) whole.append(1, '.');
+  whole.append(name);
+  Channel channel{std::move(whole), std::string(unit), std::string(text.meaning), std::move(value)};
+  channel.sign = text.sign;
+  channel.codes = text.codes;
+  if (use == Use::channel) return system_->channels.emplace_back(std::move(channel));
+  return *system_->operands.emplace_back(std::make_unique<Channel>(std::move(channel)));
 }
 
 void SystemBuilder::error(const std::string& message) {
@@ -321,10 +346,20 @@ void SystemBuilder::error(const std::string& message) {
 
 std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted) {
   SystemBuilder builder(model, wanted);
+  RequestedChannels requested(builder);
   builder.compile_bodies();
   builder.add_body_channels();
-  builder.compile_elements();
+  builder.compile_elements(); // their names
+  for (const int stage : {0, 1})
+    for (std::size_t i = 0; i < model.elements.size(); ++i) {
+      if (model.elements[i].kind->stage != stage) continue;
+      builder.element_ = static_cast<int>(i);
+      requested.begin_element();
+      model.elements[i].kind->compile(*model.elements[i].element, builder);
+      requested.end_element();
+    }
   builder.finish();
+  requested.add();
   if (!builder.errors_.empty()) throw ModelError(builder.errors_);
   return std::move(builder.system_);
 }

@@ -33,6 +33,14 @@ struct State {
   double work = 0.0;                    ///< J, of loads and drives since the start
 };
 
+/// Integrals over time that a run keeps beside the motion (System::integrands).
+class Integrals {
+public:
+  virtual ~Integrals() = default;
+  /// Of integrand `slot`, from the start to t, which is not before the run's last stretch.
+  [[nodiscard]] virtual double value(int slot, double t) const = 0;
+};
+
 /// What a channel may look at: a state with the accelerations and reactions that belong to it.
 struct Snapshot {
   double t = 0.0;
@@ -42,6 +50,8 @@ struct Snapshot {
   const double* row_force = nullptr;       ///< multiplier of every bilateral row
   const double* friction_force = nullptr;  ///< wrench of every friction element along its rows
   const double* memory = nullptr;
+  double dissipated = 0.0, work = 0.0;     ///< J, of all since the start
+  const Integrals* integrals = nullptr;    ///< null where no run keeps any: nothing has passed yet
 };
 
 /// Between which a value lies.
@@ -49,14 +59,34 @@ struct ValueBounds {
   double low = 0.0, high = 0.0;
 };
 
+/// What a channel means, in words, given where it is made.
+struct ChannelText {
+  std::string_view meaning; ///< what it measures
+  std::string_view sign;    ///< when it is positive, in whose axes; "" where its meaning says so
+  std::string_view codes;   ///< of a mode: "0 free, 1 sticks, 2 slips"
+
+  ChannelText(std::string_view meaning_, std::string_view sign_ = {}, std::string_view codes_ = {})
+      : meaning(meaning_), sign(sign_), codes(codes_) {}
+  ChannelText(const char* meaning_) : meaning(meaning_) {}
+  ChannelText(const std::string& meaning_) : meaning(meaning_) {}
+};
+
 struct Channel {
   std::string name;
   std::string unit;
-  std::string doc;
+  std::string doc; ///< its meaning
   std::function<double(const Snapshot&)> value;
   /// Of a value that costs much: bounds that cost little, for whoever only wants to know its extremes.
   std::function<ValueBounds(const Snapshot&)> bounds = {};
   bool has_extremes = true; ///< false: it passes through infinity
+  std::string sign = {}, codes = {}; ///< ChannelText
+  bool is_on_request = false; ///< made for a model that asks for it
+};
+
+/// A power that a run integrates over time, since some channel wants to know (Snapshot::integrals).
+struct Integrand {
+  std::function<double(const Snapshot&)> power;  ///< W
+  std::function<double(const Snapshot&)> stored; ///< J; what an event takes from it at once counts with the integral. Null: nothing
 };
 
 /// Mass properties and start of a body; index 0 is the ground.
@@ -109,6 +139,9 @@ public:
   std::vector<Unit> units;
   std::vector<FrictionUnit> frictions;
   std::vector<Channel> channels;
+  std::vector<Integrand> integrands;         ///< of channels on request
+  std::vector<std::unique_ptr<Channel>> operands; ///< of expressions, where they are no channels themselves
+  std::vector<std::unique_ptr<ForceGroup>> shares; ///< of single elements, whose energy channels ask for
   std::vector<double> breakpoints; ///< of all signals in use, ascending
   double drives_end = std::numeric_limits<double>::infinity(); ///< the first drive jumps there: no run may pass it, s
   std::vector<double> initial_memory;
@@ -193,7 +226,9 @@ public:
   int add_friction(std::unique_ptr<FrictionElement> friction);
   /// "<element>.<name>"; what is returned is good until the next one is added. A channel that nobody wants is not made:
   /// what is returned then is forgotten.
-  template <class Value> Channel& add_channel(std::string_view name, std::string_view unit, std::string_view doc, Value&& value);
+  template <class Value> Channel& add_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
+  /// The same for one that is made for a model that asks for it ([output] also, an expression), and costs nothing else.
+  template <class Value> Channel& offer_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
   [[nodiscard]] int next_row() const { return static_cast<int>(system_->rows.size()); }
   /// Slot in Snapshot::friction_force that the next friction element will get.
   [[nodiscard]] int next_friction_row() const { return system_->friction_row_count; }
@@ -204,8 +239,17 @@ public:
 
 private:
   friend std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted);
+  friend class RequestedChannels;
+  enum class Use { none, operand, channel };
+  struct GroupType { ///< what to do with a group of a type known where it was made
+    std::size_t (*count)(const ForceGroup& group);
+    std::unique_ptr<ForceGroup> (*share)(const ForceGroup& group, std::size_t first, std::size_t count);
+    bool does_work;
+  };
+  template <class Group> static GroupType type_of();
   [[nodiscard]] bool wants_channel(std::string_view owner, std::string_view name) const;
-  Channel& enter_channel(std::string_view name, std::string_view unit, std::string_view doc,
+  [[nodiscard]] Use use_of(std::string_view owner, std::string_view name, bool is_on_request) const;
+  Channel& enter_channel(Use use, std::string_view owner, std::string_view name, std::string_view unit, const ChannelText& text,
                          std::function<double(const Snapshot&)> value);
   void compile_bodies();
   void compile_elements();
@@ -225,6 +269,8 @@ private:
   std::vector<Diagnostic> errors_;
   int element_ = -1;
   const std::vector<std::string>* wanted_;
+  std::vector<std::string> operand_names_; ///< of expressions, sorted
+  std::vector<GroupType> group_types_;     ///< of each of the system's groups
   Channel unwanted_;
 };
 
@@ -236,14 +282,43 @@ private:
 
 template <class Group> Group& SystemBuilder::group() {
   const auto [it, is_new] = group_index_.try_emplace(typeid(Group).name(), system_->groups.size());
-  if (is_new) system_->groups.push_back(std::make_unique<Group>());
+  if (is_new) {
+    system_->groups.push_back(std::make_unique<Group>());
+    group_types_.push_back(type_of<Group>());
+  }
   return static_cast<Group&>(*system_->groups[it->second]);
 }
 
+// A copy of some entries keeps their places among modes, watches and links. Work is done by groups that say so, with
+// k_does_work; all others dissipate and store.
+template <class Group> SystemBuilder::GroupType SystemBuilder::type_of() {
+  GroupType type{};
+  type.count = [](const ForceGroup& group) { return static_cast<const Group&>(group).entries.size(); };
+  type.share = [](const ForceGroup& group, std::size_t first, std::size_t count) -> std::unique_ptr<ForceGroup> {
+    const auto begin = static_cast<const Group&>(group).entries.begin() + static_cast<std::ptrdiff_t>(first);
+    auto share = std::make_unique<Group>();
+    share->entries.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+    return share;
+  };
+  type.does_work = requires { requires Group::k_does_work; };
+  return type;
+}
+
 template <class Value>
-Channel& SystemBuilder::add_channel(std::string_view name, std::string_view unit, std::string_view doc, Value&& value) {
-  if (!wants_channel(system_->element_names[element_], name)) return unwanted_;
-  return enter_channel(name, unit, doc, std::forward<Value>(value));
+Channel& SystemBuilder::add_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value) {
+  const std::string_view owner = system_->element_names[element_];
+  const Use use = use_of(owner, name, false);
+  return use == Use::none ? unwanted_ : enter_channel(use, owner, name, unit, text, std::forward<Value>(value));
+}
+
+template <class Value>
+Channel& SystemBuilder::offer_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value) {
+  const std::string_view owner = system_->element_names[element_];
+  const Use use = use_of(owner, name, true);
+  if (use == Use::none) return unwanted_;
+  Channel& channel = enter_channel(use, owner, name, unit, text, std::forward<Value>(value));
+  channel.is_on_request = true;
+  return channel;
 }
 
 template <class Group> void SystemBuilder::add_unit(Group& group, int watch_count) {

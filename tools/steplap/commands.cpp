@@ -1,6 +1,7 @@
 #include "tools/steplap/commands.h"
 
 #include "tools/steplap/accuracy.h"
+#include "tools/steplap/channels.h"
 #include "tools/steplap/check.h"
 #include "tools/steplap/core.h"
 #include "tools/steplap/elements.h"
@@ -26,6 +27,7 @@ std::vector<Command> all_commands() {
   commands.push_back(joint_command());
   commands.push_back(core_command());
   commands.push_back(accuracy_command());
+  commands.push_back(channels_command());
   commands.push_back(elements_command());
   commands.push_back(schema_command());
   commands.push_back(study_command());

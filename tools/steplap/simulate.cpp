@@ -120,6 +120,13 @@ void note_assembly(const LoadedModel& loaded) {
            "; steplap check lists them");
 }
 
+void warn_of_missing_values(const LoadedModel& loaded, const RunResult& result) {
+  for (const ChannelRange& range : result.ranges)
+    if (range.channel->is_on_request && range.had_no_value)
+      log_warning("'" + loaded.path + "': channel '" + range.channel->name +
+                  "' had no value at some time (a division by zero, a root of what is negative): its extremes are of the other times");
+}
+
 FinishedRun run_one(const SimulateOptions& options,
                     const std::shared_ptr<const LoadedModel>& loaded, Console& console) {
   log_detail("'" + loaded->name + "': " + std::to_string(loaded->system->body_count() - 1) +
@@ -133,6 +140,7 @@ FinishedRun run_one(const SimulateOptions& options,
   }
   for (const std::string& text : feet_beyond_edges(*loaded, finished.run.result.final_state))
     log_warning("'" + loaded->path + "': at the end " + text);
+  warn_of_missing_values(*loaded, finished.run.result);
   finished.summary = summarise(finished.run);
   estimate_error(options, finished);
   finished.folder = options.folder_of(*loaded);

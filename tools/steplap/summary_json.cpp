@@ -67,17 +67,37 @@ Json global_error_json(const GlobalErrorEstimate& estimate) {
   return json;
 }
 
-Json extremes_json(const RunSummary& summary) {
+// Each text once, and its place in the list for every channel: few are as many as the kinds of elements have.
+class Meanings {
+public:
+  [[nodiscard]] std::size_t place_of(const Channel& channel) {
+    std::string text = channel.doc;
+    for (const std::string* more : {&channel.sign, &channel.codes})
+      if (!more->empty()) text += "; " + *more;
+    const auto [place, is_new] = places_.try_emplace(std::move(text), places_.size());
+    if (is_new) list_.push_back(place->first);
+    return place->second;
+  }
+  [[nodiscard]] const Json& list() const { return list_; }
+
+private:
+  std::unordered_map<std::string, std::size_t> places_;
+  Json list_ = Json::array();
+};
+
+Json extremes_json(const RunSummary& summary, Meanings& meanings) {
   Json json = Json::object();
   const auto time = [](const Extreme& extreme) { return std::isnan(extreme.value) ? Json() : Json(extreme.t); };
   for (const ChannelRange& range : summary.ranges) {
     Json& entry = append(json, range.channel->name);
     entry = {{"unit", range.channel->unit},
+             {"meaning", meanings.place_of(*range.channel)},
              {"min", number_json(range.low.value)},
              {"t_min", time(range.low)},
              {"max", number_json(range.high.value)},
              {"t_max", time(range.high)},
              {"final", number_json(range.final)}};
+    if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // a formula's division by zero
     const auto add = [&](const char* key, double ChannelError::*which) { add_error(entry, key, summary.error_of(range, which)); };
     add("error_min", &ChannelError::low);
     add("error_t_min", &ChannelError::t_low);
@@ -219,7 +239,9 @@ std::string summary_json(const Run& run, const RunSummary& summary) {
   if (Json joints = joints_json(run, summary); !joints.empty()) json["joints"] = std::move(joints);
   // Without criteria there is nothing to say, unless the run itself is not to be trusted.
   if (summary.judgement.has_criteria || !summary.judgement.distrust.empty()) json["judgement"] = judgement_json(summary.judgement);
-  json["extremes"] = extremes_json(summary);
+  Meanings meanings;
+  json["extremes"] = extremes_json(summary, meanings);
+  json["meanings"] = meanings.list();
   json["final_state"] = state_json(*loaded.system, run.result.final_state, summary);
   // Names may hold bytes that are no UTF-8: replaced, not an exception at the end of a long run.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

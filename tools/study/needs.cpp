@@ -10,11 +10,19 @@ namespace steplap::study {
 
 namespace {
 
-// What a model says about looking at its runs names channels that a variant may not have; it changes no motion.
-void drop_presentation(Model& model) {
+// What a model says about looking at its runs names channels that a variant may not have; it changes no motion. Channels that
+// it asks for stay, for responses may be of them; those of the element that is gone go.
+void drop_presentation(Model& model, const std::string& gone = "") {
   std::erase_if(model.tables, [](const TableEntry& e) { return e.kind->name == "plot" || e.kind->name == "acceptance"; });
   model.plots.clear();
   model.criteria.clear();
+  if (gone.empty()) return;
+  const auto is_of_it = [&gone](const std::string& text) { return text.find(gone) != std::string::npos; };
+  std::erase_if(model.output.also, [&](const std::string& pattern) { return is_of_it(pattern); });
+  std::erase_if(model.tables, [&](const TableEntry& e) {
+    const auto* channel = dynamic_cast<const DefinedChannel*>(e.table.get());
+    return channel && is_of_it(channel->expression);
+  });
 }
 
 std::string marker_in(const ElementEntry& entry, const char* field_name) {
@@ -65,9 +73,9 @@ std::vector<ModelVariant> variants_of(const Model& model) {
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
     const ElementEntry& entry = model.elements[e];
     const std::string name = entry.element->name, a = marker_in(entry, "a"), b = marker_in(entry, "b");
-    variants.push_back({"without '" + name + "'", [e](Model& m) {
+    variants.push_back({"without '" + name + "'", [e, name](Model& m) {
                           m.elements.erase(m.elements.begin() + static_cast<long>(e));
-                          drop_presentation(m);
+                          drop_presentation(m, name);
                         },
                         name});
     if (a.empty() || b.empty() || entry.kind->name == "weld") continue;

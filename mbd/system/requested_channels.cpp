@@ -1,0 +1,396 @@
+#include "mbd/system/requested_channels.h"
+
+#include "mbd/base/name_pattern.h"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+namespace steplap {
+
+namespace {
+
+constexpr const char* k_whole = "whole";
+
+// What one element alone does at a snapshot, put aside.
+struct Alone {
+  double dissipation = 0.0, work = 0.0;
+};
+
+Alone evaluate_alone(const ForceGroup& share, const System& system, const Snapshot& s) {
+  struct Scratch {
+    std::vector<BodyForce> force;
+    std::vector<double> contact_force, watch, watch_rate, inner_rate;
+  };
+  thread_local Scratch scratch;
+  scratch.force.resize(std::max<std::size_t>(scratch.force.size(), static_cast<std::size_t>(system.links.slot_count())));
+  scratch.contact_force.resize(std::max(scratch.contact_force.size(), static_cast<std::size_t>(system.contact_count)));
+  scratch.watch.resize(std::max(scratch.watch.size(), static_cast<std::size_t>(system.watch_count)));
+  scratch.watch_rate.resize(scratch.watch.size());
+  scratch.inner_rate.resize(std::max(scratch.inner_rate.size(), static_cast<std::size_t>(system.inner_count())));
+  Evaluation e = *s.evaluation;
+  e.force = e.link_force = scratch.force.data();
+  e.contact_force = scratch.contact_force.data();
+  e.watch = scratch.watch.data();
+  e.watch_rate = scratch.watch_rate.data();
+  e.inner_rate = scratch.inner_rate.data();
+  e.dissipation = e.work = 0.0;
+  share.add_forces(e);
+  return {e.dissipation, e.work};
+}
+
+double power_of_friction(const System& system, std::size_t f, const Snapshot& s) {
+  const FrictionUnit& unit = system.frictions[f];
+  const FrictionState& state = s.evaluation->friction[f];
+  if (state.phase != FrictionPhase::slip) return 0.0;
+  const RowSpec* const rows = unit.friction->rows(state);
+  double power = 0.0;
+  for (int r = 0; r < unit.friction->dimension(); ++r)
+    power -= s.friction_force[unit.row + r] * evaluate_row<false>(rows[r], s.motion).rate;
+  return power;
+}
+
+constexpr const char* k_energies[] = {"dissipated", "stored", "work"};
+
+bool wants_energies(const std::vector<std::string>* wanted) {
+  return wanted && std::any_of(wanted->begin(), wanted->end(), [](const std::string& name) {
+           return std::any_of(std::begin(k_energies), std::end(k_energies), [&](const char* energy) { return name.ends_with(energy); });
+         });
+}
+
+std::string without_unit(const std::string& name) {
+  if (name.empty() || name.back() != ']') return name;
+  const std::size_t open = name.rfind('[');
+  if (open == std::string::npos || open < 2 || name[open - 1] != ' ') return name;
+  return name.substr(0, open - 1);
+}
+
+} // namespace
+
+RequestedChannels::RequestedChannels(SystemBuilder& builder)
+    : builder_(builder), model_(builder.model_), has_requests_(!model_.output.also.empty() || !model_.channels.empty()),
+      wants_shares_(has_requests_ || wants_energies(builder.wanted_)) {
+  for (const DefinedChannel& definition : model_.channels) {
+    Formula& formula = formulas_.emplace_back();
+    formula.definition = &definition;
+    try {
+      formula.expression.emplace(definition.expression, "channel '" + definition.name + "'", definition.place("expression"));
+    } catch (const ModelError& error) {
+      builder_.errors_.insert(builder_.errors_.end(), error.diagnostics().begin(), error.diagnostics().end());
+      continue;
+    }
+    for (const std::string& name : formula.expression->names())
+      for (const std::string& each : {name, without_unit(name)}) builder_.operand_names_.push_back(each);
+  }
+  auto& names = builder_.operand_names_;
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+}
+
+void RequestedChannels::note(const Location& where, const std::string& message) { builder_.errors_.push_back({where, message}); }
+
+Channel* RequestedChannels::make(bool is_on_request, std::string_view owner, std::string_view name, std::string_view unit,
+                                 const ChannelText& text, std::function<double(const Snapshot&)> value) {
+  const SystemBuilder::Use use = builder_.use_of(owner, name, is_on_request);
+  if (use == SystemBuilder::Use::none) return nullptr;
+  Channel& channel = builder_.enter_channel(use, owner, name, unit, text, std::move(value));
+  channel.is_on_request = is_on_request;
+  return &channel;
+}
+
+// --- shares of elements ---------------------------------------------------------------------------
+
+void RequestedChannels::begin_element() {
+  if (!wants_shares_) return;
+  const System& system = *builder_.system_;
+  counts_.resize(system.groups.size());
+  for (std::size_t g = 0; g < counts_.size(); ++g) counts_[g] = builder_.group_types_[g].count(*system.groups[g]);
+  rows_ = system.rows.size();
+  frictions_ = system.frictions.size();
+}
+
+void RequestedChannels::end_element() {
+  if (!wants_shares_) return;
+  const System& system = *builder_.system_;
+  const std::string& name = system.element_names[builder_.element_];
+  bool is_wanted = false;
+  for (const char* energy : k_energies)
+    is_wanted |= builder_.use_of(name, energy, true) != SystemBuilder::Use::none;
+  if (!is_wanted) return;
+  Share share;
+  share.element = builder_.element_;
+  for (std::size_t g = 0; g < system.groups.size(); ++g) {
+    const std::size_t before = g < counts_.size() ? counts_[g] : 0, now = builder_.group_types_[g].count(*system.groups[g]);
+    if (now == before) continue;
+    share.groups.push_back(system.groups[g].get());
+    share.first.push_back(before);
+    share.count.push_back(now - before);
+    share.does_work.push_back(builder_.group_types_[g].does_work);
+  }
+  share.first_row = rows_;
+  share.row_end = system.rows.size();
+  share.first_friction = frictions_;
+  share.friction_end = system.frictions.size();
+  shares_.push_back(std::move(share));
+}
+
+void RequestedChannels::add_energy(const Share& share, const char* name, const ChannelText& text, Integrand integrand) {
+  System& system = *builder_.system_;
+  const int slot = static_cast<int>(system.integrands.size());
+  const Channel* const made = make(true, system.element_names[share.element], name, "J", text, [slot](const Snapshot& s) {
+    return s.integrals ? s.integrals->value(slot, s.t) : 0.0;
+  });
+  if (made) system.integrands.push_back(std::move(integrand));
+}
+
+void RequestedChannels::add_share(const Share& share) {
+  System& system = *builder_.system_;
+  const System* const self = &system;
+  std::vector<const ForceGroup*> givers, workers, inner;
+  for (std::size_t i = 0; i < share.groups.size(); ++i) {
+    std::size_t g = 0;
+    while (system.groups[g].get() != share.groups[i]) ++g;
+    system.shares.push_back(builder_.group_types_[g].share(*share.groups[i], share.first[i], share.count[i]));
+    const ForceGroup* const alone = system.shares.back().get();
+    (share.does_work[i] ? workers : givers).push_back(alone);
+    if (std::find(system.inner_groups.begin(), system.inner_groups.end(), share.groups[i]) != system.inner_groups.end()) inner.push_back(alone);
+  }
+  std::vector<std::size_t> frictions, driven;
+  for (std::size_t f = share.first_friction; f < share.friction_end; ++f)
+    if (!system.frictions[f].friction->is_elastic()) frictions.push_back(f);
+  for (std::size_t r = share.first_row; r < share.row_end; ++r)
+    if (system.rows[r].drive) driven.push_back(r);
+
+  const auto stored = [givers, inner](const Snapshot& s) {
+    double sum = 0.0;
+    for (const ForceGroup* group : givers) sum += group->potential(s.motion);
+    for (const ForceGroup* group : inner) sum += group->inner_energy(s.motion, s.evaluation->inner);
+    return sum;
+  };
+  if (!givers.empty() || !frictions.empty()) {
+    Integrand integrand;
+    integrand.power = [self, givers, frictions](const Snapshot& s) {
+      double power = 0.0;
+      for (const ForceGroup* group : givers) power += evaluate_alone(*group, *self, s).dissipation;
+      for (const std::size_t f : frictions) power += power_of_friction(*self, f, s);
+      return power;
+    };
+    if (!inner.empty()) integrand.stored = stored;
+    add_energy(share, "dissipated", "energy that it has turned into heat since the start", std::move(integrand));
+  }
+  if (!givers.empty())
+    make(true, system.element_names[share.element], "stored", "J", "energy stored in it now", stored);
+  if (!workers.empty() || !driven.empty()) {
+    Integrand integrand;
+    integrand.power = [self, workers, driven](const Snapshot& s) {
+      double power = 0.0;
+      for (const ForceGroup* group : workers) power += evaluate_alone(*group, *self, s).work;
+      for (const std::size_t r : driven) power += s.row_force[r] * evaluate_row<false>(self->rows[r], s.motion).rate;
+      return power;
+    };
+    add_energy(share, "work", {"work that it has done since the start", "positive: it has given energy to the bodies"}, std::move(integrand));
+  }
+}
+
+// --- markers and the whole ------------------------------------------------------------------------
+
+void RequestedChannels::add_markers() {
+  struct Part {
+    const char* name;
+    const char* unit;
+    const char* meaning;
+    int level, axis;
+  };
+  static constexpr Part k_parts[] = {{"x", "m", "place of the marker", 0, 0},
+                                     {"y", "m", "place of the marker", 0, 1},
+                                     {"vx", "m/s", "velocity of the marker", 1, 0},
+                                     {"vy", "m/s", "velocity of the marker", 1, 1},
+                                     {"ax", "m/s^2", "acceleration of the marker, from the equations of motion", 2, 0},
+                                     {"ay", "m/s^2", "acceleration of the marker, from the equations of motion", 2, 1}};
+  for (const Marker& marker : model_.markers) {
+    if (builder_.body_index_.contains(marker.name)) continue; // a body's own channels tell it
+    const CompiledMarker& compiled = builder_.marker_index_.at(marker.name);
+    for (const Part& part : k_parts)
+      make(true, marker.name, part.name, part.unit, {part.meaning, part.axis == 0 ? "along x of the ground axes" : "along y of the ground axes"},
+           [body = compiled.body, point = compiled.point, level = part.level, axis = part.axis](const Snapshot& s) {
+             const Motion<double>& m = s.motion[body];
+             const Pair<double> r = to_ground(m, point);
+             if (level == 0) return axis == 0 ? m.x + r.x : m.y + r.y;
+             if (level == 1) return axis == 0 ? m.vx - m.omega * r.y : m.vy + m.omega * r.x;
+             if (body == k_ground) return 0.0;
+             const double* const a = s.acceleration + 3 * static_cast<std::ptrdiff_t>(body);
+             return axis == 0 ? a[0] - a[2] * r.y - m.omega * m.omega * r.x : a[1] + a[2] * r.x - m.omega * m.omega * r.y;
+           });
+  }
+}
+
+void RequestedChannels::add_whole() {
+  const System* const self = builder_.system_.get();
+  const auto kinetic = [self](const Snapshot& s) {
+    double sum = 0.0;
+    for (int i = 1; i < self->body_count(); ++i) {
+      const Motion<double>& m = s.motion[i];
+      sum += 0.5 * self->bodies[i].mass * (m.vx * m.vx + m.vy * m.vy) + 0.5 * self->bodies[i].inertia * m.omega * m.omega;
+    }
+    return sum;
+  };
+  const auto potential = [self](const Snapshot& s) {
+    double sum = self->potential_energy(s.motion);
+    for (const ForceGroup* group : self->inner_groups) sum += group->inner_energy(s.motion, s.evaluation->inner);
+    return sum;
+  };
+  make(true, k_whole, "kinetic", "J", "kinetic energy of all bodies", kinetic);
+  make(true, k_whole, "potential", "J", {"energy of weight and of what elements have stored", "zero of weight at the origin of the ground"}, potential);
+  make(true, k_whole, "dissipated", "J", "energy turned into heat since the start, by friction and dampers", [](const Snapshot& s) { return s.dissipated; });
+  make(true, k_whole, "work", "J", {"work of loads, motors and drives since the start", "positive: given to the machine"},
+       [](const Snapshot& s) { return s.work; });
+  make(true, k_whole, "balance", "J", "kinetic + potential + dissipated - work: what changes of it is error of the computation",
+       [kinetic, potential](const Snapshot& s) { return kinetic(s) + potential(s) + s.dissipated - s.work; });
+}
+
+// --- formulas -------------------------------------------------------------------------------------
+
+const Channel* RequestedChannels::find(const std::string& name) const {
+  for (const Channel& channel : builder_.system_->channels)
+    if (channel.name == name) return &channel;
+  for (const auto& channel : builder_.system_->operands)
+    if (channel->name == name) return channel.get();
+  return nullptr;
+}
+
+void RequestedChannels::add_formula(Formula& formula) {
+  const DefinedChannel& d = *formula.definition;
+  const std::string subject = "channel '" + d.name + "'";
+  if (formula.mark == Formula::Mark::done) return;
+  if (formula.mark == Formula::Mark::open) throw ModelError(d.place("expression"), subject + ": its expression leads back to itself");
+  formula.mark = Formula::Mark::open;
+  if (!formula.expression) return;
+  std::vector<std::string> units;
+  std::vector<std::function<double(const Snapshot&)>> values;
+  std::vector<double> factors;
+  for (const std::string& name : formula.expression->names()) {
+    for (const std::string& each : {name, without_unit(name)})
+      for (Formula& other : formulas_)
+        if (other.definition->name == each) add_formula(other);
+    const Channel* operand = find(name);
+    if (!operand && without_unit(name) != name) {
+      operand = find(without_unit(name));
+      const std::string unit = name.substr(without_unit(name).size() + 2, name.size() - without_unit(name).size() - 3);
+      if (operand && operand->unit != unit)
+        throw ModelError(d.place("expression"), subject + ": '" + operand->name + "' is in '" + operand->unit + "', not in '" + unit + "'");
+    }
+    if (!operand)
+      throw ModelError(d.place("expression"), subject + ": there is no channel '" + name + "'" + did_you_mean(name, all_names()) +
+                                                  "; names with other characters than letters, digits, _ and points stand in braces");
+    units.push_back(operand->unit);
+    values.push_back(operand->value);
+    const auto dimension = dimension_of(operand->unit);
+    factors.push_back(dimension ? dimension->factor : 1.0);
+  }
+  const UnitDimension derived = formula.expression->dimension(units);
+  std::string unit = d.unit;
+  double factor = 1.0;
+  if (unit.empty()) {
+    if (derived.powers == std::array<double, 3>{1.0, 2.0, -2.0})
+      throw ModelError(d.place("expression"), subject + ": energy or torque? Say so with unit = \"J\" or \"N m\"");
+    unit = unit_text(derived.powers);
+  } else {
+    const auto given = dimension_of(unit);
+    if (!given) throw ModelError(d.place("unit"), subject + ": the unit '" + unit + "' is not known to formulas");
+    if (given->powers != derived.powers) {
+      const std::string is = unit_text(derived.powers);
+      throw ModelError(d.place("unit"), subject + ": the expression has " + (is.empty() ? "no unit" : "the unit " + is) + ", which is none of '" + unit + "'");
+    }
+    factor = 1.0 / given->factor;
+    if (unit == "1") unit.clear();
+  }
+  formula.mark = Formula::Mark::done;
+  const auto shared = std::make_shared<const ChannelExpression>(*formula.expression);
+  auto value = [shared, values = std::move(values), factors = std::move(factors), factor](const Snapshot& s) {
+    thread_local std::vector<std::vector<double>> kept; // a formula of formulas needs one for each
+    thread_local std::size_t depth = 0;
+    if (kept.size() <= depth) kept.resize(depth + 1);
+    kept[depth].resize(std::max(kept[depth].size(), values.size()));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      ++depth;
+      const double operand = factors[i] * values[i](s);
+      --depth;
+      kept[depth][i] = operand;
+    }
+    return factor * shared->value(kept[depth].data(), s.t);
+  };
+  SystemBuilder& b = builder_;
+  const auto is_listed = [&] { return !b.wanted_ || std::find(b.wanted_->begin(), b.wanted_->end(), d.name) != b.wanted_->end(); };
+  const bool is_operand = std::binary_search(b.operand_names_.begin(), b.operand_names_.end(), d.name);
+  if (!is_listed() && !is_operand) return;
+  const std::string meaning = d.meaning.empty() ? "= " + d.expression : d.meaning;
+  Channel& channel = b.enter_channel(is_listed() ? SystemBuilder::Use::channel : SystemBuilder::Use::operand, "", d.name, unit,
+                                     ChannelText(meaning, d.sign), std::move(value));
+  channel.is_on_request = true;
+}
+
+void RequestedChannels::add_formulas() {
+  for (Formula& formula : formulas_) try {
+      add_formula(formula);
+    } catch (const ModelError& error) {
+      formula.mark = Formula::Mark::done;
+      builder_.errors_.insert(builder_.errors_.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+}
+
+// --- what cannot be meant -------------------------------------------------------------------------
+
+// With everything that could be asked for.
+std::vector<std::string> RequestedChannels::all_names() const {
+  std::vector<std::string> names;
+  for (const DefinedChannel& d : model_.channels) names.push_back(d.name);
+  Model everything = model_;
+  everything.channels.clear();
+  everything.output.also = {"*"};
+  try {
+    const std::unique_ptr<System> system = compile(everything);
+    for (const Channel& channel : system->channels) names.push_back(channel.name);
+  } catch (const ModelError&) { // told by whoever compiles the model itself
+  }
+  return names;
+}
+
+void RequestedChannels::check_names() {
+  std::set<std::string> names;
+  for (const Channel& channel : builder_.system_->channels)
+    if (!names.insert(channel.name).second) {
+      const DefinedChannel* definition = nullptr;
+      for (const DefinedChannel& d : model_.channels)
+        if (d.name == channel.name) definition = &d;
+      note(definition ? definition->place("name") : model_.output.where,
+           "two channels are called '" + channel.name + "'" +
+               (definition ? ": choose another name" : ": rename the marker, the body or the element, or ask for one of them only"));
+    }
+}
+
+void RequestedChannels::check_patterns() {
+  for (const std::string& pattern : model_.output.also) {
+    const auto& channels = builder_.system_->channels;
+    if (std::any_of(channels.begin(), channels.end(), [&](const Channel& c) { return matches_pattern(c.name, pattern); })) continue;
+    note(model_.output.where, "'also' of [output]: no channel matches '" + pattern + "'" + did_you_mean(pattern, all_names()) +
+                                  "; `steplap channels MODEL` lists those on request");
+  }
+}
+
+// Of the channels named outright, which elements and bodies have not made.
+bool RequestedChannels::is_anything_missing() const {
+  return builder_.wanted_ && std::any_of(builder_.wanted_->begin(), builder_.wanted_->end(), [this](const std::string& name) { return !find(name); });
+}
+
+void RequestedChannels::add() {
+  if (!has_requests_ && !is_anything_missing()) return;
+  add_markers();
+  for (const Share& share : shares_) add_share(share);
+  add_whole();
+  if (!builder_.errors_.empty()) return; // elements without their channels
+  add_formulas();
+  check_names();
+  if (!builder_.wanted_) check_patterns();
+}
+
+} // namespace steplap

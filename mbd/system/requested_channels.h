@@ -1,0 +1,69 @@
+// Channels that a model asks for, made beside those that elements make: motion of markers, energies of the whole and of single
+// elements, formulas (channel_expression.h). What nobody asks for is not made.
+//
+//   M.x .y .vx .vy .ax .ay        of marker M, ground axes; accelerations as the equations of motion give them
+//   whole.kinetic .potential .dissipated .work .balance
+//   E.dissipated .stored .work    of element E, since the start
+#pragma once
+
+#include "mbd/system/channel_expression.h"
+#include "mbd/system/system.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+class RequestedChannels {
+public:
+  /// Reads the formulas; what is wrong with them goes to the builder's errors.
+  explicit RequestedChannels(SystemBuilder& builder);
+
+  /// Around an element's compilation: what of the system is its share.
+  void begin_element();
+  void end_element();
+  /// When the system is complete but for these.
+  void add();
+
+private:
+  struct Formula {
+    const DefinedChannel* definition;
+    std::optional<ChannelExpression> expression;
+    enum class Mark { untouched, open, done } mark = Mark::untouched;
+  };
+  struct Share { ///< of an element
+    int element = 0;
+    std::vector<const ForceGroup*> groups;
+    std::vector<std::size_t> first, count;
+    std::vector<char> does_work;
+    std::size_t first_row = 0, row_end = 0, first_friction = 0, friction_end = 0;
+  };
+
+  void note(const Location& where, const std::string& message);
+  Channel* make(bool is_on_request, std::string_view owner, std::string_view name, std::string_view unit, const ChannelText& text,
+                std::function<double(const Snapshot&)> value);
+  void add_markers();
+  void add_whole();
+  void add_share(const Share& share);
+  void add_energy(const Share& share, const char* name, const ChannelText& text, Integrand integrand);
+  void add_formulas();
+  void add_formula(Formula& formula);
+  [[nodiscard]] bool is_anything_missing() const;
+  [[nodiscard]] const Channel* find(const std::string& name) const;
+  [[nodiscard]] std::vector<std::string> all_names() const;
+  void check_names();
+  void check_patterns();
+
+  SystemBuilder& builder_;
+  const Model& model_;
+  std::vector<Formula> formulas_;
+  std::vector<Share> shares_;
+  std::vector<std::size_t> counts_; ///< of entries in groups, before the element
+  std::size_t rows_ = 0, frictions_ = 0;
+  bool has_requests_;               ///< the model asks for something
+  bool wants_shares_;               ///< there may be energies of elements among it
+};
+
+} // namespace steplap

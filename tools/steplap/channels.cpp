@@ -1,0 +1,111 @@
+#include "tools/steplap/channels.h"
+
+#include "mbd/base/name_pattern.h"
+#include "mbd/io/atomic_file.h"
+#include "mbd/io/csv.h"
+#include "tools/steplap/run.h"
+#include "tools/steplap/text_table.h"
+
+#include <algorithm>
+#include <memory>
+#include <ostream>
+
+namespace steplap {
+
+namespace {
+
+struct ChannelsOptions {
+  std::string model;
+  std::vector<std::string> overrides, patterns;
+  std::optional<std::string> output;
+  bool is_overwriting = false;
+};
+
+struct Listed {
+  const Channel* channel;
+  const char* made; ///< "written", "not written" or "on request"
+};
+
+// Everything that the model has or could ask for.
+std::unique_ptr<System> with_all_channels(const Model& model) {
+  Model all = model;
+  all.output.also = {"*"};
+  return compile(all);
+}
+
+std::vector<Listed> list_channels(const LoadedModel& loaded, const System& all, const std::vector<std::string>& patterns) {
+  const Trajectory written(*loaded.system, loaded.model.output.channels);
+  std::vector<Listed> list;
+  for (const Channel& channel : all.channels) {
+    const auto matches = [&](const std::string& pattern) { return matches_pattern(channel.name, pattern); };
+    if (!patterns.empty() && std::none_of(patterns.begin(), patterns.end(), matches)) continue;
+    const auto& names = written.channels();
+    const bool is_written = std::any_of(names.begin(), names.end(), [&](const Channel* c) { return c->name == channel.name; });
+    const bool is_made = is_written || loaded.system->find_channel(channel.name) != nullptr;
+    list.push_back({&channel, is_written ? "written" : is_made ? "not written" : "on request"});
+  }
+  return list;
+}
+
+std::string table_csv(const std::vector<Listed>& list) {
+  std::string text = "channel,unit,made,sign,meaning,codes\n";
+  for (const Listed& each : list) {
+    const Channel& c = *each.channel;
+    const std::string made = each.made;
+    for (const std::string* cell : {&c.name, &c.unit, &made, &c.sign, &c.doc}) text += csv_field(*cell) + ",";
+    text += csv_field(c.codes) + "\n";
+  }
+  return text;
+}
+
+void print_channels(std::ostream& out, const LoadedModel& loaded, const std::vector<Listed>& list) {
+  using Align = TextTable::Align;
+  TextTable table({Align::left, Align::left, Align::left, Align::left, Align::left});
+  table.add_row({"channel", "unit", "made", "sign", "meaning"});
+  bool is_any_on_request = false;
+  for (const Listed& each : list) {
+    const Channel& c = *each.channel;
+    is_any_on_request |= std::string_view(each.made) == "on request";
+    table.add_row({c.name, c.unit.empty() ? "-" : c.unit, each.made, c.sign, c.codes.empty() ? c.doc : c.doc + ": " + c.codes});
+  }
+  out << loaded.name << ": " << list.size() << " channels\n\n" << table;
+  if (is_any_on_request)
+    out << "\nThose on request are made if [output] names them: also = [\"" << list.back().channel->name << "\"]; patterns with * and ?\n";
+}
+
+ExitCode channels(const ChannelsOptions& options, Console& console) {
+  const auto loaded = load_model(options.model, options.overrides);
+  const std::unique_ptr<System> all = with_all_channels(loaded->model);
+  const std::vector<Listed> list = list_channels(*loaded, *all, options.patterns);
+  if (list.empty()) {
+    std::vector<std::string> known;
+    for (const Channel& channel : all->channels) known.push_back(channel.name);
+    throw UsageError("no channel matches '" + options.patterns.front() + "'" + did_you_mean(options.patterns.front(), known));
+  }
+  if (options.output) write_file(*options.output, table_csv(list), options.is_overwriting ? IfExists::replace : IfExists::refuse);
+  if (console.verbosity != Verbosity::quiet) print_channels(console.out, *loaded, list);
+  return ExitCode::done;
+}
+
+} // namespace
+
+Command channels_command() {
+  const auto o = std::make_shared<ChannelsOptions>();
+  Command command;
+  command.name = "channels";
+  command.summary = "the channels of a model, each with unit, sign, meaning and codes; those on request, too";
+  command.examples = R"(  steplap channels my.toml
+  steplap channels my.toml --only "elbow.*"
+  steplap channels my.toml -o channels.csv
+What formulas of channels may hold, and how to ask for channels: docs/channels.md.
+)";
+  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML)", true},
+                     {"--only", &o->patterns, "PATTERN", "those that match, * and ?; may be repeated"},
+                     {"-o,--output", &o->output, "FILE", "also write the list as CSV"},
+                     {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
+                     {"-f,--force", &o->is_overwriting, "", "overwrite the file"}};
+  command.run = [o](Console& console) { return channels(*o, console); };
+  return command;
+}
+
+} // namespace steplap
