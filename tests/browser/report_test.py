@@ -86,26 +86,9 @@ def start_browser():
     return webdriver.Chrome(options=options, service=Service("/usr/bin/chromedriver"))
 
 
-class ReportTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        models = [os.path.join(MODELS, "paper", name + ".toml")
-                  for name in ("no_interference", "interference", "weak_clamping")]
-        steplap("simulate", *models, "-q", "-o", "out")
-        steplap("report", "out/no_interference", "out/interference", "-o", "paper.html", "-q")
-        steplap("report", "out/weak_clamping", "-q")
-        layouts = [os.path.join(MODELS, "layouts", name + ".toml") for name in ("three_limb", "rail_wagon_humping")]
-        steplap("simulate", *layouts, "-q", "-o", "out")
-        for name in ("three_limb", "rail_wagon_humping"):
-            steplap("report", "out/" + name, "-q")
-        with open(os.path.join(WORK.name, "hostile.toml"), "w", encoding="utf-8") as file:
-            file.write(HOSTILE)
-        steplap("simulate", "hostile.toml", "-q", "-o", "out", "--report")
-        steplap("simulate", os.path.join(MODELS, "benchmarks", "bouncing_mass.toml"), "-q", "-o", "out", "--report")
-        with open(os.path.join(WORK.name, "pierced.toml"), "w", encoding="utf-8") as file:
-            file.write(PIERCED)
-        steplap("simulate", "pierced.toml", "-q", "-o", "out", "--report")
-        cls.browser = start_browser()
+class Page(unittest.TestCase):
+    """A page in the browser, opened by a path below WORK."""
+    browser = None
 
     @classmethod
     def tearDownClass(cls):
@@ -134,6 +117,28 @@ class ReportTest(unittest.TestCase):
 
     def run_js(self, script, *arguments):
         return self.browser.execute_script(script, *arguments)
+
+
+class ReportTest(Page):
+    @classmethod
+    def setUpClass(cls):
+        models = [os.path.join(MODELS, "paper", name + ".toml")
+                  for name in ("no_interference", "interference", "weak_clamping")]
+        steplap("simulate", *models, "-q", "-o", "out")
+        steplap("report", "out/no_interference", "out/interference", "-o", "paper.html", "-q")
+        steplap("report", "out/weak_clamping", "-q")
+        layouts = [os.path.join(MODELS, "layouts", name + ".toml") for name in ("three_limb", "rail_wagon_humping")]
+        steplap("simulate", *layouts, "-q", "-o", "out")
+        for name in ("three_limb", "rail_wagon_humping"):
+            steplap("report", "out/" + name, "-q")
+        with open(os.path.join(WORK.name, "hostile.toml"), "w", encoding="utf-8") as file:
+            file.write(HOSTILE)
+        steplap("simulate", "hostile.toml", "-q", "-o", "out", "--report")
+        steplap("simulate", os.path.join(MODELS, "benchmarks", "bouncing_mass.toml"), "-q", "-o", "out", "--report")
+        with open(os.path.join(WORK.name, "pierced.toml"), "w", encoding="utf-8") as file:
+            file.write(PIERCED)
+        steplap("simulate", "pierced.toml", "-q", "-o", "out", "--report")
+        cls.browser = start_browser()
 
     def summary(self, run):
         with open(os.path.join(WORK.name, "out", run, "summary.json"), encoding="utf-8") as file:

@@ -3,11 +3,14 @@
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
 #include "tools/steplap/core_drawing.h"
+#include "tools/steplap/symbols.h"
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
+#include <unordered_map>
 
 namespace steplap {
 
@@ -47,29 +50,8 @@ std::vector<Vec2> hull(std::vector<Vec2> points) {
   return chain;
 }
 
-// A square with the body's radius of gyration: J/m = s²/6.
-std::vector<Vec2> square(const Body& body) {
-  const double half = body.mass > 0.0 ? 0.5 * std::sqrt(6.0 * body.inertia / body.mass) : 0.1;
-  return {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
-}
-
-// How the kinds are usually drawn; a kind that is not listed shows as a rod between its places.
-std::string usual_symbol(const std::string& kind) {
-  static const std::map<std::string, std::string> symbols{
-      {"spring_damper", "spring"}, {"rotational_spring_damper", "pin"}, {"bushing", "pin"},
-      {"unilateral_contact", "contact"}, {"coulomb_stick", "friction"}, {"step_lap_joint", "joint"},
-      {"step_lap_interface", "hidden"}, {"revolute", "pin"}, {"prismatic", "rail"}, {"weld", "weld"},
-      {"distance", "rod"}, {"point_on_line", "rail"}, {"prescribed_motion", "arrow"}, {"load", "arrow"}};
-  const auto found = symbols.find(kind);
-  return found == symbols.end() ? "rod" : found->second;
-}
-
-// A marker where it sits: in its body's axes about the centre of gravity; the ground's own.
-struct Place {
-  std::string body;
-  Vec2 point = Vec2::Zero();
-  double angle = 0.0; ///< of the marker's axes against the body's
-};
+// A length or direction as a whole number of a billionth: what is equal but for rounding is the same plane.
+long long coarse(double value) { return std::llround(1e9 * value); }
 
 class Drawing {
 public:
@@ -84,8 +66,10 @@ public:
     Json elements = Json::array();
     for (const ElementEntry& entry : model_.elements)
       elements.push_back(element_json(entry));
-    return {{"bodies", bodies_json()}, // after the elements, whose places make outlines
+    return {{"bodies", bodies_json()}, // after the elements, which tell of their geometry
             {"elements", std::move(elements)},
+            {"ground", ground_json()},
+            {"planes", planes_},
             {"sheets", sheets_json()},
             {"plots", plots_json()},
             {"cores", cores_json()},
@@ -120,63 +104,95 @@ private:
             marker.angle};
   }
 
-  Json element_json(const ElementEntry& entry) {
-    const Element& element = *entry.element;
-    Json json{{"name", element.name},
-              {"kind", entry.kind->name},
-              {"symbol", element.draw == "auto" ? usual_symbol(entry.kind->name) : element.draw}};
-    Json at = Json::array();
-    std::optional<Place> last;
-    for (const Field& field : entry.kind->fields.fields()) {
-      const FieldValue value = field.get(&element);
-      if (field.type == FieldType::marker && !std::get<std::string>(value).empty()) {
-        last = place_of(std::get<std::string>(value));
-        places_[last->body].push_back(last->point);
-        at.push_back({{"body", last->body}, {"point", point_json(last->point)}});
-      }
-      if (field.type == FieldType::body) json[field.name] = std::get<std::string>(value);
-      if (field.type == FieldType::elements) json[field.name] = std::get<std::vector<std::string>>(value);
-    }
-    if (last) add_direction(entry, *last, json);
-    json["at"] = std::move(at);
+  [[nodiscard]] static Json places_json(const std::vector<Place>& places) {
+    Json json = Json::array();
+    for (const Place& place : places)
+      json.push_back({{"body", place.body}, {"point", point_json(place.point)}});
     return json;
   }
 
-  // A contact's normal or the axis of a spring or joint: both in the axes of the last marker.
-  void add_direction(const ElementEntry& entry, const Place& last, Json& json) {
-    for (const char* name : {"normal", "axis"}) {
-      const Field* field = entry.kind->fields.find(name);
-      if (!field || field->type != FieldType::vec2) continue;
-      const FieldValue value = field->get(entry.element.get());
-      const Vec2* direction = std::get_if<Vec2>(&value);
-      if (!direction || direction->norm() == 0.0) continue;
-      json["direction"] = point_json(rotated(direction->normalized(), last.angle));
-      return;
+  Json element_json(const ElementEntry& entry) {
+    Sketch sketch(entry, [this](const std::string& marker) { return place_of(marker); },
+                  [this](const std::string& body) -> BodyGeometry& { return geometry_[body]; });
+    draw_element(sketch);
+    Json json{{"name", entry.element->name},
+              {"kind", entry.kind->name},
+              {"symbol", sketch.shapes().empty() ? "hidden" : sketch.shapes().front().type}};
+    Json shapes = Json::array();
+    for (const Shape& shape : sketch.shapes())
+      shapes.push_back(shape_json(shape));
+    json["shapes"] = std::move(shapes);
+    for (const Field& field : entry.kind->fields.fields()) {
+      if (field.type == FieldType::body) json[field.name] = std::get<std::string>(field.get(entry.element.get()));
+      if (field.type == FieldType::elements) json[field.name] = std::get<std::vector<std::string>>(field.get(entry.element.get()));
     }
+    json["at"] = places_json(sketch.places());
+    return json;
   }
 
-  std::vector<Vec2> outline_of(const Body& body) {
+  Json shape_json(const Shape& shape) {
+    Json json{{"type", shape.type}, {"at", places_json(shape.at)}};
+    if (!shape.style.empty()) json["style"] = shape.style;
+    if (!shape.quantity.empty()) json["quantity"] = shape.quantity;
+    if (shape.direction) json["direction"] = point_json(*shape.direction);
+    if (!shape.sizes.empty()) json["sizes"] = shape.sizes;
+    if (shape.type == "contact" && shape.direction && !shape.at.empty()) json["plane"] = plane_of(shape.at.back(), *shape.direction);
+    return json;
+  }
+
+  // All that touches one line of one body shares one half-plane.
+  std::size_t plane_of(const Place& place, const Vec2& normal) {
+    const auto key = std::make_tuple(place.body, coarse(normal.x()), coarse(normal.y()), coarse(normal.dot(place.point)));
+    const auto [found, is_new] = plane_numbers_.try_emplace(key, planes_.size());
+    if (is_new) planes_.push_back({{"body", place.body}, {"point", point_json(place.point)}, {"normal", point_json(normal)}});
+    return found->second;
+  }
+
+  // Of the places where elements act those that the body's own circles do not cover, and its centre of gravity.
+  [[nodiscard]] static std::vector<Vec2> outline_of(const Body& body, const BodyGeometry& geometry) {
     std::vector<Vec2> outline;
     for (const Vec2& p : body.outline)
       outline.push_back(p - body.cg);
-    if (!outline.empty()) return outline;
-    std::vector<Vec2> places = places_[body.name];
+    if (!outline.empty() || !geometry.polygons.empty()) return outline;
+    const auto is_covered = [&](const Vec2& p) {
+      return std::any_of(geometry.circles.begin(), geometry.circles.end(), [&](const std::array<double, 4>& circle) {
+        return (p - Vec2(circle[0], circle[1])).norm() <= circle[2] * (1.0 + 1e-9);
+      });
+    };
+    std::vector<Vec2> places;
+    for (const Vec2& p : geometry.places)
+      if (!is_covered(p)) places.push_back(p);
+    if (places.empty()) return {};
     places.push_back(Vec2::Zero());
     outline = hull(std::move(places));
-    return outline.size() < 2 ? square(body) : outline;
+    return outline.size() < 2 ? std::vector<Vec2>() : outline;
+  }
+
+  static void add_geometry(const BodyGeometry& geometry, Json& json) {
+    json["circles"] = geometry.circles;
+    json["segments"] = geometry.segments;
+    json["polygons"] = geometry.polygons;
   }
 
   Json bodies_json() {
     Json json = Json::array();
     for (const Body& body : model_.bodies) {
       const Vec3 pose = body.reference_pose();
+      const BodyGeometry& geometry = geometry_[body.name];
       json.push_back({{"name", body.name},
                       {"label", body.label},
                       {"pose", {pose.x(), pose.y(), pose.z()}},
                       {"fixed", body.fixed},
                       {"is_outline_given", !body.outline.empty()},
-                      {"outline", outline_json(outline_of(body))}});
+                      {"outline", outline_json(outline_of(body, geometry))}});
+      add_geometry(geometry, json.back());
     }
+    return json;
+  }
+
+  Json ground_json() {
+    Json json = Json::object();
+    add_geometry(geometry_["ground"], json);
     return json;
   }
 
@@ -230,7 +246,9 @@ private:
   const Model& model_;
   std::map<std::string, const Body*> bodies_;
   std::map<std::string, const Marker*> markers_;
-  std::map<std::string, std::vector<Vec2>> places_; ///< per body: where elements act
+  std::unordered_map<std::string, BodyGeometry> geometry_; ///< per body, the ground included
+  std::map<std::tuple<std::string, long long, long long, long long>, std::size_t> plane_numbers_;
+  Json planes_ = Json::array();
 };
 
 } // namespace

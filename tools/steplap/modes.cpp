@@ -4,6 +4,7 @@
 #include "mbd/io/csv.h"
 #include "mbd/analysis/modes.h"
 #include "tools/steplap/log.h"
+#include "tools/steplap/modes_page.h"
 #include "tools/steplap/run.h"
 #include "tools/steplap/text_table.h"
 
@@ -22,7 +23,7 @@ using Align = TextTable::Align;
 struct ModesOptions {
   std::string model;
   std::vector<std::string> overrides;
-  std::optional<std::string> output;
+  std::optional<std::string> output, page;
   bool is_overwriting = false;
 };
 
@@ -96,6 +97,13 @@ std::string modes_csv(const System& system, const VibrationModes& found) {
   return csv.text();
 }
 
+std::string page_of(const LoadedModel& loaded, const Equilibrium& rest, const VibrationModes& found) {
+  std::vector<std::string> moves_most;
+  for (const VibrationMode& mode : found.modes)
+    moves_most.push_back(shape_text(*loaded.system, mode));
+  return modes_page(loaded, rest, found, moves_most, remarks_on(*loaded.system, rest));
+}
+
 ExitCode modes(const ModesOptions& options, Console& console) {
   const auto loaded = load_model(options.model, options.overrides);
   try {
@@ -103,9 +111,9 @@ ExitCode modes(const ModesOptions& options, Console& console) {
     State state = rest.state;
     std::fill(state.v.begin(), state.v.end(), 0.0);
     const VibrationModes found = vibration_modes(*loaded->system, state);
-    if (options.output)
-      write_file(*options.output, modes_csv(*loaded->system, found),
-                 options.is_overwriting ? IfExists::replace : IfExists::refuse);
+    const IfExists if_exists = options.is_overwriting ? IfExists::replace : IfExists::refuse;
+    if (options.output) write_file(*options.output, modes_csv(*loaded->system, found), if_exists);
+    if (options.page) write_file(*options.page, page_of(*loaded, rest, found), if_exists);
     if (console.verbosity != Verbosity::quiet) print_modes(console.out, *loaded, found);
     for (const std::string& remark : remarks_on(*loaded->system, rest))
       log_warning("'" + loaded->path + "': " + remark);
@@ -125,10 +133,12 @@ Command modes_command() {
   command.summary = "natural frequencies, damping and shapes of small vibrations about equilibrium";
   command.examples = R"(  steplap modes models/paper/no_interference.toml
   steplap modes my.toml -o modes.csv
+  steplap modes my.toml --report modes.html
 A mode that does not oscillate shows its rate of decay instead of a damping ratio.
 )";
   command.options = {{"MODEL", &o->model, "FILE", "model file (TOML)", true},
                      {"-o,--output", &o->output, "FILE", "also write frequencies and shapes as CSV"},
+                     {"--report", &o->page, "FILE", "also write a page that shows each mode in motion"},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite the file"}};
   command.run = [o](Console& console) { return modes(*o, console); };

@@ -232,9 +232,12 @@ std::string report_data(const std::vector<Results>& runs, std::size_t budget) {
   Json json{{"program", std::string("steplap ") + k_version}, {"runs", Json::array()}};
   for (std::size_t r = 0; r < runs.size(); ++r)
     json["runs"].push_back(run_json(runs[r], std::move(drawings[r]), plan.kept[r], plan.stretches));
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string safe; // '<' stands in strings only, where JSON has another way to write it
-  for (const char c : text)
+  return in_script(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string in_script(const std::string& json) {
+  std::string safe;
+  for (const char c : json)
     if (c == '<') safe += "\\u003c";
     else safe += c;
   return safe;

@@ -17,4 +17,7 @@ namespace steplap {
 /// Throws UsageError for a summary.json or drawing.json that is not as steplap wrote it.
 [[nodiscard]] std::string report_data(const std::vector<Results>& runs, std::size_t budget = 3500000);
 
+/// JSON without '<', which stands in strings only, where JSON has another way to write it.
+[[nodiscard]] std::string in_script(const std::string& json);
+
 } // namespace steplap

@@ -3,13 +3,9 @@
 #include "tools/steplap/report/assets.h"
 #include "tools/steplap/report_data.h"
 
-#include <map>
-
 namespace steplap {
 
-namespace {
-
-std::string escaped(const std::string& text) {
+std::string escaped_html(const std::string& text) {
   std::string safe;
   for (const char c : text) {
     switch (c) {
@@ -23,6 +19,8 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
+namespace {
+
 std::string page_title(const std::vector<Results>& runs) {
   std::string names;
   for (const Results& run : runs)
@@ -30,8 +28,9 @@ std::string page_title(const std::vector<Results>& runs) {
   return "steplap: " + names;
 }
 
-// "@NAME@" in the template becomes parts["NAME"]; what is put in is not looked at again.
-std::string filled(std::string_view page, const std::map<std::string, std::string, std::less<>>& parts) {
+} // namespace
+
+std::string filled_page(std::string_view page, const std::map<std::string, std::string, std::less<>>& parts) {
   std::string text;
   while (!page.empty()) {
     const std::size_t begin = page.find('@');
@@ -50,17 +49,15 @@ std::string filled(std::string_view page, const std::map<std::string, std::strin
   return text;
 }
 
-} // namespace
-
 std::string report_page(const std::vector<Results>& runs) {
   namespace assets = report_assets;
-  return filled(assets::k_page_html, {{"PAGE_TITLE", escaped(page_title(runs))},
+  return filled_page(assets::k_page_html, {{"PAGE_TITLE", escaped_html(page_title(runs))},
                                       {"DYGRAPHS_CSS", std::string(assets::k_dygraphs_css)},
                                       {"PAGE_CSS", std::string(assets::k_page_css)},
                                       {"DATA", report_data(runs)},
                                       {"DYGRAPHS_JS", std::string(assets::k_dygraphs_js)},
                                       {"PAGE_JS", std::string(assets::k_page_js)},
-                                      {"DYGRAPHS_LICENCE", escaped(std::string(assets::k_dygraphs_licence))}});
+                                      {"DYGRAPHS_LICENCE", escaped_html(std::string(assets::k_dygraphs_licence))}});
 }
 
 } // namespace steplap

@@ -15,9 +15,11 @@ steplap.data = (() => {
       this.times = raw.times ? floats(raw.times) : times;
     }
     get length() { return this.rest.length; }
-    value(i) { return this.zero + this.rest[i]; }
+    // Differences are known to some 1e-7 of the first value: less than that is nothing.
+    known(value) { return Math.abs(value) < 2e-7 * Math.abs(this.zero) ? 0 : value; }
+    value(i) { return this.known(this.zero + this.rest[i]); }
     // Linear between samples; held before the first and after the last.
-    at(t) { return this.zero + this.restAt(t); }
+    at(t) { return this.known(this.zero + this.restAt(t)); }
     restAt(t) {
       const n = this.rest.length;
       const i = steplap.data.indexBefore(this.times, t);
@@ -42,7 +44,7 @@ steplap.data = (() => {
   class Run {
     constructor(raw) {
       Object.assign(this, raw);
-      this.times = doubles(raw.times);
+      this.times = raw.times ? doubles(raw.times) : new Float64Array([0, 1]);
       this.channels = new Map(raw.channels.map((c) => [c.name, new Channel(c, this.times)]));
     }
     // Mode of an element with friction: of the sample before t, changed by what happened since.
@@ -80,7 +82,7 @@ steplap.data = (() => {
 
   const prefixes = [[1e9, 'G'], [1e6, 'M'], [1e3, 'k'], [1, ''], [1e-3, 'm'], [1e-6, 'µ'], [1e-9, 'n']];
   const prefixable = new Set(['m', 'N', 'N m', 'Pa', 'rad', 'J', 's', 'm/s', 'rad/s', 'W', 'Hz', 'N/m']);
-  const pretty = (unit) => unit.replace(/\^2/g, '²').replace(/\^3/g, '³').replace(/ /g, '\u202f');
+  const pretty = (unit) => unit.replace(/\^2/g, '²').replace(/\^3/g, '³').replace(/ /g, '\u00a0');
 
   // { factor, unit }: what a quantity of this size is best written in. Millimetres and milliradians go
   // further down than other prefixes: that is what drawings are dimensioned in.
@@ -96,7 +98,7 @@ steplap.data = (() => {
     if (!isFinite(value)) return value > 0 ? '∞' : '−∞';
     const scale = scaleFor(unit || '', Math.abs(value));
     const number = plain(value * scale.factor, digits);
-    return scale.unit ? number + '\u202f' + scale.unit : number;
+    return scale.unit ? number + '\u00a0' + scale.unit : number;
   }
   // Without trailing zeros; a real minus sign.
   function plain(value, digits = 5) {
@@ -108,8 +110,16 @@ steplap.data = (() => {
     return text.replace('-', '−');
   }
 
+  // Of the sheets of step-lap joints one kind of interface a corner: a core has many.
+  function corners(run) {
+    const cores = run.drawing.cores || [], cornerOf = (s) => (cores.some((core) => s.name.startsWith(`${core.name}: `)) ? s.name.replace(/(, packets? .*| \d+)$/, '') : s.name);
+    const found = new Map();
+    for (const sheet of run.drawing.sheets) if (!found.has(cornerOf(sheet))) found.set(cornerOf(sheet), sheet);
+    return [...found.values()];
+  }
+
   const raw = JSON.parse(document.getElementById('data').textContent);
-  return { program: raw.program, runs: raw.runs.map((r) => new Run(r)), indexBefore, scaleFor, quantity, plain };
+  return { program: raw.program, modes: raw.modes, runs: raw.runs.map((r) => new Run(r)), indexBefore, scaleFor, quantity, plain, corners };
 })();
 
 // Elements of the page; texts only ever as text.

@@ -1,6 +1,6 @@
 // The sheets of a step-lap joint where they overlap, far magnified across the joint line.
 steplap.Inset = (() => {
-  const make = steplap.make, { minus, scaled, length, unit, apply, relative } = steplap.Scene.geometry;
+  const make = steplap.make, { minus, scaled, length, unit, apply, relative } = steplap.geometry;
   const width = 246, height = 112;
 
   const area = (ring) => ring.reduce((sum, p, i) => { const q = ring[(i + 1) % ring.length]; return sum + 0.5 * (p[0] * q[1] - q[0] * p[1]); }, 0);

@@ -19,21 +19,20 @@
     at('cores').append(make('img', { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`, alt: `Core ${name}: elevation, corner, section, book`, style: 'max-width:100%' }));
 
   // --- drawing -------------------------------------------------------------------------------------
-  const scenes = runs.map((run) => new steplap.Scene(run, runs.length > 1 ? 620 : 900));
+  const scenes = runs.map((run) => new steplap.Scene(run));
+  const largestForce = Math.max(...scenes.map((scene) => scene.ownLargestForce()));
   const insets = [];
   at('scenes').classList.toggle('few', runs.length > 1);
   scenes.forEach((scene, i) => {
     const box = make('div', { class: 'scene', 'data-run': runs[i].name });
     if (runs.length > 1) box.append(make('h3', {}, runs[i].name));
     box.append(scene.svg);
+    scene.largestForce = largestForce;
+    box.append(steplap.save.buttons({ SVG: () => steplap.save.svg(scene.svg, runs[i].name), PNG: () => steplap.save.png(scene.svg, runs[i].name) }));
     const names = [...scene.bodies.values()].map((b, k) => `${k + 1} ${b.label || b.name}`);
     if (names.length <= 40) box.append(make('p', { class: 'names' }, names.join(' · ')));
     at('scenes').append(box);
-    const sheets = runs[i].drawing.sheets;
-    // Of a core one kind of interface a corner.
-    const cornerOf = (s) => ((runs[i].drawing.cores || []).some((core) => s.name.startsWith(`${core.name}: `)) ? s.name.replace(/(, packets? .*| \d+)$/, '') : s.name);
-    const shown = sheets.filter((s, k) => sheets.findIndex((other) => cornerOf(other) === cornerOf(s)) === k);
-    for (const sheet of shown.slice(0, 8)) insets.push(new steplap.Inset(runs[i], scene, sheet));
+    for (const sheet of steplap.data.corners(runs[i]).slice(0, 8)) insets.push(new steplap.Inset(runs[i], scene, sheet));
   });
   if (insets.length) {
     const box = at('insets');
@@ -45,7 +44,10 @@
         make('p', { class: 'note' }, `Yoke sheet orange, limb sheet blue, the overlap that carries dark; true displacements, drawn ${own[0].caption}.${more > 0 ? ` ${more} more kinds of interface are not drawn.` : ''}`)), ...own.map((inset) => inset.box));
     });
   }
-  at('legend').textContent = 'Wedges are contacts: filled while they press, the bar beside them grows with the force. Limbs turn orange once their joint has slipped. Displacements are drawn magnified, against the reference pose, as seen from the body chosen.';
+  const legend = ['Wedges and dots are contacts, filled while they press; arrows are forces, all to one scale. Hatched is what is solid.'];
+  if (runs.some((run) => run.drawing.sheets.length)) legend.push('Limbs turn orange once their joint has slipped.');
+  legend.push('Displacements are drawn against the reference pose, as seen from the body chosen. Closer: Ctrl and wheel, two fingers, or + and - on the picture; 0 or a double click shows all; drag to move.');
+  at('legend').textContent = legend.join(' ');
 
   const speeds = [100, 10, 1, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100, 1 / 1000];
   const wanted = end / 10;
@@ -56,6 +58,8 @@
   const standpoint = scenes[0].usualStandpoint();
   for (const name of ['ground', ...[...scenes[0].bodies.keys()].slice(0, 40)]) at('seen-from').append(make('option', { value: name }, name));
   at('seen-from').value = standpoint;
+  const moving = [...scenes[0].bodies.values()].filter((b) => b.moves).map((b) => b.name);
+  for (const [value, text] of [['', 'none'], ...(moving.length <= 100 ? [['*', 'all']] : []), ...moving.slice(0, 40).map((n) => [n, n])]) at('trails').append(make('option', { value }, text));
   const usual = Math.min(...scenes.map((s) => s.usualMagnification(standpoint)));
   const factors = [...new Set([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, usual])].sort((a, b) => a - b);
   for (const f of factors) at('magnification').append(make('option', { value: f }, `${f} ×`));
@@ -64,17 +68,22 @@
   // --- time ----------------------------------------------------------------------------------------
   let t = 0, last = null;
   const plots = new steplap.Plots(at('plot-grid'), (time) => show(time));
-  const fit = () => { for (const s of scenes) s.fit(at('seen-from').value, Number(at('magnification').value)); };
+  const isPrinted = window.matchMedia('print');
+  const fit = () => {
+    if (isPrinted.matches) return;
+    const tallest = Math.max(260, Math.min(0.62 * window.innerHeight, 900));
+    steplap.Scene.fitAll(scenes, at('seen-from').value, Number(at('magnification').value), scenes.map((s) => Math.max(240, s.svg.parentNode.clientWidth)), tallest);
+  };
   function show(time) {
     t = Math.min(Math.max(time, 0), end);
     at('time').value = String(t);
     at('now').textContent = `t = ${t.toFixed(4)} s`;
-    for (const scene of scenes) scene.show(t, at('seen-from').value, Number(at('magnification').value));
+    for (const scene of scenes) scene.show(t);
     for (const inset of insets) inset.show(t);
     plots.show(t);
   }
   function setPlaying(isPlaying) {
-    at('play').textContent = isPlaying ? '⏸ Pause' : '▶ Play';
+    at('play').replaceChildren(steplap.icon(isPlaying ? 'pause' : 'play'), isPlaying ? ' Pause' : ' Play');
     at('play').setAttribute('aria-pressed', String(isPlaying));
     last = null;
     if (isPlaying && t >= end) show(0);
@@ -90,7 +99,20 @@
   at('time').max = String(end);
   at('time').addEventListener('input', (event) => { setPlaying(false); show(Number(event.target.value)); });
   at('play').addEventListener('click', () => setPlaying(!isPlaying()));
-  for (const id of ['magnification', 'seen-from']) at(id).addEventListener('change', () => { fit(); show(t); });
+  for (const id of ['magnification', 'seen-from']) at(id).addEventListener('change', () => { fit(); view.reset(); });
+  at('values').addEventListener('change', (event) => { for (const s of scenes) s.withValues = event.target.checked; show(t); });
+  at('trails').addEventListener('change', (event) => { for (const s of scenes) s.setTrails(event.target.value === '*' ? moving : [event.target.value]); show(t); });
+  const view = new steplap.View(scenes, () => show(t));
+  for (const [id, icon, action] of [['closer', 'closer', () => view.zoomAt(scenes[0], 1.5)], ['further', 'further', () => view.zoomAt(scenes[0], 1 / 1.5)], ['whole', 'whole', () => view.reset()]]) {
+    at(id).append(steplap.icon(icon));
+    at(id).addEventListener('click', action);
+  }
+  let seenWidth = document.documentElement.clientWidth;
+  window.addEventListener('resize', () => {
+    if (isPrinted.matches || document.documentElement.clientWidth === seenWidth) return;
+    seenWidth = document.documentElement.clientWidth;
+    fit(); show(t);
+  });
   document.addEventListener('keydown', (event) => {
     if (/^(INPUT|SELECT|BUTTON|SUMMARY|TEXTAREA)$/.test(event.target.tagName) || event.ctrlKey || event.altKey || event.metaKey) return;
     const step = (event.shiftKey ? 0.05 : 0.005) * end;
@@ -110,9 +132,10 @@
   const left = runs.reduce((sum, r) => sum + r.channels_left_out, 0), isThinned = runs.some((r) => r.is_thinned);
   if (left || isThinned) at('event-key').append(` ${isThinned ? 'Curves are thinned for this page, their peaks are kept.' : ''} ${left ? `${left} channels are left out.` : ''} All samples: trajectory.csv.`);
   window.addEventListener('beforeprint', () => plots.preparePrint());
+  setPlaying(false);
   fit();
   plots.build();
   show(0);
-  steplap.page = { scenes, insets, plots, show, time: () => t };
+  steplap.page = { scenes, insets, plots, view, show, time: () => t };
   document.body.setAttribute('data-ready', 'true');
 })();

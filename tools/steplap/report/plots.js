@@ -46,7 +46,9 @@ steplap.Plots = (() => {
       this.box = make('div', { class: 'plot', 'data-plot': figure.name });
       const caption = figure.title ? `${figure.name}: ${figure.title}` : figure.name;
       const of = steplap.data.runs.length > 1 ? ` (${runs.map((r) => r.name).join(', ')})` : '';
-      this.box.append(make('h3', {}, caption + of));
+      const name = () => `${figure.name}${of}`;
+      this.box.append(make('h3', {}, caption + of), steplap.save.buttons({ CSV: () => steplap.save.file(`${name()}.csv`, 'text/csv', this.csv()),
+        SVG: () => steplap.save.svg(this.paperDrawing(), name()), PNG: () => steplap.save.png(this.paperDrawing(), name()) }));
       this.values = make('div', { class: 'values' });
       this.area = make('div', { class: 'graph' });
       this.cursor = make('div', { class: 'cursor' });
@@ -61,10 +63,8 @@ steplap.Plots = (() => {
     }
     draw() {
       if (!this.series.length) { this.area.textContent = 'No such channel in this run.'; return; }
-      let largest = 0;
-      for (const s of this.series)
-        for (let i = 0; i < s.channel.length; ++i) { const v = Math.abs(s.channel.value(i)); if (isFinite(v) && v > largest) largest = v; }
-      const scale = steplap.data.scaleFor(this.series[0].channel.unit, largest);
+      const [low, high] = this.owner.rangeOf(this.figure, this.owner.full);
+      const scale = steplap.data.scaleFor(this.series[0].channel.unit, Math.max(Math.abs(low), Math.abs(high)));
       this.scale = scale;
       this.keys();
       const labels = ['t'], options = {};
@@ -75,7 +75,7 @@ steplap.Plots = (() => {
       });
       this.graph = new Dygraph(this.area, this.rows(scale.factor), {
         labels, series: options, legend: 'never', xlabel: 't [s]', ylabel: `${scale.unit ? '[' + this.escaped(scale.unit) + ']' : '[–]'}`,
-        dateWindow: this.owner.window, gridLineColor: '#dddddd', axisLineColor: '#8a8a8a', axisLabelFontSize: 12, xLabelHeight: 17, yLabelWidth: 17, highlightCircleSize: 0, yRangePad: 9,
+        dateWindow: this.owner.window, valueRange: this.valueRange(), gridLineColor: '#dddddd', axisLineColor: '#8a8a8a', axisLabelFontSize: 12, xLabelHeight: 17, yLabelWidth: 17, highlightCircleSize: 0, yRangePad: 9,
         axes: { y: { axisLabelWidth: 62, pixelsPerLabel: 34, axisLabelFormatter: (v) => this.tick(v) }, x: { pixelsPerLabel: 70, axisLabelFormatter: (v) => this.tick(v) } },
         drawCallback: (g, isInitial) => { if (!isInitial) this.owner.follow(this, g.xAxisRange()); this.place(); },
         underlayCallback: (context, rect, g) => this.marks(context, rect, g),
@@ -83,6 +83,13 @@ steplap.Plots = (() => {
       });
       this.area.append(this.cursor);
       this.show(this.owner.t);
+    }
+    // What the other runs show of this figure has the same scale.
+    valueRange() {
+      const [low, high] = this.owner.rangeOf(this.figure, this.owner.window).map((v) => v * this.scale.factor);
+      if (!(low <= high)) return null;
+      const room = 0.05 * (high - low) || 0.1 * Math.abs(high) || 1;
+      return [low - room, high + room];
     }
     escaped(text) { return text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`); }
     tick(v) { return steplap.data.plain(Math.abs(v) < 1e-12 ? 0 : v, 6); }
@@ -122,9 +129,27 @@ steplap.Plots = (() => {
           context.restore();
         }
     }
+    // The curves as they are shown, in their own units: a column each, a row for each time that any of them has.
+    csv() {
+      const [from, to] = this.graph.xAxisRange(), curves = this.series.filter((s) => !s.isBound || s.sign > 0);
+      const cell = (text) => (/[",\n\r]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
+      const heads = ['t [s]', ...curves.map((s) => cell(`${s.name} [${s.channel.unit || '1'}]${this.runs.length > 1 ? `, ${s.run.name}` : ''}`))];
+      const rows = new Map();
+      curves.forEach((s, k) => {
+        for (let i = 0; i < s.channel.length; ++i) {
+          const t = s.channel.times[i];
+          if (t < from || t > to) continue;
+          if (!rows.has(t)) rows.set(t, curves.map(() => ''));
+          rows.get(t)[k] = String(s.channel.value(i));
+        }
+      });
+      const lines = [...rows].sort((a, b) => a[0] - b[0]).map(([t, values]) => [t, ...values].join(','));
+      return [heads.join(','), ...lines].join('\n') + '\n';
+    }
+    paperDrawing() { this.drawForPaper(); return this.paper; }
     drawForPaper() {
       if (!this.graph) return;
-      const width = 345, height = 165, left = 50, top = 6, w = width - left - 6, h = height - top - 30;
+      const keys = this.series.filter((s) => !s.isBound || s.sign > 0), width = 345, top = 16 + 10 * keys.length, height = 159 + top, left = 50, w = width - left - 6, h = height - top - 30;
       const [t0, t1] = this.graph.xAxisRange(), [y0, y1] = this.graph.yAxisRange();
       const x = (t) => left + (w * (t - t0)) / (t1 - t0), y = (v) => top + (h * (y1 - v)) / (y1 - y0);
       const svg = make('svg', { viewBox: `0 0 ${width} ${height}`, class: 'on-paper' });
@@ -156,6 +181,11 @@ steplap.Plots = (() => {
       svg.append(make('rect', { x: left, y: top, width: w, height: h, fill: 'none', stroke: '#8a8a8a' }));
       text('t [s]', { x: left + w / 2, y: height - 4, 'text-anchor': 'middle' });
       text(`[${this.scale.unit || '–'}]`, { x: 9, y: top + h / 2, 'text-anchor': 'middle', transform: `rotate(-90 9 ${top + h / 2})` });
+      text(this.box.querySelector('h3').textContent, { x: left, y: 9, 'font-size': 9, 'font-weight': 600 });
+      keys.forEach((s, k) => {
+        line(left, 16 + 10 * k, left + 18, 16 + 10 * k, { stroke: s.colour, 'stroke-width': 1.2, 'stroke-dasharray': (s.dash || []).map((d) => 0.6 * d).join(' ') });
+        text((s.isBound ? '±' : '') + s.label.replace(/^\+/, ''), { x: left + 22, y: 18.5 + 10 * k });
+      });
       if (this.paper) this.paper.remove();
       this.paper = svg;
       this.box.append(svg);
@@ -190,11 +220,24 @@ steplap.Plots = (() => {
       this.layout = 'beside';
       document.getElementById('event-key').textContent = `Vertical lines: ${eventStyles.map((s, i) => `${s.name} (${['solid', 'dashed', 'dotted'][i]})`).join(', ')}.`;
     }
+    // Least and largest value that any run shows in a figure within a window of time.
+    rangeOf(figure, [from, to]) {
+      let low = Infinity, high = -Infinity;
+      for (const plot of this.plots) {
+        if (plot.figure !== figure) continue;
+        for (const s of plot.series)
+          for (let i = Math.max(0, steplap.data.indexBefore(s.channel.times, from)); i < s.channel.length; ++i) {
+            const v = s.sign * s.channel.value(i);
+            if (isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
+            if (s.channel.times[i] > to) break;
+          }
+      }
+      return [low, high];
+    }
     build() {
       for (const plot of this.plots) if (plot.graph) plot.graph.destroy();
       const runs = steplap.data.runs, isBeside = this.layout === 'beside' && runs.length > 1;
-      const columns = isBeside ? Math.min(runs.length, 3) : 2;
-      this.grid.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
+      this.grid.style.setProperty('--columns', isBeside ? Math.min(runs.length, 3) : 2);
       this.plots = [];
       for (const figure of [...this.figures, ...this.extra])
         for (const some of isBeside ? runs.map((r) => [r]) : [runs]) this.plots.push(new Plot(this, figure, some));
@@ -207,13 +250,13 @@ steplap.Plots = (() => {
       if (this.isFollowing || (range[0] === this.window[0] && range[1] === this.window[1])) return;
       this.isFollowing = true;
       this.window = [...range];
-      for (const plot of this.plots) if (plot.graph && plot !== source) plot.graph.updateOptions({ dateWindow: this.window });
+      for (const plot of this.plots) if (plot.graph) plot.graph.updateOptions({ dateWindow: this.window, valueRange: plot.valueRange() });
       this.isFollowing = false;
     }
     zoomOut() {
       this.isFollowing = true;
       this.window = [...this.full];
-      for (const plot of this.plots) if (plot.graph) plot.graph.updateOptions({ dateWindow: this.window, valueRange: null });
+      for (const plot of this.plots) if (plot.graph) plot.graph.updateOptions({ dateWindow: this.window, valueRange: plot.valueRange() });
       this.isFollowing = false;
     }
     // What is printed are drawings of the same window: canvases would be pictures of the screen's size.

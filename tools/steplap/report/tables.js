@@ -24,7 +24,7 @@ steplap.tables = (() => {
   }
   const number = (value, unit, digits) => ({ text: quantity(value, unit, digits), value });
   // A number of the summary with its error, in the words of the screen; without an estimate as it is.
-  const written = (text) => text.replace(/-(?=[\d.])/g, '−').replace(/ (?=[±µkMGmnNJPr])/g, '\u202f').replace(/\^2/g, '²').replace(/\^3/g, '³');
+  const written = (text) => text.replace(/-(?=[\d.])/g, '−').replace(/ (?=[±µkMGmnNJPr])/g, '\u00a0').replace(/\^2/g, '²').replace(/\^3/g, '³');
   const known = (entry, key, unit, digits) => (entry[`text_${key}`] ? { text: written(entry[`text_${key}`]), value: entry[key] } : number(entry[key], unit, digits));
   const instant = (entry, key) => (entry[`text_${key}`] ? written(entry[`text_${key}`]) : seconds(entry[key]));
 

@@ -1,0 +1,259 @@
+#!/usr/bin/python3
+"""Pictures of machines in a real browser: what is drawn, looked at closely, taken home; modes in motion.
+
+    picture_test.py STEPLAP MODELS [--keep FOLDER]
+"""
+import csv
+import glob
+import os
+import re
+import unittest
+import xml.etree.ElementTree
+
+import report_test as base
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+WORK, MODELS = base.WORK, base.MODELS
+PHONE = (390, 844)
+# What the fonts of every system have: ASCII, Latin-1, Greek, and of the rest what WGL4 lists.
+EVERYWHERE = re.compile("^[\\n\\t -~\u00a0-\u00ff\u0391-\u03c9\u2013\u2014\u2018-\u201e\u2026\u2190-\u2193\u2206\u2212\u221e\u2248\u2260\u2264\u2265]*$")
+
+
+class PictureTest(base.Page):
+    @classmethod
+    def setUpClass(cls):
+        cls.downloads = os.path.join(WORK.name, "downloads")
+        os.mkdir(cls.downloads)
+        names = ("ladder", "ball_on_incline", "cradle", "crane_arm", "watt_linkage", "tank_with_lid")
+        models = [os.path.join(MODELS, "machines", name + ".toml") for name in names]
+        base.steplap("simulate", *models, "-q", "-o", "out")
+        with open(models[4], encoding="utf-8") as file, open(os.path.join(WORK.name, "gentle.toml"), "w", encoding="utf-8") as gentle:
+            gentle.write(file.read().replace("peak = 2500.0", "peak = 1000.0"))
+        base.steplap("simulate", "gentle.toml", "-q", "-o", "out")
+        for name in names:
+            base.steplap("report", "out/" + name, "-q", "-o", name + ".html")
+        base.steplap("report", "out/watt_linkage", "out/gentle", "-q", "-o", "two.html")
+        base.steplap("modes", models[5], "-q", "-o", "modes.csv", "--report", "modes.html")
+        cls.browser = base.start_browser()
+        cls.browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": cls.downloads})
+
+    def phone(self, page):
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                     {"width": PHONE[0], "height": PHONE[1], "deviceScaleFactor": 2, "mobile": True})
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
+        self.open(page)
+
+    def scene(self, expression):
+        return self.run_js(f"const scene = steplap.page.scenes[0]; return {expression}")
+
+    def saved(self, ending):
+        self.until(lambda: glob.glob(os.path.join(self.downloads, "*." + ending)))
+        path = glob.glob(os.path.join(self.downloads, "*." + ending))[0]
+        with open(path, "rb") as file:
+            content = file.read()
+        os.remove(path)
+        return os.path.basename(path), content
+
+    # --- what is there is drawn --------------------------------------------------------------------
+
+    def test_balls_are_circles_of_their_radius(self):
+        self.open("cradle.html")
+        balls = self.all(".body .round")
+        self.assertEqual(len(balls), 5)
+        wanted = 2 * 0.025 * self.scene("scene.scale")
+        for ball in balls:
+            box = self.run_js("const b = arguments[0].getBoundingClientRect(); return [b.width, b.height]", ball)
+            for side in box:
+                self.assertAlmostEqual(side, wanted, delta=3)  # the line around it
+        self.assertEqual(len(self.all(".body path:not(.spoke)")), 0)  # no box of an inertia
+        self.assertEqual(len(self.all(".rod")), 5)
+
+    def test_an_incline_is_seen_and_a_contact_is_no_rod(self):
+        self.open("ball_on_incline.html")
+        line = self.run_js("""const m = document.querySelector('.floor').getCTM(), s = steplap.page.scenes[0];
+            const [x0, y0, x1, y1] = s.ground.segments[0]; return [...s.toScreen([x0, y0]), ...s.toScreen([x1, y1])]""")
+        slope = (line[3] - line[1]) / (line[2] - line[0])
+        self.assertAlmostEqual(slope, 0.36397, delta=1e-4)  # tan 20°, downwards on the screen
+        self.assertEqual(len(self.all(".floor .edge")), 1)
+        self.assertEqual(len(self.all(".rod")), 0)
+        # The ball touches it: its centre is its radius away, all the way down.
+        for t in (0.0, 0.6, 1.1):
+            self.run_js("steplap.page.show(arguments[0])", t)
+            distance = self.run_js("""const s = steplap.page.scenes[0], [x, y] = s.poseAt('ball', arguments[0]);
+                return x * Math.sin(Math.PI / 9) + y * Math.cos(Math.PI / 9)""", t)
+            self.assertAlmostEqual(distance, 0.06, delta=1e-4)
+
+    def test_half_planes_are_hatched_on_their_solid_side(self):
+        self.open("ladder.html")
+        self.assertEqual(len(self.all(".plane")), 2)
+        sides = self.run_js("""return [...document.querySelectorAll('.plane')].map((plane) => {
+            const box = (e) => { const b = e.getBBox(); return [b.x + b.width / 2, b.y + b.height / 2]; };
+            const a = box(plane), b = box(plane.nextSibling); return [b[0] - a[0], b[1] - a[1]]; })""")
+        floor, wall = sides
+        self.assertGreater(floor[1], 1)  # below, on the screen
+        self.assertLess(wall[0], -1)  # to the left
+
+    def test_motors_are_arcs_and_ropes_are_lines_over_their_points(self):
+        self.open("crane_arm.html")
+        self.assertEqual(len(self.all(".arc.motor")), 2)
+        self.assertEqual(len(self.all(".rope:not(.slack)")), 1)
+        self.assertEqual(len(self.all(".rod")), 0)
+
+    def test_values_on_demand(self):
+        self.open("ladder.html")
+        self.run_js("steplap.page.show(1)")
+        self.assertEqual({e.text for e in self.all(".value-text")}, {""})
+        self.find("#values").click()
+        texts = {e.get_attribute("data-value-of"): e.text.replace("\u00a0", " ") for e in self.all(".value-text")}
+        self.assertEqual(texts["foot"], "137.3 N")  # 14 kg g
+        self.assertEqual(texts["head"], "36.8 N")  # tan 15° of it
+        # Arrows to one scale: as long as the forces are large.
+        lengths = self.run_js("""return ['foot', 'head'].map((name) => { const b = document.querySelector(`.force[data-element=${name}]`).getBBox();
+            return Math.max(b.width, b.height); })""")
+        self.assertAlmostEqual(lengths[1] / lengths[0], 0.268, delta=0.01)
+
+    def test_trails_show_the_way(self):
+        self.open("watt_linkage.html")
+        self.run_js("const s = document.getElementById('trails'); s.value = 'link'; s.dispatchEvent(new Event('change')); steplap.page.show(2)")
+        box = self.run_js("const b = document.querySelector('[data-trail=link]').getBBox(); return [b.width, b.height]")
+        self.assertGreater(box[1], 20)
+        self.assertLess(box[0], 1)  # Watt's: straight, to a pixel
+        self.assertEqual(len(self.all(".trail")), 1)
+
+    # --- closer ------------------------------------------------------------------------------------
+
+    def test_wheel_drag_keys_and_buttons_look_closer(self):
+        self.open("crane_arm.html")
+        svg = self.find(".scene svg")
+        self.run_js("arguments[0].scrollIntoView({block: 'center'})", svg)
+        place = """const s = steplap.page.scenes[0], b = s.svg.getBoundingClientRect();
+            return s.toPlane((120) * s.width / b.width, (90) * s.width / b.width)"""
+        before, scale = self.run_js(place), self.scene("scene.scale")
+        self.run_js("""const b = arguments[0].getBoundingClientRect();
+            arguments[0].dispatchEvent(new WheelEvent('wheel', { deltaY: -400, ctrlKey: true, clientX: b.left + 120, clientY: b.top + 90, cancelable: true }))""", svg)
+        self.assertGreater(self.scene("scene.scale"), 1.5 * scale)
+        for now, then in zip(self.run_js(place), before):  # what is under the pointer stays
+            self.assertAlmostEqual(now, then, delta=1.0 / scale)  # events have whole pixels
+        centre = self.scene("scene.centre")
+        ActionChains(self.browser).move_to_element(svg).click_and_hold().move_by_offset(40, 0).release().perform()
+        self.assertAlmostEqual((centre[0] - self.scene("scene.centre")[0]) * self.scene("scene.scale"), 40, delta=2)
+        svg.send_keys("0")
+        self.assertAlmostEqual(self.scene("scene.scale"), scale)
+        svg.send_keys("+")
+        self.assertAlmostEqual(self.scene("scene.scale"), 1.25 * scale)
+        self.find("#whole").click()
+        self.find("#closer").click()
+        self.assertAlmostEqual(self.scene("scene.scale"), 1.5 * scale)
+        self.assertEqual(self.run_js("return steplap.page.time()"), 0)  # keys moved no time
+
+    def test_two_fingers_on_a_telephone(self):
+        self.phone("crane_arm.html")
+        svg, scale = self.find(".scene svg"), self.scene("scene.scale")
+        self.run_js("arguments[0].scrollIntoView({block: 'center'})", svg)
+        x, y = self.run_js("const b = arguments[0].getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2]", svg)
+        def touch(kind, spread):
+            points = [{"x": x - spread, "y": y, "id": 1}, {"x": x + spread, "y": y, "id": 2}] if spread else []
+            self.browser.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        self.browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.setTouchEmulationEnabled", {"enabled": False})
+        touch("touchStart", 30)
+        for spread in (40, 50, 60):
+            touch("touchMove", spread)
+        touch("touchEnd", 0)
+        self.until(lambda: self.scene("scene.scale") > 1.7 * scale)
+
+    # --- compared, taken home, on a telephone ---------------------------------------------------------
+
+    def test_compared_panels_have_the_same_scales(self):
+        self.open("two.html")
+        ranges = self.run_js("return steplap.page.plots.plots.map((p) => [p.figure.name, ...p.graph.yAxisRange(), p.scale.unit])")
+        self.assertEqual(len(ranges), 4)
+        for a, b in zip(ranges[::2], ranges[1::2]):
+            self.assertEqual(a, b)
+        scales = self.run_js("return steplap.page.scenes.map((s) => [s.scale, s.width, s.height, ...s.centre, s.largestForce])")
+        self.assertEqual(scales[0], scales[1])
+        # Zoomed in, too.
+        self.run_js("steplap.page.plots.plots[0].graph.updateOptions({ dateWindow: [0.5, 1] })")
+        ranges = self.run_js("return steplap.page.plots.plots.map((p) => [...p.graph.xAxisRange(), ...p.graph.yAxisRange()])")
+        self.assertEqual(ranges[0], ranges[1])
+        self.assertEqual(ranges[0][:2], [0.5, 1])
+
+    def test_figures_and_curves_are_saved_as_files(self):
+        self.open("watt_linkage.html")
+        self.run_js("steplap.page.plots.plots[0].graph.updateOptions({ dateWindow: [0.1, 0.3] })")
+        self.find(".plot [data-save=csv]").click()
+        name, content = self.saved("csv")
+        self.assertEqual(name, "Travel.csv")
+        rows = list(csv.reader(content.decode().splitlines()))
+        self.assertEqual(rows[0], ["t [s]", "link.y [m]"])
+        with open(os.path.join(WORK.name, "out/watt_linkage/trajectory.csv"), encoding="utf-8") as file:
+            written = list(csv.reader(line for line in file if not line.startswith("#")))
+        column = written[0].index("link.y [m]")
+        wanted = [(float(r[0]), float(r[column])) for r in written[1:] if 0.1 <= float(r[0]) <= 0.3]
+        self.assertEqual(len(rows) - 1, len(wanted))
+        for row, (t, y) in zip(rows[1:], wanted):
+            self.assertEqual(float(row[0]), t)
+            self.assertAlmostEqual(float(row[1]), y, delta=1e-8)  # single precision of 0.1 m
+        for selector in (".plot", ".scene"):
+            self.find(selector + " [data-save=svg]").click()
+            root = xml.etree.ElementTree.fromstring(self.saved("svg")[1])
+            self.assertGreater(len(list(root.iter("{http://www.w3.org/2000/svg}path"))), 0)
+            self.assertFalse([e for e in root.iter() if e.get("class")])  # it stands alone
+            self.find(selector + " [data-save=png]").click()
+            content = self.saved("png")[1]
+            self.assertEqual(content[:8], b"\x89PNG\r\n\x1a\n")
+            self.assertEqual(int.from_bytes(content[16:20], "big"), round(2 * float(root.get("width"))))
+        self.assertEqual([m["message"] for m in self.browser.get_log("browser")], [])
+
+    def test_pages_fit_a_telephone(self):
+        for page in ("two.html", "crane_arm.html", "modes.html"):
+            self.phone(page)
+            self.assertLessEqual(self.run_js("return Math.max(document.documentElement.scrollWidth, document.body.scrollWidth)"), PHONE[0], page)
+            self.assertEqual(self.run_js("return innerWidth"), PHONE[0])
+
+    def test_no_sign_that_a_font_may_lack(self):
+        for page in ("two.html", "modes.html", "ladder.html"):
+            self.open(page)
+            if page != "modes.html":
+                self.run_js("document.getElementById('values').click(); steplap.page.show(0.5)")
+            for text in self.run_js("""const texts = []; const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+                    while (walk.nextNode()) if (walk.currentNode.parentNode.nodeName !== 'SCRIPT') texts.push(walk.currentNode.data); return texts"""):
+                self.assertRegex(text, EVERYWHERE)
+
+    # --- modes --------------------------------------------------------------------------------------
+
+    def test_modes_move_as_their_shapes_say(self):
+        self.open("modes.html")
+        self.assertEqual([m["message"] for m in self.browser.get_log("browser")], [])
+        with open(os.path.join(WORK.name, "modes.csv"), encoding="utf-8") as file:
+            heads, *rows = list(csv.reader(file))
+        shown = self.all("#modes-table tbody tr")
+        self.assertEqual(len(shown), len(rows))
+        self.run_js("steplap.page.setPlaying(false)")
+        for k, row in enumerate(rows):
+            shown[k].find_element(By.CSS_SELECTOR, "button").click()
+            number = float(re.search(r": ([\d.]+)\u00a0?\s*Hz", self.find("#shown").text).group(1))
+            self.assertAlmostEqual(number, float(row[heads.index("natural frequency [Hz]")]), delta=1e-4 * number)
+            self.assertIn("vibrates and decays", self.find("#shown").text)
+            amplitude = None
+            for phase, part in ((0, "real"), (0.25, "imaginary")):
+                moved = self.run_js("""const s = steplap.page.scene, rest = steplap.data.modes.rest.lid;
+                    return s.poseAt('lid', arguments[0]).map((v, i) => v - rest[i])""", phase)
+                shape = [float(row[heads.index(f"lid.{c} {part}")]) for c in ("x", "y", "theta")]
+                sign = 1 if part == "real" else -1  # Re(z exp(iφ)) at a quarter of a period
+                if amplitude is None:
+                    most = max(range(3), key=lambda i: abs(shape[i]))
+                    amplitude = moved[most] / shape[most]
+                    self.assertGreater(amplitude, 0)
+                for m, z in zip(moved, shape):
+                    self.assertAlmostEqual(m, sign * amplitude * z, delta=1e-12)  # roundings of metres
+        before = [e.get_attribute("transform") for e in self.all(".body")]
+        self.find("#play").click()
+        self.until(lambda: [e.get_attribute("transform") for e in self.all(".body")][1:] != before[1:])
+        self.find("body").send_keys(Keys.NULL)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["picture_test.py"], verbosity=2)

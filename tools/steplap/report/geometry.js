@@ -1,0 +1,31 @@
+// Points and poses: [x, y] and [x, y, angle].
+steplap.geometry = (() => {
+  const turn = (p, angle) => {
+    const c = Math.cos(angle), s = Math.sin(angle);
+    return [c * p[0] - s * p[1], s * p[0] + c * p[1]];
+  };
+  const add = (a, b) => [a[0] + b[0], a[1] + b[1]];
+  const minus = (a, b) => [a[0] - b[0], a[1] - b[1]];
+  const scaled = (a, k) => [k * a[0], k * a[1]];
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1];
+  const length = (a) => Math.hypot(a[0], a[1]);
+  const unit = (a) => (length(a) > 0 ? scaled(a, 1 / length(a)) : [0, 1]);
+  const apply = (pose, p) => add([pose[0], pose[1]], turn(p, pose[2]));
+  const seenIn = (pose, p) => turn(minus(p, [pose[0], pose[1]]), -pose[2]);
+  // Pose of b as the frame a sees it.
+  const relative = (a, b) => [...turn([b[0] - a[0], b[1] - a[1]], -a[2]), b[2] - a[2]];
+  return { turn, add, minus, scaled, dot, length, unit, apply, seenIn, relative };
+})();
+
+// Least box around points.
+steplap.Box = class Box {
+  constructor() { this.low = [Infinity, Infinity]; this.high = [-Infinity, -Infinity]; }
+  take(p, reach = 0) {
+    for (const i of [0, 1]) { this.low[i] = Math.min(this.low[i], p[i] - reach); this.high[i] = Math.max(this.high[i], p[i] + reach); }
+    return this;
+  }
+  get isEmpty() { return !(this.low[0] <= this.high[0] && this.low[1] <= this.high[1]); }
+  get span() { return [this.high[0] - this.low[0], this.high[1] - this.low[1]]; }
+  get middle() { return [0.5 * (this.low[0] + this.high[0]), 0.5 * (this.low[1] + this.high[1])]; }
+  joined(other) { const box = new Box(); for (const b of [this, other]) if (!b.isEmpty) box.take(b.low).take(b.high); return box; }
+};

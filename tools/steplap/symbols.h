@@ -1,0 +1,109 @@
+// How elements are drawn: shapes between places of bodies, and what they tell of the bodies' own geometry.
+//
+// Sizes are those of the model: radii, thicknesses, corners. What has none (a spring's width, a pin's) is left to
+// whoever draws. A kind that is to be drawn adds one function and one line to the table in symbols.cpp; it reads its
+// fields by name, so that no element's header is needed here. A kind that is not in the table is drawn by diamonds where
+// its markers sit and a dotted line between them, which claims nothing.
+#pragma once
+
+#include "mbd/model/model.h"
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace steplap {
+
+/// Where a marker sits: in its body's axes about the centre of gravity; the ground's own.
+struct Place {
+  std::string body;
+  Vec2 point = Vec2::Zero();
+  double angle = 0.0; ///< of the marker's axes against the body's
+
+  /// A point and a direction given in the marker's axes, in the body's.
+  [[nodiscard]] Vec2 in_body(const Vec2& p) const { return point + rotated(p, angle); }
+  [[nodiscard]] Vec2 turned(const Vec2& direction) const { return rotated(direction, angle); }
+};
+
+/// One thing to draw. Types, and what they take:
+///   spring      2 places; direction: along an axis, else from place to place. Styles: "" zigzag, damper (dashpot),
+///               both, tie (bar with plates at its ends), cylinder
+///   rope        2 or more places, a polyline
+///   rod, weld, pin, bushing, neutral   their places
+///   rail        direction that is free
+///   contact     place that touches, place on the line; direction: the normal of the line, towards what touches
+///   touch       centres of two circles; sizes: their radii, 1 if the first is inside the second
+///   edge_touch  centre of a circle, frame of a segment; sizes: radius, from x, from y, to x, to y, thickness
+///   arc         the marker turned about. Styles: motor, drive, spring, limit, brake, couple
+///   arrow       where it acts; direction. Styles: "" (drive or motor), load (quantities force_x, force_y)
+///   friction    none: between the contacts that the element names
+///   joint       none: a step-lap joint, seen by its sheets
+struct Shape {
+  std::string type, style;
+  std::string quantity;          ///< the element's channel that arrows and values show; "" = none
+  std::vector<Place> at;
+  std::optional<Vec2> direction; ///< unit, in the axes of the last place's body
+  std::vector<double> sizes;     ///< m, in the axes of the last place's body where they are points
+};
+
+/// What elements say of a body: m, in its axes about the centre of gravity. Said twice it counts once.
+struct BodyGeometry {
+  std::set<std::array<double, 4>> circles;  ///< x, y, radius, 1 if it is a ring that is open inside
+  std::set<std::array<double, 5>> segments; ///< from x, y, to x, y, thickness
+  std::set<std::vector<std::array<double, 2>>> polygons;
+  std::vector<Vec2> places; ///< where elements act
+};
+
+/// What a symbol is drawn with: the element's fields by name, its places, what it draws.
+class Sketch {
+public:
+  using PlaceOf = std::function<Place(const std::string& marker)>;
+  using GeometryOf = std::function<BodyGeometry&(const std::string& body)>;
+
+  Sketch(const ElementEntry& entry, PlaceOf place_of, GeometryOf geometry_of);
+
+  // Fields: zero, empty or nullopt where the kind has no such field or it is not given.
+  [[nodiscard]] double number(const char* field) const;
+  [[nodiscard]] bool is(const char* field) const;
+  [[nodiscard]] std::string text(const char* field) const;
+  [[nodiscard]] bool is_given(const char* field) const;
+  [[nodiscard]] std::optional<Vec2> vector(const char* field) const;
+  [[nodiscard]] std::vector<Vec2> points(const char* field) const;
+  [[nodiscard]] std::vector<std::string> texts(const char* field) const;
+  /// Of the marker that the field names; nullopt if it names none.
+  [[nodiscard]] std::optional<Place> place(const char* field) const;
+  [[nodiscard]] Place place_of(const std::string& marker) const { return place_of_(marker); }
+  /// Of all its marker fields, in order.
+  [[nodiscard]] std::vector<Place> places() const;
+  /// A field's direction, unit, turned from the axes of marker b into its body's.
+  [[nodiscard]] std::optional<Vec2> direction(const char* field) const;
+
+  Shape& draw(Shape shape);
+  void replace(std::vector<Shape> shapes) { shapes_ = std::move(shapes); }
+  /// Geometry of the body that carries the place; corners and ends in the marker's axes.
+  void circle(const Place& centre, double radius, bool is_ring = false);
+  void segment(const Place& frame, const Vec2& from, const Vec2& to, double thickness);
+  void polygon(const Place& frame, const std::vector<Vec2>& corners);
+  /// The element acts there.
+  void note_place(const Place& place) { geometry_of_(place.body).places.push_back(place.point); }
+
+  [[nodiscard]] const ElementEntry& entry() const { return *entry_; }
+  [[nodiscard]] const std::vector<Shape>& shapes() const { return shapes_; }
+
+private:
+  template <class T> [[nodiscard]] std::optional<T> value(const char* field) const;
+
+  const ElementEntry* entry_;
+  PlaceOf place_of_;
+  GeometryOf geometry_of_;
+  std::vector<Shape> shapes_;
+};
+
+/// Draws the element as its kind is drawn, or as its field `draw` asks. What it says of bodies is said in either case.
+void draw_element(Sketch& sketch);
+
+} // namespace steplap
