@@ -119,7 +119,9 @@ std::string rounded(double value, int last) {
   if (size == 0.0) return "0";
   const int first = static_cast<int>(std::floor(std::log10(size)));
   char text[64];
-  if (first < -3 || first > 6) {
+  const bool is_zero = size < 0.5 * std::pow(10.0, last); // beside its interval
+  if (is_zero && last < -k_most) return "0";
+  if (!is_zero && (first < -3 || first > 6)) {
     std::snprintf(text, sizeof text, "%.*e", std::clamp(first - last, 0, k_most - 1), value);
     return tidied(text);
   }

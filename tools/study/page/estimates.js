@@ -70,7 +70,7 @@ study.estimates = (() => {
     const { failed, list, more, more_runs: moreRuns } = data.reasons;
     const told = `${failed} of ${data.samples.total} samples`;
     if (!failed) return [make('p', { id: 'failed-runs' }, `Of ${data.samples.total} samples none failed to give a result.`)];
-    const rows = list.map((r) => { const first = study.samples.button(r.first); return [r.status, r.reason, String(r.count), first]; });
+    const rows = list.map((r) => { const first = study.samples.button(r.first); return [r.status, { text: r.reason, class: 'words' }, String(r.count), first]; });
     const parts = [make('p', { id: 'failed-runs' }, make('strong', { class: 'doubt' }, `${told} gave no result that counts: `), 'their runs did not reach their end, or are not to be trusted. ',
       ['reliability', 'sample'].includes(data.kind) ? counted[data.about.failed] || '' : ''),
     scroll(table(['status', 'reason', 'samples', 'first'], rows, [2, 3]))];
