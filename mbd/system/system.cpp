@@ -1,7 +1,7 @@
 #include "mbd/system/system.h"
 
-#include "mbd/model/method.h"
 #include "mbd/base/name_pattern.h"
+#include "mbd/model/method.h"
 #include "mbd/system/requested_channels.h"
 
 #include <algorithm>

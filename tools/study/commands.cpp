@@ -9,6 +9,9 @@
 #include "tools/steplap/text_table.h"
 #include "tools/study/export.h"
 #include "tools/study/kinds.h"
+#include "tools/study/progress_line.h"
+#include "tools/study/report_about.h"
+#include "tools/study/report_page.h"
 #include "tools/study/show.h"
 
 #include <charconv>
@@ -24,6 +27,7 @@ struct Options {
   std::string file;
   std::optional<std::string> store, sample, output, threads;
   bool is_restarted = false, is_changed = false, is_findings = false, is_growth = false, is_histories = false;
+  bool is_reported = false, is_overwriting = false;
 };
 
 std::string default_store(const std::string& file) { return (std::filesystem::path("out") / (std::filesystem::path(file).stem().string() + ".sqlite")).string(); }
@@ -45,33 +49,10 @@ long whole_number(const std::string& text, const char* option, long least) {
   return value;
 }
 
-// One line on a terminal: how far, how fast, the last estimate.
-class ProgressLine {
-public:
-  explicit ProgressLine(Console& console) : console_(console) {}
-  ~ProgressLine() {
-    if (is_shown_) console_.err << "\r\x1b[K" << std::flush;
-  }
-  void operator()(const Pace& pace) {
-    constexpr double k_between = 0.2; // s
-    if (!console_.is_terminal || console_.verbosity == Verbosity::quiet || pace.seconds - last_ < k_between) return;
-    last_ = pace.seconds;
-    is_shown_ = true;
-    char text[100];
-    std::snprintf(text, sizeof text, "%ld samples, %.3g a second, %.0f s", pace.samples, pace.rate, pace.seconds);
-    console_.err << "\r\x1b[K" << text << (pace.stored ? ", " + std::to_string(pace.stored) + " from the store" : "")
-                 << (pace.estimate.empty() ? "" : "; " + pace.estimate) << std::flush;
-  }
-
-private:
-  Console& console_;
-  double last_ = -1.0;
-  bool is_shown_ = false;
-};
-
 Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, Console& console) {
   std::vector<Diagnostic> problems;
   const JointLaw law(loaded.study, loaded.nominal, problems); // checked by the reader
+  store.describe(about_of(loaded, law));
   ProgressLine line(console);
   Evaluator evaluator(loaded, store, ranks, threads, std::ref(line));
   StudyRun run{loaded, law, evaluator, store};
@@ -82,6 +63,13 @@ Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, in
     return answer;
   }
   throw std::logic_error("a kind of study that the reader let pass is not there");
+}
+
+std::string page_of(const std::string& store) { return std::filesystem::path(store).replace_extension(".html").string(); }
+
+void write_page(const std::string& path, const std::string& page, IfExists if_exists) {
+  Store store(path);
+  write_file(page, report_page(store, path), if_exists);
 }
 
 ExitCode code_of(Standing standing) {
@@ -105,6 +93,10 @@ ExitCode run_first(const Options& o, const LoadedStudy& loaded, const Ranks& ran
   if (console.verbosity != Verbosity::quiet) {
     show(store, loaded.study.title, console.out);
     console.out << "Store: " << path << "\n";
+  }
+  if (o.is_reported) {
+    write_page(path, page_of(path), IfExists::replace);
+    if (console.verbosity != Verbosity::quiet) console.out << "Page: " << page_of(path) << "\n";
   }
   return code_of(answer.standing);
 }
@@ -163,6 +155,7 @@ A study that was interrupted goes on when it is run again.
                      store_option(o),
                      {"--restart", &o->is_restarted, "", "drop what the store holds"},
                      {"--changed", &o->is_changed, "", "the study asks for something else now: keep the samples that are the same"},
+                     {"--report", &o->is_reported, "", "write the page of the study beside the store (see steplap study report)"},
                      {"--threads", &o->threads, "N", "threads (default: all processors)"}};
   command.run = [o, &ranks](Console& console) { return run_study(*o, ranks, console); };
   return command;
@@ -178,6 +171,31 @@ Command show_command() {
     return guarded([&] {
       Store store(store_of(*o));
       show(store, "", console.out);
+      return ExitCode::done;
+    });
+  };
+  return command;
+}
+
+Command report_command() {
+  const auto o = std::make_shared<Options>();
+  Command command;
+  command.name = "report";
+  command.summary = "one page of a study: estimates, curves, samples";
+  command.examples = R"(  steplap study report friction.toml
+  steplap study report out/friction.sqlite -o friction.html
+The page is one file that opens in any browser without a network. All of it is read from the store; a study that
+has not ended is shown as far as it is. Without -o it is written beside the store.
+)";
+  command.options = {{"FILE", &o->file, "FILE", "study file or store", true},
+                     {"--store", &o->store, "STORE", "file of the results (default: out/<name of the study>.sqlite)"},
+                     {"-o,--output", &o->output, "PAGE", "the page (default: beside the store)"},
+                     {"-f,--force", &o->is_overwriting, "", "overwrite an earlier page"}};
+  command.run = [o](Console& console) {
+    return guarded([&] {
+      const std::string store = store_of(*o), page = o->output.value_or(page_of(store));
+      write_page(store, page, o->is_overwriting ? IfExists::replace : IfExists::refuse);
+      if (console.verbosity != Verbosity::quiet) console.out << "Written to " << page << "\n";
       return ExitCode::done;
     });
   };
@@ -269,7 +287,7 @@ Command schema_command() {
 } // namespace
 
 std::vector<Command> study_commands(const Ranks& ranks) {
-  return {run_command(ranks), show_command(), export_command(), replay_command(), schema_command()};
+  return {run_command(ranks), show_command(), report_command(), export_command(), replay_command(), schema_command()};
 }
 
 } // namespace steplap::study

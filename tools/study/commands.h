@@ -6,7 +6,7 @@
 
 namespace steplap::study {
 
-/// run, show, export, replay, schema; `ranks` has to outlive them.
+/// run, show, report, export, replay, schema; `ranks` has to outlive them.
 [[nodiscard]] std::vector<Command> study_commands(const Ranks& ranks);
 
 } // namespace steplap::study

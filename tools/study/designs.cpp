@@ -330,11 +330,26 @@ void check_sweep(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   if (study.sweep.design == "grid" && count > 1e9) problems.push_back({study.sweep.where, "the grid has " + number_text(count) + " points: too many"});
 }
 
+namespace {
+
+long points_of(const std::string& design, const std::vector<std::vector<double>>& levels) {
+  std::size_t product = 1, sum = 1, longest = 1;
+  for (const auto& list : levels) {
+    product *= list.size();
+    if (list.size() > 1) sum += list.size();
+    longest = std::max(longest, list.size());
+  }
+  return static_cast<long>(design == "grid" ? product : design == "list" ? longest : sum);
+}
+
+} // namespace
+
 Answer run_sweep(StudyRun& run) {
   std::vector<std::vector<double>> levels;
   for (std::size_t i = 0; i < run.study().variables.size(); ++i) levels.push_back(levels_of(run, i));
   Sweeper sweeper(run);
   const std::string& design = run.study().sweep.design;
+  run.evaluator.expect(points_of(design, levels));
   if (design == "grid") sweep_grid(levels, sweeper);
   else if (design == "list") sweep_list(levels, sweeper);
   else sweep_one_at_a_time(levels, run.law.nominal(), sweeper);
@@ -369,6 +384,7 @@ Answer run_sample(StudyRun& run) {
   const auto total = static_cast<std::size_t>(run.study().sample.samples);
   const std::unique_ptr<Design> design = design_of(run.study(), dimension);
   Summary summary(run.loaded);
+  run.evaluator.expect(static_cast<long>(total));
   std::vector<double> uniform, u(dimension), points;
   for (std::size_t done = 0; done < total;) {
     const std::size_t count = std::min(k_block, total - done);

@@ -167,6 +167,11 @@ void Evaluator::note(const Finding& finding) {
   pace_.estimate = finding.method + ": " + text;
 }
 
+void Evaluator::expect(long more, bool is_guess) {
+  pace_.expected = more > 0 ? asked() + more : 0;
+  pace_.is_guess = is_guess;
+}
+
 void Evaluator::serve(const LoadedStudy& loaded, const Ranks& ranks, int threads) {
   Team team(loaded, threads);
   const std::size_t width = loaded.study.variables.size();

@@ -25,6 +25,8 @@ struct Pace {
   double seconds = 0.0;
   double rate = 0.0;             ///< samples run a second, lately
   std::string estimate;          ///< the last that was noted
+  long expected = 0;             ///< samples when what runs now will have ended; 0: not known
+  bool is_guess = false;         ///< that hangs on how an estimate goes on
 };
 
 class Team;
@@ -40,6 +42,8 @@ public:
   [[nodiscard]] long asked() const { return next_ - 1; }
   /// Keeps an estimate as it grew, and shows it.
   void note(const Finding& finding);
+  /// For the time left: so many samples are still to come, by a guess from how an estimate grew, or for sure; 0: not known.
+  void expect(long more, bool is_guess = false);
   /// Seconds since the study began, of this call of the program.
   [[nodiscard]] double seconds() const;
 

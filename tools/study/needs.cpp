@@ -112,6 +112,7 @@ Answer run_needs(StudyRun& run) {
     points.insert(points.end(), run.law.nominal().begin(), run.law.nominal().end());
     points.back() = static_cast<double>(k); // the variable "variant" is the last
   }
+  run.evaluator.expect(static_cast<long>(variants.size() + 1));
   const std::vector<StoredSample>& samples = run.evaluator.evaluate(points);
   Answer answer;
   const Outcome& base = samples[0].outcome;

@@ -26,6 +26,7 @@ public:
     const bool has_form = asks("form") || asks("sorm");
     if (has_form || asks("importance_sampling")) points_ = find_design_points(limit_, asks("sorm"));
     for (const std::string& method : settings_.methods) {
+      run_.evaluator.expect(0);
       if (method == "monte_carlo") estimates_.push_back(monte_carlo(limit_, target_of(settings_)));
       if (method == "directional") estimates_.push_back(directional(limit_, target_of(settings_)));
       if (method == "subset") estimates_.push_back(subset_simulation(limit_, target_of(settings_)));

@@ -34,9 +34,12 @@ void say_why_it_ended(Estimate& e, const SamplingTarget& target, bool is_late) {
   e.status = text;
 }
 
-void note_growth(LimitFunction& limit, const Estimate& e) {
+// The coefficient of variation falls as the root of the number of samples.
+void note_growth(LimitFunction& limit, const Estimate& e, const SamplingTarget& target) {
   Finding f{e.method, limit.subject(), "probability", e.unsafe, e.safe_interval.low, e.unsafe_interval.high, e.samples};
   limit.run().evaluator.note(f);
+  const double wanted = static_cast<double>(e.samples) * std::pow(e.cov / target.cov, 2), most = static_cast<double>(target.samples);
+  limit.run().evaluator.expect(static_cast<long>(std::isfinite(wanted) ? std::min(wanted, most) : most) - e.samples, true);
 }
 
 // Sums of weights, and the interval of their mean.
@@ -95,7 +98,7 @@ Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target) {
     // Of the failures proper: runs without a result are no information about the probability.
     if (failures > 0.0) e.cov = std::sqrt((1.0 - e.safe) / failures);
     e.bad = static_cast<long>(bad);
-    note_growth(limit, e);
+    note_growth(limit, e, target);
   }
   say_why_it_ended(e, target, is_late);
   if (failures == 0.0) e.status = "no failure among " + std::to_string(e.samples) + " samples: only a bound is known";
@@ -203,7 +206,7 @@ Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const S
     e.safe_interval = safe.interval(target.confidence);
     e.unsafe_interval = unsafe.interval(target.confidence);
     e.cov = safe.cov();
-    note_growth(limit, e);
+    note_growth(limit, e, target);
   }
   say_why_it_ended(e, target, is_late);
   constexpr double k_uneven = 0.1;
@@ -347,7 +350,7 @@ Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
     e.safe_interval = safe.interval(target.confidence);
     e.unsafe_interval = unsafe.interval(target.confidence);
     e.cov = safe.cov();
-    note_growth(limit, e);
+    note_growth(limit, e, target);
   }
   say_why_it_ended(e, target, is_late);
   if (safe.hits == 0) e.status = "no ray met failure";

@@ -71,6 +71,7 @@ Answer elasticities(StudyRun& run) {
         points[points.size() - n + i] += side * steps[i] / (1 << level);
       }
   }
+  run.evaluator.expect(static_cast<long>(points.size() / run.law.nominal().size()));
   const std::vector<StoredSample>& rows = run.evaluator.evaluate(points);
   Answer answer;
   const std::vector<std::string> names = run.loaded.number_names();
@@ -164,6 +165,7 @@ Answer morris(StudyRun& run) {
       if (is_down[d]) order[static_cast<std::size_t>(std::find(order.begin(), order.end(), d) - order.begin())] += n; // marks the sign
     orders.push_back(order);
   }
+  run.evaluator.expect(static_cast<long>(points.size() / run.law.nominal().size()));
   const std::vector<StoredSample>& rows = run.evaluator.evaluate(points);
   std::vector<std::vector<Effects>> effects(count, std::vector<Effects>(n));
   long missing = 0;
@@ -205,6 +207,7 @@ Answer sobol(StudyRun& run) {
   const OT::ComposedDistribution cube(OT::ComposedDistribution::DistributionCollection(n, OT::Uniform(0.0, 1.0)));
   const OT::Sample design = OT::SobolIndicesExperiment(cube, static_cast<OT::UnsignedInteger>(s.samples), false).generate();
   OT::Sample output(design.getSize(), count);
+  run.evaluator.expect(static_cast<long>(design.getSize()));
   constexpr std::size_t k_block = 10000;
   long bad = 0;
   std::vector<double> points, u(n), values(run.law.nominal().size());
@@ -260,6 +263,7 @@ Answer tornado(StudyRun& run) {
       const Variable& v = run.study().variables[i];
       points[points.size() - run.law.nominal().size() + i] = v.has_distribution() ? run.law.quantile(d, is_high ? 0.95 : 0.05) : v.range[is_high];
     }
+  run.evaluator.expect(static_cast<long>(points.size() / run.law.nominal().size()));
   const std::vector<StoredSample>& rows = run.evaluator.evaluate(points);
   Answer answer;
   const std::vector<std::string> names = run.loaded.number_names();

@@ -246,6 +246,18 @@ std::string Store::setting(const std::string& key) {
   return s.step() ? s.text(0) : "";
 }
 
+void Store::describe(const std::string& about) {
+  if (setting("about") == about) return;
+  begin();
+  set("about", about);
+  flush();
+}
+
+void Store::hold() {
+  execute("BEGIN");
+  read_identity(); // takes the lock, and the size of this instant
+}
+
 void Store::read_identity() {
   const auto number = [this](const char* pragma) {
     Statement s(*this, std::string("PRAGMA ") + pragma);

@@ -74,6 +74,10 @@ public:
   [[nodiscard]] std::vector<Finding> growth();
   [[nodiscard]] std::vector<std::string> notes();
   [[nodiscard]] std::string setting(const std::string& key); ///< "" if there is none
+  /// Keeps what report_about.h tells of the study, for the page; not part of what the store is of.
+  void describe(const std::string& about);
+  /// What is read from now on is of one instant, whatever another process writes.
+  void hold();
   /// Of the i-th number: how many samples have a value; the one at a place when they are sorted, from 0.
   [[nodiscard]] long count_of(std::size_t i);
   [[nodiscard]] double order_statistic(std::size_t i, long place);

@@ -192,7 +192,7 @@ private:
       add(model->where(), "there is no model '" + model->text() + "'" + did_you_mean(model->text(), model_names()));
     if (!paths || paths->type != Node::Type::array || paths->children.empty()) {
       if (const Node* unit = entry.find("unit"); unit && unit->type == Node::Type::text) {
-        if (!parse_quantity("1", unit->text()).problem.empty() || !parse_quantity("1 " + unit->text(), unit->text()).problem.empty())
+        if (!parse_quantity("1 " + unit->text(), unit->text()).problem.empty()) // a bare number is none where a unit is wanted
           add(unit->where(), "'" + unit->text() + "' is not a unit");
         return unit->text();
       }

@@ -1,0 +1,46 @@
+// Charts by Plotly, of one look; they shrink to the paper where the page is printed.
+study.charts = (() => {
+  const { make } = study;
+  const colours = { blue: '#0072b2', vermillion: '#d55e00', green: '#007a5a', orange: '#e69f00', purple: '#a8487c', sky: '#56b4e9', grey: '#6b6b6b' };
+  const cycle = [colours.blue, colours.vermillion, colours.green, colours.purple, colours.orange, colours.sky, colours.grey];
+  const all = [];
+  const isTouched = matchMedia('(pointer: coarse)').matches;
+  // Plotly reads a little markup in its texts: names stay text.
+  const safe = (text) => String(text).replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/>/g, '&gt;');
+  const axis = (title, more = {}) => ({ title: { text: safe(title), standoff: 8 }, automargin: true, gridcolor: '#e3e3e3', zerolinecolor: '#b5b5b5', linecolor: '#b5b5b5', exponentformat: 'power', ...more });
+
+  // Of Plotly's buttons those that do not ask a server: one would upload the chart.
+  const config = { responsive: true, displaylogo: false, plotlyServerURL: '', modeBarButtons: [['toImage', 'zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'resetScale2d']] };
+
+  // One chart with its heading at the end of `parent`. A click on a point that has a sample's place as customdata shows it.
+  function add(parent, { title = '', note = '', traces, layout = {}, height = 320, name = '' }) {
+    const canvas = make('div', { class: 'canvas' });
+    const box = make('div', { class: 'chart', 'data-chart': name || title }, ...(title ? [make('h3', {}, title)] : []), canvas, ...(note ? [make('p', { class: 'note' }, note)] : []));
+    parent.append(box);
+    const whole = { height, margin: { l: 58, r: 14, t: 12, b: 44 }, font: { family: '"DejaVu Sans", "Segoe UI", Arial, sans-serif', size: 12, color: '#1a1a1a' },
+      paper_bgcolor: '#fff', plot_bgcolor: '#fff', hovermode: 'closest', dragmode: isTouched ? false : 'zoom', showlegend: traces.filter((t) => t.showlegend !== false && t.name).length > 1,
+      legend: { orientation: 'h', y: 1.02, yanchor: 'bottom', x: 0, font: { size: 11 } }, bargap: 0.3, ...layout };
+    Plotly.newPlot(canvas, traces, whole, config);
+    canvas.on('plotly_click', (event) => {
+      const picked = event.points.find((p) => Number.isInteger(p.customdata));
+      if (picked) study.samples.show(picked.customdata);
+    });
+    all.push({ canvas, box });
+    return { canvas, box };
+  }
+  // The points of a band between two curves, as one closed outline.
+  function band(x, low, high, colour, more = {}) {
+    return { x: [...x, ...[...x].reverse()], y: [...high, ...[...low].reverse()], type: 'scatter', mode: 'none', fill: 'toself', fillcolor: `${colour}33`, hoverinfo: 'skip', ...more };
+  }
+  // What goes on paper is as wide as the paper's column.
+  function fit(isPaper) {
+    for (const { canvas, box } of all) {
+      if (!canvas.isConnected) continue;
+      const isWide = box.parentElement.classList.contains('one');
+      Plotly.relayout(canvas, isPaper ? { width: isWide ? 690 : 335, autosize: false } : { width: null, autosize: true });
+    }
+  }
+  window.addEventListener('beforeprint', () => fit(true));
+  window.addEventListener('afterprint', () => fit(false));
+  return { add, band, safe, axis, colours, cycle, all };
+})();
