@@ -39,6 +39,7 @@ struct SharedLoad {
 struct JointAssessment {
   static constexpr double k_touching = 1e-9; ///< m: a clearance of zero is not closed by rounding
   static constexpr double k_held_beyond = 1e-6; ///< of the margin: what locating an onset of slip may leave
+  static constexpr double k_off_surface = 1e-2; ///< of the margin: what steps of a usual tolerance leave of a joint that slides
   std::string joint;
   bool has_slipped = false;
   std::optional<double> first_slip;        ///< s; also for a monitored joint that would have slipped
@@ -74,6 +75,10 @@ struct JointAssessment {
   /// It is part of the motion, never slipped, and yet had less than it needed to hold.
   [[nodiscard]] bool contradicts_itself() const {
     return !is_monitored && !has_slipped && !has_come_apart && smallest_margin < 1.0 - k_held_beyond;
+  }
+  /// A part of the motion, it was found to bear more than it can: what the method says of the motion within a step is not so.
+  [[nodiscard]] bool bears_too_much() const {
+    return !is_monitored && !has_come_apart && smallest_margin < 1.0 - k_off_surface;
   }
   [[nodiscard]] bool is_known() const { return smallest_margin == smallest_margin; }
 

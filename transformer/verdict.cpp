@@ -211,6 +211,10 @@ std::string contradiction_of(const Model& model, const std::vector<JointAssessme
     if (joint.contradicts_itself())
       return "'" + joint.joint + "' holds with a margin of " + limit_text(joint.smallest_margin) + " at t = " +
              limit_text(joint.time_of_smallest) + " s, and below 1 it has to slip: " + remedy(model.simulation);
+  for (const JointAssessment& joint : joints)
+    if (joint.bears_too_much())
+      return "'" + joint.joint + "' slides with a margin of " + limit_text(joint.smallest_margin) + " at t = " +
+             limit_text(joint.time_of_smallest) + " s, and below 1 nothing bears what it is said to bear: " + remedy(model.simulation);
   return "";
 }
 

@@ -34,6 +34,22 @@ TEST_CASE("core tells sheets, layers, interfaces, overlaps, capacity and masses"
   CHECK(has(paper.out, "411.89 kN")); // the joint's capacity, as steplap joint has it
 }
 
+TEST_CASE("core tells yokes that two tables share, compliance, edges and what acceleration across does") {
+  CHECK(has(steplap_does({"core", STEPLAP_MODELS "/layouts/five_limb.toml"}).out, "yokes: 20091.1 kg of the 85350 kg"));
+  const Outcome outcome = steplap_does(
+      {"core", k_layout, "--set", "core.core.tangential_stiffness=2e10", "--set", "core.core.edge_stiffness=1e11", "--set",
+       "core.core.allowed_line_load=2e7", "--set", "core.core.transverse_acceleration=rail humping", "--set",
+       "core.core.transverse_support=front", "--set", "core.core.transverse_slices=2"});
+  CHECK(outcome.code == 0);
+  // 7650 · 0.27 mm · 1706 sheets = 3524 kg/m²: a quarter and three quarters of it, 881 and 2643, lean on the middles of
+  // the two slices; interfaces of one kind lie some sheets off the middle in the mean.
+  for (const char* part : {"yields by 2e+10 N/m before it slides", "once 0.5 mm have closed, allowed 2e+07 N/m, 43.4",
+                           "pressed by 879 to 2644 Pa more for every m/s²"})
+    CHECK_MESSAGE(has(outcome.out, part), part);
+  CAPTURE(outcome.out);
+  CHECK(outcome.err == "");
+}
+
 TEST_CASE("core draws elevation, section, corner and book") {
   const Workbench bench;
   const Outcome outcome = steplap_does(

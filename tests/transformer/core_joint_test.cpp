@@ -297,6 +297,28 @@ TEST_CASE("edges of a core: an allowed line load is a criterion, met, not met, o
   CHECK(find(judge(model, *system, RunResult(), "")).outcome == Verdict::open);
 }
 
+// Within long steps of an explicit method a stiff joint that slides may be said to bear many times what it can, although the
+// ends of the steps are right: such a run must not be believed.
+TEST_CASE("an elastic joint that is found beyond its limit surface makes the run distrusted") {
+  for (const char* integrator : {"dop853", "rodas5p"}) {
+    const Model model = model_of("bands = \"mean\"\ncontact_stiffness = 2e10\npressure_loss = 0.1\n"
+                                 "[[element]]\nkind = \"weld\"\nname = \"held\"\na = \"active part\"\nb = \"ground\"\n"
+                                 "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"front limb\"\nforce_x = \"push\"\n"
+                                 "[[signal]]\nname = \"push\"\nkind = \"half_sine\"\npeak = -1.2e6\nduration = 0.03\n",
+                                 {std::string("simulation.integrator=") + integrator, "simulation.end=0.005"});
+    const auto system = compile(model);
+    const RunResult result = simulate(*system, system->initial_state(), options_of(model));
+    const JointAssessment joint = assess_joints(model, result).at(0);
+    const Judgement judgement = judge(model, *system, result, "");
+    REQUIRE(joint.has_slipped);
+    CAPTURE(integrator);
+    CAPTURE(joint.smallest_margin);
+    if (joint.smallest_margin > 0.99) CHECK(judgement.distrust == "");
+    else CHECK(has(judgement.distrust, "'front limb joint' slides with a margin of "));
+    if (std::string(integrator) == "rodas5p") CHECK(joint.smallest_margin == doctest::Approx(1.0).epsilon(1e-4));
+  }
+}
+
 TEST_CASE("stiffnesses, losses and shares that no core has are told of") {
   const auto said = [](const std::string& more) {
     std::string all;
