@@ -5,22 +5,20 @@
 // packed vector y holds the coordinates, their rates, the inner states of force elements, and two integrals of power: energy
 // dissipated and work done by loads and drives.
 //
-// One object per thread: it owns all scratch memory; rates() and project() allocate nothing.
+// Three parts make it up, which know nothing of each other but what is handed on: where everything is (kinematics.h),
+// the rows that hold (constraint_solution.h), and what follows from accelerations (reactions.h). What a set of modes
+// fixes is in the layout, what an evaluation changes in the parts, what it finds in the functions below
+// "by-products". One object per thread: it owns all scratch memory; rates() and project() allocate nothing.
 #pragma once
 
-#include "mbd/dynamics/layout.h"
+#include "mbd/dynamics/constraint_solution.h"
+#include "mbd/dynamics/reactions.h"
 
 #include <limits>
 #include <memory>
 #include <vector>
 
 namespace steplap {
-
-/// Largest constraint residuals, m or rad (position) and m/s or rad/s (velocity).
-struct Residual {
-  double position = 0.0;
-  double velocity = 0.0;
-};
 
 /// A constraint that projection cannot meet.
 struct ConstraintFailure : NumericalFailure {
@@ -93,10 +91,17 @@ public:
   // --- by-products of the last rates() ----------------------------------------------------------
   [[nodiscard]] const std::vector<double>& watch() const { return watch_; }
   [[nodiscard]] const std::vector<double>& watch_rate() const { return watch_rate_; }
-  [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
-  [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
+  /// Both with all bodies where they are.
+  [[nodiscard]] const Evaluation& evaluation() {
+    kinematics_.complete();
+    return evaluation_;
+  }
+  [[nodiscard]] const std::vector<Motion<double>>& motion() {
+    kinematics_.complete();
+    return kinematics_.motion();
+  }
   /// Multipliers of the layout's active rows.
-  [[nodiscard]] const std::vector<double>& multipliers() const { return right_side_; }
+  [[nodiscard]] const std::vector<double>& multipliers() const { return rows_.multipliers(); }
   /// The loads that sticking elements share in more than one way, as last solved by watch_merged(); null where
   /// every wrench is its element's own.
   [[nodiscard]] const LoadSharing* sharing() const;
@@ -131,25 +136,12 @@ public:
   [[nodiscard]] const System& system() const { return system_; }
 
 private:
-  void place(double t, const double* q, const double* v);
   void take_inner(const double* inner);
   Residual project_rows(double t, double* y, double tolerance);
   void settle_inner(double t, double* y);
-  [[nodiscard]] bool is_placed(double t, const double* y) const;
-  void aim_locks(double t);
-  void place_member(int body);
   void apply_sliding();
   void sliding_rates(std::size_t i, double* rate) const;
   void apply_forces();
-  template <bool WithBias> MeasureValue<double> load_row(std::size_t r);
-  double pull(std::size_t r, const double* a);
-  void evaluate_rows();
-  void reduce_rows();
-  MeasureValue<double> load_candidate(const RowSpec& spec, SchurRow& row) const;
-  void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
-  [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
-  void solve_constraints(double* a);
-  [[nodiscard]] double lock_reaction(const Lock& lock, const double* a) const;
   void finish_power(const double* a);
   void finish_watches();
   Residual constraint_values(double t, const double* y);
@@ -157,21 +149,11 @@ private:
   void rates_nearby(double t, const double* y, double* dy);
   [[nodiscard]] bool reach_positions(double t, double* y, double tolerance, Residual& now);
   void reach_velocities(double t, double* y, Residual now, double tolerance);
-  void move_by(const std::vector<double>& residual, double* target);
   [[noreturn]] void fail_projection(double t) const;
   [[noreturn]] void fail_velocities(double t) const;
-  void factor_rows(double shift = 0.0);
-  void add_response(double* change);
-  void body_accelerations(const double* dy);
-  void place_edges();
-  void find_pin_forces(const double* cluster_a);
-  void add_carried(const RowSpec& spec, double lambda);
   [[nodiscard]] double place_rounding(const double* y) const;
   [[nodiscard]] double rate_rounding(const double* y) const;
-  [[nodiscard]] double kept_change(std::size_t row, const double* change) const;
   struct CandidateRow;
-  void merged_wrenches(const double* dy);
-  [[nodiscard]] double* joint_multipliers(const RigidEdge& edge);
   void decide_rank();
   void find_sharing();
   [[nodiscard]] bool is_shared(int friction) const;
@@ -191,7 +173,6 @@ private:
   LayoutKey key_; ///< of the present one
   Coordinates choice_ = Coordinates::absolute;
   Layout* layout_ = nullptr;
-  bool is_factored_ = false;
   bool is_rank_new_ = false; ///< which rows of friction the equations leave out is decided, or was, since set_state()
   bool is_merged_near_ = false; ///< some merged joint or group was near its limit when last watched
   bool was_merged_near_ = false; ///< or the time before: the other end of a step
@@ -201,24 +182,20 @@ private:
   Evaluation evaluation_;
   std::vector<std::unique_ptr<FrictionScratch>> scratch_;
   std::vector<FrictionScratch*> scratch_pointers_;
-  std::vector<Motion<double>> motion_;  ///< bodies, links, clusters of several bodies
-  std::vector<BodyForce> force_;        ///< the same; of a body that is its cluster's only one, the cluster's
+  std::vector<BodyForce> force_; ///< per slot; of a body that is its cluster's only one, the cluster's
   std::vector<double> contact_force_, watch_, watch_rate_, inner_;
-  std::vector<SignalJet> lock_target_;  ///< per lock, at lock_time_
-  double lock_time_ = std::numeric_limits<double>::quiet_NaN();
-  double placed_time_ = std::numeric_limits<double>::quiet_NaN(); ///< of motion_
+  Kinematics kinematics_;
+  ConstraintSolution rows_;
+  Reactions reactions_;
+  const Motion<double>* motion_;   ///< of kinematics_
+  double* friction_force_;         ///< of reactions_
   double lowest_pivot_ = 1.0;
   double booked_[2] = {0.0, 0.0};       ///< dissipated energy and work at the last rates(), J
   const Integrals* integrals_ = nullptr;
-  std::vector<double> placed_;          ///< state of rates_nearby
+  std::vector<double> placed_;     ///< state of rates_nearby
+  std::vector<double> kept_;       ///< scratch of keep_allowed, per active row
   mutable std::vector<double> cluster_q_, cluster_v_; ///< 3 per cluster, where some are in mechanisms
   std::vector<double> cluster_a_;
-  std::vector<Pair<double>> pin_force_; ///< scratch of find_pin_forces
-  std::vector<double> right_side_;      ///< then multipliers of active rows
-  std::vector<double> row_value_, row_rate_, target_rate_;
-  std::vector<double> acceleration_;    ///< 3 per body
-  std::vector<BodyForce> wrench_;       ///< scratch of merged_wrenches, in the clusters' axes
-  std::vector<double> row_force_, friction_force_;
 };
 
 } // namespace steplap

@@ -294,7 +294,8 @@ std::vector<const RowSpec*> pin_rows(const System& system, const Layout& layout)
 }
 
 void find_riding(const System& system, const State& state, Layout& layout) {
-  std::vector<char> is_needed = system.is_body_used;
+  std::vector<char> is_needed(system.bodies.size(), 0);
+  for (const auto& group : system.groups) group->mark_bodies(is_needed);
   for (const ActiveRow& row : layout.active) is_needed[row.spec->a] = is_needed[row.spec->b] = 1;
   for (const int f : layout.sliding) {
     const RowSpec* rows = system.frictions[f].friction->rows(state.friction[f]);
@@ -303,7 +304,7 @@ void find_riding(const System& system, const State& state, Layout& layout) {
   if (layout.is_carried_by_pins)
     for (const RowSpec* row : pin_rows(system, layout)) is_needed[row->a] = is_needed[row->b] = 1;
   for (int i = 1; i < system.body_count(); ++i)
-    if (is_needed[i] && !layout.placements[i].is_trivial) layout.riding.push_back(i);
+    if (!layout.placements[i].is_trivial) (is_needed[i] ? layout.riding : layout.riding_along).push_back(i);
 }
 
 } // namespace

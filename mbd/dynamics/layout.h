@@ -111,7 +111,8 @@ struct Layout {
   int coordinate_count = 0;
   std::vector<CoordinateScale> scales; ///< per coordinate
   std::vector<Placement> placements; ///< per body
-  std::vector<int> riding;           ///< bodies that elements act on, whose motion is not their cluster's
+  std::vector<int> riding;           ///< bodies whose motion is not their cluster's, that forces or rows act on
+  std::vector<int> riding_along;     ///< the others whose motion is not their cluster's
   std::vector<int> slots;            ///< of the clusters' motions and forces
   int slot_count = 0;                ///< those in use: bodies, links, clusters of several bodies
 
@@ -120,7 +121,6 @@ struct Layout {
   std::vector<double> weight; ///< m g, per coordinate of the absolute clusters
   std::vector<double> inverse_mass; ///< W of those; 1 for a joint coordinate
   std::vector<RigidEdge> edges;
-  std::vector<EdgeGeometry> edge_geometry; ///< per edge, in the present phases
   std::vector<char> is_carried;      ///< per body: child of an edge, whose wrench balance is wanted
   std::vector<int> carried_rows;     ///< active rows that act on such a body
   bool is_carried_by_pins = false;   ///< pins of mechanisms do

@@ -33,27 +33,14 @@ AlongRow along_row(const SchurRow& row, double bias, const double* a) {
 
 } // namespace
 
-// Gradient in the clusters' coordinates; returns the measure, its bias that of the clusters.
-MeasureValue<double> Dynamics::load_candidate(const RowSpec& spec, SchurRow& row) const {
-  auto m = evaluate_row<true>(spec, motion_.data());
-  row.body[0] = layout_->placements[spec.a].cluster;
-  row.body[1] = layout_->placements[spec.b].cluster;
-  for (int side = 0; side < 2; ++side)
-    if (row.body[side] >= 0) std::copy_n(layout_->clusters[row.body[side]].w, 3, row.w[side]);
-  to_clusters(spec, m, row);
-  m.bias = cluster_bias(spec, m);
-  return m;
-}
-
 void Dynamics::slip_motion(int f, const double* dy, double* rate, double* acceleration, double* rounding) {
   const FrictionElement& friction = *system_.frictions[f].friction;
   const RowSpec* specs = friction.rows(state_->friction[f]);
-  for (const int body : {specs[0].a, specs[0].b})
-    if (body != k_ground) place_member(body);
+  kinematics_.complete();
   const double* const a = cluster_accelerations(dy);
   for (int r = 0; r < friction.dimension(); ++r) {
     SchurRow row;
-    const auto m = load_candidate(specs[r], row);
+    const auto m = rows_.load(specs[r], row);
     const AlongRow along = along_row(row, m.bias, a);
     rate[r] = m.rate;
     acceleration[r] = along.acceleration;
@@ -115,28 +102,26 @@ void Dynamics::respond(Candidates& candidates, const double* dy) {
   candidates.compliance.assign(n * n, 0.0);
   candidates.acceleration.assign(n, 0.0);
   candidates.rounding.assign(n, 0.0);
-  for (int i = 1; i < system_.body_count(); ++i) place_member(i);
+  kinematics_.complete();
   std::vector<CandidateRow> rows(n);
   std::vector<double> response(coordinate_count());
   const double* const a = cluster_accelerations(dy);
   for (std::size_t c = 0; c < n; ++c) {
-    const auto m = load_candidate(*candidates.rows[c], rows[c].row);
+    const auto m = rows_.load(*candidates.rows[c], rows[c].row);
     const AlongRow along = along_row(rows[c].row, m.bias, a);
     candidates.acceleration[c] = along.acceleration;
     candidates.rounding[c] = k_least_acceleration + k_rounded_share * along.terms;
     rows[c].reduce(layout);
   }
-  const std::vector<double> multipliers = right_side_; // of the last rates(), which others read
   for (std::size_t c = 0; c < n; ++c) {
     std::fill(response.begin(), response.end(), 0.0);
     rows[c].add_response(1.0, response.data());
     if (!layout.active.empty()) {
-      for (std::size_t r = 0; r < layout.active.size(); ++r) right_side_[r] = -kept_change(r, response.data());
-      add_response(response.data());
+      for (std::size_t r = 0; r < layout.active.size(); ++r) kept_[r] = rows_.along(r, response.data());
+      rows_.take_away(kept_.data(), response.data());
     }
     for (std::size_t d = 0; d < n; ++d) candidates.compliance[d * n + c] = rows[d].along(response.data());
   }
-  right_side_ = multipliers;
 }
 
 } // namespace steplap

@@ -57,21 +57,14 @@ double Dynamics::rate_rounding(const double* y) const {
 Residual Dynamics::constraint_values(double t, const double* y) {
   t = std::min(t, time_cap_);
   evaluation_.t = t;
-  place(t, y, y + coordinate_count());
-  evaluate_rows();
-  Residual residual;
-  for (std::size_t r = 0; r < layout_->active.size(); ++r) {
-    // What friction that shares its rows with others is off by is a watch value (LoadSharing::discord).
-    if (layout_->is_left_out(static_cast<int>(r))) continue;
-    residual.position = std::max(residual.position, std::abs(row_value_[r]));
-    residual.velocity = std::max(residual.velocity, std::abs(row_rate_[r]));
-  }
-  return residual;
+  kinematics_.place(t, y, y + coordinate_count());
+  rows_.compare(t);
+  return rows_.residual();
 }
 
 Residual Dynamics::residual(double t, const double* y) {
   if (layout_->active.empty()) return {};
-  is_factored_ = false;
+  rows_.forget_factors();
   return constraint_values(t, y);
 }
 
@@ -79,80 +72,36 @@ void Dynamics::fail_projection(double t) const {
   const Layout& layout = *layout_;
   int worst = 0;
   for (std::size_t r = 1; r < layout.active.size(); ++r)
-    if (!(std::abs(row_value_[r]) <= std::abs(row_value_[worst]))) worst = static_cast<int>(r);
+    if (!(std::abs(rows_.off()[r]) <= std::abs(rows_.off()[worst]))) worst = static_cast<int>(r);
   const RowSpec& spec = *layout.active[worst].spec;
   throw ConstraintFailure("constraint " + std::string(spec.quantity) + " of '" +
                               system_.element_names[spec.element] + "' cannot be met at t = " +
-                              std::to_string(t) + " s: residual " + number_text(row_value_[worst]),
-                          spec.element, row_value_[worst], spec.kind == MeasureKind::angle);
+                              std::to_string(t) + " s: residual " + number_text(rows_.off()[worst]),
+                          spec.element, rows_.off()[worst], spec.kind == MeasureKind::angle);
 }
 
 void Dynamics::fail_velocities(double t) const {
   const Layout& layout = *layout_;
   std::size_t worst = 0;
   for (std::size_t r = 1; r < layout.active.size(); ++r)
-    if (!(std::abs(row_rate_[r]) <= std::abs(row_rate_[worst]))) worst = r;
+    if (!(std::abs(rows_.rate_off()[r]) <= std::abs(rows_.rate_off()[worst]))) worst = r;
   const RowSpec& spec = *layout.active[worst].spec;
   throw NumericalFailure("the rate of constraint " + std::string(spec.quantity) + " of '" + system_.element_names[spec.element] +
-                         "' cannot be met at t = " + number_text(t) + " s: " + number_text(row_rate_[worst]) +
+                         "' cannot be met at t = " + number_text(t) + " s: " + number_text(rows_.rate_off()[worst]) +
                          (spec.kind == MeasureKind::angle ? " rad/s" : " m/s") +
                          " are left. It contradicts other joints or drives there");
 }
 
-void Dynamics::factor_rows(double shift) {
-  Layout& layout = *layout_;
-  layout.schur.factor(layout.schur_rows, shift);
-  for (Mechanism& m : layout.mechanisms) {
-    m.factor_mass();
-    m.factor_rows(layout.schur_rows.data() + m.first_row, shift);
-  }
-  is_factored_ = true;
-}
-
-// change += W Jᵀ A⁻¹ right_side_.
-void Dynamics::add_response(double* change) {
-  const Layout& layout = *layout_;
-  layout.schur.solve(layout.schur_rows, right_side_.data());
-  for (std::size_t r = 0; r < static_cast<std::size_t>(layout.schur.size()); ++r)
-    for (int side = 0; side < 2; ++side) {
-      const SchurRow& row = layout.schur_rows[r];
-      if (row.body[side] < 0) continue;
-      for (int c = 0; c < 3; ++c)
-        change[3 * row.body[side] + c] += row.wj[side][c] * right_side_[r];
-    }
-  for (const Mechanism& m : layout.mechanisms) {
-    if (m.row_count == 0) continue;
-    double* const lambda = right_side_.data() + m.first_row;
-    m.solve_rows(lambda);
-    m.add_response(lambda, change + m.first_coordinate);
-  }
-}
-
 bool Dynamics::is_near_singular() const {
-  return !layout_->active.empty() && is_factored_ && layout_->smallest_pivot() < k_removal_pivot;
-}
-
-// J change, along a row.
-double Dynamics::kept_change(std::size_t r, const double* change) const {
-  const Layout& layout = *layout_;
-  if (r >= static_cast<std::size_t>(layout.schur.size())) {
-    const Mechanism& m = layout.mechanism_of_row(static_cast<int>(r));
-    return m.along(static_cast<int>(r) - m.first_row, change + m.first_coordinate);
-  }
-  const SchurRow& row = layout.schur_rows[r];
-  double sum = 0.0;
-  for (int side = 0; side < 2; ++side)
-    if (row.body[side] >= 0)
-      for (int c = 0; c < 3; ++c) sum += row.j[side][c] * change[3 * row.body[side] + c];
-  return sum;
+  return !layout_->active.empty() && rows_.is_factored() && layout_->smallest_pivot() < k_removal_pivot;
 }
 
 void Dynamics::keep_allowed(double* change) {
   const Layout& layout = *layout_;
   if (layout.active.empty()) return;
-  if (!is_factored_) factor_rows();
-  for (std::size_t r = 0; r < layout.active.size(); ++r) right_side_[r] = -kept_change(r, change);
-  add_response(change);
+  if (!rows_.is_factored()) rows_.factor();
+  for (std::size_t r = 0; r < layout.active.size(); ++r) kept_[r] = rows_.along(r, change);
+  rows_.take_away(kept_.data(), change);
 }
 
 void Dynamics::remove_held(double* change) {
@@ -170,7 +119,7 @@ Residual Dynamics::project(double t, double* y, double tolerance) {
 void Dynamics::settle_inner(double t, double* y) {
   double* const inner = y + 2 * coordinate_count();
   evaluation_.t = std::min(t, time_cap_);
-  if (!is_placed(evaluation_.t, y)) place(evaluation_.t, y, y + coordinate_count());
+  if (!kinematics_.is_placed(evaluation_.t, y)) kinematics_.place(evaluation_.t, y, y + coordinate_count());
   take_inner(inner);
   for (const ForceGroup* group : system_.inner_groups) inner[inner_count()] += group->settle_inner(evaluation_, inner);
   take_inner(inner);
@@ -179,11 +128,11 @@ void Dynamics::settle_inner(double t, double* y) {
 Residual Dynamics::project_rows(double t, double* y, double tolerance) {
   const Layout& layout = *layout_;
   const int n = coordinate_count();
-  aim_locks(std::min(t, time_cap_));
+  kinematics_.aim_locks(std::min(t, time_cap_));
   for (std::size_t i = 0; i < layout.locks.size(); ++i) {
     const int k = 3 * layout.locks[i].cluster + layout.locks[i].coordinate;
-    y[k] = lock_target_[i].value;
-    y[n + k] = lock_target_[i].rate;
+    y[k] = kinematics_.lock_target(i).value;
+    y[n + k] = kinematics_.lock_target(i).rate;
   }
   if (layout.active.empty()) return {};
   // Kilometres from the origin a position is not known to a picometre.
@@ -216,15 +165,15 @@ bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& 
   int patience = patience_for(tolerance, place_rounding(y));
   for (int iteration = 0; now.position > tolerance; ++iteration) {
     if (iteration == k_max_projection_iterations || !std::isfinite(now.position)) return false;
-    if (is_factored_ && layout.smallest_pivot() < k_chord_pivot) is_factored_ = false;
-    if (!is_factored_ || iteration % k_iterations_per_factorization == k_iterations_per_factorization - 1) {
-      factor_rows();
-      if (layout.smallest_pivot() < k_chord_pivot) factor_rows(std::min(now.position, k_largest_damping));
+    if (rows_.is_factored() && layout.smallest_pivot() < k_chord_pivot) rows_.forget_factors();
+    if (!rows_.is_factored() || iteration % k_iterations_per_factorization == k_iterations_per_factorization - 1) {
+      rows_.factor();
+      if (layout.smallest_pivot() < k_chord_pivot) rows_.factor(std::min(now.position, k_largest_damping));
     }
     const double before = now.position;
-    move_by(row_value_, y);
+    rows_.take_away(rows_.off().data(), y);
     now = constraint_values(t, y);
-    if (now.position > k_chord_worth * before) is_factored_ = false;
+    if (now.position > k_chord_worth * before) rows_.forget_factors();
     if (now.position >= 0.5 * before && now.position <= place_rounding(y) && --patience < 0)
       break;
   }
@@ -236,9 +185,9 @@ bool Dynamics::reach_positions(double t, double* y, double tolerance, Residual& 
 void Dynamics::reach_velocities(double t, double* y, Residual now, double tolerance) {
   int patience = patience_for(tolerance, rate_rounding(y));
   for (int iteration = 0; now.velocity > tolerance && iteration < k_max_projection_iterations; ++iteration) {
-    factor_rows();
+    rows_.factor();
     const double before = now.velocity;
-    move_by(row_rate_, y + coordinate_count());
+    rows_.take_away(rows_.rate_off().data(), y + coordinate_count());
     if (layout_->schur.is_small() && layout_->smallest_pivot() >= SchurSolver::k_refined_pivot &&
         !layout_->is_singular())
       return;
@@ -249,11 +198,6 @@ void Dynamics::reach_velocities(double t, double* y, Residual now, double tolera
   for (int i = 0; i < coordinate_count(); ++i) fastest = std::max(fastest, std::abs(y[coordinate_count() + i]));
   if (!(now.velocity <= tolerance + k_rate_left * (1.0 + fastest)))
     fail_velocities(t);
-}
-
-void Dynamics::move_by(const std::vector<double>& residual, double* target) {
-  for (std::size_t r = 0; r < layout_->active.size(); ++r) right_side_[r] = -residual[r];
-  add_response(target);
 }
 
 // Near a singular position what a stage is off the constraints by, a power of the step size, is divided by the

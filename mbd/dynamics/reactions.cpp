@@ -1,18 +1,25 @@
-// Dynamics: what follows from accelerations: wrenches of joints inside clusters, the watch values of those that may give
-// way, and the reactions of all elements.
-#include "mbd/dynamics/dynamics.h"
+#include "mbd/dynamics/reactions.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace steplap {
 
-void Dynamics::body_accelerations(const double* dy) {
+Reactions::Reactions(const System& system, const Kinematics& kinematics, const BodyForce* force)
+    : system_(system), motion_(kinematics.motion().data()), force_(force), acceleration_(3 * system.bodies.size(), 0.0),
+      wrench_(system.bodies.size()), row_force_(system.rows.size(), 0.0), friction_force_(system.friction_row_count, 0.0) {}
+
+void Reactions::use(const Layout& layout, const State& state) {
+  layout_ = &layout;
+  state_ = &state;
+  place_edges();
+}
+
+void Reactions::find_accelerations(const double* cluster_a) {
   const Layout& layout = *layout_;
-  const double* const accelerations = cluster_accelerations(dy);
   for (int i = 1; i < system_.body_count(); ++i) {
     const Placement& place = layout.placements[i];
-    const double* a = accelerations + 3 * place.cluster;
+    const double* a = cluster_a + 3 * place.cluster;
     double* out = &acceleration_[3 * i];
     std::copy(a, a + 3, out);
     if (place.is_trivial) continue;
@@ -23,15 +30,15 @@ void Dynamics::body_accelerations(const double* dy) {
   }
 }
 
-double* Dynamics::joint_multipliers(const RigidEdge& edge) {
+double* Reactions::multipliers_of(const RigidEdge& edge) {
   if (edge.block >= 0) return &row_force_[system_.row_blocks[edge.block].first];
   return &friction_force_[system_.frictions[edge.friction].row];
 }
 
 // The joints inside clusters in their present places (rows of friction move to another foot, or anchor).
-void Dynamics::place_edges() {
-  Layout& layout = *layout_;
-  layout.edge_geometry.resize(layout.edges.size());
+void Reactions::place_edges() {
+  const Layout& layout = *layout_;
+  edges_.resize(layout.edges.size());
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {
     const RigidEdge& edge = layout.edges[e];
     const RowSpec* const rows =
@@ -43,7 +50,7 @@ void Dynamics::place_edges() {
     const Vec2 lever = layout.placements[edge.child].offset - layout.placements[edge.parent].offset;
     const Placement& a = layout.placements[rows[0].a];
     const Placement& b = layout.placements[rows[0].b];
-    EdgeGeometry& geometry = layout.edge_geometry[e];
+    EdgeGeometry& geometry = edges_[e];
     geometry.lever = {lever.x(), lever.y()};
     for (int r = 0; r < 2; ++r) geometry.axis[r] = turned(b, rows[r].direction);
     geometry.point = turned(a, rows[0].point_a);
@@ -52,11 +59,11 @@ void Dynamics::place_edges() {
 }
 
 // Takes what a row bears from the wrench balance of the members of clusters that it acts on.
-void Dynamics::add_carried(const RowSpec& spec, double lambda) {
+void Reactions::add_carried(const RowSpec& spec, double lambda) {
   const Layout& layout = *layout_;
   const int body[2] = {spec.a, spec.b};
   if (!layout.is_carried[body[0]] && !layout.is_carried[body[1]]) return;
-  const auto m = evaluate_row<false>(spec, motion_.data());
+  const auto m = evaluate_row<false>(spec, motion_);
   for (int side = 0; side < 2; ++side) {
     if (!layout.is_carried[body[side]]) continue;
     const double f = side == 0 ? -lambda : lambda;
@@ -70,11 +77,11 @@ void Dynamics::add_carried(const RowSpec& spec, double lambda) {
 }
 
 // Multipliers of the pins and rods of mechanisms, which are no rows of theirs: what hangs on them lacks so much.
-void Dynamics::find_pin_forces(const double* cluster_a) {
+void Reactions::find_pins(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
   for (const Mechanism& mechanism : layout.mechanisms) {
-    mechanism.pin_forces(cluster_a, force_.data(), layout.schur_rows.data() + mechanism.first_row,
-                         right_side_.data() + mechanism.first_row, pin_force_);
+    mechanism.pin_forces(cluster_a, force_, layout.schur_rows.data() + mechanism.first_row, lambda + mechanism.first_row,
+                         pin_force_);
     for (std::size_t i = 0; i < mechanism.members.size(); ++i) {
       const Member& m = mechanism.members[i];
       if (m.block < 0) continue;
@@ -95,9 +102,8 @@ void Dynamics::find_pin_forces(const double* cluster_a) {
 }
 
 // Newton–Euler from the leaves of each merged cluster, in its axes: what an edge carries is what its subtree lacks.
-void Dynamics::merged_wrenches(const double* dy) {
+void Reactions::find_joints(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
-  const double* const acceleration = cluster_accelerations(dy);
   const auto in_cluster = [](const Motion<double>& k, double x, double y) {
     return Pair<double>{k.c * x + k.s * y, k.c * y - k.s * x};
   };
@@ -105,7 +111,7 @@ void Dynamics::merged_wrenches(const double* dy) {
     const BodyData& body = system_.bodies[edge.child];
     const Placement& place = layout.placements[edge.child];
     const Motion<double>& k = motion_[layout.clusters[place.cluster].motion];
-    const double* const a = acceleration + 3 * place.cluster;
+    const double* const a = cluster_a + 3 * place.cluster;
     const BodyForce& f = force_[edge.child];
     // m (R a_c + α ẑ×r − ω² r − g) less the forces; R the same for all.
     const Pair<double> at_centre = in_cluster(k, body.mass * (a[0] - system_.gravity.x()) - f.fx,
@@ -115,9 +121,9 @@ void Dynamics::merged_wrenches(const double* dy) {
     wrench_[edge.child] = {at_centre.x - turning * y - centripetal * x, at_centre.y + turning * x - centripetal * y,
                            body.inertia * a[2] - f.m};
   }
-  for (const int r : layout.carried_rows) add_carried(*layout.active[r].spec, right_side_[r]);
+  for (const int r : layout.carried_rows) add_carried(*layout.active[r].spec, lambda[r]);
   if (layout.is_carried_by_pins) {
-    find_pin_forces(acceleration);
+    find_pins(cluster_a, lambda);
     for (const Mechanism& mechanism : layout.mechanisms)
       for (const Member& m : mechanism.members) {
         if (m.block < 0) continue;
@@ -127,7 +133,7 @@ void Dynamics::merged_wrenches(const double* dy) {
   }
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {
     const RigidEdge& edge = layout.edges[e];
-    const EdgeGeometry& geometry = layout.edge_geometry[e];
+    const EdgeGeometry& geometry = edges_[e];
     const BodyForce& on_child = wrench_[edge.child];
     const Pair<double> force{on_child.fx, on_child.fy};
     const double at_parent = on_child.m + cross(geometry.lever, force); // its couple about the parent's centre
@@ -139,72 +145,36 @@ void Dynamics::merged_wrenches(const double* dy) {
     }
     // Along the rows (two axes fixed in b, then the angle): the wrench on a about the joint's point.
     const double sign = geometry.is_child_a ? 1.0 : -1.0;
-    double* const lambda = joint_multipliers(edge);
-    lambda[0] = sign * dot(force, geometry.axis[0]);
-    lambda[1] = sign * dot(force, geometry.axis[1]);
-    lambda[2] = sign * ((geometry.is_child_a ? on_child.m : at_parent) - cross(geometry.point, force));
+    double* const along = multipliers_of(edge);
+    along[0] = sign * dot(force, geometry.axis[0]);
+    along[1] = sign * dot(force, geometry.axis[1]);
+    along[2] = sign * ((geometry.is_child_a ? on_child.m : at_parent) - cross(geometry.point, force));
   }
 }
 
-void Dynamics::watch_merged(const double* dy) {
-  if (!layout_->is_merged_watched) return;
-  was_merged_near_ = is_merged_near_;
-  is_merged_near_ = watch_joints(dy);
-}
-
-void Dynamics::watch_merged_if_near(const double* dy, bool always) {
-  const bool has_groups = sharing() && !sharing()->groups().empty();
-  if (is_merged_near_ || was_merged_near_ || has_groups || (always && layout_->is_merged_watched)) (void)watch_joints(dy);
-}
-
-// Is any near its limit?
-bool Dynamics::watch_joints(const double* dy) {
-  if (layout_->sharing) {
-    take_solved_friction();
-    body_accelerations(dy); // for the discord of groups
-  }
-  merged_wrenches(dy);
-  bool is_near = watch_groups();
-  for (const int f : layout_->merged) {
-    if (is_shared(f)) continue;
-    const FrictionUnit& unit = system_.frictions[f];
-    double* watch = &watch_[unit.watch];
-    unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row], watch);
-    if (std::min(watch[0], watch[1]) < k_near_limit) is_near = true;
-  }
-  return is_near;
-}
-
-Snapshot Dynamics::snapshot(const double* dy) {
+double Reactions::of_lock(const Lock& lock, const double* a, const double* lambda) const {
   const Layout& layout = *layout_;
-  for (int i = 1; i < system_.body_count(); ++i) place_member(i); // also those not needed so far
-  if (layout.sharing) take_solved_friction();
-  body_accelerations(dy);
-  merged_wrenches(dy);
-  if (layout.has_mechanisms()) find_pin_forces(cluster_accelerations(dy));
-  const int n = coordinate_count();
+  const int k = 3 * lock.cluster + lock.coordinate;
+  const Cluster& cluster = layout.clusters[lock.cluster];
+  const BodyForce& f = force_[cluster.motion];
+  double force = (lock.coordinate < 2 ? cluster.mass : cluster.inertia) * a[k] - layout.weight[k] -
+                 (lock.coordinate == 0 ? f.fx : lock.coordinate == 1 ? f.fy : f.m);
+  for (const LockedTerm& term : lock.terms)
+    force -= layout.schur_rows[term.row].j[term.side][lock.coordinate] * lambda[term.row];
+  return force;
+}
+
+void Reactions::take_rows(const double* a, const double* lambda) {
+  const Layout& layout = *layout_;
   for (std::size_t r = 0; r < layout.active.size(); ++r)
-    if (layout.active[r].row >= 0) row_force_[layout.active[r].row] = right_side_[r];
-  for (const Lock& lock : layout.locks) row_force_[lock.row] = lock_reaction(lock, dy + n);
+    if (layout.active[r].row >= 0) row_force_[layout.active[r].row] = lambda[r];
+  for (const Lock& lock : layout.locks) row_force_[lock.row] = of_lock(lock, a, lambda);
   for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
     const FrictionPhase phase = state_->friction[f].phase;
     if (phase == FrictionPhase::stick || phase == FrictionPhase::slip) continue;
     const FrictionUnit& unit = system_.frictions[f];
     std::fill_n(&friction_force_[unit.row], unit.friction->dimension(), 0.0);
   }
-  settle_loads();
-  Snapshot s;
-  s.t = evaluation_.t;
-  s.motion = motion_.data();
-  s.acceleration = acceleration_.data();
-  s.evaluation = &evaluation_;
-  s.row_force = row_force_.data();
-  s.friction_force = friction_force_.data();
-  s.memory = state_->memory.data();
-  s.dissipated = booked_[0];
-  s.work = booked_[1];
-  s.integrals = integrals_;
-  return s;
 }
 
 } // namespace steplap

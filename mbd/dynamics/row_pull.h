@@ -29,20 +29,29 @@ STEPLAP_INLINE RowPull pull_along_slide(const RowSpec& row, const Motion<double>
   return {m.direction, cross(m.lever_a, m.direction), cross(m.lever_b, m.direction), m.bias};
 }
 
-/// Fills one side of a row in the clusters' coordinates, and takes J a from `right`.
-STEPLAP_INLINE void set_gradient(SchurRow& row, int side, double fx, double fy, double couple, const double* a,
-                                 double& right) {
+/// Fills one side of a row in the clusters' coordinates.
+STEPLAP_INLINE void set_gradient(SchurRow& row, int side, double fx, double fy, double couple) {
   const double* const w = row.w[side];
   double* const j = row.j[side];
   double* const wj = row.wj[side];
   const double wx = w[0] * fx, wy = w[1] * fy, wm = w[2] * couple;
-  right -= fx * a[0] + fy * a[1] + couple * a[2];
   j[0] = fx;
   j[1] = fy;
   j[2] = couple;
   wj[0] = wx;
   wj[1] = wy;
   wj[2] = wm;
+}
+
+/// What is left of `right` where the accelerations of the clusters are `a`: right − J a.
+STEPLAP_INLINE double less_accelerations(const SchurRow& row, double right, const double* a) {
+  for (int side = 0; side < 2; ++side) {
+    if (row.body[side] < 0) continue;
+    const double* const ak = a + 3 * row.body[side];
+    const double* const j = row.j[side];
+    right -= row.is_constant ? j[2] * ak[2] : j[0] * ak[0] + j[1] * ak[1] + j[2] * ak[2];
+  }
+  return right;
 }
 
 } // namespace steplap

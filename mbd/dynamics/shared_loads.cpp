@@ -10,17 +10,17 @@ namespace steplap {
 // Anew at the present pose, if the null vectors known are not those of it.
 void Dynamics::find_sharing() {
   Layout& layout = *layout_;
-  for (int i = 1; i < system_.body_count(); ++i) place_member(i);
+  const std::vector<Motion<double>>& all = motion();
   std::vector<char> left_out(system_.friction_row_count, 0);
   for (const HeldRow& held : layout.held_rows) left_out[held.friction_row] = layout.is_dependent(held.row) ? 1 : 0;
-  if (layout.sharing && layout.sharing->holds_at(motion_, left_out)) return;
-  layout.sharing = std::make_unique<LoadSharing>(system_, *state_, motion_, std::move(left_out));
+  if (layout.sharing && layout.sharing->holds_at(all, left_out)) return;
+  layout.sharing = std::make_unique<LoadSharing>(system_, *state_, all, std::move(left_out));
   if (layout.sharing->has_friction()) layout.is_merged_watched = true;
 }
 
 const LoadSharing* Dynamics::sharing() const {
   const Layout& layout = *layout_;
-  return layout.is_singular() ? layout.sharing.get() : nullptr;
+  return layout.sharing && layout.is_singular() ? layout.sharing.get() : nullptr;
 }
 
 bool Dynamics::is_shared(int friction) const {
@@ -32,7 +32,7 @@ bool Dynamics::is_shared(int friction) const {
 void Dynamics::take_solved_friction() {
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
     const ActiveRow& row = layout_->active[r];
-    if (row.friction >= 0) friction_force_[system_.frictions[row.friction].row + row.friction_row] = right_side_[r];
+    if (row.friction >= 0) friction_force_[system_.frictions[row.friction].row + row.friction_row] = multipliers()[r];
   }
 }
 
@@ -42,12 +42,12 @@ bool Dynamics::watch_groups() {
   bool is_near = false;
   if (!sharing()) return is_near;
   find_sharing();
-  layout_->sharing->solve(evaluation_, friction_force_.data());
+  layout_->sharing->solve(evaluation_, friction_force_);
   const std::vector<SharingGroup>& groups = layout_->sharing->groups();
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const SharingGroup& group = groups[g];
     const double margin = 1.0 + k_bound_slack - group.least.usage();
-    const double concord = 1.0 - layout_->sharing->discord(static_cast<int>(g), evaluation_, acceleration_.data());
+    const double concord = 1.0 - layout_->sharing->discord(static_cast<int>(g), evaluation_, reactions_.acceleration().data());
     for (const int f : group.frictions) {
       watch_[system_.frictions[f].watch] = margin;
       watch_[system_.frictions[f].watch + 1] = concord;
@@ -63,11 +63,11 @@ void Dynamics::settle_loads() {
   if (!layout.is_singular() && layout.redundant_blocks.empty()) return;
   for (const int i : layout.redundant_blocks) {
     const RowBlock& block = system_.row_blocks[i];
-    std::fill_n(&row_force_[block.first], block.count, 0.0);
+    std::fill_n(&reactions_.row_force()[block.first], block.count, 0.0);
   }
   find_sharing();
-  layout_->sharing->solve(evaluation_, friction_force_.data());
-  layout_->sharing->settle(row_force_.data(), friction_force_.data());
+  layout_->sharing->solve(evaluation_, friction_force_);
+  layout_->sharing->settle(reactions_.row_force().data(), friction_force_);
 }
 
 } // namespace steplap

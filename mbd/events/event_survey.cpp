@@ -56,10 +56,7 @@ struct Chebyshev {
   }
 };
 
-const Chebyshev& chebyshev() {
-  static const Chebyshev table;
-  return table;
-}
+const Chebyshev k_chebyshev; // made before main(): threads that run side by side find it made
 
 double sum_at(const double* a, double x) {
   const double u = 2.0 * x - 1.0;
@@ -104,7 +101,7 @@ double EventFinder::tangents_meet_below(int slot, std::size_t last) const {
 
 // Where in the part between the first `count` + 1 places some near value may be below zero (0 … 1), −1 if nowhere.
 EventFinder::Unclear EventFinder::unclear_place(const Part& part, std::size_t last) const {
-  const Chebyshev& table = chebyshev();
+  const Chebyshev& table = k_chebyshev;
   const double until = table.place[last];
   for (const int slot : near_) {
     if (!armed_[slot] || place_[0].watch[slot] < 0.0) continue; // not believed yet, or followed by the looks themselves
@@ -157,7 +154,7 @@ bool EventFinder::look_along(Integrator& integrator, Dynamics& dynamics, double 
 
 // low_ is at the part's begin. True with a bracket in low_ and high_; else low_ is at its end, or the part has been divided.
 bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const Part& part) {
-  const Chebyshev& table = chebyshev();
+  const Chebyshev& table = k_chebyshev;
   const double width = part.end - part.begin;
   place_[0] = low_;
   armed_before_ = armed_;

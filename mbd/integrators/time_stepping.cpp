@@ -157,7 +157,7 @@ TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1,
 
 // Modes that the end of the step asks for, taken over; the first unit whose mode differs from that
 // which the step was made with, or −1.
-int TimeStepping::changed_unit(const Dynamics& dynamics, State& state) {
+int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
   int first = -1;
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];

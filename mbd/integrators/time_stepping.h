@@ -78,17 +78,17 @@ private:
   void evaluate(Dynamics& dynamics, double t, const double* y);
   void move(Dynamics& dynamics, double t1, double tolerance);
   [[noreturn]] void fail(const Trouble& trouble, double t, double h) const;
-  [[nodiscard]] int changed_unit(const Dynamics& dynamics, State& state);
+  [[nodiscard]] int changed_unit(Dynamics& dynamics, State& state);
   void finish_phases(Dynamics& dynamics, State& state, double h);
   // time_stepping_friction.cpp
   void collect_friction(Dynamics& dynamics, State& state);
   [[nodiscard]] bool has_held(const FrictionState& friction, int f) const;
-  void load_row(const Dynamics& dynamics, const RowSpec& spec, FrictionGradient& row) const;
-  void respond(const Dynamics& dynamics, double h);
+  void load_row(Dynamics& dynamics, const RowSpec& spec, FrictionGradient& row) const;
+  void respond(Dynamics& dynamics, double h);
   void find_driven(FrictionPart& part, double h);
-  void free_rates(const Dynamics& dynamics, double tolerance);
-  [[nodiscard]] Trouble balance_friction(const Dynamics& dynamics, bool keeps_kinetic);
-  [[nodiscard]] double sweep(const Dynamics& dynamics, int& worst);
+  void free_rates(Dynamics& dynamics, double tolerance);
+  [[nodiscard]] Trouble balance_friction(Dynamics& dynamics, bool keeps_kinetic);
+  [[nodiscard]] double sweep(Dynamics& dynamics, int& worst);
   [[nodiscard]] FrictionBlock solve_part(const Evaluation& e, const FrictionPart& part) const;
   [[nodiscard]] FrictionBlock solve_coupled(const FrictionPart& part, double a, double b) const;
   [[nodiscard]] double bound_of(const Evaluation& e, const FrictionPart& part, bool is_kinetic) const;

@@ -88,7 +88,7 @@ void TimeStepping::collect_friction(Dynamics& dynamics, State& state) {
 }
 
 // Gradient of a friction row in the clusters' coordinates.
-void TimeStepping::load_row(const Dynamics& dynamics, const RowSpec& spec,
+void TimeStepping::load_row(Dynamics& dynamics, const RowSpec& spec,
                             FrictionGradient& row) const {
   const Layout& layout = dynamics.layout();
   const std::vector<Motion<double>>& motion = dynamics.motion();
@@ -114,7 +114,7 @@ void TimeStepping::load_row(const Dynamics& dynamics, const RowSpec& spec,
 }
 
 // Responses to unit forces along the friction rows, with all that joints and drives answer.
-void TimeStepping::respond(const Dynamics& dynamics, double h) {
+void TimeStepping::respond(Dynamics& dynamics, double h) {
   const std::vector<double>& w = linearization_.inverse_mass();
   const auto n2 = static_cast<std::size_t>(2 * n_), rows = static_cast<std::size_t>(rows_);
   for (const FrictionPart& part : parts_) {
@@ -190,7 +190,7 @@ void TimeStepping::find_driven(FrictionPart& part, double h) {
 
 // The rows' rates at the step's end as it is, on the constraints, less what the wrenches make of
 // them.
-void TimeStepping::free_rates(const Dynamics& dynamics, double tolerance) {
+void TimeStepping::free_rates(Dynamics& dynamics, double tolerance) {
   const Motion<double>* const motion = dynamics.motion().data();
   for (FrictionPart& part : parts_) {
     const RowSpec* specs = system_.frictions[part.friction].friction->rows(
@@ -352,7 +352,7 @@ double TimeStepping::change_of(const FrictionPart& part, const double* before, d
 }
 
 // Each element once; the largest change, and whose it is.
-double TimeStepping::sweep(const Dynamics& dynamics, int& worst) {
+double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
   const Evaluation& e = dynamics.evaluation();
   last_ = wrench_;
   double largest = 0.0, size = 0.0;
@@ -513,7 +513,7 @@ void TimeStepping::stop_at_rest(double change) {
 // Block Gauss–Seidel: each element's wrench for the others' as they are; those that slip get their
 // kinetic coefficients and stay with them. Each round but the last makes one element more slip:
 // there are no more than elements.
-TimeStepping::Trouble TimeStepping::balance_friction(const Dynamics& dynamics, bool keeps_kinetic) {
+TimeStepping::Trouble TimeStepping::balance_friction(Dynamics& dynamics, bool keeps_kinetic) {
   for (FrictionPart& part : parts_)
     part.is_kinetic = part.is_kinetic && keeps_kinetic;
   for (bool is_changed = true; is_changed;) {

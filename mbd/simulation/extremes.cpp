@@ -44,14 +44,12 @@ double node_theta(int node) {
 // Nodes of levels 1, 2, 3: every fourth, second, every one; barycentric weights of Chebyshev and Lobatto.
 constexpr int spacing(int level) { return 8 >> level; }
 
-const std::array<double, k_last + 1>& thetas() {
-  static const std::array<double, k_last + 1> values = [] {
-    std::array<double, k_last + 1> t{};
-    for (int i = 0; i <= k_last; ++i) t[i] = node_theta(i);
-    return t;
-  }();
-  return values;
-}
+// Made before main(): threads that run side by side find it made.
+const std::array<double, k_last + 1> k_thetas = [] {
+  std::array<double, k_last + 1> t{};
+  for (int i = 0; i <= k_last; ++i) t[i] = node_theta(i);
+  return t;
+}();
 
 // Of each channel of a body's, marker's or joint's motion the one that is its rate.
 std::vector<int> rates_of(const System& system) {
@@ -358,7 +356,7 @@ double ExtremeFinder::interpolate(std::size_t c, int level, double theta) const 
   const int step = spacing(level);
   double above = 0.0, below = 0.0, sign = 1.0;
   for (int i = 0; i <= k_last; i += step) {
-    const double distance = theta - thetas()[i];
+    const double distance = theta - k_thetas[i];
     if (distance == 0.0) return at(c, i);
     const double weight = (i == 0 || i == k_last ? 0.5 : 1.0) * sign / distance;
     above += weight * at(c, i);
@@ -389,14 +387,14 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
       if (sign * at(c, i) > sign * at(c, best)) best = i;
     if (!std::isfinite(at(c, best))) continue;
     const int middle = std::clamp(best, step, k_last - step), low = middle - step, high = middle + step;
-    const auto point = [&](int i) { return Extreme{at(c, i), thetas()[i]}; };
+    const auto point = [&](int i) { return Extreme{at(c, i), k_thetas[i]}; };
     const Extreme top = vertex(point(low), point(middle), point(high));
     const double gain = std::max(0.0, sign * (top.value - at(c, best)));
     // Beyond the nodes by more than anybody asks for?
     if (sign * at(c, best) + 2.0 * gain + error <= record + slack) continue;
     if (2.0 * gain + error <= slack) continue;
     if (error > slack) return false;
-    double a = thetas()[low], b = thetas()[high];
+    double a = k_thetas[low], b = k_thetas[high];
     double p = a + k_golden * (b - a), q = b - k_golden * (b - a);
     double at_p = sign * interpolate(c, level, p), at_q = sign * interpolate(c, level, q);
     while (b - a > k_fine) {
@@ -426,7 +424,7 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
   const int step = spacing(level);
   for (const std::size_t c : open_) curve_[c].error = level == 1 && h_last_ == 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
   for (int i = step; i < k_last; i += 2 * step) {
-    const double theta = thetas()[i];
+    const double theta = k_thetas[i];
     const Snapshot snapshot = look(theta, integrator, dynamics);
     for (const std::size_t c : open_) {
       take(c, t_ + theta * (t1_ - t_), snapshot, node_[i].data());
@@ -470,7 +468,7 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
     const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
     const double spread = std::max(std::abs(at(c, middle + 1) - at(c, middle)), std::abs(at(c, middle) - at(c, middle - 1)));
     if (!(sign * at(c, best) + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
-    double a = thetas()[middle - 1], b = thetas()[middle + 1];
+    double a = k_thetas[middle - 1], b = k_thetas[middle + 1];
     const auto value = [&](double theta) {
       take(c, t_ + theta * (t1_ - t_), look(theta, integrator, dynamics), values);
       return sign * values[c];

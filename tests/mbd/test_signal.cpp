@@ -228,3 +228,42 @@ TEST_CASE("every field of every kind is documented") {
       CHECK_FALSE(field.doc.empty());
   }
 }
+
+TEST_CASE("a drive by an acceleration of harmonics takes a way of its own to the same bytes") {
+  // A term that is zero, and not a harmonic, sends the second one the usual way.
+  const double lengths[] = {0.3, 1.7};
+  std::vector<Signal::Piece> plain, usual;
+  for (int k = 0; k < 2; ++k) {
+    Signal::Piece piece;
+    piece.start = k == 0 ? -0.2 : lengths[0];
+    piece.c[0] = 0.7 - k;
+    piece.harmonics.push_back({.amplitude = 1.3, .frequency = 21.0 + k, .phase = k == 0 ? 0.0 : 0.4});
+    piece.harmonics.push_back({.amplitude = -0.2, .frequency = 55.0, .phase = 1.1});
+    plain.push_back(piece);
+    piece.modulated.push_back({.power = 1, .amplitude = 0.0, .frequency = 3.0});
+    usual.push_back(piece);
+  }
+  const Signal a(plain), b(usual);
+  for (double t = -0.5; t < lengths[1]; t += 0.013) {
+    const SignalJet x = a.drive(t, DriveLevel::acceleration), y = b.drive(t, DriveLevel::acceleration);
+    CHECK(x.value == y.value);
+    CHECK(x.rate == y.rate);
+    CHECK(x.acceleration == y.acceleration);
+  }
+}
+
+TEST_CASE("the piece of a time is found in short and in long signals") {
+  for (const int count : {1, 8, 9, 40}) {
+    std::vector<Signal::Piece> pieces(count);
+    for (int k = 0; k < count; ++k) {
+      pieces[k].start = 0.1 * k;
+      pieces[k].c[0] = k + 1.0;
+    }
+    const Signal steps(pieces);
+    CHECK(steps.value(-1e-9) == 0.0);
+    for (int k = 0; k < count; ++k) {
+      CHECK(steps.value(pieces[k].start) == k + 1.0);
+      CHECK(steps.value(pieces[k].start + 0.05) == k + 1.0);
+    }
+  }
+}

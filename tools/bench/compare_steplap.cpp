@@ -61,6 +61,7 @@ RunResult run(const Scene& scene, const std::string& method, double tolerance, b
   options.settings.step = 0.0;
   options.channels = scene.channels;
   options.output_step = is_sampled ? scene.sample_step : 0.0;
+  options.has_extremes = false; // the others look for none
   const double begin = thread_cpu_seconds();
   Simulation simulation(*scene.system, scene.system->initial_state(), options);
   while (simulation.advance())

@@ -1,0 +1,269 @@
+#include "mbd/dynamics/constraint_solution.h"
+#include "mbd/dynamics/row_pull.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// From b's axes into the ground's.
+MeasureValue<double> turned(MeasureValue<double> m, const Motion<double>& b) {
+  for (Pair<double>* p : {&m.direction, &m.lever_a, &m.lever_b})
+    *p = {b.c * p->x - b.s * p->y, b.s * p->x + b.c * p->y};
+  return m;
+}
+
+// a += wj λ of one side.
+STEPLAP_INLINE void add_side(const SchurRow& row, int side, double lambda, double* a) {
+  double* const ak = a + 3 * row.body[side];
+  const double x = row.wj[side][0] * lambda, y = row.wj[side][1] * lambda, m = row.wj[side][2] * lambda;
+  ak[0] += x;
+  ak[1] += y;
+  ak[2] += m;
+}
+
+// The same of all rows: a constant row is zero but for θ.
+STEPLAP_INLINE void add_rows(const SchurRow* rows, std::size_t count, const double* lambda, double* a) {
+  for (std::size_t r = 0; r < count; ++r) {
+    const SchurRow& row = rows[r];
+    for (int side = 0; side < 2; ++side) {
+      if (row.body[side] < 0) continue;
+      if (row.is_constant) a[3 * row.body[side] + 2] += row.wj[side][2] * lambda[r];
+      else add_side(row, side, lambda[r], a);
+    }
+  }
+}
+
+} // namespace
+
+ConstraintSolution::ConstraintSolution(const System& system, const Kinematics& kinematics)
+    : system_(system), motion_(kinematics.motion().data()) {}
+
+void ConstraintSolution::use(Layout& layout, const State& state) {
+  layout_ = &layout;
+  state_ = &state;
+  is_factored_ = false;
+  const std::size_t rows = layout.active.size();
+  if (multiplier_.size() < rows)
+    for (std::vector<double>* v : {&multiplier_, &target_rate_, &off_, &rate_off_, &response_}) v->resize(rows);
+  if (layout.has_mechanisms()) cluster_a_.resize(3 * layout.clusters.size());
+}
+
+// --- rows ---------------------------------------------------------------------------------------------
+
+void ConstraintSolution::to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const {
+  const int body[2] = {spec.a, spec.b};
+  for (int side = 0; side < 2; ++side) {
+    if (row.body[side] < 0) continue;
+    const Placement& place = layout_->placements[body[side]];
+    const Cluster& cluster = layout_->clusters[row.body[side]];
+    Pair<double> lever = side == 0 ? m.lever_a : m.lever_b;
+    if (!place.is_trivial) {
+      const Motion<double>& k = motion_[cluster.motion];
+      lever = lever + Pair<double>{motion_[body[side]].x - k.x, motion_[body[side]].y - k.y};
+    }
+    const double sign = side == 0 ? 1.0 : -1.0;
+    double* j = row.j[side];
+    j[0] = sign * m.direction.x;
+    j[1] = sign * m.direction.y;
+    j[2] = sign * (cross(lever, m.direction) + m.couple);
+    for (int c = 0; c < 3; ++c) row.wj[side][c] = row.w[side][c] * j[c];
+  }
+}
+
+// The second rate at zero accelerations of the clusters: a body off its cluster's centre has −ω² lever.
+double ConstraintSolution::cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const {
+  double bias = m.bias;
+  const int body[2] = {spec.a, spec.b};
+  for (int side = 0; side < 2; ++side) {
+    const Placement& place = layout_->placements[body[side]];
+    if (place.cluster < 0 || place.is_trivial) continue;
+    const Motion<double>& k = motion_[layout_->clusters[place.cluster].motion];
+    const Pair<double> lever{motion_[body[side]].x - k.x, motion_[body[side]].y - k.y};
+    const double term = k.omega * k.omega * dot(m.direction, lever);
+    bias += side == 0 ? -term : term;
+  }
+  return bias;
+}
+
+MeasureValue<double> ConstraintSolution::load(const RowSpec& spec, SchurRow& row) const {
+  auto m = evaluate_row<true>(spec, motion_);
+  row.body[0] = layout_->placements[spec.a].cluster;
+  row.body[1] = layout_->placements[spec.b].cluster;
+  for (int side = 0; side < 2; ++side)
+    if (row.body[side] >= 0) std::copy_n(layout_->clusters[row.body[side]].w, 3, row.w[side]);
+  to_clusters(spec, m, row);
+  m.bias = cluster_bias(spec, m);
+  return m;
+}
+
+// Row r at the placed motion: J and W J in the clusters' coordinates. Most rows are between bodies that
+// are clusters of their own: no lever to add.
+template <bool WithBias> STEPLAP_INLINE MeasureValue<double> ConstraintSolution::load_active(std::size_t r) {
+  const ActiveRow& active = layout_->active[r];
+  SchurRow& row = layout_->schur_rows[r];
+  const Motion<double>& link = motion_[active.link];
+  if (row.is_constant) { // an angle: make_layout has filled in its gradient
+    MeasureValue<double> m;
+    m.value = link.theta;
+    m.rate = link.omega;
+    return m;
+  }
+  const Motion<double>& b = motion_[active.spec->b];
+  MeasureValue<double> m = evaluate_row<WithBias>(*active.spec, link, Origin{});
+  if constexpr (WithBias) m.bias += dot(m.direction, frame_acceleration(link, b.omega));
+  if (!active.is_simple) {
+    m = turned(m, b);
+    to_clusters(*active.spec, m, row);
+    if constexpr (WithBias) m.bias = cluster_bias(*active.spec, m);
+    return m;
+  }
+  const double dx = b.c * m.direction.x - b.s * m.direction.y, dy = b.s * m.direction.x + b.c * m.direction.y;
+  const auto fill = [&row](int side, double fx, double fy, double couple) {
+    if (row.body[side] < 0) return;
+    const double wx = row.w[side][0] * fx, wy = row.w[side][1] * fy, wm = row.w[side][2] * couple;
+    row.j[side][0] = fx;
+    row.j[side][1] = fy;
+    row.j[side][2] = couple;
+    row.wj[side][0] = wx;
+    row.wj[side][1] = wy;
+    row.wj[side][2] = wm;
+  };
+  fill(0, dx, dy, cross(m.lever_a, m.direction) + m.couple);
+  fill(1, -dx, -dy, -(cross(m.lever_b, m.direction) + m.couple));
+  return m;
+}
+
+// --- an evaluation ------------------------------------------------------------------------------------
+
+// Row r at the placed motion, as load_active does it; returns γ.
+STEPLAP_INLINE double ConstraintSolution::pull(std::size_t r) {
+  const ActiveRow& active = layout_->active[r];
+  if (active.pull == RowPullKind::angle) return 0.0;
+  if (active.pull == RowPullKind::other) return -load_active<true>(r).bias;
+  SchurRow& row = layout_->schur_rows[r];
+  const Motion<double>& link = motion_[active.link];
+  const Motion<double>& b = motion_[active.spec->b];
+  const RowPull p = active.pull == RowPullKind::axis ? pull_along_axis(*active.spec, link)
+                                                     : pull_along_slide(*active.spec, link);
+  const double x = b.c * p.direction.x - b.s * p.direction.y, y = b.s * p.direction.x + b.c * p.direction.y;
+  set_gradient(row, 0, x, y, p.couple_a);
+  if (row.body[1] >= 0) set_gradient(row, 1, -x, -y, -p.couple_b);
+  return -(p.bias + dot(p.direction, frame_acceleration(link, b.omega)));
+}
+
+void ConstraintSolution::prepare() {
+  Layout& layout = *layout_;
+  const auto count = static_cast<std::size_t>(layout.schur.size());
+  if (count == 0) return;
+  for (std::size_t r = 0; r < count; ++r) multiplier_[r] = pull(r);
+  layout.schur.factor(layout.schur_rows);
+}
+
+void ConstraintSolution::solve_mechanisms(const BodyForce* force, double* a) {
+  for (Mechanism& m : layout_->mechanisms) {
+    m.factor_mass();
+    m.accelerate(force, a + m.first_coordinate);
+    if (m.row_count == 0) continue;
+    m.expand(a + m.first_coordinate, cluster_a_.data());
+    for (int r = m.first_row; r < m.first_row + m.row_count; ++r)
+      multiplier_[r] = less_accelerations(layout_->schur_rows[r], pull(r), cluster_a_.data());
+  }
+}
+
+void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
+  Layout& layout = *layout_;
+  const auto count = static_cast<std::size_t>(layout.schur.size());
+  double* const right = multiplier_.data();
+  for (std::size_t r = 0; r < count; ++r) right[r] = less_accelerations(layout.schur_rows[r], right[r], a);
+  if (layout.has_mechanisms()) solve_mechanisms(force, a);
+  if (layout.active.empty()) return;
+  for (const int r : layout.driven_rows) {
+    const SignalJet target = row_target(*layout.active[r].spec, state_->memory.data(), t);
+    right[r] += target.acceleration;
+    target_rate_[r] = target.rate;
+  }
+  is_factored_ = true;
+  for (Mechanism& m : layout.mechanisms) {
+    if (m.row_count == 0) continue;
+    const SchurRow* const rows = layout.schur_rows.data() + m.first_row;
+    m.reduce_rows(rows);
+    m.factor_rows(rows, 0.0);
+    m.solve_rows(right + m.first_row);
+    m.add_response(right + m.first_row, a + m.first_coordinate);
+  }
+  if (count == 0) return;
+  layout.schur.solve(layout.schur_rows, right);
+  add_rows(layout.schur_rows.data(), count, right, a);
+}
+
+double ConstraintSolution::power_of_drives() const {
+  double power = 0.0;
+  for (const int r : layout_->driven_rows) power += multiplier_[r] * target_rate_[r];
+  return power;
+}
+
+// --- a projection -------------------------------------------------------------------------------------
+
+void ConstraintSolution::compare(double t) {
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) {
+    const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), t);
+    const MeasureValue<double> m = load_active<false>(r);
+    off_[r] = off_target(*layout_->active[r].spec, m.value, target.value);
+    rate_off_[r] = m.rate - target.rate;
+  }
+  for (Mechanism& m : layout_->mechanisms) m.reduce_rows(layout_->schur_rows.data() + m.first_row);
+}
+
+Residual ConstraintSolution::residual() const {
+  Residual residual;
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) {
+    if (layout_->is_left_out(static_cast<int>(r))) continue;
+    residual.position = std::max(residual.position, std::abs(off_[r]));
+    residual.velocity = std::max(residual.velocity, std::abs(rate_off_[r]));
+  }
+  return residual;
+}
+
+void ConstraintSolution::factor(double shift) {
+  Layout& layout = *layout_;
+  layout.schur.factor(layout.schur_rows, shift);
+  for (Mechanism& m : layout.mechanisms) {
+    m.factor_mass();
+    m.factor_rows(layout.schur_rows.data() + m.first_row, shift);
+  }
+  is_factored_ = true;
+}
+
+void ConstraintSolution::take_away(const double* r, double* change) {
+  const Layout& layout = *layout_;
+  double* const response = response_.data();
+  for (std::size_t i = 0; i < layout.active.size(); ++i) response[i] = -r[i];
+  layout.schur.solve(layout.schur_rows, response);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layout.schur.size()); ++i)
+    for (int side = 0; side < 2; ++side)
+      if (layout.schur_rows[i].body[side] >= 0) add_side(layout.schur_rows[i], side, response[i], change);
+  for (const Mechanism& m : layout.mechanisms) {
+    if (m.row_count == 0) continue;
+    m.solve_rows(response + m.first_row);
+    m.add_response(response + m.first_row, change + m.first_coordinate);
+  }
+}
+
+double ConstraintSolution::along(std::size_t r, const double* change) const {
+  const Layout& layout = *layout_;
+  if (r >= static_cast<std::size_t>(layout.schur.size())) {
+    const Mechanism& m = layout.mechanism_of_row(static_cast<int>(r));
+    return m.along(static_cast<int>(r) - m.first_row, change + m.first_coordinate);
+  }
+  const SchurRow& row = layout.schur_rows[r];
+  double sum = 0.0;
+  for (int side = 0; side < 2; ++side)
+    if (row.body[side] >= 0)
+      for (int c = 0; c < 3; ++c) sum += row.j[side][c] * change[3 * row.body[side] + c];
+  return sum;
+}
+
+} // namespace steplap

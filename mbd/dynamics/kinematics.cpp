@@ -1,0 +1,95 @@
+#include "mbd/dynamics/kinematics.h"
+
+namespace steplap {
+
+Kinematics::Kinematics(const System& system) : system_(system) {
+  motion_.resize(system.bodies.size() + system.links.slot_count()); // at most every body is a cluster's with a slot of its own
+}
+
+void Kinematics::use(Layout& layout, const State& state) {
+  layout_ = &layout;
+  state_ = &state;
+  time_ = lock_time_ = std::numeric_limits<double>::quiet_NaN();
+  is_complete_ = false;
+  if (lock_target_.size() < layout.locks.size()) lock_target_.resize(layout.locks.size());
+}
+
+void Kinematics::aim_locks(double t) {
+  if (t == lock_time_) return;
+  lock_time_ = t;
+  const double* const memory = state_->memory.data();
+  for (std::size_t i = 0; i < layout_->locks.size(); ++i) {
+    lock_target_[i] = row_target(system_.rows[layout_->locks[i].row], memory, t);
+    lock_target_[i].value += layout_->locks[i].offset;
+  }
+}
+
+void Kinematics::place(double t, const double* q, const double* v) {
+  const Layout& layout = *layout_;
+  time_ = t;
+  is_complete_ = false;
+  Motion<double>* const motion = motion_.data();
+  for (Mechanism& m : layout_->mechanisms) m.place(q + m.first_coordinate, v + m.first_coordinate, motion);
+  const int* const slots = layout.slots.data();
+  for (int k = 0; k < layout.absolute_count; ++k) {
+    Motion<double>& m = motion[slots[k]];
+    m.x = q[0];
+    m.y = q[1];
+    m.vx = v[0];
+    m.vy = v[1];
+    m.omega = v[2];
+    set_angle(m, q[2]);
+    q += 3;
+    v += 3;
+  }
+  if (!layout.locks.empty()) {
+    aim_locks(t);
+    for (std::size_t i = 0; i < layout.locks.size(); ++i) {
+      const Lock& lock = layout.locks[i];
+      const SignalJet& target = lock_target_[i];
+      Motion<double>& m = motion[slots[lock.cluster]];
+      if (lock.coordinate == 2) set_angle(m, target.value);
+      else (lock.coordinate == 0 ? m.x : m.y) = target.value;
+      (lock.coordinate == 0 ? m.vx : lock.coordinate == 1 ? m.vy : m.omega) = target.rate;
+    }
+  }
+  for (const int i : layout.riding) place_member(i);
+  for (const ActiveLink& link : layout.links) motion[link.slot] = seen_from(motion[link.a], motion[link.b]);
+}
+
+bool Kinematics::is_placed(double t, const double* y) const {
+  if (t != time_) return false;
+  const double* const v = y + layout_->coordinate_count;
+  for (const Mechanism& m : layout_->mechanisms)
+    if (!m.is_at(y + m.first_coordinate, v + m.first_coordinate)) return false;
+  for (int k = 0; k < layout_->absolute_count; ++k) {
+    const Motion<double>& m = motion_[layout_->slots[k]];
+    const double* const qk = y + 3 * k;
+    const double* const vk = v + 3 * k;
+    if (m.x != qk[0] || m.y != qk[1] || m.theta != qk[2] || m.vx != vk[0] || m.vy != vk[1] || m.omega != vk[2]) return false;
+  }
+  return true;
+}
+
+// A body that moves with others: from its cluster's motion.
+void Kinematics::place_member(int i) {
+  const Placement& place = layout_->placements[i];
+  const Motion<double>& k = motion_[layout_->clusters[place.cluster].motion];
+  Motion<double>& m = motion_[i];
+  const Pair<double> lever = to_ground(k, place.offset);
+  m.x = k.x + lever.x;
+  m.y = k.y + lever.y;
+  m.theta = k.theta + place.angle;
+  m.c = k.c * place.c - k.s * place.s;
+  m.s = k.s * place.c + k.c * place.s;
+  m.vx = k.vx - k.omega * lever.y;
+  m.vy = k.vy + k.omega * lever.x;
+  m.omega = k.omega;
+}
+
+void Kinematics::place_rest() {
+  is_complete_ = true;
+  for (const int i : layout_->riding_along) place_member(i);
+}
+
+} // namespace steplap

@@ -1,0 +1,138 @@
+// What an evaluation leaves, and for how long: multipliers, motions, forces of bodies that change their company.
+#include "mbd/dynamics/dynamics.h"
+#include "mbd/io/reader.h"
+#include "tests/physics/scene.h"
+#include "transformer/catalog.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+// A rod of 2 kg on a pin through its end, and a small body welded to its other end that nothing else touches.
+const char* k_pendulum = R"([simulation]
+step = 1e-3
+[[body]]
+name = "rod"
+mass = 2.0
+inertia = 0.3
+position = [0.5, 0.0]
+[[body]]
+name = "bob"
+mass = 1.0
+inertia = 0.1
+position = [1.0, 0.2]
+[[marker]]
+name = "bob's"
+body = "rod"
+at = [0.5, 0.2]
+[[element]]
+kind = "revolute"
+name = "pin"
+a = { body = "rod", at = [-0.5, 0.0] }
+b = { body = "ground", at = [0.0, 0.0] }
+[[element]]
+kind = "weld"
+name = "weld"
+a = "bob's"
+b = "bob"
+)";
+
+struct Evaluated {
+  std::unique_ptr<System> system;
+  State state;
+  Dynamics dynamics;
+  std::vector<double> y, dy;
+
+  explicit Evaluated(const std::string& text)
+      : system(compile(scene(text))), state(system->initial_state()), dynamics(*system), y(system->largest_dimension()), dy(y.size()) {
+    dynamics.set_state(state);
+    dynamics.pack(state, y.data());
+    dynamics.rates(0.0, y.data(), dy.data());
+  }
+};
+
+} // namespace
+
+TEST_CASE("multipliers are those of the last evaluation, whatever is projected or asked since") {
+  Evaluated e(k_pendulum);
+  const std::vector<double> lambda = e.dynamics.multipliers();
+  REQUIRE(e.dynamics.layout().active.size() == 2);
+  // The pin bears the weight less what falls: not zero, so that a residual in its place would show.
+  REQUIRE(std::abs(lambda[1]) > 1.0);
+  std::vector<double> off = e.y;
+  off[0] += 1e-3;
+  off[1] -= 2e-3;
+  e.dynamics.project(0.0, off.data(), 1e-12);
+  CHECK(e.dynamics.multipliers() == lambda);
+  std::vector<double> change(e.y.size(), 1e-3);
+  e.dynamics.keep_allowed(change.data());
+  CHECK(e.dynamics.multipliers() == lambda);
+  const RowSpec* const row = e.dynamics.layout().active[0].spec;
+  Dynamics::Candidates candidates;
+  candidates.rows = {row};
+  e.dynamics.rates(0.0, e.y.data(), e.dy.data());
+  e.dynamics.respond(candidates, e.dy.data());
+  CHECK(e.dynamics.multipliers() == lambda);
+}
+
+TEST_CASE("every body is where it moves to, also those that no force acts on") {
+  Evaluated e(k_pendulum);
+  REQUIRE(e.dynamics.layout().riding_along.size() + e.dynamics.layout().riding.size() > 0);
+  const double quarter = 0.5 * std::acos(-1.0);
+  for (const double angle : {0.0, 0.3, quarter}) {
+    // Turned about the pin at (0, 0), and turning: all of it is a rigid motion.
+    State turned = e.state;
+    const double c = std::cos(angle), s = std::sin(angle), omega = 0.7;
+    for (int i = 1; i < e.system->body_count(); ++i) {
+      const double x = e.state.q[3 * i], y = e.state.q[3 * i + 1];
+      turned.q[3 * i] = c * x - s * y;
+      turned.q[3 * i + 1] = s * x + c * y;
+      turned.q[3 * i + 2] += angle;
+      turned.v[3 * i] = -omega * turned.q[3 * i + 1];
+      turned.v[3 * i + 1] = omega * turned.q[3 * i];
+      turned.v[3 * i + 2] = omega;
+    }
+    e.dynamics.pack(turned, e.y.data());
+    e.dynamics.rates(0.0, e.y.data(), e.dy.data());
+    const std::vector<Motion<double>>& motion = e.dynamics.motion();
+    for (int i = 1; i < e.system->body_count(); ++i) { // to a few roundings of metres
+      CHECK(std::abs(motion[i].x - turned.q[3 * i]) < 1e-15);
+      CHECK(std::abs(motion[i].y - turned.q[3 * i + 1]) < 1e-15);
+      CHECK(std::abs(motion[i].vx - turned.v[3 * i]) < 1e-15);
+      CHECK(std::abs(motion[i].omega - omega) < 1e-15);
+      CHECK(e.dynamics.evaluation().motion[i].y == motion[i].y);
+    }
+  }
+}
+
+// The limbs slide on the yokes, then hold to them: bodies that friction acts on, then parts of a core that nothing acts on.
+TEST_CASE("what acted on a body in other modes acts no more when it rides on another") {
+  const auto system = compile(read_model(STEPLAP_MODELS "/paper/no_interference.toml", transformer_catalog()));
+  const State holding = system->initial_state();
+  State sliding = holding;
+  int joints = 0;
+  for (std::size_t f = 0; f < system->frictions.size(); ++f) {
+    if (system->frictions[f].friction->dimension() == 1) continue;
+    sliding.friction[f].phase = FrictionPhase::slip;
+    sliding.friction[f].is_starting = true;
+    sliding.friction[f].direction[0] = 1.0;
+    ++joints;
+  }
+  REQUIRE(joints == 2);
+  const auto wrenches = [&system](Dynamics& dynamics, const State& state) {
+    std::vector<double> y(system->largest_dimension()), dy(y.size());
+    dynamics.set_state(state);
+    dynamics.pack(state, y.data());
+    dynamics.rates(0.0, y.data(), dy.data());
+    const Snapshot snapshot = dynamics.snapshot(dy.data());
+    return std::vector<double>(snapshot.friction_force, snapshot.friction_force + system->friction_row_count);
+  };
+  Dynamics used(*system), fresh(*system);
+  REQUIRE(wrenches(used, sliding) != wrenches(fresh, holding));
+  CHECK(wrenches(used, holding) == wrenches(fresh, holding));
+}
