@@ -8,7 +8,7 @@ study.estimates = (() => {
   const quantity = (f) => (f.text ? minus(f.text) + (f.unit ? `\u202f${data.pretty(f.unit)}` : '') : '–');
   const interval = (f) => (f.interval ? minus(f.interval) + (f.unit ? `\u202f${data.pretty(f.unit)}` : '') : '');
   const isJudged = new Set(['probability', 'beta', 'critical', 'elasticity', 'first order', 'total', 'estimate', 'swing', 'mu*']);
-  const status = (f) => ({ text: f.status, class: `words${f.status && isJudged.has(f.role) ? ' doubt' : ''}` });
+  const status = (f) => ({ text: f.status, class: `words${f.status && (isJudged.has(f.role) || data.kind === 'fit') ? ' doubt' : ''}` });
   const scroll = (...content) => make('div', { class: 'scroll' }, ...content);
   const heads = ['method', 'of', 'quantity', 'value', 'interval', 'samples', ''];
   const row = (f) => [f.method, f.subject, f.quantity, { text: quantity(f), class: 'value' }, interval(f), String(f.samples), status(f)];
@@ -70,11 +70,11 @@ study.estimates = (() => {
     const { failed, list, more, more_runs: moreRuns } = data.reasons;
     const told = `${failed} of ${data.samples.total} samples`;
     if (!failed) return [make('p', { id: 'failed-runs' }, `Of ${data.samples.total} samples none failed to give a result.`)];
-    const rows = list.map((r) => { const first = study.samples.button(r.first); return [r.status, { text: r.reason, class: 'words' }, String(r.count), first]; });
+    const rows = list.map((r) => { const first = study.samples.button(r.first); return [r.status, { text: r.alike ? `${r.reason} (${r.alike} more alike, with other numbers)` : r.reason, class: 'words' }, String(r.count), first]; });
     const parts = [make('p', { id: 'failed-runs' }, make('strong', { class: 'doubt' }, `${told} gave no result that counts: `), 'their runs did not reach their end, or are not to be trusted. ',
       ['reliability', 'sample'].includes(data.kind) ? counted[data.about.failed] || '' : ''),
     scroll(table(['status', 'reason', 'samples', 'first'], rows, [2, 3]))];
-    if (more) parts.push(make('p', { class: 'note' }, `and ${more} more reasons, of ${moreRuns} samples`));
+    if (more) parts.push(make('p', { class: 'note' }, `and ${more} more kinds of reasons, of ${moreRuns} samples`));
     return parts;
   }
 
@@ -166,6 +166,26 @@ study.estimates = (() => {
       make('div', { class: 'tall' }, scroll(table(['', 'simplification', 'largest change', '', ''], rows, [0, 2]))));
   }
 
+  // --- fit -------------------------------------------------------------------------------------------
+  function fit() {
+    const list = data.findings.filter((f) => f.role === 'correlation' && f.value !== null);
+    if (!data.histories.length && !list.length) return;
+    const section = open('fit'), box = grid(section, true);
+    for (const h of data.histories) {
+      const about = (data.about.histories || []).find((one) => one.name === h.name) || { unit: '', channel: h.name }, label = (text) => data.withUnit(text, about.unit);
+      const shown = h.t.length < h.all ? `Drawn: ${h.t.length} of ${h.all} measured values.` : `All ${h.all} measured values are drawn.`;
+      const dots = { type: 'scatter', mode: 'markers', marker: { size: 4, color: colours.blue, opacity: 0.6 } };
+      charts.add(box, { name: `history ${h.name}`, title: h.name, note: shown, height: 360, layout: { xaxis: axis('t [s]'), yaxis: axis(label(about.channel)) },
+        traces: [{ ...dots, name: 'measured', x: h.t, y: h.measured }, { type: 'scatter', mode: 'lines', name: 'fitted', x: h.t, y: h.fitted, line: { color: colours.vermillion, width: 1.6 } }] });
+      charts.add(box, { name: `residuals ${h.name}`, title: `${h.name}: fitted minus measured`, note: shown, height: 240, layout: { xaxis: axis('t [s]'), yaxis: axis(label('residual')) },
+        traces: [{ ...dots, x: h.t, y: h.t.map((_, i) => (h.fitted[i] === null || h.measured[i] === null ? null : h.fitted[i] - h.measured[i])) }] });
+    }
+    const pairs = list.map((f) => [f.subject.split(', '), f.value]), names = [...new Set(pairs.flatMap(([pair]) => pair))];
+    const rows = names.map((a) => names.map((b) => { const found = pairs.find(([p]) => p.includes(a) && p.includes(b)); return a === b ? 1 : found ? found[1] : null; }));
+    if (names.length > 1) charts.add(box, { name: 'correlation', title: 'Correlation of the parameters', height: 120 + 45 * names.length, layout: { xaxis: { ...barAxis, autorange: true }, yaxis: barAxis },
+      traces: [{ type: 'heatmap', x: names.map(safe), y: names.map(safe), z: rows, zmin: -1, zmax: 1, colorscale: 'RdBu', reversescale: true, text: rows.map((r) => r.map((v) => (v === null ? '' : data.plain(v, 3)))), texttemplate: '%{text}', hoverinfo: 'none', colorbar: { thickness: 14 } }] });
+  }
+
   // --- how estimates settled -----------------------------------------------------------------------
   function settled(box, title, series) {
     const values = series.flatMap((s) => s.value).filter((v) => v !== null), isLog = series.every((s) => s.isShare) && values.length > 0 && values.every((v) => v > 0) && Math.max(...values) < 0.5;
@@ -221,5 +241,5 @@ study.estimates = (() => {
     for (const n of data.about.numbers) rows.push([n.name, roles[n.role] || n.role, { text: n.is, class: 'words' }, '', n.unit ? `in ${data.pretty(n.unit)}` : '']);
     open('variables').append(scroll(table(['name', '', 'is', 'stands at', ''], rows, [3])));
   }
-  return { answer, designPoints, indices, needs, convergence, everything, variables, bySubject };
+  return { answer, designPoints, indices, needs, fit, convergence, everything, variables, bySubject };
 })();

@@ -11,6 +11,7 @@
   study.estimates.designPoints();
   study.estimates.indices();
   study.estimates.needs();
+  study.estimates.fit();
   study.planes.draw();
   study.estimates.convergence();
   study.distributions.draw();
