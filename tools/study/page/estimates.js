@@ -219,6 +219,7 @@ study.estimates = (() => {
     const list = data.findings;
     if (!list.length) return;
     const section = open('estimates'), some = 60, element = table(heads, list.slice(0, some).map(row), [3, 5]), told = make('p', { class: 'note pager' });
+    element.className = 'stacked';
     let shown = Math.min(some, list.length);
     const more = make('button', { type: 'button' }, 'Show more');
     const tell = () => { told.replaceChildren(`${shown} of ${list.length} estimates are shown. `); if (shown < list.length) told.append(more); };
