@@ -107,11 +107,12 @@ study.estimates = (() => {
   function tornado(box, [subject, list]) {
     const column = scaleOf(subject), base = list.find((f) => f.role === 'base'), zero = base && base.value !== null ? base.value * column.factor : 0;
     const bars = list.filter((f) => f.role === 'swing' && f.low !== null && f.high !== null), missing = list.filter((f) => f.role === 'swing' && (f.low === null || f.high === null));
-    const trace = (key, name, colour) => ({ type: 'bar', orientation: 'h', name, y: bars.map((f) => safe(f.variable)), base: zero, x: bars.map((f) => f[key] * column.factor - zero),
+    // Of different breadth: where both ends lie on one side neither covers the other.
+    const trace = (key, name, colour, width) => ({ type: 'bar', orientation: 'h', name, width, y: bars.map((f) => safe(f.variable)), base: zero, x: bars.map((f) => f[key] * column.factor - zero),
       customdata: bars.map((f) => data.plain(f[key] * column.factor)), hovertemplate: `%{y}: %{customdata}<extra>${name}</extra>`, marker: { color: colour } });
     charts.add(box, { name: `tornado ${subject}`, title: `${subject}: ${data.plain(zero)}${column.unit ? ` ${data.pretty(column.unit)}` : ''} at the point`, height: barHeight(bars.length),
       note: missing.length ? `No result at one end: ${missing.map((f) => f.variable).join(', ')}.` : '',
-      traces: [trace('low', 'at the low value', colours.sky), trace('high', 'at the high value', colours.vermillion)],
+      traces: [trace('low', 'at the low value', colours.sky, 0.75), trace('high', 'at the high value', colours.vermillion, 0.4)],
       layout: { barmode: 'overlay', xaxis: axis(column.head), yaxis: barAxis, shapes: [{ type: 'line', x0: zero, x1: zero, y0: 0, y1: 1, yref: 'paper', line: { color: '#333', width: 1 } }] } });
   }
   function elasticity(box, [subject, list]) {
