@@ -140,6 +140,8 @@ TEST_CASE("the quantity of a finding says its part and its unit") {
   CHECK(view({"form", "design point 2", "pressure", 66506.0}).unit == "kPa");
   CHECK(view({"form", "design point 2", "pressure", 66506.0}).place == 2);
   CHECK(view({"map", "border 3 point 17", "pressure", 66506.0}).place == 3);
+  CHECK(view({"fit", "pressure", "value", 29985.0, 29000.0, 31000.0}).value == "30.0");
+  CHECK(view({"fit", "pressure, mu", "correlation", 0.91234}).value == "0.912");
   CHECK(view({"fit", "pressure", "skewness", 2.0}).unit == "SI"); // of which nothing is known is not given the subject's
 }
 

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Screenshots of the report's page for the docs: photograph_report.py PAGES IMAGES.
+"""Screenshots of pages for the docs: photograph_report.py PAGES IMAGES.
 
-PAGES holds paper.html and weak_clamping.html.
+PAGES holds paper.html and weak_clamping.html, and the pages of the studies slip_probability.html and tornado.html.
 """
+import base64
 import os
 import sys
 import time
@@ -18,6 +19,24 @@ IMAGES = {
     "report_machine": ("paper.html", 1280, 0.1218, "#scenes"),
     "report_slipped": ("weak_clamping.html", 1280, 0.1535, "#machine"),
 }
+
+# Image: page of a study, width of the window, elements of the page from which and to whose end
+STUDIES = {
+    "study_slip": ("slip_probability.html", 1100, "body", "#plane"),
+    "study_tornado": ("tornado.html", 1100, "#indices", "#indices .chart:nth-child(4)"),
+}
+
+
+def photograph_study(browser, page, width, first, last, path):
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
+    browser.get("file://" + os.path.abspath(page))
+    top = browser.execute_script("return document.querySelector(arguments[0]).getBoundingClientRect().top + scrollY", first)
+    end = browser.execute_script("return document.querySelector(arguments[0]).getBoundingClientRect().bottom + scrollY", last)
+    clip = {"x": 0, "y": top, "width": width, "height": end - top + 8, "scale": 1}
+    image = browser.execute_cdp_cmd("Page.captureScreenshot", {"captureBeyondViewport": True, "clip": clip})
+    with open(path, "wb") as file:
+        file.write(base64.b64decode(image["data"]))
+    print(path)
 
 
 def main(pages, images):
@@ -36,6 +55,8 @@ def main(pages, images):
         path = os.path.join(images, image + ".png")
         browser.find_element(By.CSS_SELECTOR, selector).screenshot(path)
         print(path)
+    for image, (page, width, first, last) in STUDIES.items():
+        photograph_study(browser, os.path.join(pages, page), width, first, last, os.path.join(images, image + ".png"))
     browser.quit()
 
 

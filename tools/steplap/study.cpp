@@ -34,7 +34,7 @@ Command study_command() {
   Command command;
   command.name = "study";
   command.summary = "what if, how likely, how much does it matter: many runs of a model; see steplap study --help";
-  command.examples = "  steplap study models/studies/slip_probability.toml\n  mpirun -n 8 steplap study FILE\n  steplap study show FILE\n";
+  command.examples = "  steplap study models/studies/slip_probability.toml\n  mpirun -n 8 steplap study FILE\n  steplap study show FILE\n  steplap study report FILE\n";
   command.run = [](Console&) { return static_cast<ExitCode>(run_study_program({"--help"})); };
   return command;
 }

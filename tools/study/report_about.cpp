@@ -75,6 +75,14 @@ Json numbers_json(const LoadedStudy& loaded) {
   return json;
 }
 
+// Measured records that a fit compares channels with, where studies have such.
+template <class AnyStudy> Json histories_json(const AnyStudy& study) {
+  Json json = Json::array();
+  if constexpr (requires { study.histories; })
+    for (const auto& h : study.histories) json.push_back({{"name", h.name}, {"unit", unit_or_none(h.channel_unit)}, {"channel", h.channel}});
+  return json;
+}
+
 Json settings_of(const Study& study) {
   if (study.kind == "sweep") return {{"design", study.sweep.design}};
   if (study.kind == "sample") return {{"design", study.sample.design}};
@@ -96,6 +104,7 @@ std::string about_of(const LoadedStudy& loaded, const JointLaw& law) {
   for (std::size_t i = 0; i < study.variables.size(); ++i) json["variables"].push_back(variable_json(loaded, law, i));
   json["numbers"] = numbers_json(loaded);
   json["settings"] = settings_of(study);
+  json["histories"] = histories_json(study);
   json["models"] = Json::array();
   for (const auto& m : loaded.models) json["models"].push_back(m->path);
   json["variants"] = Json::array();

@@ -22,6 +22,7 @@ constexpr std::size_t k_most_text = 400000;   ///< bytes of the study, of the mo
 constexpr std::size_t k_most_reasons = 200;   ///< listed
 constexpr std::size_t k_most_growth = 1500;   ///< estimates drawn of each method
 constexpr std::size_t k_most_columns = 60;    ///< whose distribution is shown
+constexpr std::size_t k_most_times = 3000;    ///< of a measured record
 
 template <class T> std::string base64(const std::vector<T>& values) {
   static const char* const k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -255,16 +256,61 @@ Json growth_json(const std::vector<Finding>& growth) {
   return json;
 }
 
+// Reasons that differ by their numbers only are one: the first is told, and how many there are of them.
 Json reasons_json(Store& store) {
-  Json list = Json::array();
-  long more = 0, more_runs = 0, failed = 0;
+  struct Group {
+    Store::Reason first;
+    long kinds = 0, samples = 0;
+  };
+  std::vector<Group> groups;
+  std::map<std::string, std::size_t> places;
+  long failed = 0;
   for (const Store::Reason& r : store.reasons()) {
     if (r.status == name_of(SampleStatus::ok)) continue;
     failed += r.count;
-    if (list.size() < k_most_reasons) list.push_back({{"status", r.status}, {"reason", r.reason}, {"count", r.count}, {"first", r.first}});
-    else ++more, more_runs += r.count;
+    std::string key = r.status + " ";
+    for (const char c : r.reason)
+      if (std::string_view("0123456789.+-e").find(c) == std::string_view::npos) key += c;
+    const auto [place, is_new] = places.try_emplace(key, groups.size());
+    if (is_new) groups.push_back({r, 0, 0});
+    Group& group = groups[place->second];
+    ++group.kinds;
+    group.samples += r.count;
+    if (r.first < group.first.first) group.first = r;
   }
-  return {{"failed", failed}, {"list", std::move(list)}, {"more", more}, {"more_runs", more_runs}};
+  Json list = Json::array();
+  long more = 0;
+  for (const Group& g : groups) {
+    if (list.size() >= k_most_reasons) more += g.samples;
+    else list.push_back({{"status", g.first.status}, {"reason", g.first.reason}, {"alike", g.kinds - 1}, {"count", g.samples}, {"first", g.first.first}});
+  }
+  return {{"failed", failed}, {"list", std::move(list)}, {"more", groups.size() > k_most_reasons ? groups.size() - k_most_reasons : 0}, {"more_runs", more}};
+}
+
+// Measured records and what was found to fit them, where stores have such.
+template <class AnyStore> Json histories_json(AnyStore& store) {
+  Json json = Json::array();
+  if constexpr (requires { store.histories(); }) {
+    std::vector<std::string> names;
+    std::map<std::string, std::vector<std::size_t>> of;
+    const auto points = store.histories();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (of[points[i].history].empty()) names.push_back(points[i].history);
+      of[points[i].history].push_back(i);
+    }
+    for (const std::string& name : names) {
+      const std::vector<std::size_t>& all = of[name];
+      Json one{{"name", name}, {"all", all.size()}, {"t", Json::array()}, {"measured", Json::array()}, {"fitted", Json::array()}};
+      for (std::size_t k = 0, shown = std::min(all.size(), k_most_times); k < shown; ++k) {
+        const auto& p = points[all[k * all.size() / shown]];
+        one["t"].push_back(p.t);
+        one["measured"].push_back(p.measured);
+        one["fitted"].push_back(p.fitted);
+      }
+      json.push_back(std::move(one));
+    }
+  }
+  return json;
 }
 
 std::string shortened(const std::string& text) {
@@ -334,6 +380,7 @@ std::string report_data(Store& store, const std::string& store_path, std::size_t
   json["running"] = is_random_sample ? running_estimates(samples, about.value("failed", "bounds")) : Json::array();
   json["findings"] = findings_json(store.findings(), samples.columns);
   json["growth"] = growth_json(store.growth());
+  json["histories"] = histories_json(store);
   json["notes"] = store.notes();
   json["study_text"] = shortened(identity.study);
   json["scene_text"] = shortened(identity.scene);

@@ -47,6 +47,11 @@ constexpr Part k_parts[] = {
     {"swing", "swing by ", UnitOf::subject},
     {"importance", "importance of ", UnitOf::none},
     {"need", "largest change", UnitOf::none},
+    {"sum of squares", "sum of squares", UnitOf::none}, // of residuals over their noise
+    {"correlation", "correlation", UnitOf::none},
+    {"condition", "condition", UnitOf::none},
+    {"not told", "not told", UnitOf::none},
+    {"another fit", "another fit", UnitOf::none},
 };
 
 // "design point 2", "border 1 point 17": the number behind the first word or words.
@@ -146,6 +151,7 @@ bool last_place(double value, double low, double high, int& last) {
 int digits_of(const Finding& f, const std::string& role) {
   constexpr int k_exact = 6, k_estimated = 4;
   if (role == "beta") return 5;
+  if (role == "correlation" || role == "condition" || role == "not told" || role == "another fit") return 3;
   return role == "moment" || role == "quantile" || role == "probability" || role == "sigma" ? k_estimated : f.method == "needs" ? 3 : k_exact;
 }
 

@@ -12,6 +12,10 @@ study.charts = (() => {
   // Of Plotly's buttons those that do not ask a server: one would upload the chart.
   const config = { responsive: true, displaylogo: false, plotlyServerURL: '', modeBarButtons: [['toImage', 'zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'resetScale2d']] };
 
+  // Charts are drawn when all that is added with them is there: only then their columns are as wide as they stay.
+  const waiting = [];
+  const draw = () => { for (const one of waiting.splice(0)) one(); };
+
   // One chart with its heading at the end of `parent`. A click on a point that has a sample's place as customdata shows it.
   function add(parent, { title = '', note = '', traces, layout = {}, height = 320, name = '' }) {
     const canvas = make('div', { class: 'canvas' });
@@ -20,10 +24,13 @@ study.charts = (() => {
     const whole = { height, margin: { l: 58, r: 14, t: 12, b: 44 }, font: { family: '"DejaVu Sans", "Segoe UI", Arial, sans-serif', size: 12, color: '#1a1a1a' },
       paper_bgcolor: '#fff', plot_bgcolor: '#fff', hovermode: 'closest', dragmode: isTouched ? false : 'zoom', showlegend: traces.filter((t) => t.showlegend !== false && t.name).length > 1,
       legend: { orientation: 'h', y: 1.02, yanchor: 'bottom', x: 0, font: { size: 11 } }, bargap: 0.3, ...layout };
-    Plotly.newPlot(canvas, traces, whole, config);
-    canvas.on('plotly_click', (event) => {
-      const picked = event.points.find((p) => Number.isInteger(p.customdata));
-      if (picked) study.samples.show(picked.customdata);
+    if (!waiting.length) queueMicrotask(draw);
+    waiting.push(() => {
+      Plotly.newPlot(canvas, traces, whole, config);
+      canvas.on('plotly_click', (event) => {
+        const picked = event.points.find((p) => Number.isInteger(p.customdata));
+        if (picked) study.samples.show(picked.customdata);
+      });
     });
     all.push({ canvas, box });
     return { canvas, box };
@@ -32,15 +39,19 @@ study.charts = (() => {
   function band(x, low, high, colour, more = {}) {
     return { x: [...x, ...[...x].reverse()], y: [...high, ...[...low].reverse()], type: 'scatter', mode: 'none', fill: 'toself', fillcolor: `${colour}33`, hoverinfo: 'skip', ...more };
   }
+  // Takes all charts out of a box, to put others there.
+  function clear(box) {
+    for (let i = all.length; i-- > 0;) if (box.contains(all[i].canvas)) Plotly.purge(all.splice(i, 1)[0].canvas);
+    box.replaceChildren();
+  }
   // What goes on paper is as wide as the paper's column.
   function fit(isPaper) {
     for (const { canvas, box } of all) {
-      if (!canvas.isConnected) continue;
       const isWide = box.parentElement.classList.contains('one');
       Plotly.relayout(canvas, isPaper ? { width: isWide ? 690 : 335, autosize: false } : { width: null, autosize: true });
     }
   }
   window.addEventListener('beforeprint', () => fit(true));
   window.addEventListener('afterprint', () => fit(false));
-  return { add, band, safe, axis, colours, cycle, all };
+  return { add, clear, band, safe, axis, colours, cycle, all };
 })();

@@ -56,7 +56,7 @@ study.distributions = (() => {
     section.append(make('div', { class: 'controls' }, make('label', {}, 'Shown as ', choice)), make('p', { class: 'note' }, words[drawn]), box);
     if (leftOut) section.append(make('p', { class: 'note' }, `${list.length} of ${list.length + leftOut} are drawn.`));
     const build = () => {
-      box.replaceChildren();
+      charts.clear(box);
       for (const t of list) (choice.value === 'histogram' ? histogram : cumulative)(box, t, data.named(t.name));
     };
     choice.addEventListener('change', build);

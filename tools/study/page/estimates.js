@@ -8,7 +8,7 @@ study.estimates = (() => {
   const quantity = (f) => (f.text ? minus(f.text) + (f.unit ? `\u202f${data.pretty(f.unit)}` : '') : '–');
   const interval = (f) => (f.interval ? minus(f.interval) + (f.unit ? `\u202f${data.pretty(f.unit)}` : '') : '');
   const isJudged = new Set(['probability', 'beta', 'critical', 'elasticity', 'first order', 'total', 'estimate', 'swing', 'mu*']);
-  const status = (f) => ({ text: f.status, class: `words${f.status && isJudged.has(f.role) ? ' doubt' : ''}` });
+  const status = (f) => ({ text: f.status, class: `words${f.status && (isJudged.has(f.role) || data.kind === 'fit') ? ' doubt' : ''}` });
   const scroll = (...content) => make('div', { class: 'scroll' }, ...content);
   const heads = ['method', 'of', 'quantity', 'value', 'interval', 'samples', ''];
   const row = (f) => [f.method, f.subject, f.quantity, { text: quantity(f), class: 'value' }, interval(f), String(f.samples), status(f)];
@@ -70,11 +70,11 @@ study.estimates = (() => {
     const { failed, list, more, more_runs: moreRuns } = data.reasons;
     const told = `${failed} of ${data.samples.total} samples`;
     if (!failed) return [make('p', { id: 'failed-runs' }, `Of ${data.samples.total} samples none failed to give a result.`)];
-    const rows = list.map((r) => { const first = study.samples.button(r.first); return [r.status, { text: r.reason, class: 'words' }, String(r.count), first]; });
+    const rows = list.map((r) => { const first = study.samples.button(r.first); return [r.status, { text: r.alike ? `${r.reason} (${r.alike} more alike, with other numbers)` : r.reason, class: 'words' }, String(r.count), first]; });
     const parts = [make('p', { id: 'failed-runs' }, make('strong', { class: 'doubt' }, `${told} gave no result that counts: `), 'their runs did not reach their end, or are not to be trusted. ',
       ['reliability', 'sample'].includes(data.kind) ? counted[data.about.failed] || '' : ''),
     scroll(table(['status', 'reason', 'samples', 'first'], rows, [2, 3]))];
-    if (more) parts.push(make('p', { class: 'note' }, `and ${more} more reasons, of ${moreRuns} samples`));
+    if (more) parts.push(make('p', { class: 'note' }, `and ${more} more kinds of reasons, of ${moreRuns} samples`));
     return parts;
   }
 
@@ -107,11 +107,12 @@ study.estimates = (() => {
   function tornado(box, [subject, list]) {
     const column = scaleOf(subject), base = list.find((f) => f.role === 'base'), zero = base && base.value !== null ? base.value * column.factor : 0;
     const bars = list.filter((f) => f.role === 'swing' && f.low !== null && f.high !== null), missing = list.filter((f) => f.role === 'swing' && (f.low === null || f.high === null));
-    const trace = (key, name, colour) => ({ type: 'bar', orientation: 'h', name, y: bars.map((f) => safe(f.variable)), base: zero, x: bars.map((f) => f[key] * column.factor - zero),
+    // Of different breadth: where both ends lie on one side neither covers the other.
+    const trace = (key, name, colour, width) => ({ type: 'bar', orientation: 'h', name, width, y: bars.map((f) => safe(f.variable)), base: zero, x: bars.map((f) => f[key] * column.factor - zero),
       customdata: bars.map((f) => data.plain(f[key] * column.factor)), hovertemplate: `%{y}: %{customdata}<extra>${name}</extra>`, marker: { color: colour } });
     charts.add(box, { name: `tornado ${subject}`, title: `${subject}: ${data.plain(zero)}${column.unit ? ` ${data.pretty(column.unit)}` : ''} at the point`, height: barHeight(bars.length),
       note: missing.length ? `No result at one end: ${missing.map((f) => f.variable).join(', ')}.` : '',
-      traces: [trace('low', 'at the low value', colours.sky), trace('high', 'at the high value', colours.vermillion)],
+      traces: [trace('low', 'at the low value', colours.sky, 0.75), trace('high', 'at the high value', colours.vermillion, 0.4)],
       layout: { barmode: 'overlay', xaxis: axis(column.head), yaxis: barAxis, shapes: [{ type: 'line', x0: zero, x1: zero, y0: 0, y1: 1, yref: 'paper', line: { color: '#333', width: 1 } }] } });
   }
   function elasticity(box, [subject, list]) {
@@ -166,6 +167,26 @@ study.estimates = (() => {
       make('div', { class: 'tall' }, scroll(table(['', 'simplification', 'largest change', '', ''], rows, [0, 2]))));
   }
 
+  // --- fit -------------------------------------------------------------------------------------------
+  function fit() {
+    const list = data.findings.filter((f) => f.role === 'correlation' && f.value !== null);
+    if (!data.histories.length && !list.length) return;
+    const section = open('fit'), box = grid(section, true);
+    for (const h of data.histories) {
+      const about = (data.about.histories || []).find((one) => one.name === h.name) || { unit: '', channel: h.name }, label = (text) => data.withUnit(text, about.unit);
+      const shown = h.t.length < h.all ? `Drawn: ${h.t.length} of ${h.all} measured values.` : `All ${h.all} measured values are drawn.`;
+      const dots = { type: 'scatter', mode: 'markers', marker: { size: 4, color: colours.blue, opacity: 0.6 } };
+      charts.add(box, { name: `history ${h.name}`, title: h.name, note: shown, height: 360, layout: { xaxis: axis('t [s]'), yaxis: axis(label(about.channel)) },
+        traces: [{ ...dots, name: 'measured', x: h.t, y: h.measured }, { type: 'scatter', mode: 'lines', name: 'fitted', x: h.t, y: h.fitted, line: { color: colours.vermillion, width: 1.6 } }] });
+      charts.add(box, { name: `residuals ${h.name}`, title: `${h.name}: fitted minus measured`, note: shown, height: 240, layout: { xaxis: axis('t [s]'), yaxis: axis(label('residual')) },
+        traces: [{ ...dots, x: h.t, y: h.t.map((_, i) => (h.fitted[i] === null || h.measured[i] === null ? null : h.fitted[i] - h.measured[i])) }] });
+    }
+    const pairs = list.map((f) => [f.subject.split(', '), f.value]), names = [...new Set(pairs.flatMap(([pair]) => pair))];
+    const rows = names.map((a) => names.map((b) => { const found = pairs.find(([p]) => p.includes(a) && p.includes(b)); return a === b ? 1 : found ? found[1] : null; }));
+    if (names.length > 1) charts.add(box, { name: 'correlation', title: 'Correlation of the parameters', height: 120 + 45 * names.length, layout: { xaxis: { ...barAxis, autorange: true }, yaxis: barAxis },
+      traces: [{ type: 'heatmap', x: names.map(safe), y: names.map(safe), z: rows, zmin: -1, zmax: 1, colorscale: 'RdBu', reversescale: true, text: rows.map((r) => r.map((v) => (v === null ? '' : data.plain(v, 3)))), texttemplate: '%{text}', hoverinfo: 'none', colorbar: { thickness: 14 } }] });
+  }
+
   // --- how estimates settled -----------------------------------------------------------------------
   function settled(box, title, series) {
     const values = series.flatMap((s) => s.value).filter((v) => v !== null), isLog = series.every((s) => s.isShare) && values.length > 0 && values.every((v) => v > 0) && Math.max(...values) < 0.5;
@@ -199,6 +220,7 @@ study.estimates = (() => {
     const list = data.findings;
     if (!list.length) return;
     const section = open('estimates'), some = 60, element = table(heads, list.slice(0, some).map(row), [3, 5]), told = make('p', { class: 'note pager' });
+    element.className = 'stacked';
     let shown = Math.min(some, list.length);
     const more = make('button', { type: 'button' }, 'Show more');
     const tell = () => { told.replaceChildren(`${shown} of ${list.length} estimates are shown. `); if (shown < list.length) told.append(more); };
@@ -221,5 +243,5 @@ study.estimates = (() => {
     for (const n of data.about.numbers) rows.push([n.name, roles[n.role] || n.role, { text: n.is, class: 'words' }, '', n.unit ? `in ${data.pretty(n.unit)}` : '']);
     open('variables').append(scroll(table(['name', '', 'is', 'stands at', ''], rows, [3])));
   }
-  return { answer, designPoints, indices, needs, convergence, everything, variables, bySubject };
+  return { answer, designPoints, indices, needs, fit, convergence, everything, variables, bySubject };
 })();

@@ -11,6 +11,7 @@
   study.estimates.designPoints();
   study.estimates.indices();
   study.estimates.needs();
+  study.estimates.fit();
   study.planes.draw();
   study.estimates.convergence();
   study.distributions.draw();
@@ -21,5 +22,5 @@
     if (text) at('texts').append(make('details', {}, make('summary', {}, name), make('pre', {}, text)));
   at('footer').textContent = `Written by ${data.program} from ${data.store}. Charts by Plotly, © Plotly Technologies Inc., MIT licence (text at the end of this file's source).`;
   document.addEventListener('keydown', (event) => { if (event.key === 'Escape') at('sample').hidden = true; });
-  document.body.setAttribute('data-ready', 'true');
+  queueMicrotask(() => document.body.setAttribute('data-ready', 'true')); // after the charts
 })();

@@ -86,7 +86,7 @@ study.planes = (() => {
     const box = start('Curves'), ofX = select('Along', varying, varying[0]), ofY = select('shown', data.outputs, data.outputs[0]);
     section.append(make('div', { class: 'controls' }, ofX.label, ofY.label), box);
     const build = () => {
-      box.replaceChildren();
+      charts.clear(box);
       curves(box, ofX.column, ofY.column, varying);
       if (varying.length === 2) field(box, varying, ofY.column);
     };
@@ -137,7 +137,7 @@ study.planes = (() => {
       for (const f of data.findings.filter((one) => one.role === 'design point')) points.set(f.subject, { ...points.get(f.subject), [f.variable]: f.value });
       const marks = [...points].filter(([, p]) => p[x.name] !== undefined && p[y.name] !== undefined);
       if (marks.length) traces.push({ type: 'scatter', mode: 'markers', name: 'design point', x: marks.map(([, p]) => p[x.name] * x.factor), y: marks.map(([, p]) => p[y.name] * y.factor), text: marks.map(([name]) => safe(name)), hovertemplate: '%{text}<extra></extra>', marker: { symbol: 'star', size: 14, color: colours.orange, line: { color: '#333', width: 1 } } });
-      box.replaceChildren();
+      charts.clear(box);
       charts.add(box, { name: 'scatter', traces, note, height: 460, layout: { xaxis: axis(x.head), yaxis: axis(y.head) } });
     };
     for (const element of [ofX.element, ofY.element, which]) element.addEventListener('change', build);
