@@ -126,7 +126,8 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
       stop_reason_ = "'" + system_.element_names[unit.element] + "' " + words_of(unit.group->transition(from, to));
     is_any = true;
     for (int w = 0; w < unit.watch_count; ++w) fresh_[unit.watch + w] = 1;
-    events.push_back({state.t, system_.element_names[unit.element], unit.group->transition(from, to)});
+    const EventKind kind = unit.group->transition(from, to);
+    if (kind != EventKind::none) events.push_back({state.t, system_.element_names[unit.element], kind});
   }
   return is_any;
 }
@@ -252,9 +253,9 @@ void EventHandler::settle_phases(State& state) {
 void EventHandler::note_changes(const State& before, const State& state, std::vector<Event>& events) {
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
-    if (before.mode[u] != state.mode[u])
-      events.push_back({state.t, system_.element_names[unit.element],
-                        unit.group->transition(before.mode[u], state.mode[u])});
+    if (before.mode[u] == state.mode[u]) continue;
+    const EventKind kind = unit.group->transition(before.mode[u], state.mode[u]);
+    if (kind != EventKind::none) events.push_back({state.t, system_.element_names[unit.element], kind});
   }
   note_friction(before, state, events);
   clear_fresh();

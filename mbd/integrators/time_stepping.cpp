@@ -168,6 +168,21 @@ int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
   return first;
 }
 
+// A contact that is open at both ends, but which went on at the rate of either end would have closed before the other: a
+// fast body may be on its other side (a plate thinner than what a step goes). −1: none. Rates that turn round from approach
+// to parting without any force of the contact need something that turns them; a part half as long then tells.
+int TimeStepping::passed_unit(Dynamics& dynamics, const State& state, double h) const {
+  for (std::size_t u = 0; u < system_.units.size(); ++u) {
+    const Unit& unit = system_.units[u];
+    if (state.mode[u] != 0 || start_.mode[u] != 0) continue;
+    for (int slot = unit.watch; slot < unit.watch + unit.watch_count; ++slot)
+      if (start_watch_[slot] + h * start_watch_rate_[slot] < 0.0 && // not so where a rate is not known
+          dynamics.watch()[slot] - h * dynamics.watch_rate()[slot] < 0.0)
+        return static_cast<int>(u);
+  }
+  return -1;
+}
+
 // From start_ to t1, in y1_ and the modes of `state`.
 TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, double t1,
                                              double tolerance) {
@@ -180,6 +195,8 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
   n_ = dynamics.coordinate_count();
   dynamics.pack(state, y0_.data());
   evaluate(dynamics, start_.t, y0_.data());
+  start_watch_ = dynamics.watch();
+  start_watch_rate_ = dynamics.watch_rate();
   collect_friction(dynamics, state);
   dynamics.set_state(state);
   Trouble trouble;
@@ -198,6 +215,8 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
     if (trouble.what) return trouble;
     const int unit = changed_unit(dynamics, state);
     if (unit < 0) {
+      if (const int passed = passed_unit(dynamics, state, h); passed >= 0)
+        return {"the gap", system_.units[passed].element, dynamics.watch()[system_.units[passed].watch], " m"};
       dynamics.unpack(t1, y1_.data(), state);
       return {};
     }

@@ -79,6 +79,7 @@ private:
   void move(Dynamics& dynamics, double t1, double tolerance);
   [[noreturn]] void fail(const Trouble& trouble, double t, double h) const;
   [[nodiscard]] int changed_unit(Dynamics& dynamics, State& state);
+  [[nodiscard]] int passed_unit(Dynamics& dynamics, const State& state, double h) const;
   void finish_phases(Dynamics& dynamics, State& state, double h);
   // time_stepping_friction.cpp
   void collect_friction(Dynamics& dynamics, State& state);
@@ -106,6 +107,7 @@ private:
   StageSystem stages_;
   Residual residual_;
   State start_;
+  std::vector<double> start_watch_, start_watch_rate_; ///< of the part being made
   double longest_ = 0.0; ///< step so far, s
   long extra_parts_ = 0;
   std::vector<FrictionPart> parts_;

@@ -57,6 +57,7 @@ TEST_CASE("what comes from beside the face is not lifted onto it; from above it 
   CHECK(caught.last("ball.y") > -1e-2);
   for (const Run* r : {&beside, &under}) {
     CHECK(r->last("ball.y") == doctest::Approx(0.2 - 0.5 * k_g));
+    CHECK(r->result.events.empty()); // that it is off is no event
     CHECK(r->result.statistics.energy_residual < 1e-9 * 10.0); // m g h = 10 J
     CHECK(r->result.final_state.dissipated < 1e-20); // what rounding of a projection books
   }

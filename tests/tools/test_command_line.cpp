@@ -140,6 +140,25 @@ TEST_CASE("a foot that presses beyond the edge of what it stands on is told") {
   }
 }
 
+// ½ m v² = 50 J against ½ k w d² = 10 J for the whole thickness of 0.1 m.
+TEST_CASE("a contact that is pressed through a part is told, with its line and the time") {
+  const Workbench bench;
+  const auto text = [](const char* stiffness) {
+    return std::string("gravity = [0.0, 0.0]\n[simulation]\nend = 0.05\ntolerance = 1e-6\nintegrator = \"dop853\"\n[[body]]\nname = \"plate\"\nmass = 1.0\n"
+                       "inertia = 1.0\nfixed = true\noutline = [[-1.0, -0.1], [1.0, -0.1], [1.0, 0.0], [-1.0, 0.0]]\n"
+                       "[[body]]\nname = \"box\"\nmass = 1.0\ninertia = 1.0\nposition = [0.0, 0.3]\nvelocity = [0.0, -10.0]\n"
+                       "outline = [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]]\n"
+                       "[[element]]\nkind = \"polygon_contact\"\nname = \"blow\"\na = \"box\"\nb = \"plate\"\nstiffness = ") +
+           stiffness + "\n";
+  };
+  const auto told = [&](const char* stiffness) {
+    return steplap_does({"simulate", bench.write("a.toml", text(stiffness)), "-o", bench.at("out"), "--force"}).err;
+  };
+  CHECK(has(told("1e4"), "'blow' (line 20) was pressed"));
+  CHECK(has(told("1e4"), "beyond 50 mm one part is through the other"));
+  CHECK_FALSE(has(told("1e6"), "through the other"));
+}
+
 TEST_CASE("equilibrium gives the pose of rest and what holds it") {
   const Workbench bench;
   std::string text = k_oscillator;

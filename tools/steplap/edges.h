@@ -1,4 +1,5 @@
-// Feet that press beyond the outline of what they stand on: a unilateral contact's line has no ends, a part does.
+// Contacts that have left the parts they belong to: feet beyond the outline of what they stand on, since a unilateral contact's
+// line may have no ends where a part does; and contacts that are deeper than a part is thick.
 #pragma once
 
 #include "tools/steplap/run.h"
@@ -8,5 +9,9 @@ namespace steplap {
 /// A sentence for each contact that is closed at `state` further along its line than the outline of body b reaches;
 /// bodies without an outline say nothing.
 [[nodiscard]] std::vector<std::string> feet_beyond_edges(const LoadedModel& loaded, const State& state);
+
+/// A sentence for each contact that was deeper in the run than what it presses on is thick (contact_depth.h; of a
+/// unilateral_contact, the outline of b behind its line), with the place in the file and the time.
+[[nodiscard]] std::vector<std::string> contacts_too_deep(const LoadedModel& loaded, const std::vector<ChannelRange>& ranges);
 
 } // namespace steplap

@@ -141,6 +141,8 @@ FinishedRun run_one(const SimulateOptions& options,
   for (const std::string& text : feet_beyond_edges(*loaded, finished.run.result.final_state))
     log_warning("'" + loaded->path + "': at the end " + text);
   warn_of_missing_values(*loaded, finished.run.result);
+  for (const std::string& text : contacts_too_deep(*loaded, finished.run.result.ranges))
+    log_warning("'" + loaded->path + "': " + text);
   finished.summary = summarise(finished.run);
   estimate_error(options, finished);
   finished.folder = options.folder_of(*loaded);
