@@ -308,3 +308,60 @@ damping = 7.0
     }
   }
 }
+
+TEST_CASE("an elastic step-lap joint: what yielding takes and what its spring holds") {
+  // The block of step_lap_elastic_test.cpp: strain up to F₀/K, then it slides with F₀ = 400 N until it stops.
+  const double m = 10.0, k = 1e6, v = 0.5, bound = 400.0;
+  const double v1_squared = v * v - bound * bound / (m * k), slid = 0.5 * m * v1_squared / bound;
+  const double w = std::sqrt(k / m), stop = std::asin(bound / k * w / v) / w + m * std::sqrt(v1_squared) / bound;
+  const std::string text = R"(
+gravity = [0.0, 0.0]
+[output]
+also = ["*"]
+[[body]]
+name = "limb"
+mass = 10.0
+inertia = 1.0
+velocity = [0.5, 0.0]
+[[element]]
+name = "joint"
+kind = "step_lap_joint"
+limb = "limb"
+active_part = "ground"
+tangential_stiffness = 1e6
+[[element]]
+name = "sheets"
+kind = "step_lap_interface"
+joint = "joint"
+yoke = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+limb = [[-0.1, -0.05], [0.1, -0.05], [0.1, 0.05], [-0.1, 0.05]]
+pressure = 1e5
+static_friction = 0.2
+)";
+  const auto r = run(text, {"dop853", 1e-11, stop, stop / 16.0});
+  // Of 1.25 J the spring holds ½ F₀²/K, the rest is heat; the bounds are those of that test's slid distance.
+  CHECK(r.last("joint.dissipated") == doctest::Approx(bound * slid).epsilon(1e-9));
+  CHECK(r.last("joint.stored") == doctest::Approx(0.5 * bound * bound / k).epsilon(1e-9));
+  CHECK(largest_difference(r.series("joint.dissipated"), r.series("whole.dissipated")) < 1e-9);
+}
+
+TEST_CASE("models with friction, contacts and joints that part: shares add up through all events") {
+  for (const char* file : {"benchmarks/stick_slip_belt.toml", "benchmarks/den_hartog.toml", "layouts/joint_apart.toml", "paper/weak_clamping.toml"}) {
+    CAPTURE(file);
+    Model model = read_model(std::string(STEPLAP_MODELS) + "/" + file, transformer_catalog());
+    model.output.also = {"*"};
+    testing::Run r;
+    r.system = compile(model);
+    SimulationOptions options = options_of(model);
+    options.channels.clear();
+    options.has_extremes = false;
+    options.end = std::min(options.end, 0.3);
+    r.result = simulate(*r.system, r.system->initial_state(), options);
+    const auto dissipated = r.series("whole.dissipated"), work = r.series("whole.work");
+    const double scale = std::max(largest(dissipated), largest(work));
+    REQUIRE(scale > 0.0);
+    // Two quadratures of the same powers; each model's own tolerance or step knows them to some 1e-9.
+    CHECK(largest_difference(sum_of(r, ".dissipated"), dissipated) < 1e-7 * scale);
+    CHECK(largest_difference(sum_of(r, ".work"), work) < 1e-7 * scale);
+  }
+}

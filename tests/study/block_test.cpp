@@ -54,6 +54,33 @@ TEST_CASE("the probability that it slides too far, friction lognormal") {
   }
 }
 
+TEST_CASE("responses of channels on request: friction's heat, and a formula of it") {
+  StudyBench bench;
+  bench.write("block.toml", k_block + "[output]\nalso = [\"deck friction.dissipated\"]\n"
+                                      "[[channel]]\nname = \"way by heat\"\nexpression = \"{deck friction.dissipated} / '9810 N'\"\n");
+  const std::string text = "kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nvalues = [0.1, 0.3]\n"
+                           "[[response]]\nname = \"heat\"\nchannel = \"deck friction.dissipated\"\nwhat = \"final\"\n"
+                           "[[response]]\nname = \"way\"\nchannel = \"way by heat\"\nwhat = \"highest\"\n";
+  const Outcome outcome = bench.run(text);
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  study::Store store(bench.at("study.sqlite"));
+  std::vector<study::StoredSample> rows;
+  store.read(1, 2, rows);
+  for (const study::StoredSample& row : rows) {
+    const double mu = row.values[0], way = slid_distance(0.6 * k_g, 0.1, mu);
+    // μ m g times the way, and the way times μ: as closely as the run knows the way.
+    CHECK(row.outcome.numbers[0] == doctest::Approx(mu * 9810.0 * way).epsilon(1e-7));
+    CHECK(row.outcome.numbers[1] == doctest::Approx(mu * way).epsilon(1e-7));
+  }
+  StudyBench other;
+  other.write("block.toml", k_block);
+  std::string one = text;
+  const Outcome refused = other.run(one.erase(one.rfind("[[response]]")));
+  CHECK(refused.code == 3);
+  CHECK(has(refused.err, "is made on request only"));
+}
+
 TEST_CASE("a sample is replayed by the command that runs models") {
   StudyBench bench;
   bench.write("block.toml", k_block);

@@ -71,6 +71,8 @@ TEST_CASE("channels on request are in the trajectory, the summary with errors, t
   const Workbench bench;
   const Outcome run = steplap_does({"simulate", bench.write("a.toml", asking()), "-o", bench.at("out"), "--estimate-error", "--report"});
   REQUIRE_MESSAGE(run.code == 0, run.err);
+  CHECK(has(run.out, "Channels on request"));
+  CHECK(has(run.out, "share of 10 N"));
   const std::string trajectory = text_of(bench.at("out/a/trajectory.csv"));
   const std::string head = trajectory.substr(0, trajectory.find('\n'));
   for (const char* part : {"edge.x [m]", "edge.ay [m/s^2]", "whole.kinetic [J]", "spring.stored [J]", "share of 10 N"}) CHECK_MESSAGE(has(head, part), part);

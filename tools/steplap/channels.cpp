@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <memory>
 #include <ostream>
+#include <unordered_set>
 
 namespace steplap {
 
@@ -34,14 +35,15 @@ std::unique_ptr<System> with_all_channels(const Model& model) {
 }
 
 std::vector<Listed> list_channels(const LoadedModel& loaded, const System& all, const std::vector<std::string>& patterns) {
-  const Trajectory written(*loaded.system, loaded.model.output.channels);
+  const Trajectory trajectory(*loaded.system, loaded.model.output.channels);
+  std::unordered_set<std::string> made, written;
+  for (const Channel& channel : loaded.system->channels) made.insert(channel.name);
+  for (const Channel* channel : trajectory.channels()) written.insert(channel->name);
   std::vector<Listed> list;
   for (const Channel& channel : all.channels) {
     const auto matches = [&](const std::string& pattern) { return matches_pattern(channel.name, pattern); };
     if (!patterns.empty() && std::none_of(patterns.begin(), patterns.end(), matches)) continue;
-    const auto& names = written.channels();
-    const bool is_written = std::any_of(names.begin(), names.end(), [&](const Channel* c) { return c->name == channel.name; });
-    const bool is_made = is_written || loaded.system->find_channel(channel.name) != nullptr;
+    const bool is_written = written.contains(channel.name), is_made = made.contains(channel.name);
     list.push_back({&channel, is_written ? "written" : is_made ? "not written" : "on request"});
   }
   return list;

@@ -109,6 +109,25 @@ void print_reactions(std::ostream& out, const RunSummary& summary) {
   if (is_any) out << "\nReactions and required pressures, extremes of the whole run\n" << table;
 }
 
+// What the model asks for besides, in the order in which it is made: formulas come last, and are the last to be left out.
+void print_requested(std::ostream& out, const RunSummary& summary) {
+  constexpr std::size_t k_most = 24;
+  std::vector<const ChannelRange*> asked;
+  for (const ChannelRange& range : summary.ranges)
+    if (range.channel->is_on_request && !is_shown(range) && !std::isnan(range.low.value)) asked.push_back(&range);
+  const std::size_t left_out = asked.size() > k_most ? asked.size() - k_most : 0;
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
+  table.add_row({"", "lowest", "at", "highest", "at"});
+  for (std::size_t i = left_out; i < asked.size(); ++i) {
+    const ChannelRange& range = *asked[i];
+    table.add_row({range.channel->name, value_text(summary, range, range.low), time_of_text(summary, range, range.low),
+                   value_text(summary, range, range.high), time_of_text(summary, range, range.high)});
+  }
+  if (asked.empty()) return;
+  out << "\nChannels on request, extremes of the whole run\n" << table;
+  if (left_out > 0) out << "  and " << left_out << " more: see summary.json\n";
+}
+
 void print_slides(std::ostream& out, const RunSummary& summary) {
   TextTable table({Align::left, Align::right, Align::right});
   for (const ChannelRange& range : summary.ranges)
@@ -324,6 +343,7 @@ void print_run(std::ostream& out, const FinishedRun& finished) {
   print_events(out, finished);
   print_reactions(out, finished.summary);
   print_slides(out, finished.summary);
+  print_requested(out, finished.summary);
   print_joints(out, finished);
   print_judgement(out, finished);
   print_global_error(out, finished);

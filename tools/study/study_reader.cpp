@@ -303,12 +303,25 @@ private:
     if (r.what == "count" && entry.find("otherwise")) add(entry.find("otherwise")->where_key(), "'otherwise' is for 'time_of_first'");
   }
 
+  static bool is_on_request(const Response& r, const StudyModel& model) {
+    try {
+      Model everything = completed(model.given);
+      everything.output.also = {"*"};
+      return !channels_of(r, *compile(everything)).empty();
+    } catch (const ModelError&) { // told where the model is read
+      return false;
+    }
+  }
+
   void check_channel(const Node& entry, Response& r, const StudyModel& model) {
     const std::string subject = "response '" + r.name + "'";
     if (r.channel.empty()) return add(r.where, subject + " needs 'channel'");
     const auto found = channels_of(r, *model.system);
     const Location where = entry.find("channel")->where();
     if (found.empty()) {
+      if (is_on_request(r, model))
+        return add(where, "channel '" + r.channel + "' of model '" + model.name + "' is made on request only: write also = [\"" + r.channel +
+                              "\"] below the model's [output]");
       std::vector<std::string> names;
       for (const Channel& c : model.system->channels) names.push_back(c.name);
       return add(where, "no channel of model '" + model.name + "' is called '" + r.channel + "'" + did_you_mean(r.channel, names));
