@@ -2,7 +2,7 @@
 // Symbols have sizes of the screen (this.u), whatever is looked at how closely; bodies have their own.
 steplap.Scene = (() => {
   const make = steplap.make, { turn, add, minus, scaled, length, apply, relative } = steplap.geometry, Box = steplap.Box;
-  const margin = 26;
+  const margin = 30;
 
   class Body {
     constructor(raw, run) {
