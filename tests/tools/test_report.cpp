@@ -376,6 +376,35 @@ static_friction = 0.5
   ring_is(pierced["limb_holes"][1], {{0, 0}, {0, -0.5}, {0.25, -0.5}, {0.25, 0}});
 }
 
+TEST_CASE("a page holds no more channels than a reader could ask for, those of plots first") {
+  Results results = made_results(3);
+  for (int i = 0; i < 12000; ++i) results.channels.push_back({"body " + std::to_string(i) + ".omega", "rad/s", {0.0, 0.0, 0.0}});
+  results.channels.push_back({"asked for.omega", "rad/s", {0.0, 1.0, 2.0}});
+  results.drawing = R"({"bodies":[],"elements":[],"sheets":[],"plots":[{"name":"p","title":"","channels":["asked*"],"bounds":[]}],"seen_from":""})";
+  const auto run = nlohmann::json::parse(report_data({results}))["runs"][0];
+  CHECK(run["channels"].size() == 10000);
+  CHECK(run["channels_left_out"] == 12003 - 10000);
+  CHECK(run["is_thinned"] == false);
+  bool is_kept = false;
+  for (const auto& channel : run["channels"]) is_kept = is_kept || channel["name"] == "asked for.omega";
+  CHECK(is_kept);
+}
+
+TEST_CASE("modes --report: a page that stands alone, names are text, nothing is overwritten unasked") {
+  const Workbench bench;
+  std::string text = k_oscillator;
+  const std::string file = bench.write("a.toml", text.replace(text.find("a mass"), 6, "</script><b>bold</b>"));
+  const Outcome done = steplap_does({"modes", file, "--report", bench.at("modes.html"), "-q"});
+  CAPTURE(done.err);
+  REQUIRE(done.code == 0);
+  const std::string page = text_of(bench.at("modes.html"));
+  CHECK(has(page, "\\u003c/script>\\u003cb>bold\\u003c/b>"));
+  CHECK_FALSE(has(page, "<b>bold"));
+  CHECK_FALSE(has(page, "@DATA@"));
+  CHECK(steplap_does({"modes", file, "--report", bench.at("modes.html"), "-q"}).code == 2);
+  CHECK(steplap_does({"modes", file, "--report", bench.at("modes.html"), "-q", "-f"}).code == 0);
+}
+
 TEST_CASE("an element's drawing hint is read, checked and kept") {
   const Workbench bench;
   std::string text = k_oscillator;

@@ -91,7 +91,8 @@ Plan plan_for(const std::vector<Results>& runs, const std::vector<Json>& drawing
   if (kept_bytes(channels) <= bytes && channels <= k_most_channels) return plan;
   // A thinned channel has its own times: two floats a point, two points a stretch.
   constexpr double k_stretch = 4.0 * sizeof(float);
-  const auto most = std::min(k_most_channels, static_cast<std::size_t>(bytes / (k_stretch * k_least_stretches)));
+  const auto thinned_most = static_cast<std::size_t>(bytes / (k_stretch * k_least_stretches));
+  const std::size_t most = kept_bytes(std::min(channels, k_most_channels)) <= bytes ? k_most_channels : std::min(k_most_channels, thinned_most);
   if (channels > most)
     for (std::size_t r = 0; r < runs.size(); ++r) {
       auto& kept = plan.kept[r];

@@ -2,7 +2,7 @@
 // Symbols have sizes of the screen (this.u), whatever is looked at how closely; bodies have their own.
 steplap.Scene = (() => {
   const make = steplap.make, { turn, add, minus, scaled, length, apply, relative } = steplap.geometry, Box = steplap.Box;
-  const margin = 30;
+  const margin = 36; // for symbols
 
   class Body {
     constructor(raw, run) {
@@ -34,7 +34,8 @@ steplap.Scene = (() => {
       this.ground = new Body({ name: 'ground', fixed: true, ...run.drawing.ground }, run);
       this.limbs = new Map();
       for (const e of run.drawing.elements) if (e.kind === 'step_lap_joint') this.limbs.set(e.limb, e);
-      this.elements = run.drawing.elements.filter((e) => e.symbol !== 'hidden').map((e) => (e.shapes ? e : { ...e, shapes: [{ type: 'neutral', at: e.at }] }));
+      // Results of older programs have a symbol in place of shapes.
+      this.elements = run.drawing.elements.filter((e) => e.symbol !== 'hidden').map((e) => (e.shapes ? e : { ...e, shapes: [{ type: e.symbol, at: e.at, direction: e.direction, quantity: 'force' }] }));
       this.byName = new Map(run.drawing.elements.map((e) => [e.name, e]));
       this.view = { zoom: 1, shift: [0, 0] };
       this.withValues = false;

@@ -72,7 +72,7 @@ steplap.Symbols = (() => {
     // Moves a text's middle by the first of the shifts that leaves it clear of marks and texts, and onto the picture.
     put(text, [x, y], [width, height], shifts) {
       const { scene } = this;
-      const isFree = ([dx, dy]) => scene.takenTexts.every(([qx, qy, w, h]) => Math.abs(qy - y - dy) >= 0.5 * (h + height) || Math.abs(qx - x - dx) >= 0.5 * (w + width));
+      const isFree = ([dx, dy]) => scene.takenTexts.length > 300 || scene.takenTexts.every(([qx, qy, w, h]) => Math.abs(qy - y - dy) >= 0.5 * (h + height) || Math.abs(qx - x - dx) >= 0.5 * (w + width));
       const [dx, dy] = shifts.find(isFree) || shifts[0], half = 0.5 * width + 2;
       const place = [Math.min(Math.max(x + dx, half), Math.max(half, scene.width - half)), Math.min(Math.max(y + dy, 0.5 * height + 1), scene.height - 0.5 * height - 2)];
       scene.takenTexts.push([...place, width, height]);

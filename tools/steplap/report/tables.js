@@ -31,7 +31,7 @@ steplap.tables = (() => {
   // --- trust ---------------------------------------------------------------------------------------
   function settingText(run) {
     const s = run.summary, fixed = s.integrator === 'rk4' || s.integrator === 'moreau';
-    return `${s.integrator}, ` + (fixed ? `step ${quantity(s.settings.step, 's')}` : `tolerance ${few(s.settings.tolerance)} for each step`);
+    return `${s.integrator}, ` + (fixed ? `step ${quantity(s.settings.step, 's')}` : s.settings.tolerance === null || s.settings.tolerance === undefined ? 'its usual tolerance' : `tolerance ${few(s.settings.tolerance)} for each step`);
   }
   function errorText(run) {
     const e = run.summary.global_error;
