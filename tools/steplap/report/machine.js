@@ -16,6 +16,7 @@ steplap.Scene = (() => {
       if (this.isPoint) this.points.push([0, 0]);
       this.reach = Math.max(...this.points.map(length), ...this.circles.map((c) => length(c) + c[2]));
       this.moves = this.channels || (run.poseOf && !raw.fixed);
+      this.isUnrecorded = !raw.fixed && !this.channels && !run.poseOf && raw.name !== 'ground';
     }
     poseAt(t) {
       if (this.run.poseOf) return this.run.poseOf(this.name, t) || this.pose;
@@ -72,7 +73,8 @@ steplap.Scene = (() => {
       for (let k = 0; k <= 120; ++k) {
         const t = (this.run.end * k) / 120, r = this.poseAt(seenFrom, t);
         for (const body of this.bodies.values()) {
-          if (!body.moves) continue;
+          // One whose motion is not written is drawn where it begins: from a body that moves it is seen to move.
+          if (!body.moves && !(body.isUnrecorded && this.body(seenFrom).moves)) continue;
           const a = relative(r0, body.pose), b = relative(r, body.poseAt(t));
           for (const p of body.points) largest = Math.max(largest, length(minus(apply(b, p), apply(a, p))));
         }
@@ -186,7 +188,7 @@ steplap.Scene = (() => {
     }
     buildBody(body, number) {
       const isGround = body === this.ground, joint = this.limbs.get(body.name);
-      const group = make('g', { class: isGround ? 'floor' : `body${body.fixed ? ' fixed' : ''}${joint ? ' limb' : ''}`, 'data-body': body.name },
+      const group = make('g', { class: isGround ? 'floor' : `body${body.fixed ? ' fixed' : ''}${body.isUnrecorded ? ' unrecorded' : ''}${joint ? ' limb' : ''}`, 'data-body': body.name },
         make('title', {}, body.label || body.name), ...this.shapesOf(body));
       (isGround ? this.groundLayer : this.bodyLayer).append(group);
       // Where the body's geometry does not say where its mass is.

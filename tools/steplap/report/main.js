@@ -48,6 +48,7 @@
   if (runs.some((run) => run.drawing.sheets.length)) legend.push('Limbs turn orange once their joint has slipped.');
   const undrawn = Math.max(...runs.map((run) => run.bodies_left_out || 0));
   if (undrawn) legend.push(`${undrawn} more bodies, and all elements, are not drawn: the page would be too slow.`);
+  if (scenes.some((scene) => [...scene.bodies.values()].some((body) => body.isUnrecorded))) legend.push('Dashed bodies are drawn where they begin: their motion is not among the channels.');
   legend.push('Displacements are drawn against the reference pose, as seen from the body chosen. Closer: Ctrl and wheel, two fingers, or + and - on the picture; 0 or a double click shows all; drag to move.');
   at('legend').textContent = legend.join(' ');
 
