@@ -5,8 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <set>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -43,11 +41,9 @@ bool has_rest(const LoadedModel& loaded) {
 
 } // namespace
 
-TEST_CASE("every machine of the folder runs to its end, and its energy balances") {
-  std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(STEPLAP_MODELS "/machines")) names.insert(entry.path().stem().string());
-  CHECK(names.size() >= 8);
-  for (const std::string& name : names) {
+TEST_CASE("every machine of the gallery runs to its end, and its energy balances") {
+  for (const std::string name : {"ball_on_incline", "cradle", "crane_arm", "forklift", "ladder", "stacked_blocks", "tank_with_lid",
+                                 "watt_linkage"}) {
     CAPTURE(name);
     const MachineRun r(name);
     CHECK(r.is_complete());

@@ -19,6 +19,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
+#include <memory>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -303,6 +305,59 @@ damping = 3
   CHECK(motor["style"] == "motor");
   CHECK(motor["at"][0]["body"] == "slab");
   CHECK(drawing["elements"][2]["shapes"][0]["style"] == "damper");
+}
+
+namespace {
+
+struct Faces : Element {
+  std::string a = "slab", b = "ground";
+  std::vector<Vec2> outline_a, outline_b;
+  std::optional<Vec2> normal;
+  double static_friction = 0.0;
+};
+
+// As elements of outlines name their fields; markers are turned by a quarter, at (1, 0).
+std::vector<Shape> shapes_of(const Faces& faces, std::map<std::string, BodyGeometry>& geometry) {
+  ElementKind kind;
+  kind.name = "polygon_contact";
+  kind.fields.add("a", &Faces::a).as(FieldType::marker);
+  kind.fields.add("b", &Faces::b).as(FieldType::marker);
+  kind.fields.add("outline_a", &Faces::outline_a);
+  kind.fields.add("outline_b", &Faces::outline_b);
+  kind.fields.add("normal", &Faces::normal);
+  kind.fields.add("static_friction", &Faces::static_friction);
+  kind.holds<Faces>();
+  const ElementEntry entry(&kind, std::make_shared<Faces>(faces));
+  Sketch sketch(entry, [](const std::string& name) { return Place{name, Vec2(1.0, 0.0), 0.5 * M_PI}; },
+                [&](const std::string& body) -> BodyGeometry& { return geometry[body]; });
+  draw_element(sketch);
+  return sketch.shapes();
+}
+
+} // namespace
+
+TEST_CASE("outlines that press on each other are their bodies' polygons; on a half-plane their corners are its feet") {
+  Faces faces;
+  faces.outline_a = {{0.0, 0.0}, {2.0, 0.0}, {0.0, 1.0}};
+  faces.normal = Vec2(0.0, 3.0);
+  faces.static_friction = 0.3;
+  std::map<std::string, BodyGeometry> geometry;
+  const std::vector<Shape> shapes = shapes_of(faces, geometry);
+  REQUIRE(shapes.size() == 2);
+  CHECK(shapes[0].type == "faces");
+  REQUIRE(shapes[0].at.size() == 4); // three corners, the plane
+  CHECK((shapes[0].at[1].point - Vec2(1.0, 2.0)).norm() < 1e-15);
+  REQUIRE(shapes[0].direction);
+  CHECK((*shapes[0].direction - Vec2(-1.0, 0.0)).norm() < 1e-15);
+  CHECK(shapes[1].type == "friction");
+  REQUIRE(geometry["slab"].polygons.size() == 1);
+  CHECK(geometry["slab"].polygons.begin()->size() == 3);
+  CHECK(geometry["ground"].polygons.empty());
+  // Without corners of its own the body's outline is meant.
+  const std::vector<Shape> own = shapes_of(Faces(), geometry);
+  REQUIRE(own.size() == 1);
+  CHECK(own[0].at.size() == 2);
+  CHECK_FALSE(own[0].direction);
 }
 
 TEST_CASE("every kind of element of the catalogue has its own symbol; one that has none is drawn by something neutral") {
