@@ -354,10 +354,16 @@ TEST_CASE("outlines that press on each other are their bodies' polygons; on a ha
   CHECK(geometry["slab"].polygons.begin()->size() == 3);
   CHECK(geometry["ground"].polygons.empty());
   // Without corners of its own the body's outline is meant.
-  const std::vector<Shape> own = shapes_of(Faces(), geometry);
+  Faces on_body;
+  on_body.b = "ball";
+  const std::vector<Shape> own = shapes_of(on_body, geometry);
   REQUIRE(own.size() == 1);
   CHECK(own[0].at.size() == 2);
   CHECK_FALSE(own[0].direction);
+  // The ground without corners is what lies below its marker.
+  const std::vector<Shape> ground = shapes_of(Faces(), geometry);
+  REQUIRE(ground[0].direction);
+  CHECK((*ground[0].direction - Vec2(-1.0, 0.0)).norm() < 1e-15);
 }
 
 TEST_CASE("every kind of element of the catalogue has its own symbol; one that has none is drawn by something neutral") {

@@ -54,6 +54,7 @@ void polygon_contact(Sketch& s) {
   s.polygon(*a, s.points("outline_a"));
   s.polygon(*b, s.points("outline_b"));
   Shape shape{"faces", "", "force", {}, s.direction("normal"), {}};
+  if (!shape.direction && b->body == "ground" && s.points("outline_b").empty()) shape.direction = b->turned(Vec2(0.0, 1.0));
   for (const Vec2& corner : s.points("outline_a"))
     shape.at.push_back({a->body, a->in_body(corner), a->angle});
   if (shape.at.empty()) shape.at.push_back(*a);

@@ -62,6 +62,11 @@ steplap.data = (() => {
       return value;
     }
     channel(name) { return this.channels.get(name); }
+    // What a channel is, with its sign and codes; '' if the results do not say.
+    meaning(name) {
+      const entry = this.summary.extremes[name], list = this.summary.meanings;
+      return entry && list && list[entry.meaning] ? `${name} [${entry.unit || '–'}]: ${list[entry.meaning]}` : '';
+    }
     get end() { return this.times[this.times.length - 1]; }
     // Names that match patterns with * and ?.
     matching(patterns) {

@@ -130,7 +130,8 @@
   at('layout-control').hidden = runs.length < 2;
   at('layout').addEventListener('change', (event) => { plots.layout = event.target.value; plots.build(); show(t); });
   at('zoom-out').addEventListener('click', () => plots.zoomOut());
-  for (const [value, text] of [['', 'choose a channel'], ...[...new Set(runs.flatMap((r) => [...r.channels.keys()]))].map((n) => [n, n])]) at('add-channel').append(make('option', { value }, text));
+  for (const [value, text] of [['', 'choose a channel'], ...[...new Set(runs.flatMap((r) => [...r.channels.keys()]))].map((n) => [n, n])])
+    at('add-channel').append(make('option', { value, title: runs.map((r) => r.meaning(value)).find(Boolean) || '' }, text));
   at('add-channel').addEventListener('change', (event) => { if (event.target.value) plots.add(event.target.value); event.target.value = ''; });
   const left = runs.reduce((sum, r) => sum + r.channels_left_out, 0), isThinned = runs.some((r) => r.is_thinned);
   if (left || isThinned) at('event-key').append(` ${isThinned ? 'Curves are thinned for this page, their peaks are kept.' : ''} ${left ? `${left} channels are left out.` : ''} All samples: trajectory.csv.`);

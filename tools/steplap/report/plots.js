@@ -115,7 +115,7 @@ steplap.Plots = (() => {
         if (s.isBound && s.sign < 0) continue;
         const line = make('line', { x1: 0, y1: 4.5, x2: 30, y2: 4.5, stroke: s.colour, 'stroke-width': 2.2, 'stroke-dasharray': (s.dash || []).join(' ') });
         s.readout = make('span');
-        this.values.append(make('span', { class: 'key' }, make('svg', { viewBox: '0 0 30 9' }, line), (s.isBound ? '±' : '') + s.label.replace(/^\+/, '') + ' ', s.readout));
+        this.values.append(make('span', { class: 'key', title: s.run.meaning(s.name) }, make('svg', { viewBox: '0 0 30 9' }, line), (s.isBound ? '±' : '') + s.label.replace(/^\+/, '') + ' ', s.readout));
       }
     }
     marks(context, rect, g) {

@@ -180,8 +180,10 @@ steplap.Symbols = (() => {
       const force = this.channel(element, shape), text = this.value(element);
       this.update((t, pose) => {
         if (!force) return;
-        const points = shape.at.slice(0, -1).map((a) => this.screen(a, pose));
-        this.showValue(text, force.at(t) > 0 ? steplap.data.quantity(force.at(t), force.unit, 4) : '', scaled(points.reduce(add), 1 / points.length), [0, 1]);
+        // Between the two; of a half-plane where it is nearest to the other's middle.
+        const points = shape.at.slice(0, -1).map((a) => this.screen(a, pose)), a = scaled(points.reduce(add), 1 / points.length), b = this.screen(shape.at[shape.at.length - 1], pose);
+        const n = shape.direction ? this.direction(shape, pose) : null, place = n ? minus(a, scaled(n, dot(n, minus(a, b)))) : along(a, b, 0.5);
+        this.showValue(text, force.at(t) > 0 ? steplap.data.quantity(force.at(t), force.unit, 4) : '', place, n || [0, 1]);
       });
     }
     // Round on round, round on edge: a dot where they touch while they press, and the force on a.

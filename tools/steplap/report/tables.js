@@ -146,7 +146,8 @@ steplap.tables = (() => {
   function extremes(runs) {
     const names = [...new Set(runs.flatMap((r) => Object.keys(r.summary.extremes)))];
     const heads = ['channel', ...runs.flatMap((r) => { const of = runs.length > 1 ? ` ${r.name}` : ''; return [`least${of}`, 'at', `largest${of}`, 'at']; })];
-    const row = (name) => [name, ...runs.flatMap((r) => {
+    const meaning = (name) => runs.map((r) => r.meaning(name)).find(Boolean) || '';
+    const row = (name) => [make('span', { title: meaning(name) }, name), ...runs.flatMap((r) => {
       const e = extremesOf(r, name);
       return e ? [known(e, 'min', e.unit), instant(e, 't_min'), known(e, 'max', e.unit), instant(e, 't_max')] : ['–', '', '–', ''];
     })];
