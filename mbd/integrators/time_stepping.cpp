@@ -171,7 +171,7 @@ int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
 // A contact that is open at both ends, but which went on at the rate of either end would have closed before the other: a
 // fast body may be on its other side (a plate thinner than what a step goes). −1: none. Rates that turn round from approach
 // to parting without any force of the contact need something that turns them; a part half as long then tells.
-int TimeStepping::passed_unit(Dynamics& dynamics, const State& state, double h) const {
+int TimeStepping::passed_unit(const Dynamics& dynamics, const State& state, double h) const {
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
     if (state.mode[u] != 0 || start_.mode[u] != 0) continue;

@@ -79,7 +79,7 @@ private:
   void move(Dynamics& dynamics, double t1, double tolerance);
   [[noreturn]] void fail(const Trouble& trouble, double t, double h) const;
   [[nodiscard]] int changed_unit(Dynamics& dynamics, State& state);
-  [[nodiscard]] int passed_unit(Dynamics& dynamics, const State& state, double h) const;
+  [[nodiscard]] int passed_unit(const Dynamics& dynamics, const State& state, double h) const;
   void finish_phases(Dynamics& dynamics, State& state, double h);
   // time_stepping_friction.cpp
   void collect_friction(Dynamics& dynamics, State& state);

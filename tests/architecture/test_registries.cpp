@@ -68,14 +68,14 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
     const std::string name = m.name;
     // "auto" is a word of others, too: of drawings.
     Reasons reasons = by_right;
-    if (name == "auto") reasons.insert({{"mbd/model/model.cpp", "how an element is drawn"}, {"tools/steplap/drawing.cpp", "how an element is drawn"}});
+    if (name == "auto") reasons.insert({{"mbd/model/model.cpp", "how an element is drawn"}, {"tools/steplap/symbols.cpp", "how an element is drawn"}});
     check_places(name, {"mbd/integrators/methods.cpp", "mbd/integrators/" + (name == "auto" ? "automatic" : name) + ".cpp"}, reasons, sources);
   }
 }
 
 TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
   const auto sources = product_sources();
-  const Reasons by_right = {{"tools/steplap/drawing.cpp", "symbols: a kind without one is drawn as a rod"},
+  const Reasons by_right = {{"tools/steplap/symbols.cpp", "symbols: a kind without one is drawn by diamonds at its markers"},
                             {"tools/steplap/joint.cpp", "what bears beside a joint, for a remark"}};
   // Names that are words of others, too, or that somebody asks for all the same.
   const std::map<std::string, Reasons> besides = {

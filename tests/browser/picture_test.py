@@ -122,6 +122,15 @@ class PictureTest(base.Page):
         self.assertLess(box[0], 1)  # Watt's: straight, to a pixel
         self.assertEqual(len(self.all(".trail")), 1)
 
+    def test_a_body_whose_motion_is_not_written_is_not_taken_for_one_that_rests(self):
+        base.steplap("simulate", os.path.join(MODELS, "machines/watt_linkage.toml"), "-q", "-o", "some", "--no-estimate",
+                     "--set", "output.channels=['link.*']", "--report")
+        self.open("some/watt_linkage/report.html")
+        self.assertEqual({e.get_attribute("data-body") for e in self.all(".body.unrecorded")}, {"left arm", "right arm"})
+        self.assertIn("not among the channels", self.find("#legend").text)
+        # From the link the arms would seem to move, and nothing is far magnified for seeming to rest.
+        self.assertLess(self.run_js("return steplap.page.scenes[0].usualMagnification('link')"), 10)
+
     # --- closer ------------------------------------------------------------------------------------
 
     def test_wheel_drag_keys_and_buttons_look_closer(self):

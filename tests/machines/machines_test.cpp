@@ -5,8 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <set>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -43,11 +41,9 @@ bool has_rest(const LoadedModel& loaded) {
 
 } // namespace
 
-TEST_CASE("every machine of the folder runs to its end, and its energy balances") {
-  std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(STEPLAP_MODELS "/machines")) names.insert(entry.path().stem().string());
-  CHECK(names.size() >= 8);
-  for (const std::string& name : names) {
+TEST_CASE("every machine of the gallery runs to its end, and its energy balances") {
+  for (const std::string name : {"ball_on_incline", "cradle", "crane_arm", "forklift", "ladder", "stacked_blocks", "tank_with_lid",
+                                 "watt_linkage"}) {
     CAPTURE(name);
     const MachineRun r(name);
     CHECK(r.is_complete());
@@ -114,8 +110,9 @@ TEST_CASE("a forklift's rear wheels leave the floor at a deceleration of g b/h, 
   CHECK(std::abs(ratio / (-centre.x() / centre.y()) - 1.0) < 0.01); // soft tyres change it by less than a hundredth
   CHECK_FALSE(r.events("fork tips", EventKind::closes).empty());
   CHECK(r.last("truck.theta") < -0.5);
-  // Braked with 0.3 g its rear wheels keep a quarter of their load, more than pitching takes.
-  const MachineRun gentle("forklift", {"signal.braking.peak=-0.3 gravity"});
+  // Braked with 0.3 g its rear wheels keep a quarter of their load, more than pitching takes. (It rolls
+  // on, and later off the track's end.)
+  const MachineRun gentle("forklift", {"signal.braking.peak=-0.3 gravity", "simulation.end=2.2"});
   CHECK(gentle.events("rear wheels", EventKind::opens).empty());
 }
 

@@ -19,6 +19,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
+#include <memory>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -305,6 +307,65 @@ damping = 3
   CHECK(drawing["elements"][2]["shapes"][0]["style"] == "damper");
 }
 
+namespace {
+
+struct Faces : Element {
+  std::string a = "slab", b = "ground";
+  std::vector<Vec2> outline_a, outline_b;
+  std::optional<Vec2> normal;
+  double static_friction = 0.0;
+};
+
+// As elements of outlines name their fields; markers are turned by a quarter, at (1, 0).
+std::vector<Shape> shapes_of(const Faces& faces, std::map<std::string, BodyGeometry>& geometry) {
+  ElementKind kind;
+  kind.name = "polygon_contact";
+  kind.fields.add("a", &Faces::a).as(FieldType::marker);
+  kind.fields.add("b", &Faces::b).as(FieldType::marker);
+  kind.fields.add("outline_a", &Faces::outline_a);
+  kind.fields.add("outline_b", &Faces::outline_b);
+  kind.fields.add("normal", &Faces::normal);
+  kind.fields.add("static_friction", &Faces::static_friction);
+  kind.holds<Faces>();
+  const ElementEntry entry(&kind, std::make_shared<Faces>(faces));
+  Sketch sketch(entry, [](const std::string& name) { return Place{name, Vec2(1.0, 0.0), 0.5 * M_PI}; },
+                [&](const std::string& body) -> BodyGeometry& { return geometry[body]; });
+  draw_element(sketch);
+  return sketch.shapes();
+}
+
+} // namespace
+
+TEST_CASE("outlines that press on each other are their bodies' polygons; on a half-plane their corners are its feet") {
+  Faces faces;
+  faces.outline_a = {{0.0, 0.0}, {2.0, 0.0}, {0.0, 1.0}};
+  faces.normal = Vec2(0.0, 3.0);
+  faces.static_friction = 0.3;
+  std::map<std::string, BodyGeometry> geometry;
+  const std::vector<Shape> shapes = shapes_of(faces, geometry);
+  REQUIRE(shapes.size() == 2);
+  CHECK(shapes[0].type == "faces");
+  REQUIRE(shapes[0].at.size() == 4); // three corners, the plane
+  CHECK((shapes[0].at[1].point - Vec2(1.0, 2.0)).norm() < 1e-15);
+  REQUIRE(shapes[0].direction);
+  CHECK((*shapes[0].direction - Vec2(-1.0, 0.0)).norm() < 1e-15);
+  CHECK(shapes[1].type == "friction");
+  REQUIRE(geometry["slab"].polygons.size() == 1);
+  CHECK(geometry["slab"].polygons.begin()->size() == 3);
+  CHECK(geometry["ground"].polygons.empty());
+  // Without corners of its own the body's outline is meant.
+  Faces on_body;
+  on_body.b = "ball";
+  const std::vector<Shape> own = shapes_of(on_body, geometry);
+  REQUIRE(own.size() == 1);
+  CHECK(own[0].at.size() == 2);
+  CHECK_FALSE(own[0].direction);
+  // The ground without corners is what lies below its marker.
+  const std::vector<Shape> ground = shapes_of(Faces(), geometry);
+  REQUIRE(ground[0].direction);
+  CHECK((*ground[0].direction - Vec2(-1.0, 0.0)).norm() < 1e-15);
+}
+
 TEST_CASE("every kind of element of the catalogue has its own symbol; one that has none is drawn by something neutral") {
   for (const ElementKind* kind : program_catalogue().elements) {
     CAPTURE(kind->name);
@@ -374,6 +435,35 @@ static_friction = 0.5
   const double r = 0.5 * 0.5 * std::sqrt(0.5 * M_PI); // a square of the circle's area: 2 r² = π d²/4
   ring_is(pierced["limb_holes"][0], {{r, 0.5}, {0, 0.5 + r}, {-r, 0.5}, {0, 0.5 - r}});
   ring_is(pierced["limb_holes"][1], {{0, 0}, {0, -0.5}, {0.25, -0.5}, {0.25, 0}});
+}
+
+TEST_CASE("a page holds no more channels than a reader could ask for, those of plots first") {
+  Results results = made_results(3);
+  for (int i = 0; i < 12000; ++i) results.channels.push_back({"body " + std::to_string(i) + ".omega", "rad/s", {0.0, 0.0, 0.0}});
+  results.channels.push_back({"asked for.omega", "rad/s", {0.0, 1.0, 2.0}});
+  results.drawing = R"({"bodies":[],"elements":[],"sheets":[],"plots":[{"name":"p","title":"","channels":["asked*"],"bounds":[]}],"seen_from":""})";
+  const auto run = nlohmann::json::parse(report_data({results}))["runs"][0];
+  CHECK(run["channels"].size() == 10000);
+  CHECK(run["channels_left_out"] == 12003 - 10000);
+  CHECK(run["is_thinned"] == false);
+  bool is_kept = false;
+  for (const auto& channel : run["channels"]) is_kept = is_kept || channel["name"] == "asked for.omega";
+  CHECK(is_kept);
+}
+
+TEST_CASE("modes --report: a page that stands alone, names are text, nothing is overwritten unasked") {
+  const Workbench bench;
+  std::string text = k_oscillator;
+  const std::string file = bench.write("a.toml", text.replace(text.find("a mass"), 6, "</script><b>bold</b>"));
+  const Outcome done = steplap_does({"modes", file, "--report", bench.at("modes.html"), "-q"});
+  CAPTURE(done.err);
+  REQUIRE(done.code == 0);
+  const std::string page = text_of(bench.at("modes.html"));
+  CHECK(has(page, "\\u003c/script>\\u003cb>bold\\u003c/b>"));
+  CHECK_FALSE(has(page, "<b>bold"));
+  CHECK_FALSE(has(page, "@DATA@"));
+  CHECK(steplap_does({"modes", file, "--report", bench.at("modes.html"), "-q"}).code == 2);
+  CHECK(steplap_does({"modes", file, "--report", bench.at("modes.html"), "-q", "-f"}).code == 0);
 }
 
 TEST_CASE("an element's drawing hint is read, checked and kept") {

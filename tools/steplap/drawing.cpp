@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 #include <unordered_map>
+#include <utility>
 
 namespace steplap {
 
@@ -136,15 +136,20 @@ private:
     if (!shape.quantity.empty()) json["quantity"] = shape.quantity;
     if (shape.direction) json["direction"] = point_json(*shape.direction);
     if (!shape.sizes.empty()) json["sizes"] = shape.sizes;
-    if (shape.type == "contact" && shape.direction && !shape.at.empty()) json["plane"] = plane_of(shape.at.back(), *shape.direction);
+    const bool has_plane = shape.type == "contact" || shape.type == "faces";
+    if (has_plane && shape.direction && !shape.at.empty()) json["plane"] = plane_of(shape.at.back(), *shape.direction, shape.sizes);
     return json;
   }
 
   // All that touches one line of one body shares one half-plane.
-  std::size_t plane_of(const Place& place, const Vec2& normal) {
-    const auto key = std::make_tuple(place.body, coarse(normal.x()), coarse(normal.y()), coarse(normal.dot(place.point)));
-    const auto [found, is_new] = plane_numbers_.try_emplace(key, planes_.size());
+  std::size_t plane_of(const Place& place, const Vec2& normal, const std::vector<double>& ends) {
+    std::vector<long long> key{coarse(normal.x()), coarse(normal.y()), coarse(normal.dot(place.point))};
+    const double along = Vec2(normal.y(), -normal.x()).dot(place.point);
+    for (const double end : ends)
+      key.push_back(coarse(along + end));
+    const auto [found, is_new] = plane_numbers_.try_emplace({place.body, std::move(key)}, planes_.size());
     if (is_new) planes_.push_back({{"body", place.body}, {"point", point_json(place.point)}, {"normal", point_json(normal)}});
+    if (is_new && !ends.empty()) planes_.back()["ends"] = ends;
     return found->second;
   }
 
@@ -247,7 +252,7 @@ private:
   std::map<std::string, const Body*> bodies_;
   std::map<std::string, const Marker*> markers_;
   std::unordered_map<std::string, BodyGeometry> geometry_; ///< per body, the ground included
-  std::map<std::tuple<std::string, long long, long long, long long>, std::size_t> plane_numbers_;
+  std::map<std::pair<std::string, std::vector<long long>>, std::size_t> plane_numbers_;
   Json planes_ = Json::array();
 };
 

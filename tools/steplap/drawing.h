@@ -13,7 +13,8 @@ namespace steplap {
 ///             is_outline_given; circles [x, y, radius, 1 if an open ring], segments [x, y, x, y, thickness]
 ///             and polygons that elements give it; the ground is none of them
 ///   ground    circles, segments, polygons fixed in it
-///   planes    body, point, normal: half-planes that contacts press on, solid on the other side of the normal
+///   planes    body, point, normal: half-planes that contacts press on, solid on the other side of the normal; ends:
+///             where one ends on either side, m from the point along the normal turned clockwise
 ///   elements  name, kind, symbol (of its first shape; "hidden": it has none), at [{body, point}],
 ///             shapes [{type, style, quantity, at, direction, sizes, plane}] as in symbols.h,
 ///             contacts (names, of friction), limb and active_part (of step-lap joints)

@@ -68,7 +68,7 @@ void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationMo
     const VibrationMode& mode = found.modes[i];
     table.add_row({std::to_string(i + 1), fixed_text(mode.natural_frequency(), "%.4f Hz"),
                    mode.oscillates() ? fixed_text(mode.frequency(), "%.4f Hz") : "-",
-                   mode.oscillates() ? fixed_text(100.0 * mode.damping_ratio(), "%.3f %%")
+                   mode.oscillates() ? fixed_text(std::round(1e5 * mode.damping_ratio()) / 1e3 + 0.0, "%.3f %%") // no "-0.000"
                                      : fixed_text(mode.eigenvalue.real(), "%.4g /s"),
                    shape_text(*loaded.system, mode)});
   }

@@ -27,6 +27,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t k_most_events = 2000;      ///< listed on the page
 constexpr std::size_t k_most_model_text = 400000; ///< bytes
 constexpr std::size_t k_most_bodies = 2000;      ///< drawn
+constexpr std::size_t k_most_channels = 10000;   ///< of all runs: each brings its name and extremes, whatever its samples
 constexpr std::size_t k_least_stretches = 60;    ///< a curve thinned more says little
 constexpr double k_base64 = 4.0 / 3.0;
 
@@ -86,10 +87,12 @@ Plan plan_for(const std::vector<Results>& runs, const std::vector<Json>& drawing
     std::iota(plan.kept.back().begin(), plan.kept.back().end(), std::size_t{0});
   }
   const double bytes = static_cast<double>(budget) / k_base64;
-  if (static_cast<double>(channels * rows) * sizeof(float) <= bytes) return plan;
+  const auto kept_bytes = [&](std::size_t count) { return static_cast<double>(count * rows) * sizeof(float); };
+  if (kept_bytes(channels) <= bytes && channels <= k_most_channels) return plan;
   // A thinned channel has its own times: two floats a point, two points a stretch.
   constexpr double k_stretch = 4.0 * sizeof(float);
-  const auto most = static_cast<std::size_t>(bytes / (k_stretch * k_least_stretches));
+  const auto thinned_most = static_cast<std::size_t>(bytes / (k_stretch * k_least_stretches));
+  const std::size_t most = kept_bytes(std::min(channels, k_most_channels)) <= bytes ? k_most_channels : std::min(k_most_channels, thinned_most);
   if (channels > most)
     for (std::size_t r = 0; r < runs.size(); ++r) {
       auto& kept = plan.kept[r];
@@ -103,6 +106,7 @@ Plan plan_for(const std::vector<Results>& runs, const std::vector<Json>& drawing
   channels = 0;
   for (const auto& kept : plan.kept)
     channels += kept.size();
+  if (kept_bytes(channels) <= bytes) return plan;
   plan.stretches = std::max(k_least_stretches, static_cast<std::size_t>(bytes / (k_stretch * static_cast<double>(channels))));
   return plan;
 }
@@ -198,7 +202,8 @@ Json run_json(const Results& run, Json drawing, const std::vector<std::size_t>& 
   Json summary = parsed(run, run.summary, "summary.json");
   keep_extremes(summary, run, kept);
   add_texts(summary);
-  if (drawing["bodies"].size() > k_most_bodies) {
+  const std::size_t bodies = drawing["bodies"].size();
+  if (bodies > k_most_bodies) {
     drawing["bodies"].erase(drawing["bodies"].begin() + k_most_bodies, drawing["bodies"].end());
     drawing["elements"] = Json::array();
   }
@@ -215,6 +220,7 @@ Json run_json(const Results& run, Json drawing, const std::vector<std::size_t>& 
           {"summary", std::move(summary)},
           {"events", events_json(run)},
           {"events_left_out", run.events.size() - std::min(run.events.size(), k_most_events)},
+          {"bodies_left_out", bodies - std::min(bodies, k_most_bodies)},
           {"drawing", std::move(drawing)},
           {"is_thinned", is_thinned},
           {"channels_left_out", run.channels.size() - kept.size()},

@@ -43,7 +43,25 @@ void load(Sketch& s) {
 
 // --- contacts -------------------------------------------------------------------------------------
 
-void unilateral_contact(Sketch& s) { s.draw({"contact", "", "force", s.places(), s.direction("normal"), {}}); }
+void unilateral_contact(Sketch& s) {
+  Shape& shape = s.draw({"contact", "", "force", s.places(), s.direction("normal"), {}});
+  if (const auto ends = s.vector("ends")) shape.sizes = {ends->x(), ends->y()};
+}
+
+void polygon_contact(Sketch& s) {
+  const auto a = s.place("a"), b = s.place("b");
+  if (!a || !b) return;
+  s.polygon(*a, s.points("outline_a"));
+  s.polygon(*b, s.points("outline_b"));
+  Shape shape{"faces", "", "force", {}, s.direction("normal"), {}};
+  if (!shape.direction && b->body == "ground" && s.points("outline_b").empty()) shape.direction = b->turned(Vec2(0.0, 1.0));
+  for (const Vec2& corner : s.points("outline_a"))
+    shape.at.push_back({a->body, a->in_body(corner), a->angle});
+  if (shape.at.empty()) shape.at.push_back(*a);
+  shape.at.push_back(*b);
+  s.draw(std::move(shape));
+  if (s.number("static_friction") > 0.0) s.draw({"friction", "", "friction", {}, {}, {}});
+}
 
 void circle_contact(Sketch& s) {
   const auto a = s.place("a"), b = s.place("b");
@@ -116,7 +134,7 @@ Symbol symbol_of(const std::string& kind) {
   static const std::map<std::string, Symbol> symbols{
       {"spring_damper", spring_damper}, {"rotational_spring_damper", rotational_spring_damper},
       {"bushing", bushing}, {"tie", tie}, {"rope", rope}, {"load", load},
-      {"unilateral_contact", unilateral_contact}, {"circle_contact", circle_contact},
+      {"unilateral_contact", unilateral_contact}, {"polygon_contact", polygon_contact}, {"circle_contact", circle_contact},
       {"segment_contact", segment_contact}, {"coulomb_stick", friction},
       {"step_lap_joint", step_lap_joint}, {"step_lap_interface", nothing},
       {"revolute", pin}, {"prismatic", rail}, {"weld", weld}, {"distance", rod}, {"point_on_line", rail},

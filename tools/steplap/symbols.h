@@ -35,7 +35,10 @@ struct Place {
 ///   rope        2 or more places, a polyline
 ///   rod, weld, pin, bushing, neutral   their places
 ///   rail        direction that is free
-///   contact     place that touches, place on the line; direction: the normal of the line, towards what touches
+///   contact     place that touches, place on the line; direction: the normal of the line, towards what touches;
+///               sizes: where the line ends, along the normal turned clockwise, if it does
+///   faces       outlines that press on each other: places of corners that touch (none: those of the body's outline), the
+///               other's place last; direction: as of a contact, if the other is a half-plane
 ///   touch       centres of two circles; sizes: their radii, 1 if the first is inside the second
 ///   edge_touch  centre of a circle, frame of a segment; sizes: radius, from x, from y, to x, to y, thickness
 ///   arc         the marker turned about. Styles: motor, drive, spring, limit, brake, couple

@@ -127,7 +127,7 @@ steplap.make = (name, attributes = {}, ...children) => {
   const isSvg = steplap.make.svg.has(name);
   const element = isSvg ? document.createElementNS('http://www.w3.org/2000/svg', name) : document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  element.append(...children.map((c) => (c instanceof Node ? c : String(c))));
+  for (const c of children) element.append(c instanceof Node ? c : String(c)); // there may be very many
   return element;
 };
 steplap.make.svg = new Set(['svg', 'g', 'path', 'polygon', 'line', 'circle', 'rect', 'text', 'title', 'tspan', 'clipPath']);

@@ -2,7 +2,7 @@
 // Symbols have sizes of the screen (this.u), whatever is looked at how closely; bodies have their own.
 steplap.Scene = (() => {
   const make = steplap.make, { turn, add, minus, scaled, length, apply, relative } = steplap.geometry, Box = steplap.Box;
-  const margin = 26;
+  const margin = 36; // for symbols
 
   class Body {
     constructor(raw, run) {
@@ -16,6 +16,7 @@ steplap.Scene = (() => {
       if (this.isPoint) this.points.push([0, 0]);
       this.reach = Math.max(...this.points.map(length), ...this.circles.map((c) => length(c) + c[2]));
       this.moves = this.channels || (run.poseOf && !raw.fixed);
+      this.isUnrecorded = !raw.fixed && !this.channels && !run.poseOf && raw.name !== 'ground';
     }
     poseAt(t) {
       if (this.run.poseOf) return this.run.poseOf(this.name, t) || this.pose;
@@ -34,7 +35,8 @@ steplap.Scene = (() => {
       this.ground = new Body({ name: 'ground', fixed: true, ...run.drawing.ground }, run);
       this.limbs = new Map();
       for (const e of run.drawing.elements) if (e.kind === 'step_lap_joint') this.limbs.set(e.limb, e);
-      this.elements = run.drawing.elements.filter((e) => e.symbol !== 'hidden').map((e) => (e.shapes ? e : { ...e, shapes: [{ type: 'neutral', at: e.at }] }));
+      // Results of older programs have a symbol in place of shapes.
+      this.elements = run.drawing.elements.filter((e) => e.symbol !== 'hidden').map((e) => (e.shapes ? e : { ...e, shapes: [{ type: e.symbol, at: e.at, direction: e.direction, quantity: 'force' }] }));
       this.byName = new Map(run.drawing.elements.map((e) => [e.name, e]));
       this.view = { zoom: 1, shift: [0, 0] };
       this.withValues = false;
@@ -71,7 +73,8 @@ steplap.Scene = (() => {
       for (let k = 0; k <= 120; ++k) {
         const t = (this.run.end * k) / 120, r = this.poseAt(seenFrom, t);
         for (const body of this.bodies.values()) {
-          if (!body.moves) continue;
+          // One whose motion is not written is drawn where it begins: from a body that moves it is seen to move.
+          if (!body.moves && !(body.isUnrecorded && this.body(seenFrom).moves)) continue;
           const a = relative(r0, body.pose), b = relative(r, body.poseAt(t));
           for (const p of body.points) largest = Math.max(largest, length(minus(apply(b, p), apply(a, p))));
         }
@@ -185,7 +188,7 @@ steplap.Scene = (() => {
     }
     buildBody(body, number) {
       const isGround = body === this.ground, joint = this.limbs.get(body.name);
-      const group = make('g', { class: isGround ? 'floor' : `body${body.fixed ? ' fixed' : ''}${joint ? ' limb' : ''}`, 'data-body': body.name },
+      const group = make('g', { class: isGround ? 'floor' : `body${body.fixed ? ' fixed' : ''}${body.isUnrecorded ? ' unrecorded' : ''}${joint ? ' limb' : ''}`, 'data-body': body.name },
         make('title', {}, body.label || body.name), ...this.shapesOf(body));
       (isGround ? this.groundLayer : this.bodyLayer).append(group);
       // Where the body's geometry does not say where its mass is.

@@ -46,6 +46,9 @@
   }
   const legend = ['Wedges and dots are contacts, filled while they press; arrows are forces, all to one scale. Hatched is what is solid.'];
   if (runs.some((run) => run.drawing.sheets.length)) legend.push('Limbs turn orange once their joint has slipped.');
+  const undrawn = Math.max(...runs.map((run) => run.bodies_left_out || 0));
+  if (undrawn) legend.push(`${undrawn} more bodies, and all elements, are not drawn: the page would be too slow.`);
+  if (scenes.some((scene) => [...scene.bodies.values()].some((body) => body.isUnrecorded))) legend.push('Dashed bodies are drawn where they begin: their motion is not among the channels.');
   legend.push('Displacements are drawn against the reference pose, as seen from the body chosen. Closer: Ctrl and wheel, two fingers, or + and - on the picture; 0 or a double click shows all; drag to move.');
   at('legend').textContent = legend.join(' ');
 
@@ -127,7 +130,8 @@
   at('layout-control').hidden = runs.length < 2;
   at('layout').addEventListener('change', (event) => { plots.layout = event.target.value; plots.build(); show(t); });
   at('zoom-out').addEventListener('click', () => plots.zoomOut());
-  at('add-channel').append(make('option', { value: '' }, 'choose a channel'), ...[...new Set(runs.flatMap((r) => [...r.channels.keys()]))].map((n) => make('option', { value: n, title: runs.map((r) => r.meaning(n)).find(Boolean) || '' }, n)));
+  for (const [value, text] of [['', 'choose a channel'], ...[...new Set(runs.flatMap((r) => [...r.channels.keys()]))].map((n) => [n, n])])
+    at('add-channel').append(make('option', { value, title: runs.map((r) => r.meaning(value)).find(Boolean) || '' }, text));
   at('add-channel').addEventListener('change', (event) => { if (event.target.value) plots.add(event.target.value); event.target.value = ''; });
   const left = runs.reduce((sum, r) => sum + r.channels_left_out, 0), isThinned = runs.some((r) => r.is_thinned);
   if (left || isThinned) at('event-key').append(` ${isThinned ? 'Curves are thinned for this page, their peaks are kept.' : ''} ${left ? `${left} channels are left out.` : ''} All samples: trajectory.csv.`);

@@ -1,5 +1,6 @@
 // One mode after the other in motion: rest + amplitude Re(shape exp(i phase)). The scene's time is counted in periods.
 (() => {
+  const { apply, minus, length } = steplap.geometry;
   const make = steplap.make, at = (id) => document.getElementById(id), { plain } = steplap.data;
   const run = steplap.data.runs[0], found = steplap.data.modes, modes = found.modes;
   const cycle = 1.6; // seconds on the screen for a period
@@ -41,7 +42,17 @@
 
   const show = (t) => { phase = t; scene.show(t); };
   function fit() {
-    amplitude = 0.08 * scene.size * Number(at('amplitude').value);
+    // What moves furthest moves by a twentieth of the picture.
+    amplitude = 1;
+    let furthest = 0;
+    for (let k = 0; k < 8; ++k)
+      for (const body of scene.bodies.values()) {
+        const rest = found.rest[body.name];
+        if (!mode || !rest) continue;
+        const small = 1e-3, pose = body.poseAt(k / 8).map((v, i) => rest[i] + small * (v - rest[i]));
+        for (const p of body.points) furthest = Math.max(furthest, length(minus(apply(pose, p), apply(rest, p))) / small);
+      }
+    amplitude = furthest > 0 ? (0.06 * scene.size * Number(at('amplitude').value)) / furthest : 0;
     steplap.Scene.fitAll([scene], 'ground', 1, [Math.max(240, box.clientWidth)], Math.max(260, Math.min(0.62 * window.innerHeight, 900)));
   }
   const view = new steplap.View([scene], () => show(phase));

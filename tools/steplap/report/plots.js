@@ -53,6 +53,7 @@ steplap.Plots = (() => {
       this.area = make('div', { class: 'graph' });
       this.cursor = make('div', { class: 'cursor' });
       this.box.append(this.values, this.area);
+      this.area.addEventListener('dblclick', () => setTimeout(() => this.owner.zoomOut())); // back to the scale of all
     }
     addSeries(run, name, runs, sign, isBound) {
       const channel = run.channel(name);

@@ -13,7 +13,13 @@ steplap.Symbols = (() => {
       this.scene = scene;
       this.values = []; // of arrows: { name, text(t), place(t) }
       this.planes = (scene.run.drawing.planes || []).map((plane) => ({ ...plane, feet: [] }));
-      for (const element of scene.elements) for (const shape of element.shapes) if (shape.plane !== undefined && this.planes[shape.plane]) this.planes[shape.plane].feet.push(shape.at[0]);
+      for (const element of scene.elements)
+        for (const shape of element.shapes) {
+          if (!this.planes[shape.plane]) continue;
+          const own = shape.type === 'faces' && shape.at.length === 2 ? scene.body(shape.at[0].body).points.map((point) => ({ body: shape.at[0].body, point })) : null;
+          this.planes[shape.plane].feet.push(...(own || shape.at.slice(0, -1)));
+        }
+      this.frictions = scene.elements.filter((e) => e.shapes.some((shape) => shape.type === 'friction')).length;
       this.planes.forEach((plane) => this.halfPlane(plane));
       this.sheets();
       for (const element of scene.elements)
@@ -47,7 +53,7 @@ steplap.Symbols = (() => {
         const { at, d, force } = where(t, pose, channel);
         const size = this.arrowLength(force), tip = isPulling ? add(at, scaled(d, size)) : at, tail = isPulling ? at : minus(at, scaled(d, size));
         arrow.setAttribute('d', size > 0.5 ? path([tail, tip]) + arrowHead(tip, d, Math.min(0.7 * this.u, size)) : 'M0 0');
-        this.showValue(text, force ? steplap.data.quantity(Math.abs(force), channel.unit, 4) : '', isPulling ? tip : tail, isPulling ? d : scaled(d, -1));
+        this.showValue(text, Math.abs(force) > 1e-6 * this.scene.largestForce ? steplap.data.quantity(Math.abs(force), channel.unit, 4) : '', isPulling ? tip : tail, isPulling ? d : scaled(d, -1));
       });
     }
     value(element) {
@@ -66,9 +72,9 @@ steplap.Symbols = (() => {
     // Moves a text's middle by the first of the shifts that leaves it clear of marks and texts, and onto the picture.
     put(text, [x, y], [width, height], shifts) {
       const { scene } = this;
-      const isFree = ([dx, dy]) => scene.takenTexts.every(([qx, qy, w, h]) => Math.abs(qy - y - dy) >= 0.5 * (h + height) || Math.abs(qx - x - dx) >= 0.5 * (w + width));
+      const isFree = ([dx, dy]) => scene.takenTexts.length > 300 || scene.takenTexts.every(([qx, qy, w, h]) => Math.abs(qy - y - dy) >= 0.5 * (h + height) || Math.abs(qx - x - dx) >= 0.5 * (w + width));
       const [dx, dy] = shifts.find(isFree) || shifts[0], half = 0.5 * width + 2;
-      const place = [Math.min(Math.max(x + dx, half), Math.max(half, scene.width - half)), y + dy];
+      const place = [Math.min(Math.max(x + dx, half), Math.max(half, scene.width - half)), Math.min(Math.max(y + dy, 0.5 * height + 1), scene.height - 0.5 * height - 2)];
       scene.takenTexts.push([...place, width, height]);
       text.setAttribute('x', place[0].toFixed(1));
       text.setAttribute('y', (place[1] + 0.32 * height).toFixed(1));
@@ -83,7 +89,8 @@ steplap.Symbols = (() => {
       scene.groundLayer.append(line, hatch);
       const tangent = across(plane.normal);
       plane.fit = () => {
-        plane.range = [Infinity, -Infinity];
+        plane.range = plane.ends ? [-plane.ends[1], -plane.ends[0]] : [Infinity, -Infinity];
+        if (plane.ends) return;
         for (const pose of scene.poses)
           for (const foot of plane.feet) {
             const s = dot(tangent, minus(seenIn(pose(plane.body), scene.placed(foot, pose)), plane.point));
@@ -94,7 +101,7 @@ steplap.Symbols = (() => {
         const middle = this.screen(plane, pose), d = flipped(turn(tangent, pose(plane.body)[2])), down = scaled(flipped(turn(plane.normal, pose(plane.body)[2])), -1);
         // Not further than the picture: zoomed in, a floor is long.
         const centre = dot(d, minus([scene.width / 2, scene.height / 2], middle)), reach = scene.width + scene.height;
-        const from = Math.max(plane.range[0] * scene.scale - 5 * this.u, centre - reach), to = Math.min(plane.range[1] * scene.scale + 5 * this.u, centre + reach);
+        const beyond = plane.ends ? 0 : 3 * this.u, from = Math.max(plane.range[0] * scene.scale - beyond, centre - reach), to = Math.min(plane.range[1] * scene.scale + beyond, centre + reach);
         if (!(to > from)) { line.setAttribute('d', 'M0 0'); hatch.setAttribute('d', 'M0 0'); return; }
         const at = (s) => add(middle, scaled(d, s)), slant = scaled(add(scaled(d, -0.7), down), 0.8 * this.u);
         let strokes = '';
@@ -168,6 +175,17 @@ steplap.Symbols = (() => {
       });
       this.force(element, shape, (t, pose, channel) => { const { a, n } = places(pose); return { at: add(a, scaled(n, 0.85 * this.u)), d: n, force: channel.at(t) }; }, true);
     }
+    // Outlines on outlines: bodies show them; the size of the force between them on demand.
+    faces(element, shape) {
+      const force = this.channel(element, shape), text = this.value(element);
+      this.update((t, pose) => {
+        if (!force) return;
+        // Between the two; of a half-plane where it is nearest to the other's middle.
+        const points = shape.at.slice(0, -1).map((a) => this.screen(a, pose)), a = scaled(points.reduce(add), 1 / points.length), b = this.screen(shape.at[shape.at.length - 1], pose);
+        const n = shape.direction ? this.direction(shape, pose) : null, place = n ? minus(a, scaled(n, dot(n, minus(a, b)))) : along(a, b, 0.5);
+        this.showValue(text, force.at(t) > 0 ? steplap.data.quantity(force.at(t), force.unit, 4) : '', place, n || [0, 1]);
+      });
+    }
     // Round on round, round on edge: a dot where they touch while they press, and the force on a.
     touching(element, shape, where) {
       const dot = this.dotOf(element, 'touch'), force = this.channel(element, shape);
@@ -196,9 +214,9 @@ steplap.Symbols = (() => {
     // What friction does, in words, between the contacts it sits on.
     friction(element, shape) {
       const { scene } = this, names = element.contacts || [];
-      const places = names.map((name) => scene.byName.get(name)).filter((e) => e && e.at.length).map((e) => e.at[0]);
+      const places = element.contacts ? names.map((name) => scene.byName.get(name)).filter((e) => e && e.at.length).map((e) => e.at[0]) : element.at;
       const rate = scene.run.channel(`${element.name}.slip_rate`), force = this.channel(element, shape);
-      if (!places.length || !scene.run.channel(`${element.name}.mode`) || scene.elements.length > 400) return;
+      if (!places.length || !scene.run.channel(`${element.name}.mode`) || this.frictions > 30) return; // more words than room
       const text = make('text', { class: 'state-text', 'data-element': element.name });
       scene.textLayer.append(text);
       this.update((t, pose) => {
@@ -329,7 +347,7 @@ steplap.Symbols = (() => {
   function shoes(at, u, turned) { return arcPath(at, 1.1 * u, turned - 0.6, turned + 0.6) + arcPath(at, 1.1 * u, turned + Math.PI - 0.6, turned + Math.PI + 0.6); }
 
   Symbols.types = {};
-  for (const type of ['spring', 'rope', 'contact', 'touch', 'edge_touch', 'friction', 'pin', 'bushing', 'weld', 'rail', 'rod', 'neutral', 'arc', 'arrow']) Symbols.types[type] = Symbols.prototype[type];
+  for (const type of ['spring', 'rope', 'contact', 'touch', 'faces', 'edge_touch', 'friction', 'pin', 'bushing', 'weld', 'rail', 'rod', 'neutral', 'arc', 'arrow']) Symbols.types[type] = Symbols.prototype[type];
   Symbols.types.joint = () => {}; // its sheets are drawn
 
   Object.assign(steplap.Scene.prototype, {

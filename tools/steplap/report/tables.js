@@ -31,7 +31,7 @@ steplap.tables = (() => {
   // --- trust ---------------------------------------------------------------------------------------
   function settingText(run) {
     const s = run.summary, fixed = s.integrator === 'rk4' || s.integrator === 'moreau';
-    return `${s.integrator}, ` + (fixed ? `step ${quantity(s.settings.step, 's')}` : `tolerance ${few(s.settings.tolerance)} for each step`);
+    return `${s.integrator}, ` + (fixed ? `step ${quantity(s.settings.step, 's')}` : s.settings.tolerance === null || s.settings.tolerance === undefined ? 'its usual tolerance' : `tolerance ${few(s.settings.tolerance)} for each step`);
   }
   function errorText(run) {
     const e = run.summary.global_error;
@@ -164,16 +164,18 @@ steplap.tables = (() => {
     const names = [...new Set(runs.flatMap((r) => Object.keys(r.summary.extremes)))];
     const heads = ['channel', ...runs.flatMap((r) => { const of = runs.length > 1 ? ` ${r.name}` : ''; return [`least${of}`, 'at', `largest${of}`, 'at']; })];
     const meaning = (name) => runs.map((r) => r.meaning(name)).find(Boolean) || '';
-    const rows = names.map((name) => [make('span', { title: meaning(name) }, name), ...runs.flatMap((r) => {
+    const row = (name) => [make('span', { title: meaning(name) }, name), ...runs.flatMap((r) => {
       const e = extremesOf(r, name);
       return e ? [known(e, 'min', e.unit), instant(e, 't_min'), known(e, 'max', e.unit), instant(e, 't_max')] : ['–', '', '–', ''];
-    })]);
-    const element = table(heads, rows, heads.map((_, i) => i).slice(1));
-    document.getElementById('extremes-table').append(make('div', { class: 'tall' }, element));
-    document.getElementById('extremes-filter').addEventListener('input', (event) => {
-      const wanted = event.target.value.toLowerCase();
-      for (const row of element.tBodies[0].rows) row.hidden = !row.cells[0].textContent.toLowerCase().includes(wanted);
-    });
+    })];
+    const most = 1000; // rows that a reader could want to see at once
+    function fill(wanted) {
+      const found = names.filter((name) => name.toLowerCase().includes(wanted));
+      const note = found.length > most ? [make('p', { class: 'note' }, `and ${found.length - most} more: name what they contain`)] : [];
+      document.getElementById('extremes-table').replaceChildren(make('div', { class: 'tall' }, table(heads, found.slice(0, most).map(row), heads.map((_, i) => i).slice(1))), ...note);
+    }
+    fill('');
+    document.getElementById('extremes-filter').addEventListener('input', (event) => fill(event.target.value.toLowerCase()));
   }
   function models(runs) {
     const box = document.getElementById('model-texts');
