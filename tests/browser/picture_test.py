@@ -35,6 +35,7 @@ class PictureTest(base.Page):
         for name in names:
             base.steplap("report", "out/" + name, "-q", "-o", name + ".html")
         base.steplap("report", "out/watt_linkage", "out/gentle", "-q", "-o", "two.html")
+        base.steplap("report", "out/crane_arm", "out/cradle", "-q", "-o", "unlike.html")
         base.steplap("modes", models[5], "-q", "-o", "modes.csv", "--report", "modes.html")
         cls.browser = base.start_browser()
         cls.browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": cls.downloads})
@@ -183,7 +184,12 @@ class PictureTest(base.Page):
             self.assertEqual(a, b)
         scales = self.run_js("return steplap.page.scenes.map((s) => [s.scale, s.width, s.height, ...s.centre, s.largestForce])")
         self.assertEqual(scales[0], scales[1])
+        # A toy beside a crane has its own.
+        self.open("unlike.html")
+        scales = self.run_js("return steplap.page.scenes.map((s) => s.scale)")
+        self.assertGreater(scales[1], 5 * scales[0])
         # Zoomed in, too.
+        self.open("two.html")
         self.run_js("steplap.page.plots.plots[0].graph.updateOptions({ dateWindow: [0.5, 1] })")
         ranges = self.run_js("return steplap.page.plots.plots.map((p) => [...p.graph.xAxisRange(), ...p.graph.yAxisRange()])")
         self.assertEqual(ranges[0], ranges[1])

@@ -264,14 +264,16 @@ steplap.Scene = (() => {
     }
   }
 
-  // The same scale for all, and the same part of the plane where they are at the same place.
+  // The same scale for all that are of like size, and the same part of the plane where they are at the same place.
   Scene.fitAll = (scenes, seenFrom, magnification, widths, tallest) => {
     const boxes = scenes.map((scene) => scene.choose(seenFrom, magnification));
     const whole = boxes.reduce((a, b) => a.joined(b));
     const span = [0, 1].map((i) => Math.max(...boxes.map((b) => b.span[i])));
     const isSamePlace = [0, 1].every((i) => whole.span[i] <= 1.4 * span[i] + 0.2 * Math.max(...span));
-    const width = Math.min(...widths);
-    scenes.forEach((scene, k) => scene.fit(isSamePlace ? whole.middle : boxes[k].middle, isSamePlace ? whole.span : span, width, tallest));
+    const width = Math.min(...widths), sizes = boxes.map((b) => Math.max(...b.span));
+    const isAlike = Math.max(...sizes) < 5 * Math.min(...sizes);
+    if (!isAlike) scenes.forEach((scene, k) => scene.fit(boxes[k].middle, boxes[k].span, width, tallest));
+    else scenes.forEach((scene, k) => scene.fit(isSamePlace ? whole.middle : boxes[k].middle, isSamePlace ? whole.span : span, width, tallest));
   };
   return Scene;
 })();
