@@ -19,11 +19,13 @@ name = "a"
 mass = 1.0
 inertia = 1.0
 position = [0.0, 1.0]
+outline = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]
 [[body]]
 name = "b"
 mass = 1.0
 inertia = 1.0
 position = [0.0, -1.0]
+outline = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]
 [[marker]]
 name = "M"
 body = "a"

@@ -37,12 +37,19 @@ public:
     skip();
     if (at_ == text_.size()) fail("is empty");
     sum();
-    if (at_ < text_.size()) fail("has '" + std::string(1, text_[at_]) + "' where an operator or its end should be");
+    if (at_ < text_.size()) fail("has '" + character() + "' where an operator or its end should be");
   }
 
 private:
   [[noreturn]] void fail(const std::string& message) const {
     throw ModelError(made_.where_, made_.subject_ + ": the expression '" + text_ + "' " + message);
+  }
+
+  // All of its bytes.
+  [[nodiscard]] std::string character() const {
+    std::size_t end = at_ + 1;
+    while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0U) == 0x80U) ++end;
+    return text_.substr(at_, end - at_);
   }
 
   void skip() {
@@ -134,7 +141,7 @@ private:
     } else if (std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_') {
       word();
     } else {
-      fail("has '" + std::string(1, c) + "' where a value should be");
+      fail("has '" + character() + "' where a value should be");
     }
   }
 
@@ -156,7 +163,8 @@ private:
     const bool is_negative = inside[at] == '-';
     if (is_negative) ++at;
     const double size = number(inside, at);
-    const std::string unit = inside.substr(at);
+    std::string unit = inside.substr(std::min(inside.find_first_not_of(' ', at), inside.size()));
+    if (unit.starts_with('/')) unit.insert(0, 1, '1'); // '3/s'
     const std::optional<UnitDimension> dimension = dimension_of(unit);
     if (!dimension)
       fail("has a unit that formulas do not know: '" + inside + "'; they know m s kg t N J W Pa bar rad deg min h gravity %, with prefixes, and products");

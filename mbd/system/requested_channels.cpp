@@ -58,6 +58,28 @@ bool wants_energies(const std::vector<std::string>* wanted) {
          });
 }
 
+// What the channel of a formula calls.
+struct FormulaValue {
+  std::shared_ptr<const ChannelExpression> expression;
+  std::vector<std::function<double(const Snapshot&)>> operands;
+  std::vector<double> factors; ///< of the operands' units
+  double factor = 1.0;
+
+  double operator()(const Snapshot& s) const {
+    thread_local std::vector<std::vector<double>> kept; // a formula of formulas needs one for each
+    thread_local std::size_t depth = 0;
+    if (kept.size() <= depth) kept.resize(depth + 1);
+    kept[depth].resize(std::max(kept[depth].size(), operands.size()));
+    for (std::size_t i = 0; i < operands.size(); ++i) {
+      ++depth;
+      const double operand = factors[i] * operands[i](s);
+      --depth;
+      kept[depth][i] = operand;
+    }
+    return factor * expression->value(kept[depth].data(), s.t);
+  }
+};
+
 std::string without_unit(const std::string& name) {
   if (name.empty() || name.back() != ']') return name;
   const std::size_t open = name.rfind('[');
@@ -258,74 +280,66 @@ const Channel* RequestedChannels::find(const std::string& name) const {
   return nullptr;
 }
 
+// By its name, or as trajectory.csv heads it: then its unit has to be the one.
+const Channel& RequestedChannels::operand(const DefinedChannel& d, const std::string& name) const {
+  if (const Channel* exactly = find(name)) return *exactly;
+  const std::string subject = "channel '" + d.name + "'", bare = without_unit(name);
+  const Channel* const found = bare == name ? nullptr : find(bare);
+  if (!found)
+    throw ModelError(d.place("expression"), subject + ": there is no channel '" + name + "'" + did_you_mean(name, all_names()) +
+                                                "; names with other characters than letters, digits, _ and points stand in braces");
+  const std::string unit = name.substr(bare.size() + 2, name.size() - bare.size() - 3);
+  if (found->unit != unit) throw ModelError(d.place("expression"), subject + ": '" + found->name + "' is in '" + found->unit + "', not in '" + unit + "'");
+  return *found;
+}
+
+// The unit that the channel is given in, and what SI is to be multiplied by for it.
+std::pair<std::string, double> RequestedChannels::unit_of(const DefinedChannel& d, const UnitDimension& derived) {
+  const std::string subject = "channel '" + d.name + "'";
+  if (d.unit.empty()) {
+    if (derived.powers == std::array<double, 3>{1.0, 2.0, -2.0})
+      throw ModelError(d.place("expression"), subject + ": energy or torque? Say so with unit = \"J\" or \"N m\"");
+    return {unit_text(derived.powers), 1.0};
+  }
+  const auto given = dimension_of(d.unit);
+  if (!given) throw ModelError(d.place("unit"), subject + ": the unit '" + d.unit + "' is not known to formulas");
+  if (given->powers != derived.powers) {
+    const std::string is = unit_text(derived.powers);
+    throw ModelError(d.place("unit"), subject + ": the expression has " + (is.empty() ? "no unit" : "the unit " + is) + ", which is none of '" + d.unit + "'");
+  }
+  return {d.unit == "1" ? std::string() : d.unit, 1.0 / given->factor};
+}
+
+// Others that it uses first.
 void RequestedChannels::add_formula(Formula& formula) {
   const DefinedChannel& d = *formula.definition;
-  const std::string subject = "channel '" + d.name + "'";
   if (formula.mark == Formula::Mark::done) return;
-  if (formula.mark == Formula::Mark::open) throw ModelError(d.place("expression"), subject + ": its expression leads back to itself");
+  if (formula.mark == Formula::Mark::open)
+    throw ModelError(d.place("expression"), "channel '" + d.name + "': its expression leads back to itself");
   formula.mark = Formula::Mark::open;
   if (!formula.expression) return;
   std::vector<std::string> units;
-  std::vector<std::function<double(const Snapshot&)>> values;
-  std::vector<double> factors;
+  FormulaValue value;
   for (const std::string& name : formula.expression->names()) {
     for (const std::string& each : {name, without_unit(name)})
       for (Formula& other : formulas_)
         if (other.definition->name == each) add_formula(other);
-    const Channel* operand = find(name);
-    if (!operand && without_unit(name) != name) {
-      operand = find(without_unit(name));
-      const std::string unit = name.substr(without_unit(name).size() + 2, name.size() - without_unit(name).size() - 3);
-      if (operand && operand->unit != unit)
-        throw ModelError(d.place("expression"), subject + ": '" + operand->name + "' is in '" + operand->unit + "', not in '" + unit + "'");
-    }
-    if (!operand)
-      throw ModelError(d.place("expression"), subject + ": there is no channel '" + name + "'" + did_you_mean(name, all_names()) +
-                                                  "; names with other characters than letters, digits, _ and points stand in braces");
-    units.push_back(operand->unit);
-    values.push_back(operand->value);
-    const auto dimension = dimension_of(operand->unit);
-    factors.push_back(dimension ? dimension->factor : 1.0);
+    const Channel& channel = operand(d, name);
+    const auto dimension = dimension_of(channel.unit);
+    units.push_back(channel.unit);
+    value.operands.push_back(channel.value);
+    value.factors.push_back(dimension ? dimension->factor : 1.0);
   }
-  const UnitDimension derived = formula.expression->dimension(units);
-  std::string unit = d.unit;
-  double factor = 1.0;
-  if (unit.empty()) {
-    if (derived.powers == std::array<double, 3>{1.0, 2.0, -2.0})
-      throw ModelError(d.place("expression"), subject + ": energy or torque? Say so with unit = \"J\" or \"N m\"");
-    unit = unit_text(derived.powers);
-  } else {
-    const auto given = dimension_of(unit);
-    if (!given) throw ModelError(d.place("unit"), subject + ": the unit '" + unit + "' is not known to formulas");
-    if (given->powers != derived.powers) {
-      const std::string is = unit_text(derived.powers);
-      throw ModelError(d.place("unit"), subject + ": the expression has " + (is.empty() ? "no unit" : "the unit " + is) + ", which is none of '" + unit + "'");
-    }
-    factor = 1.0 / given->factor;
-    if (unit == "1") unit.clear();
-  }
+  const auto [unit, factor] = unit_of(d, formula.expression->dimension(units));
   formula.mark = Formula::Mark::done;
-  const auto shared = std::make_shared<const ChannelExpression>(*formula.expression);
-  auto value = [shared, values = std::move(values), factors = std::move(factors), factor](const Snapshot& s) {
-    thread_local std::vector<std::vector<double>> kept; // a formula of formulas needs one for each
-    thread_local std::size_t depth = 0;
-    if (kept.size() <= depth) kept.resize(depth + 1);
-    kept[depth].resize(std::max(kept[depth].size(), values.size()));
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      ++depth;
-      const double operand = factors[i] * values[i](s);
-      --depth;
-      kept[depth][i] = operand;
-    }
-    return factor * shared->value(kept[depth].data(), s.t);
-  };
-  SystemBuilder& b = builder_;
-  const auto is_listed = [&] { return !b.wanted_ || std::find(b.wanted_->begin(), b.wanted_->end(), d.name) != b.wanted_->end(); };
-  const bool is_operand = std::binary_search(b.operand_names_.begin(), b.operand_names_.end(), d.name);
-  if (!is_listed() && !is_operand) return;
+  value.expression = std::make_shared<const ChannelExpression>(*formula.expression);
+  value.factor = factor;
+  const auto* const wanted = builder_.wanted_;
+  const bool is_listed = !wanted || std::find(wanted->begin(), wanted->end(), d.name) != wanted->end();
+  if (!is_listed && !std::binary_search(builder_.operand_names_.begin(), builder_.operand_names_.end(), d.name)) return;
   const std::string meaning = d.meaning.empty() ? "= " + d.expression : d.meaning;
-  Channel& channel = b.enter_channel(is_listed() ? SystemBuilder::Use::channel : SystemBuilder::Use::operand, "", d.name, unit,
-                                     ChannelText(meaning, d.sign), std::move(value));
+  Channel& channel = builder_.enter_channel(is_listed ? SystemBuilder::Use::channel : SystemBuilder::Use::operand, "", d.name, unit,
+                                            ChannelText(meaning, d.sign), std::move(value));
   channel.is_on_request = true;
 }
 

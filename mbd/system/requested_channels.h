@@ -9,9 +9,9 @@
 #include "mbd/system/channel_expression.h"
 #include "mbd/system/system.h"
 
-#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace steplap {
@@ -50,6 +50,8 @@ private:
   void add_energy(const Share& share, const char* name, const ChannelText& text, Integrand integrand);
   void add_formulas();
   void add_formula(Formula& formula);
+  [[nodiscard]] const Channel& operand(const DefinedChannel& definition, const std::string& name) const;
+  [[nodiscard]] static std::pair<std::string, double> unit_of(const DefinedChannel& definition, const UnitDimension& derived);
   [[nodiscard]] bool is_anything_missing() const;
   [[nodiscard]] const Channel* find(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> all_names() const;

@@ -149,13 +149,21 @@ void SystemBuilder::compile_bodies() {
     marker_index_[marker.name] = compiled(marker.body, marker.point, marker.at, marker.angle);
 }
 
-void SystemBuilder::compile_elements() {
+void SystemBuilder::compile_elements(RequestedChannels& requested) {
   for (std::size_t i = 0; i < model_.elements.size(); ++i) {
     const Element& element = *model_.elements[i].element;
     element_index_[element.name] = i;
     system_->element_names.push_back(element.name);
     system_->element_kinds.push_back(model_.elements[i].kind->name);
   }
+  for (const int stage : {0, 1})
+    for (std::size_t i = 0; i < model_.elements.size(); ++i) {
+      if (model_.elements[i].kind->stage != stage) continue;
+      element_ = static_cast<int>(i);
+      requested.begin_element();
+      model_.elements[i].kind->compile(*model_.elements[i].element, *this);
+      requested.end_element();
+    }
 }
 
 void SystemBuilder::finish() {
@@ -349,15 +357,7 @@ std::unique_ptr<System> compile(const Model& model, const std::vector<std::strin
   RequestedChannels requested(builder);
   builder.compile_bodies();
   builder.add_body_channels();
-  builder.compile_elements(); // their names
-  for (const int stage : {0, 1})
-    for (std::size_t i = 0; i < model.elements.size(); ++i) {
-      if (model.elements[i].kind->stage != stage) continue;
-      builder.element_ = static_cast<int>(i);
-      requested.begin_element();
-      model.elements[i].kind->compile(*model.elements[i].element, builder);
-      requested.end_element();
-    }
+  builder.compile_elements(requested);
   builder.finish();
   requested.add();
   if (!builder.errors_.empty()) throw ModelError(builder.errors_);

@@ -18,6 +18,7 @@
 
 namespace steplap {
 
+class RequestedChannels;
 class System;
 
 /// Everything that changes during a run. Body 0 is the ground; q and v hold (x, y, θ) and its rate of
@@ -252,7 +253,7 @@ private:
   Channel& enter_channel(Use use, std::string_view owner, std::string_view name, std::string_view unit, const ChannelText& text,
                          std::function<double(const Snapshot&)> value);
   void compile_bodies();
-  void compile_elements();
+  void compile_elements(RequestedChannels& requested);
   void finish();
   void add_body_channels();
 

@@ -174,6 +174,7 @@ TEST_CASE("formulas compute what the same by hand does") {
   CHECK(value_of("sin(pi/6) + cos(pi/3) + tan(pi/4)") == doctest::Approx(2.0).epsilon(1e-15));
   CHECK(value_of("asin(1) + acos(-1) + atan(1) + atan2(tip.x, tip.x)") == doctest::Approx(2.0 * std::numbers::pi).epsilon(1e-15));
   CHECK(value_of("ln(exp(2)) + log10(1000)") == doctest::Approx(5.0).epsilon(1e-14));
+  CHECK(value_of("'-3/s' * t + pin.rate / '4 1/s' + '6'/2") == 3.0);
   CHECK(value_of("tip.x", "unit = \"mm\"\n") == doctest::Approx(900.0).epsilon(1e-15));
   CHECK(value_of("whole.kinetic / '1 kJ'") == 0.0);
   CHECK(value_of("pin.angle", "unit = \"deg\"\n") == 0.0);
@@ -229,6 +230,7 @@ TEST_CASE("what no formula can be is refused where it stands") {
   CHECK(says(message_of(with_formula(std::string(30000, '(') + "1")), "too deep"));
   CHECK(says(message_of(with_formula(std::string(30000, '-') + "1")), "too deep"));
   CHECK(says(message_of(with_formula("1e999")), "cannot be read"));
+  CHECK(says(message_of(with_formula("tip.x · 2")), "has '·' where")); // whole, not its first byte
 }
 
 TEST_CASE("what [output] asks for must be there, and only that is made") {
