@@ -112,6 +112,7 @@ template <class S, class Depth> void cut(const CutRing<S>& in, const Depth& dept
   out.size = 0;
   if (in.size == 0) return;
   const auto put = [&out](const Pair<S>& corner, int edge) {
+    if (out.size == k_most_ring) return; // slivers of rounding, whose corners change sides more than twice
     out.corner[out.size] = corner;
     out.edge[out.size++] = edge;
   };
