@@ -256,6 +256,20 @@ TEST_CASE("a store of before units were kept makes a page that says so little, a
   CHECK(data_of(bench.at("study.sqlite"))["samples"]["columns"][0]["unit"] == "kN");
 }
 
+TEST_CASE("a study that has changed has no answer until it has run again") {
+  StudyBench bench;
+  (void)bench.run(k_sample);
+  CHECK(data_of(bench.at("study.sqlite"))["standing"] == "done");
+  std::string more = k_sample;
+  more.replace(more.find("samples = 400"), 13, "samples = 500");
+  const study::LoadedStudy loaded = study::parse_study(more, "study.toml");
+  (void)study::Store(bench.at("study.sqlite"), study::identity_of(loaded), study::StoreMode::changed); // and killed
+  const Json data = data_of(bench.at("study.sqlite"));
+  CHECK(data["standing"] == "");
+  CHECK(data["findings"].empty());
+  CHECK(data["samples"]["total"] == 400); // the samples are kept
+}
+
 TEST_CASE("the unit of a variable without a path is one, or an error") {
   StudyBench bench;
   CHECK(bench.run(k_sample).code == 0);
