@@ -126,7 +126,7 @@ TEST_CASE("two digits of an interval's width are written, none that is not known
 }
 
 TEST_CASE("the quantity of a finding says its part and its unit") {
-  const std::vector<study::ReportColumn> columns{{"pressure", "Pa", "variable"}, {"mu", "", "variable"}, {"slide", "m", "response"}};
+  const std::vector<study::ReportColumn> columns{{"pressure", "Pa", "variable"}, {"mu", "", "variable"}, {"slide", "m", "response"}, {"record", "m", "history"}};
   const auto view = [&](const study::Finding& f) { return study::view_of(f, columns); };
   const study::FindingView mean = view({"monte_carlo", "slide", "mean", 0.0123456, 0.0121, 0.0125});
   CHECK(mean.value == "12.35");
@@ -142,6 +142,7 @@ TEST_CASE("the quantity of a finding says its part and its unit") {
   CHECK(view({"map", "border 3 point 17", "pressure", 66506.0}).place == 3);
   CHECK(view({"fit", "pressure", "value", 29985.0, 29000.0, 31000.0}).value == "30.0");
   CHECK(view({"fit", "pressure, mu", "correlation", 0.91234}).value == "0.912");
+  CHECK(view({"fit", "record", "residual, root mean square", 0.00123456}).value == "1.235"); // mm
   CHECK(view({"fit", "pressure", "skewness", 2.0}).unit == "SI"); // of which nothing is known is not given the subject's
 }
 
