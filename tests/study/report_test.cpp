@@ -126,7 +126,7 @@ TEST_CASE("two digits of an interval's width are written, none that is not known
 }
 
 TEST_CASE("the quantity of a finding says its part and its unit") {
-  const std::vector<study::ReportColumn> columns{{"pressure", "Pa", "variable"}, {"mu", "", "variable"}, {"slide", "m", "response"}};
+  const std::vector<study::ReportColumn> columns{{"pressure", "Pa", "variable"}, {"mu", "", "variable"}, {"slide", "m", "response"}, {"record", "m", "history"}};
   const auto view = [&](const study::Finding& f) { return study::view_of(f, columns); };
   const study::FindingView mean = view({"monte_carlo", "slide", "mean", 0.0123456, 0.0121, 0.0125});
   CHECK(mean.value == "12.35");
@@ -142,6 +142,7 @@ TEST_CASE("the quantity of a finding says its part and its unit") {
   CHECK(view({"map", "border 3 point 17", "pressure", 66506.0}).place == 3);
   CHECK(view({"fit", "pressure", "value", 29985.0, 29000.0, 31000.0}).value == "30.0");
   CHECK(view({"fit", "pressure, mu", "correlation", 0.91234}).value == "0.912");
+  CHECK(view({"fit", "record", "residual, root mean square", 0.00123456}).value == "1.235"); // mm
   CHECK(view({"fit", "pressure", "skewness", 2.0}).unit == "SI"); // of which nothing is known is not given the subject's
 }
 
@@ -254,6 +255,20 @@ TEST_CASE("a store of before units were kept makes a page that says so little, a
   CHECK(data["samples"]["columns"][0]["unit"] == "");
   (void)bench.run(k_sample);
   CHECK(data_of(bench.at("study.sqlite"))["samples"]["columns"][0]["unit"] == "kN");
+}
+
+TEST_CASE("a study that has changed has no answer until it has run again") {
+  StudyBench bench;
+  (void)bench.run(k_sample);
+  CHECK(data_of(bench.at("study.sqlite"))["standing"] == "done");
+  std::string more = k_sample;
+  more.replace(more.find("samples = 400"), 13, "samples = 500");
+  const study::LoadedStudy loaded = study::parse_study(more, "study.toml");
+  (void)study::Store(bench.at("study.sqlite"), study::identity_of(loaded), study::StoreMode::changed); // and killed
+  const Json data = data_of(bench.at("study.sqlite"));
+  CHECK(data["standing"] == "");
+  CHECK(data["findings"].empty());
+  CHECK(data["samples"]["total"] == 400); // the samples are kept
 }
 
 TEST_CASE("the unit of a variable without a path is one, or an error") {

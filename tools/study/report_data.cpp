@@ -229,6 +229,13 @@ Json findings_json(const std::vector<Finding>& findings, const std::vector<Repor
   return json;
 }
 
+// All that a finding may be about.
+std::vector<ReportColumn> named_columns(const Samples& samples, const Json& about) {
+  std::vector<ReportColumn> columns = samples.columns;
+  for (const Json& h : about["histories"]) columns.push_back({h.value("name", ""), h.value("unit", ""), "history"});
+  return columns;
+}
+
 // Estimates as they grew, method by method, in the order of the methods.
 Json growth_json(const std::vector<Finding>& growth) {
   std::vector<std::string> methods;
@@ -330,7 +337,7 @@ std::string for_script(const std::string& json) {
 Json about_in(Store& store) {
   Json about = Json::parse(store.setting("about"), nullptr, false);
   if (!about.is_object()) about = Json::object();
-  for (const char* key : {"variables", "numbers", "models", "variants"})
+  for (const char* key : {"variables", "numbers", "models", "variants", "histories"})
     if (!about.contains(key)) about[key] = Json::array();
   if (!about.contains("settings") || !about["settings"].is_object()) about["settings"] = Json::object();
   return about;
@@ -378,7 +385,7 @@ std::string report_data(Store& store, const std::string& store_path, std::size_t
   json["reasons"] = reasons_json(store);
   json["distributions"] = distributions_json(samples, drawn);
   json["running"] = is_random_sample ? running_estimates(samples, about.value("failed", "bounds")) : Json::array();
-  json["findings"] = findings_json(store.findings(), samples.columns);
+  json["findings"] = findings_json(store.findings(), named_columns(samples, about));
   json["growth"] = growth_json(store.growth());
   json["histories"] = histories_json(store);
   json["notes"] = store.notes();

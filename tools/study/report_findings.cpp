@@ -47,6 +47,7 @@ constexpr Part k_parts[] = {
     {"swing", "swing by ", UnitOf::subject},
     {"importance", "importance of ", UnitOf::none},
     {"need", "largest change", UnitOf::none},
+    {"residual", "residual", UnitOf::subject}, // of a measured record
     {"sum of squares", "sum of squares", UnitOf::none}, // of residuals over their noise
     {"correlation", "correlation", UnitOf::none},
     {"condition", "condition", UnitOf::none},
@@ -152,6 +153,7 @@ int digits_of(const Finding& f, const std::string& role) {
   constexpr int k_exact = 6, k_estimated = 4;
   if (role == "beta") return 5;
   if (role == "correlation" || role == "condition" || role == "not told" || role == "another fit") return 3;
+  if (role == "residual") return k_estimated;
   return role == "moment" || role == "quantile" || role == "probability" || role == "sigma" ? k_estimated : f.method == "needs" ? 3 : k_exact;
 }
 

@@ -10,7 +10,7 @@ namespace steplap::study {
 
 /// A column of samples.
 struct ReportColumn {
-  std::string name, unit, role; ///< role: variable, response, limit state, border, cost
+  std::string name, unit, role; ///< role: variable, response, limit state, border, cost; history for a measured record
 };
 
 struct FindingView {

@@ -181,7 +181,9 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
                        " samples that are the same, --restart begins anew, -o names another store");
     set("study", identity.study);
     set("kind", identity.kind);
-    execute("DELETE FROM growth");
+    // What was found is of what was asked before: until it is found anew there is no answer.
+    for (const char* table : {"growth", "finding", "note"}) execute("DELETE FROM " + quoted(table));
+    set("standing", "");
     identity_ = identity;
   }
 }

@@ -4,13 +4,13 @@ study.charts = (() => {
   const colours = { blue: '#0072b2', vermillion: '#d55e00', green: '#007a5a', orange: '#e69f00', purple: '#a8487c', sky: '#56b4e9', grey: '#6b6b6b' };
   const cycle = [colours.blue, colours.vermillion, colours.green, colours.purple, colours.orange, colours.sky, colours.grey];
   const all = [];
-  const isTouched = matchMedia('(pointer: coarse)').matches;
+  const isTouched = matchMedia('(pointer: coarse), (max-width: 600px)').matches;
   // Plotly reads a little markup in its texts: names stay text.
   const safe = (text) => String(text).replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/>/g, '&gt;');
   const axis = (title, more = {}) => ({ title: { text: safe(title), standoff: 8 }, automargin: true, gridcolor: '#e3e3e3', zerolinecolor: '#b5b5b5', linecolor: '#b5b5b5', exponentformat: 'power', ...more });
 
   // Of Plotly's buttons those that do not ask a server: one would upload the chart.
-  const config = { responsive: true, displaylogo: false, plotlyServerURL: '', modeBarButtons: [['toImage', 'zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'resetScale2d']] };
+  const config = { responsive: true, displaylogo: false, ...(isTouched ? { displayModeBar: false } : {}), plotlyServerURL: '', modeBarButtons: [['toImage', 'zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'resetScale2d']] };
 
   // Charts are drawn when all that is added with them is there: only then their columns are as wide as they stay.
   const waiting = [];
