@@ -317,14 +317,15 @@ void add_friction(const PolygonContact& e, const PolygonGroup::Entry& entry, Sys
   friction->mu_kinetic = e.kinetic_friction.value_or(*e.static_friction);
   const int f = builder.next_friction(), row = builder.next_friction_row();
   const PolygonFriction* const self = friction.get();
-  builder.add_channel("friction", "N", "friction force on a, along the face that it sticks or slides on",
+  builder.add_channel("friction", "N", {"friction force on a", "along the touching face, its normal towards a turned clockwise by a right angle"},
                       [row](const Snapshot& s) { return s.friction_force[row]; });
-  builder.add_channel("capacity", "N", "largest friction force that holds",
+  builder.add_channel("capacity", "N", {"largest friction force that holds", "never negative"},
                       [self](const Snapshot& s) { return self->mu_static * self->normal_force(*s.evaluation); });
-  builder.add_channel("slip_rate", "m/s", "of a against b along that face", [self, f](const Snapshot& s) {
-    return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate;
-  });
-  builder.add_channel("mode", "", "0 free, 1 sticks, 2 slips",
+  builder.add_channel("slip_rate", "m/s", {"velocity of a against b along the touching face", "as friction"},
+                      [self, f](const Snapshot& s) {
+                        return evaluate_row<false>(*self->rows(s.evaluation->friction[f]), s.motion).rate;
+                      });
+  builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
   builder.add_friction(std::move(friction));
 }
@@ -349,9 +350,9 @@ void compile_polygon(const Element& element, SystemBuilder& builder) {
   builder.add_unit(group, 1);
   group.entries.back().contact = builder.add_contact(group.entries.back().unit);
   const int i = static_cast<int>(group.entries.size()) - 1, contact = group.entries.back().contact;
-  builder.add_channel("gap", "m", "between the outlines, negative while closed: the least way that would part them",
+  builder.add_channel("gap", "m", {"distance between the outlines; closed, the least way that would part them", "negative while it presses"},
                       [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).gap; });
-  builder.add_channel("force", "N", "size of the normal force, which presses the two apart",
+  builder.add_channel("force", "N", {"size of the normal force, zero while open", "positive: it presses"},
                       [contact](const Snapshot& s) { return s.evaluation->contact_force[contact]; });
   if (e.static_friction) add_friction(e, group.entries.back(), builder);
 }
@@ -379,6 +380,14 @@ const ElementKind& polygon_contact_kind() {
     f.add("kinetic_friction", &T::kinetic_friction).not_negative().doc("mu_k; default: mu_s");
     k.holds<T>();
     k.compile = compile_polygon;
+    k.example = R"([[element]]
+name = 'faces'
+kind = 'polygon_contact'
+a = 'a'
+b = 'b'
+stiffness = 1e6
+static_friction = 0.5
+)";
     return k;
   }();
   return kind;
