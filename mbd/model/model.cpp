@@ -72,7 +72,7 @@ const FieldTable& OutputSettings::fields() {
     f.add("channels", &OutputSettings::channels).doc(
         "channels to write, patterns with * and ?; all if not given");
     f.add("most_numbers", &OutputSettings::most_numbers).positive().doc(
-        "a run whose trajectory would have more numbers, rows times channels, is not begun: each takes 8 bytes of memory and "
+        "a run whose trajectory would have more numbers, rows times channels, is not begun: each takes 8 bytes of disk while it runs and "
         "some 20 of trajectory.csv; 1e8 if not given");
     f.add("seen_from", &OutputSettings::seen_from).as(FieldType::body).doc(
         "body that drawings stand still with, or 'ground'; chosen by the drawing if not given");
