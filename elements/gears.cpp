@@ -1,5 +1,6 @@
 #include "elements/gears.h"
 
+#include "mbd/base/shown_text.h"
 #include "mbd/system/system.h"
 
 #include <cmath>
@@ -40,8 +41,8 @@ void compile_gear(const Element& element, SystemBuilder& builder) {
   const Vec2 apart = builder.marker_position(a) - builder.marker_position(b);
   const double reach = e.inside ? e.radius_b - e.radius_a : e.radius_a + e.radius_b;
   if (std::abs(apart.norm() - reach) > k_pitch_tolerance * reach)
-    return builder.error("its centres are " + std::to_string(apart.norm()) + " m apart, but the pitch circles touch at " +
-                         std::to_string(reach) + " m");
+    return builder.error("its centres are " + rounded_text(apart.norm()) + " m apart, but the pitch circles touch at " +
+                         rounded_text(reach) + " m");
   RowSpec row = row_between(a, b);
   row.kind = MeasureKind::roll_round;
   row.radius_a = e.inside ? -e.radius_a : e.radius_a;

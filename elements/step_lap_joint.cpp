@@ -1,5 +1,6 @@
 #include "elements/step_lap_joint.h"
 
+#include "mbd/base/shown_text.h"
 #include "elements/step_lap_edges.h"
 #include "elements/step_lap_elastic.h"
 #include "elements/step_lap_friction.h"
@@ -37,7 +38,7 @@ const Signal* steady_signal(SystemBuilder& builder, const std::string& name, con
   for (std::size_t k = 0; k < signal->breakpoints().size(); ++k)
     if (signal->jumps_at(k)) {
       builder.error("'" + std::string(field) + "': signal '" + name +
-                    "' jumps at t = " + std::to_string(signal->breakpoints()[k]) +
+                    "' jumps at t = " + rounded_text(signal->breakpoints()[k]) +
                     " s; a clamping pressure changes within some time: a trapezoid, or a record between lines");
       break;
     }

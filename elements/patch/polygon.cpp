@@ -1,5 +1,6 @@
 #include "elements/patch/polygon.h"
 
+#include "mbd/base/shown_text.h"
 #include "elements/patch/exact_polygon.h"
 
 #include <algorithm>
@@ -67,8 +68,8 @@ bool is_idle(const Vec2& a, const Vec2& b, const Vec2& c, double size) {
 }
 
 std::string vertex_name(const TracedRing& r, std::size_t i) {
-  return "vertex " + std::to_string(r.from[i]) + " (" + std::to_string(r.ring[i].x()) + ", " +
-         std::to_string(r.ring[i].y()) + ")";
+  return "vertex " + std::to_string(r.from[i]) + " (" + rounded_text(r.ring[i].x()) + ", " +
+         rounded_text(r.ring[i].y()) + ")";
 }
 
 TracedRing without_idle_vertices(const Ring& input, const std::string& name) {

@@ -3,6 +3,7 @@
 #include "mbd/analysis/global_error.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,14 @@ constexpr double k_slope_floor =
     10.0; // of the resolution: below, the reference's own error mixes in
 constexpr long k_steps_between_looks = 512;
 
+constexpr double k_cost_power = 0.2;  // of a tolerance, by which steps become more: order 5
+constexpr double k_least_cost = 1e-6; // s: a clock that stands still tells nothing
+constexpr double k_small_part = 0.02; // of the budget: only runs below it are repeated for the sake of their time
+
+struct OutOfTime : NumericalFailure {
+  using NumericalFailure::NumericalFailure;
+};
+
 // To the end, or to the limit of CPU time.
 RunResult run_within(const System& system, const State& initial, const SimulationOptions& options,
                      double cpu_limit) {
@@ -25,9 +34,8 @@ RunResult run_within(const System& system, const State& initial, const Simulatio
   Simulation simulation(system, initial, options);
   for (long steps = 0; simulation.advance(); ++steps)
     if (steps % k_steps_between_looks == 0 && thread_cpu_seconds() - start > cpu_limit)
-      throw NumericalFailure("needs more than " + number_text(cpu_limit) +
-                             " s of CPU time; at t = " + number_text(simulation.state().t) +
-                             " s by then");
+      throw OutOfTime("needs more than " + number_text(cpu_limit) + " s of CPU time; at t = " +
+                      rounded_text(simulation.state().t, 12) + " s by then");
   return std::move(simulation).result();
 }
 
@@ -49,8 +57,7 @@ public:
 
   AccuracyStudy made() {
     make_reference();
-    for (const MethodSetting& setting : options_.ladder)
-      study_.entries.push_back(entry(setting));
+    climb();
     mark_pareto();
     return std::move(study_);
   }
@@ -79,25 +86,99 @@ private:
     const WorstError& worst = study_.resolution.of(ErrorKind::position);
     throw NumericalFailure(
         "no reference: " + options_.first_reference.text() + " and " +
-        options_.second_reference.text() + " differ by " + number_text(worst.value) +
-        " of range in '" + worst.where + "' at t = " + number_text(worst.t) + " s, more than " +
+        options_.second_reference.text() + " differ by " + rounded_text(worst.value, 3) +
+        " of range in '" + worst.where + "' at t = " + rounded_text(worst.t, 12) + " s, more than " +
         number_text(k_agreement) +
         ": the motion magnifies rounding beyond what any run can tell. A shorter run or other "
         "references may do.");
   }
 
+  // Rungs of one method, from the coarsest on.
+  struct Climb {
+    std::vector<std::size_t> rungs; ///< places in the ladder
+    std::size_t next = 0;
+    double last_cost = 0.0, last_value = 0.0; ///< s, of all runs of the last rung
+
+    [[nodiscard]] bool is_over() const { return next == rungs.size(); }
+  };
+
+  // What a rung will cost: steps follow its value, or a small power of the tolerance. Nothing is known of the first.
+  [[nodiscard]] double predicted(const Climb& climb) const {
+    const MethodSetting& setting = options_.ladder[climb.rungs[climb.next]];
+    if (climb.last_cost == 0.0) return 0.0;
+    const double finer = climb.last_value / setting.value;
+    return climb.last_cost * (setting.is_step ? finer : portable::pow(finer, k_cost_power));
+  }
+
+  [[nodiscard]] std::vector<Climb> climbs() const {
+    std::map<std::string, Climb> by_name;
+    std::vector<std::string> order;
+    for (std::size_t i = 0; i < options_.ladder.size(); ++i) {
+      Climb& climb = by_name[options_.ladder[i].integrator];
+      if (climb.rungs.empty()) order.push_back(options_.ladder[i].integrator);
+      climb.rungs.push_back(i);
+    }
+    std::vector<Climb> list;
+    for (const std::string& name : order) {
+      std::stable_sort(by_name[name].rungs.begin(), by_name[name].rungs.end(),
+                       [this](std::size_t a, std::size_t b) { return options_.ladder[a].value > options_.ladder[b].value; });
+      list.push_back(std::move(by_name[name]));
+    }
+    return list;
+  }
+
+  // Always the rung that costs least next: so a budget goes furthest.
+  void climb() {
+    study_.budget = options_.budget;
+    study_.entries.resize(options_.ladder.size());
+    std::vector<Climb> list = climbs();
+    for (;;) {
+      Climb* cheapest = nullptr;
+      for (Climb& climb : list)
+        if (!climb.is_over() && (!cheapest || predicted(climb) < predicted(*cheapest))) cheapest = &climb;
+      if (!cheapest) return;
+      const std::size_t rung = cheapest->rungs[cheapest->next];
+      const MethodSetting& setting = options_.ladder[rung];
+      const double cost = predicted(*cheapest);
+      if (study_.spent + cost > options_.budget) {
+        study_.entries[rung] = left_out(setting);
+      } else {
+        const double start = thread_cpu_seconds();
+        study_.entries[rung] = entry(setting);
+        cheapest->last_cost = std::max(thread_cpu_seconds() - start, k_least_cost);
+        cheapest->last_value = setting.value;
+        study_.spent += cheapest->last_cost;
+      }
+      ++cheapest->next;
+    }
+  }
+
+  [[nodiscard]] double left() const { return std::max(0.0, options_.budget - study_.spent); }
+
+  [[nodiscard]] AccuracyEntry left_out(const MethodSetting& setting) const {
+    AccuracyEntry e;
+    e.setting = setting;
+    e.is_left_out = true;
+    e.failure = "left out: beyond the budget of " + number_text(options_.budget) + " s of CPU time";
+    return e;
+  }
+
   AccuracyEntry entry(const MethodSetting& setting) {
     say(setting.text());
+    const double limit = std::min(options_.cpu_limit, left());
     AccuracyEntry e;
     e.setting = setting;
     try {
       const RunResult sampled =
-          run_within(system_, initial_, setting.applied_to(base_), options_.cpu_limit);
+          run_within(system_, initial_, setting.applied_to(base_), limit);
       e.error = compare_runs(system_, sampled, reference_, options_.is_event_counted);
       e.energy_residual = residual_part(sampled.statistics);
       e.constraint_residual = sampled.statistics.max_position_residual;
       measure_cost(e);
       if (!std::isfinite(study_.error_of(e))) e.failure = "the result is no number";
+    } catch (const OutOfTime& failure) {
+      if (limit < options_.cpu_limit) return left_out(setting);
+      e.failure = failure.what();
     } catch (const NumericalFailure& failure) {
       e.failure = failure.what();
     }
@@ -112,6 +193,7 @@ private:
       const double spent = thread_cpu_seconds() - start;
       e.cpu_seconds = i == 0 ? spent : std::min(e.cpu_seconds, spent);
       e.cost = run.statistics;
+      if (spent > k_small_part * options_.budget) return;
     }
   }
 
@@ -164,7 +246,7 @@ ErrorSlope fitted(const std::string& integrator, const std::vector<Point>& point
 } // namespace
 
 std::string MethodSetting::text() const {
-  return integrator + (is_step ? " h = " + number_text(value) + " s" : " " + number_text(value));
+  return integrator + (is_step ? " h = " + rounded_text(value) + " s" : " " + rounded_text(value));
 }
 
 SimulationOptions MethodSetting::applied_to(SimulationOptions options) const {

@@ -6,6 +6,9 @@
 // is not spoken of at all; if they differ so in the positions, there is no reference, and nothing
 // is said.
 //
+// The ladder is climbed within a budget of CPU time, always where the next rung costs least, as far as the rungs below tell:
+// what a budget leaves out are the dearest settings, and the table says so.
+//
 // Cost is the CPU time of one thread without samples, the least of several runs; the error is taken
 // from a further run with samples, which takes the same steps: output never forces one.
 #pragma once
@@ -13,6 +16,7 @@
 #include "mbd/analysis/run_comparison.h"
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,8 +37,9 @@ struct MethodSetting {
 struct AccuracyOptions {
   std::vector<MethodSetting> ladder;
   MethodSetting first_reference{"dop853", 1e-13}, second_reference{"tsit5", 1e-13};
-  int repeats = 3;
+  int repeats = 3;              ///< at most: of runs that take a large part of the budget fewer
   double cpu_limit = 60.0;      ///< s: a run that needs more is given up, and the table says so
+  double budget = std::numeric_limits<double>::infinity(); ///< s of CPU time for the ladder; the references come first and are not counted
   EventFilter is_event_counted; ///< empty: all events
   std::function<void(const std::string& text)> progress; ///< what is being run, if given
 };
@@ -42,6 +47,7 @@ struct AccuracyOptions {
 struct AccuracyEntry {
   MethodSetting setting;
   std::string failure; ///< why there is no result; empty: there is one
+  bool is_left_out = false; ///< it would have gone beyond the budget
   double cpu_seconds = 0.0;
   RunStatistics cost; ///< of a run without samples
   RunDifference error;
@@ -61,6 +67,7 @@ struct AccuracyStudy {
   std::vector<AccuracyEntry> entries;
   RunDifference resolution; ///< between the two references
   MethodSetting first_reference, second_reference;
+  double budget = 0.0, spent = 0.0; ///< s of CPU time, on the ladder
 
   [[nodiscard]] bool is_resolved(ErrorKind kind) const;
   /// The largest error of an entry among the kinds that are resolved, not less than the resolution.

@@ -2,6 +2,7 @@
 
 #include "mbd/analysis/admissible_rest.h"
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/system/element_failure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -211,8 +212,9 @@ private:
       const int f = overload.friction;
       const FrictionElement& element = *system_.frictions[f].friction;
       if (element.dimension() > 1)
-        throw NumericalFailure("no static equilibrium: '" + name_of(f) + "' would have to hold " + rounded(overload.used) +
-                               " times what it can");
+        throw ElementFailure("no static equilibrium: '" + name_of(f) + "' would have to hold " + rounded(overload.used) +
+                                 " times what it can",
+                             {name_of(f)});
       auto slip = std::find_if(slips_.begin(), slips_.end(), [f](const Slip& s) { return s.friction == f; });
       if (slip == slips_.end()) {
         const bool is_least = least_usage_ > 1.0;
@@ -245,8 +247,8 @@ private:
   [[noreturn]] void fail_sliding(const Slip& slip) const {
     const RowSpec& row = *system_.frictions[slip.friction].friction->rows(state_.friction[slip.friction]);
     const int body = row.a == k_ground ? row.b : row.a;
-    throw NumericalFailure("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name +
-                           "' slides");
+    throw ElementFailure("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name + "' slides",
+                         {name_of(slip.friction), system_.bodies[body].name});
   }
   [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
     const MotionPart& part = descent.runaway();
@@ -263,7 +265,10 @@ private:
       text += "; the pose given balances, but not stably: it tips over with " + part_text(system_, left);
       break;
     }
-    throw NumericalFailure(text);
+    std::vector<std::string> names;
+    if (!slips_.empty()) names.push_back(name_of(slips_.front().friction));
+    names.push_back(system_.bodies[part.body].name);
+    throw ElementFailure(text, std::move(names));
   }
 
   // A body that no joint leads stood on something, or tipped over.

@@ -73,20 +73,24 @@ private:
     if (mine.had_no_value != fine.had_no_value) error.low = error.high = k_unknown_error;
   }
 
+  // Row after row, for they may be on disk.
   void add_curves(std::vector<ChannelError>& errors) const {
     const Trajectory &mine = *run_.trajectory, &fine = *fine_.trajectory;
+    const auto& channels = mine.channels();
     const std::size_t rows = std::min(mine.size(), fine.size());
     const BetweenEvents between(match_, run_.events, fine_.events);
-    std::vector<char> is_jump(rows);
-    for (std::size_t row = 0; row < rows; ++row) is_jump[row] = between.holds(mine.times()[row]);
-    for (std::size_t column = 0; column < mine.channels().size(); ++column) {
-      const Channel* channel = mine.channels()[column];
-      const bool jumps = may_jump(*channel);
-      double worst = 0.0;
-      for (std::size_t row = 0; row < rows; ++row)
-        if (!jumps || !is_jump[row]) worst = larger_error(worst, difference(mine.value(row, column), fine.value(row, column)));
-      ChannelError& error = errors[static_cast<std::size_t>(channel - system_.channels.data())];
-      keep_larger(error.curve, factor_ * worst);
+    std::vector<char> jumps(channels.size());
+    std::transform(channels.begin(), channels.end(), jumps.begin(), [](const Channel* channel) { return may_jump(*channel); });
+    std::vector<double> worst(channels.size(), 0.0);
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::span<const double> a = mine.row(row), b = fine.row(row);
+      const bool is_jump = between.holds(a[0]);
+      for (std::size_t c = 0; c < channels.size(); ++c)
+        if (!jumps[c] || !is_jump) worst[c] = larger_error(worst[c], difference(a[c + 1], b[c + 1]));
+    }
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      ChannelError& error = errors[static_cast<std::size_t>(channels[c] - system_.channels.data())];
+      keep_larger(error.curve, factor_ * worst[c]);
       error.is_sampled = true;
     }
   }

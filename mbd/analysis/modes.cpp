@@ -79,9 +79,9 @@ FreeVibration free_vibration(const System& system, State state) {
     const double rounding = k_epsilon * (k_rounded_terms * terms + 4.0 * sizes.maxCoeff());
     (sizes[i] <= rounding ? loose : held).push_back(i);
   }
-  const auto columns = [&, &vectors = vectors](const std::vector<Eigen::Index>& which) {
+  const auto columns = [&v, &all = vectors](const std::vector<Eigen::Index>& which) { // clang 14 takes no binding along unnamed
     MatX out(v.a.cols(), static_cast<Eigen::Index>(which.size()));
-    for (std::size_t i = 0; i < which.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = vectors.col(which[i]);
+    for (std::size_t i = 0; i < which.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = all.col(which[i]);
     return out;
   };
   v.held = columns(held);

@@ -48,21 +48,29 @@ double arm_of(const Channel& channel, double size) {
   return channel.unit == "N m" ? 1.0 / size : 1.0;
 }
 
-// Of the whole run where that is known, whatever the samples fell on.
-void set_range(Compared& c, const System& system, const RunResult& run) {
+void widen(Compared& c, double value) {
+  c.low = std::min(c.low, value);
+  c.high = std::max(c.high, value);
+  c.size = std::max(c.size, std::abs(value));
+}
+
+// Of the whole run where that is known, whatever the samples fell on. Row after row, for they may be on disk.
+void set_ranges(std::vector<Compared>& list, const System& system, const RunResult& run) {
   const Trajectory& reference = *run.trajectory;
-  c.low = c.high = reference.value(0, c.column);
-  const auto take = [&c](double value) {
-    c.low = std::min(c.low, value);
-    c.high = std::max(c.high, value);
-    c.size = std::max(c.size, std::abs(value));
-  };
-  for (std::size_t row = 0; row < reference.size(); ++row)
-    take(reference.value(row, c.column));
+  for (std::size_t row = 0; row < reference.size(); ++row) {
+    const std::span<const double> values = reference.row(row);
+    for (Compared& c : list) {
+      const double value = values[c.column + 1];
+      if (row == 0) c.low = c.high = value;
+      widen(c, value);
+    }
+  }
   if (run.ranges.empty()) return;
-  const ChannelRange& whole = run.ranges[static_cast<std::size_t>(c.channel - system.channels.data())];
-  for (const double value : {whole.low.value, whole.high.value})
-    if (std::isfinite(value)) take(value);
+  for (Compared& c : list) {
+    const ChannelRange& whole = run.ranges[static_cast<std::size_t>(c.channel - system.channels.data())];
+    for (const double value : {whole.low.value, whole.high.value})
+      if (std::isfinite(value)) widen(c, value);
+  }
 }
 
 std::vector<Compared> compared_channels(const System& system, const RunResult& run) {
@@ -80,9 +88,9 @@ std::vector<Compared> compared_channels(const System& system, const RunResult& r
     if (!kind || reference.size() == 0) continue;
     c.kind = *kind;
     c.arm = arm_of(*c.channel, size);
-    set_range(c, system, run);
     list.push_back(c);
   }
+  set_ranges(list, system, run);
   return list;
 }
 
@@ -102,13 +110,46 @@ Scales scales_of(const std::vector<Compared>& channels) {
   return range;
 }
 
+bool is_worse(double value, const WorstError& worst) { // NaN is worse than anything
+  return !(value <= worst.value) && !std::isnan(worst.value);
+}
+
 void keep_worst(WorstError& worst, double value, const std::string& where, double t) {
-  if (!(value <= worst.value)) worst = {value, where, t}; // NaN is worse than anything
+  if (is_worse(value, worst)) worst = {value, where, t};
+}
+
+void keep_worst(WorstError& worst, double value, double t) {
+  if (!is_worse(value, worst)) return;
+  worst.value = value;
+  worst.t = t;
 }
 
 double difference(double a, double b) {
   if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0; // also equal infinities
   return std::abs(a - b);
+}
+
+// Of every channel the largest error and when; row after row, for they may be on disk.
+std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std::vector<Compared>& channels, const Trajectory& mine,
+                                                                      const Trajectory& theirs, std::size_t rows,
+                                                                      const BetweenEvents& between) {
+  const Scales scales = scales_of(channels);
+  std::vector<std::pair<const Compared*, WorstError>> list;
+  std::vector<double> scale;
+  for (const Compared& c : channels) {
+    list.push_back({&c, {}});
+    scale.push_back(std::max(c.range(), k_least_range * scales.at(c.kind) / c.arm));
+  }
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::span<const double> a = mine.row(row), b = theirs.row(row);
+    const bool is_jump = between.holds(b[0]);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const Compared& c = *list[i].first;
+      if (c.kind == ErrorKind::reaction && is_jump) continue;
+      keep_worst(list[i].second, difference(a[c.column + 1], b[c.column + 1]) / scale[i], b[0]);
+    }
+  }
+  return list;
 }
 
 } // namespace
@@ -140,28 +181,17 @@ RunDifference compare_runs(const System& system, const RunResult& run, const Run
   const Trajectory& mine = *run.trajectory;
   const Trajectory& theirs = *reference.trajectory;
   const std::size_t rows = std::min(mine.size(), theirs.size());
-  if (rows > 0) d.compared_until = theirs.times()[rows - 1];
+  if (rows > 0) d.compared_until = theirs.time(rows - 1);
   const EventMatch match = match_events(run.events, reference.events);
   const auto counted = [&](const std::vector<std::size_t>& places, const std::vector<Event>& events) {
     return std::count_if(places.begin(), places.end(), [&](std::size_t i) { return !is_counted || is_counted(events[i]); });
   };
   d.unmatched_events = static_cast<int>(counted(match.only_mine, run.events) + counted(match.only_reference, reference.events));
   const BetweenEvents between(match, run.events, reference.events);
-  std::vector<char> is_jump(rows);
-  for (std::size_t row = 0; row < rows; ++row)
-    is_jump[row] = between.holds(theirs.times()[row]);
   const std::vector<Compared> channels = compared_channels(system, reference);
-  const Scales scales = scales_of(channels);
-  for (const Compared& c : channels) {
-    const double scale = std::max(c.range(), k_least_range * scales.at(c.kind) / c.arm);
-    for (std::size_t row = 0; row < rows; ++row) {
-      if (c.kind == ErrorKind::reaction && is_jump[row]) continue;
-      keep_worst(d.worst[static_cast<std::size_t>(c.kind)],
-                 difference(mine.value(row, c.column), theirs.value(row, c.column)) / scale,
-                 c.channel->name, theirs.times()[row]);
-    }
-  }
-  const double duration = theirs.size() > 0 ? theirs.times().back() - theirs.times().front() : 0.0;
+  for (const auto& [c, worst] : worst_of_channels(channels, mine, theirs, rows, between))
+    keep_worst(d.worst[static_cast<std::size_t>(c->kind)], worst.value, c->channel->name, worst.t);
+  const double duration = theirs.size() > 0 ? theirs.time(theirs.size() - 1) - theirs.time(0) : 0.0;
   for (const EventPair& pair : match.pairs) {
     const Event &mine_event = run.events[pair.mine], &event = reference.events[pair.reference];
     if (is_counted && !is_counted(event)) continue;

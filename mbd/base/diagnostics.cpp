@@ -1,5 +1,7 @@
 #include "mbd/base/diagnostics.h"
 
+#include "mbd/base/shown_text.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -12,7 +14,7 @@ std::string Diagnostic::text() const {
     if (where.line > 0) place += std::to_string(where.line) + ":" + std::to_string(where.column) + ":";
     place += " ";
   }
-  return place + "error: " + message;
+  return shown(place) + "error: " + shown(message); // names come from files
 }
 
 ModelError::ModelError(std::vector<Diagnostic> diagnostics) : diagnostics_(std::move(diagnostics)) {

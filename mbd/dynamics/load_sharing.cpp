@@ -1,5 +1,8 @@
 #include "mbd/dynamics/load_sharing.h"
 
+#include "mbd/base/shown_text.h"
+#include "mbd/system/element_failure.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
@@ -385,10 +388,11 @@ void LoadSharing::solve(const Evaluation& evaluation, const double* friction_for
     group.least.solve(FrictionGauges(system_, evaluation, group.frictions), wrench);
     // Pivots that run out leave bounds from both sides: only between them is it open whether the group holds.
     if (group.least.usage() > 1.0 && group.least.lower() < 1.0 - k_open)
-      throw NumericalFailure("whether '" + system_.element_names[system_.frictions[group.frictions.front()].element] +
-                             "' and what shares its load hold cannot be told at t = " + std::to_string(evaluation.t) + " s: between " +
-                             std::to_string(group.least.lower()) + " and " + std::to_string(group.least.usage()) +
-                             " of the capacity are needed. Give feet of one pair of bodies a common coulomb_stick");
+      throw ElementFailure("whether '" + system_.element_names[system_.frictions[group.frictions.front()].element] +
+                             "' and what shares its load hold cannot be told at t = " + rounded_text(evaluation.t, 12) + " s: between " +
+                             rounded_text(group.least.lower()) + " and " + rounded_text(group.least.usage()) +
+                             " of the capacity are needed. Give feet of one pair of bodies a common coulomb_stick",
+                           {system_.element_names[system_.frictions[group.frictions.front()].element]});
   }
 }
 

@@ -2,6 +2,8 @@
 // estimate there may leave out.
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/system/element_failure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +78,8 @@ void Dynamics::fail_projection(double t) const {
   const RowSpec& spec = *layout.active[worst].spec;
   throw ConstraintFailure("constraint " + std::string(spec.quantity) + " of '" +
                               system_.element_names[spec.element] + "' cannot be met at t = " +
-                              std::to_string(t) + " s: residual " + number_text(rows_.off()[worst]),
+                              number_text(t) + " s: residual " + rounded_text(rows_.off()[worst], 3) +
+                              (spec.kind == MeasureKind::angle ? " rad" : " m"),
                           spec.element, rows_.off()[worst], spec.kind == MeasureKind::angle);
 }
 
@@ -86,10 +89,11 @@ void Dynamics::fail_velocities(double t) const {
   for (std::size_t r = 1; r < layout.active.size(); ++r)
     if (!(std::abs(rows_.rate_off()[r]) <= std::abs(rows_.rate_off()[worst]))) worst = r;
   const RowSpec& spec = *layout.active[worst].spec;
-  throw NumericalFailure("the rate of constraint " + std::string(spec.quantity) + " of '" + system_.element_names[spec.element] +
-                         "' cannot be met at t = " + number_text(t) + " s: " + number_text(rows_.rate_off()[worst]) +
+  throw ElementFailure("the rate of constraint " + std::string(spec.quantity) + " of '" + system_.element_names[spec.element] +
+                         "' cannot be met at t = " + number_text(t) + " s: " + rounded_text(rows_.rate_off()[worst], 3) +
                          (spec.kind == MeasureKind::angle ? " rad/s" : " m/s") +
-                         " are left. It contradicts other joints or drives there");
+                         " are left. It contradicts other joints or drives there",
+                       {system_.element_names[spec.element]});
 }
 
 bool Dynamics::is_near_singular() const {

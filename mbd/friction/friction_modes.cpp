@@ -1,4 +1,7 @@
 #include "mbd/friction/friction_modes.h"
+
+#include "mbd/base/shown_text.h"
+#include "mbd/system/element_failure.h"
 #include "mbd/friction/box_problem.h"
 
 #include <algorithm>
@@ -80,9 +83,13 @@ private:
   }
 
   [[noreturn]] void fail(const std::string& why) const {
-    std::string message = "which friction sticks cannot be decided at t = " + std::to_string(state_.t) + " s (" + why + "):";
-    for (const int f : elements_) message += " '" + system_.element_names[system_.frictions[f].element] + "'";
-    throw NumericalFailure(message + ". Give feet of one pair of bodies a common coulomb_stick, or check their normal forces");
+    std::string message = "which friction sticks cannot be decided at t = " + rounded_text(state_.t, 12) + " s (" + why + "):";
+    std::vector<std::string> names;
+    for (const int f : elements_) {
+      names.push_back(system_.element_names[system_.frictions[f].element]);
+      message += " '" + names.back() + "'";
+    }
+    throw ElementFailure(message + ". Give feet of one pair of bodies a common coulomb_stick, or check their normal forces", std::move(names));
   }
 
   void sweep_until_settled() {
@@ -339,7 +346,7 @@ void FrictionModes::settle_candidates(State& state, std::vector<int> candidates)
   const std::size_t most = (system_.frictions.size() + 1) * (system_.frictions.size() + 1);
   for (std::size_t pass = 0; !candidates.empty(); ++pass) {
     if (pass > most)
-      throw NumericalFailure("friction modes cannot be decided at t = " + std::to_string(state.t) + " s");
+      throw NumericalFailure("friction modes cannot be decided at t = " + rounded_text(state.t, 12) + " s");
     solve(state, candidates);
     std::vector<int> more = violated(state);
     const bool is_any_over = !more.empty();

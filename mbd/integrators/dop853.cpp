@@ -55,10 +55,6 @@ protected:
   }
 
 private:
-  // A row of d by a name of its own: clang 14 takes no part of an array for a parameter of a template.
-  template <std::size_t I>
-  static constexpr std::array<double, 16> row = dop853::d[I];
-
   void prepare_dense(Dynamics& dynamics) {
     using namespace dop853;
     stage<a, 13>(dynamics, c[13]);
@@ -71,10 +67,10 @@ private:
       r[m + i] = h_ * k(0)[i] - r[i];
       r[2 * m + i] = 2.0 * r[i] - h_ * (k(0)[i] + k(12)[i]);
     }
-    weighted_sum<row<0>, 16>(k_.data(), m, n_, r + 3 * m);
-    weighted_sum<row<1>, 16>(k_.data(), m, n_, r + 4 * m);
-    weighted_sum<row<2>, 16>(k_.data(), m, n_, r + 5 * m);
-    weighted_sum<row<3>, 16>(k_.data(), m, n_, r + 6 * m);
+    weighted_row<d, 0, 16>(k_.data(), m, n_, r + 3 * m);
+    weighted_row<d, 1, 16>(k_.data(), m, n_, r + 4 * m);
+    weighted_row<d, 2, 16>(k_.data(), m, n_, r + 5 * m);
+    weighted_row<d, 3, 16>(k_.data(), m, n_, r + 6 * m);
     for (int p = 3; p < 7; ++p)
       for (int i = 0; i < n_; ++i) r[p * m + i] *= h_;
     is_dense_ready_ = true;

@@ -1,5 +1,6 @@
 #include "mbd/integrators/explicit_pair.h"
 
+#include "mbd/base/shown_text.h"
 #include "mbd/integrators/singular_passage.h"
 #include "mbd/math/portable_math.h"
 
@@ -85,7 +86,7 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   is_crossing_ = error <= 1.0;
   const bool has_choice = dynamics.coordinates() == Coordinates::automatic && dynamics.layout().has_mechanisms();
   if (has_choice && error == std::numeric_limits<double>::infinity() && settings_.tolerance < k_near_rounding)
-    throw JointsNearSingular("a singular position of the joints behind t = " + std::to_string(t0_) +
+    throw JointsNearSingular("a singular position of the joints behind t = " + rounded_text(t0_, 12) +
                              " s is not passed");
   return is_crossing_ ? 0.0 : std::min(h_tried, k_closer * ahead);
 }
@@ -141,8 +142,7 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
             ? h_ * std::clamp(0.9 * portable::pow(error, -1.0 / order_), k_shortest_retry, 0.9)
             : k_shorter * h_;
     if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
-      throw NumericalFailure("step size fell to " + std::to_string(h) + " s at t = " +
-                             std::to_string(t0_) +
+      throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                              " s: the motion becomes singular there, or the tolerance is too small");
   }
 }

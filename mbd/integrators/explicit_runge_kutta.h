@@ -39,6 +39,18 @@ inline void weighted_sum(const double* __restrict k, int stride, int n, double* 
   }(std::make_index_sequence<Count>{});
 }
 
+/// The same with one row of an array of rows (a part of an object as argument is more than clang 14 understands).
+template <const auto& Rows, std::size_t Row, std::size_t Count>
+inline void weighted_row(const double* __restrict k, int stride, int n, double* __restrict out) {
+  [&]<std::size_t... J>(std::index_sequence<J...>) {
+    for (int i = 0; i < n; ++i) {
+      double sum = 0.0;
+      ((Rows[Row][J] != 0.0 ? void(sum += Rows[Row][J] * k[J * stride + i]) : void()), ...);
+      out[i] = sum;
+    }
+  }(std::make_index_sequence<Count>{});
+}
+
 /// The adaptive loop around a pair: PI control after Hairer & Wanner, Solving ODEs II, IV.2.
 struct StepControl {
   int order = 5;          ///< of the error estimate + 1: err = O(h^order)

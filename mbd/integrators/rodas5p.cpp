@@ -11,6 +11,7 @@
 // error, which counts in the step's. The two points inside also serve as looks inside the step for events:
 // the stages of such a method are no approximations of the motion.
 #include "mbd/integrators/explicit_runge_kutta.h"
+#include "mbd/base/shown_text.h"
 #include "mbd/integrators/methods.h"
 #include "mbd/integrators/stage_system.h"
 #include "mbd/integrators/tableau_rodas5p.h"
@@ -211,8 +212,7 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
             ? h_ * std::clamp(0.9 * portable::pow(error, -1.0 / control_.order), 0.1, 0.9)
             : 0.2 * h_;
     if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
-      throw NumericalFailure("step size fell to " + std::to_string(h) + " s at t = " +
-                             std::to_string(t0_) +
+      throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                              " s: the motion becomes singular there, or the tolerance is too small");
   }
 }

@@ -38,7 +38,7 @@ public:
     if (!is_renamed_) ::unlink(name_.c_str());
   }
 
-  void write(const std::string& content) {
+  void write(std::string_view content) {
     std::size_t done = 0;
     while (done < content.size()) {
       const ::ssize_t count = ::write(descriptor_, content.data() + done, content.size() - done);
@@ -79,9 +79,16 @@ private:
 } // namespace
 
 void write_file(const std::string& path, const std::string& content, IfExists if_exists) {
+  write_file(path, [&content](const FileSink& put) { put(content); }, if_exists);
+}
+
+void write_file(const std::string& path, const FileContent& content, IfExists if_exists) {
   if (if_exists == IfExists::refuse && std::filesystem::exists(path)) TemporaryFile::refuse(path);
+  std::error_code ignored;
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path, ignored)) // a device would become a file
+    throw FileError("cannot write '" + path + "': it is there, but is no file");
   TemporaryFile file(path);
-  file.write(content);
+  content([&file](std::string_view part) { file.write(part); });
   file.finish();
   file.become_target(if_exists);
 }

@@ -2,8 +2,10 @@
 // folder, brought to disk, then renamed.
 #pragma once
 
+#include <functional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace steplap {
 
@@ -20,5 +22,10 @@ enum class IfExists { refuse, replace };
 /// at `path` before stays as it was.
 void write_file(const std::string& path, const std::string& content,
                 IfExists if_exists = IfExists::refuse);
+
+using FileSink = std::function<void(std::string_view part)>;
+/// Gives a content part by part, so that it need not be in memory.
+using FileContent = std::function<void(const FileSink& put)>;
+void write_file(const std::string& path, const FileContent& content, IfExists if_exists = IfExists::refuse);
 
 } // namespace steplap

@@ -1,6 +1,7 @@
 #include "mbd/io/csv.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -90,7 +91,7 @@ private:
     split(line, delimiter_, fields_);
     if (table_.columns.empty() && read_header()) return;
     if (fields_.size() != table_.columns.size())
-      fail("expected " + std::to_string(table_.columns.size()) + " columns, got " +
+      fail("expected " + counted(table_.columns.size(), "column", "columns") + ", got " +
            std::to_string(fields_.size()));
     for (std::size_t i = 0; i < fields_.size(); ++i)
       table_.columns[i].push_back(value(i));
@@ -141,7 +142,7 @@ std::size_t CsvTable::column(const std::string& name_or_number, const Location& 
     return number - 1;
   throw ModelError(where, "the record '" + file + "' has no column '" + name_or_number + "'" +
                               did_you_mean(name_or_number, names) + "; it has " +
-                              std::to_string(columns.size()) + " columns");
+                              counted(columns.size(), "column", "columns"));
 }
 
 CsvTable parse_csv(const std::string& text, const std::string& file_name) {

@@ -38,6 +38,8 @@ public:
   void add_row(std::span<const double> values);
   /// A line that readers skip; begins with #.
   void add_comment(const std::string& line) { text_ += line + "\n"; }
+  /// After what there is has been written: more rows follow.
+  void clear() { text_.clear(); }
   [[nodiscard]] const std::string& text() const& { return text_; }
   [[nodiscard]] std::string text() && { return std::move(text_); }
 

@@ -34,6 +34,10 @@ struct Document {
 /// The text of the file and of all files it extends, each after a line with its name.
 [[nodiscard]] std::string model_source_text(const std::string& path);
 
+/// Notes in document.problems every key and every text with a control character: names go into CSV, onto terminals and pages.
+/// Only `source`, which says where values come from, may have lines.
+void refuse_control_characters(Document& document);
+
 /// What an entry of an array of tables is called, "" without a name.
 [[nodiscard]] std::string entry_name(const Node& entry);
 

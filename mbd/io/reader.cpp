@@ -1,5 +1,6 @@
 #include "mbd/io/reader.h"
 
+#include "mbd/base/shown_text.h"
 #include "mbd/io/field_reader.h"
 #include "mbd/model/completion.h"
 #include "mbd/io/toml_writer.h"
@@ -54,6 +55,7 @@ public:
   std::pair<Model, Model> read(const std::vector<std::string>& overrides) {
     for (const std::string& text : overrides)
       apply_override(document_, text, names_);
+    refuse_control_characters(document_);
     problems_ = std::move(document_.problems);
     read_header();
     read_settings("simulation", Section::simulation, SimulationSettings::fields(),
@@ -424,7 +426,7 @@ void Reader::finish() {
   if (problems_.size() > k_most_reported) {
     const std::size_t rest = problems_.size() - k_most_reported;
     problems_.resize(k_most_reported);
-    add(model_.header.where, "and " + std::to_string(rest) + " more errors");
+    add(model_.header.where, "and " + counted(rest, "more error", "more errors"));
   }
   throw ModelError(std::move(problems_));
 }

@@ -75,7 +75,7 @@ const FieldTable& OutputSettings::fields() {
         "channels that are made on request only (`steplap channels MODEL` lists them), patterns with * and ?: motion of markers, "
         "angle and power of joints, energies");
     f.add("most_numbers", &OutputSettings::most_numbers).positive().doc(
-        "a run whose trajectory would have more numbers, rows times channels, is not begun: each takes 8 bytes of memory and "
+        "a run whose trajectory would have more numbers, rows times channels, is not begun: each takes 8 bytes of disk while it runs and "
         "some 20 of trajectory.csv; 1e8 if not given");
     f.add("seen_from", &OutputSettings::seen_from).as(FieldType::body).doc(
         "body that drawings stand still with, or 'ground'; chosen by the drawing if not given");

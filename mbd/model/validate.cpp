@@ -1,5 +1,6 @@
 #include "mbd/model/validate.h"
 
+#include "mbd/base/shown_text.h"
 #include "mbd/base/number_text.h"
 #include "mbd/model/method.h"
 #include "mbd/model/signal_network.h"
@@ -252,6 +253,8 @@ private:
       add(*place, "the name of " + subject_text(noun, "") + " must not be empty");
       return;
     }
+    if (place->line == 0 && has_control_character(name)) // files are looked through as a whole
+      add(*place, subject_text(noun, "") + " '" + name + "': the name must not hold control characters");
     const auto [first, is_new] = seen.emplace(name, *place);
     if (!is_new)
       add(*place, subject_text(noun, "") + " named '" + name + "' exists already" +

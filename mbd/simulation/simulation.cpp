@@ -1,5 +1,7 @@
 #include "mbd/simulation/simulation.h"
 
+#include "mbd/base/shown_text.h"
+#include "mbd/system/element_failure.h"
 #include "mbd/base/number_text.h"
 #include "mbd/integrators/explicit_pair.h"
 #include "mbd/model/method.h"
@@ -55,7 +57,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
       y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   cpu_start_ = thread_cpu_seconds();
   if (options_.end > system.drives_end)
-    throw NumericalFailure("a drive jumps at t = " + std::to_string(system.drives_end) + " s, before the end of the run");
+    throw NumericalFailure("a drive jumps at t = " + number_text(system.drives_end) + " s, before the end of the run");
   refuse_time_stepping();
   integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
   trajectory_ = std::make_unique<Trajectory>(system, options_.channels);
@@ -133,7 +135,8 @@ void Simulation::fail_infinite(double t) const {
           << "' does not bear steps of " << integrator_->h() << " s here";
   if (!integrator_->is_adaptive()) message << "; try a smaller step, or rodas5p";
   if (!events_.empty()) message << ". The last event was of '" << events_.back().element << "'";
-  throw NumericalFailure(message.str());
+  if (events_.empty()) throw NumericalFailure(message.str());
+  throw ElementFailure(message.str(), {std::string(events_.back().element)});
 }
 
 // A joint that is part of the motion holds as long as it can: one that holds beyond its limit is a fault of the event
@@ -143,10 +146,11 @@ void Simulation::check_holding(double t, const std::vector<double>& watch) const
   for (const int f : joints_) {
     const double left = watch[system_.frictions[f].watch];
     if (left >= -k_held_beyond || state_.friction[f].phase != FrictionPhase::stick) continue;
-    throw NumericalFailure("at t = " + number_text(t) + " s '" + system_.element_names[system_.frictions[f].element] +
-                           "' holds with a margin of " + number_text(1.0 / (1.0 - left)) +
+    throw ElementFailure("at t = " + number_text(t) + " s '" + system_.element_names[system_.frictions[f].element] +
+                           "' holds with a margin of " + rounded_text(1.0 / (1.0 - left), 12) +
                            ": the run contradicts itself, for below 1 it has to slip. Try a smaller tolerance or step, or "
-                           "another integrator");
+                           "another integrator",
+                         {system_.element_names[system_.frictions[f].element]});
   }
 }
 
@@ -164,6 +168,19 @@ void Simulation::keep_ledger(double t) {
   if (ledger_) ledger_->add_step(t, *integrator_, dynamics_);
 }
 
+// Between the ends of a step a curve through them meets the joints to the accuracy of the step only, where no coordinates of
+// the joints carry it. Beside a singular position it stays as it is.
+static void close_joints(Dynamics& dynamics, double t, std::vector<double>& y, double tolerance) {
+  const Residual off = dynamics.residual(t, y.data());
+  if (!(off.position > tolerance)) return;
+  const std::vector<double> before = y;
+  try {
+    dynamics.project(t, y.data(), tolerance);
+  } catch (const NumericalFailure&) {
+    y = before;
+  }
+}
+
 // Samples due in the step made, up to t.
 void Simulation::sample_until(double t) {
   if (options_.output_step <= 0.0) return;
@@ -172,6 +189,7 @@ void Simulation::sample_until(double t) {
     if (due > t + k_output_slack * options_.output_step) return;
     const double theta = std::clamp((due - integrator_->t0()) / integrator_->h(), 0.0, 1.0);
     integrator_->dense(dynamics_, theta, y_.data());
+    close_joints(dynamics_, due, y_, options_.settings.projection_tolerance);
     record_sample(due);
   }
 }
@@ -189,8 +207,8 @@ void Simulation::guard_against_chatter(double t) {
           << t << " s; the last ones:";
   const std::size_t shown = std::min<std::size_t>(events_.size(), 4);
   for (std::size_t i = events_.size() - shown; i < events_.size(); ++i)
-    message << " '" << events_[i].element << "' " << events_[i].words() << ";";
-  throw NumericalFailure(message.str());
+    message << " '" << events_[i].element << "' " << events_[i].words() << (i + 1 < events_.size() ? ";" : "");
+  throw ElementFailure(message.str(), {std::string(events_.back().element)});
 }
 
 // A method that chooses its steps may choose such small ones that the run would never end.
@@ -252,7 +270,7 @@ void Simulation::step_through_storm(const std::string& element) {
   ++statistics_.storms;
   const double begin = state_.t;
   const double end = std::min(next_limit(), begin + k_storm_interval);
-  events_.push_back({begin, element, EventKind::storm, "for " + std::to_string(1e3 * (end - begin)) + " ms"});
+  events_.push_back({begin, element, EventKind::storm, "for " + rounded_text(1e3 * (end - begin)) + " ms"});
   dynamics_.use_coordinates(Coordinates::absolute);
   const long parts = stepping_->extra_parts();
   while (state_.t < end && stepping_->extra_parts() - parts < options_.storm_parts) {
@@ -346,7 +364,7 @@ void Simulation::end_run() {
   const double t = integrator_->t0();
   std::copy_n(integrator_->y0(), dynamics_.dimension(), y_.begin());
   const bool is_sampled = options_.output_step > 0.0;
-  const double last = trajectory_->size() > 0 ? trajectory_->times().back() : -std::numeric_limits<double>::infinity();
+  const double last = trajectory_->size() > 0 ? trajectory_->time(trajectory_->size() - 1) : -std::numeric_limits<double>::infinity();
   if (is_sampled && t > last + k_output_slack * options_.output_step) record_sample(t);
   if (!extremes_) return;
   dynamics_.rates(t, y_.data(), dy_.data());

@@ -10,11 +10,19 @@ Trajectory::Trajectory(const System& system, const std::vector<std::string>& pat
     for (const std::string& pattern : patterns) is_wanted |= matches_pattern(channel.name, pattern);
     if (is_wanted) channels_.push_back(&channel);
   }
+  rows_ = std::make_unique<RowStore>(channels_.size() + 1);
 }
 
 void Trajectory::add(double t, const Snapshot& snapshot) {
-  times_.push_back(t);
-  for (const Channel* channel : channels_) values_.push_back(channel->value(snapshot));
+  double* row = rows_->add_row();
+  if (!row) return;
+  *row = t;
+  for (const Channel* channel : channels_) *++row = channel->value(snapshot);
+}
+
+const std::vector<double>& Trajectory::times() const {
+  for (std::size_t i = times_.size(); i < size(); ++i) times_.push_back(time(i));
+  return times_;
 }
 
 std::size_t Trajectory::column(const std::string& name) const {

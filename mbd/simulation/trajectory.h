@@ -1,9 +1,13 @@
-// What a run leaves behind: named channels at uniform times.
+// What a run leaves behind: named channels at uniform times. However many rows there are, the memory they take is bounded
+// (row_store.h).
 #pragma once
 
 #include "mbd/base/name_pattern.h"
+#include "mbd/simulation/row_store.h"
 #include "mbd/system/system.h"
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,19 +22,22 @@ public:
   void add(double t, const Snapshot& snapshot);
 
   [[nodiscard]] const std::vector<const Channel*>& channels() const { return channels_; }
-  [[nodiscard]] const std::vector<double>& times() const { return times_; }
-  [[nodiscard]] std::size_t size() const { return times_.size(); }
-  [[nodiscard]] double value(std::size_t row, std::size_t channel) const {
-    return values_[row * channels_.size() + channel];
-  }
+  [[nodiscard]] std::size_t size() const { return rows_->size(); }
+  [[nodiscard]] double time(std::size_t row) const { return rows_->row(row)[0]; }
+  /// Row after row is fast; column after column reads rows that are on disk again and again.
+  [[nodiscard]] double value(std::size_t row, std::size_t channel) const { return rows_->row(row)[channel + 1]; }
+  /// Time and values of a row; valid until another is asked for.
+  [[nodiscard]] std::span<const double> row(std::size_t i) const { return {rows_->row(i), channels_.size() + 1}; }
+  /// All of them at once, in memory.
+  [[nodiscard]] const std::vector<double>& times() const;
   /// Column of a channel by name; throws std::out_of_range for an unknown one.
   [[nodiscard]] std::size_t column(const std::string& name) const;
   [[nodiscard]] std::vector<double> series(const std::string& name) const;
 
 private:
   std::vector<const Channel*> channels_;
-  std::vector<double> times_, values_;
+  std::unique_ptr<RowStore> rows_; ///< time, then the channels
+  mutable std::vector<double> times_; ///< as far as they were asked for
 };
-
 
 } // namespace steplap

@@ -14,7 +14,7 @@ TEST_CASE("accuracy: table, CSV, diagram, one line of advice") {
   const std::vector<std::string> arguments{"accuracy",     model,   "-o",           bench.at("out"),
                                            "--integrator", "tsit5", "--integrator", "dop853",
                                            "--end",        "0.5",   "--repeats",    "1",
-                                           "--error",      "1e-5"};
+                                           "--error",      "1e-5",   "--budget",      "5000"};
   const Outcome outcome = steplap_does(arguments);
   CHECK(outcome.code == 0);
   CHECK(outcome.err.empty());
@@ -24,7 +24,10 @@ TEST_CASE("accuracy: table, CSV, diagram, one line of advice") {
   CHECK(bench.content("out/a") == std::set<std::string>{"accuracy.csv", "work_precision.svg"});
   const std::string csv = text_of(bench.at("out/a/accuracy.csv"));
   CHECK(csv.rfind("integrator,tolerance,step [s],cpu [s]", 0) == 0);
-  CHECK(std::count(csv.begin(), csv.end(), '\n') == 21); // header, 2 × 10 tolerances
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 22); // header, a comment, 2 × 10 tolerances
+  CHECK(has(csv, "\n# the times,")); // what hangs on the clock says so
+  CHECK(has(outcome.out, "budget: "));
+  CHECK(has(outcome.out, " of 5000 s of CPU time"));
   const std::string svg = text_of(bench.at("out/a/work_precision.svg"));
   CHECK(svg.rfind("<svg", 0) == 0);
   CHECK(has(svg, "</svg>"));
@@ -35,6 +38,22 @@ TEST_CASE("accuracy: table, CSV, diagram, one line of advice") {
   auto forced = arguments;
   forced.push_back("--force");
   CHECK(steplap_does(forced).code == 0);
+}
+
+TEST_CASE("accuracy: what a budget has no room for is left out, and the table and the file say so") {
+  const Workbench bench;
+  const std::string model = bench.write("a.toml", k_bouncer);
+  // A nanosecond has room for nothing, on any computer.
+  const Outcome outcome = steplap_does({"accuracy", model, "-o", bench.at("out"), "--integrator", "tsit5", "--integrator", "rk4", "--end", "0.2",
+                                        "--budget", "1e-9"});
+  CHECK(outcome.code == 0);
+  CHECK(has(outcome.out, "left out as too dear (--budget gives more): "));
+  for (const char* setting : {"tsit5 0.001", "tsit5 1e-12", "rk4 h = 0.008 s"}) CHECK_MESSAGE(has(outcome.out, setting), setting);
+  const std::string csv = text_of(bench.at("out/a/accuracy.csv"));
+  CHECK(has(csv, "which settings the budget of 1e-09 s had room for hang on the computer"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 2 + 10 + 7);
+  CHECK(has(csv, "left out: beyond the budget"));
+  CHECK(steplap_does({"accuracy", model, "-o", bench.at("no"), "--budget", "0"}).code == 2);
 }
 
 TEST_CASE("accuracy: what is asked wrongly is one clear error") {
@@ -77,6 +96,9 @@ TEST_CASE("simulate --estimate-error tells the global error, on the screen and i
   CHECK_FALSE(has(plain.out, "±"));
   CHECK(has(plain.out, "error not estimated: left out with --no-estimate"));
   CHECK_FALSE(has(text_of(bench.at("plain/a/summary.json")), "\"global_error\""));
+  CHECK_FALSE(has(text_of(bench.at("plain/a/summary.json")), "error_estimated_if_quick")); // the user has decided, not a clock
+  CHECK(steplap_does({"simulate", model, "-o", bench.at("undecided")}).code == 0);
+  CHECK(has(text_of(bench.at("undecided/a/summary.json")), "error_estimated_if_quick"));
   CHECK(steplap_does({"simulate", model, "-o", bench.at("x"), "--no-estimate", "--estimate-error"}).code == 2);
 }
 

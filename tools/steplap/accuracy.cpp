@@ -21,11 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double k_usual_budget = 5.0; // s of CPU time
 constexpr double k_steps_of_a_run = 8000.0; // where a model names no step: the middle of the ladder
 
 struct AccuracyCommand {
   std::vector<std::string> models, overrides, integrators, settings, references, wanted;
-  std::optional<std::string> end, repeats, cpu_limit;
+  std::optional<std::string> end, repeats, cpu_limit, budget;
   std::string output = "out/accuracy";
   bool is_overwriting = false;
 };
@@ -82,6 +83,7 @@ AccuracyOptions options_for(const AccuracyCommand& command, const LoadedModel& l
   }
   if (command.repeats) options.repeats = static_cast<int>(number_of(*command.repeats, "--repeats"));
   if (command.cpu_limit) options.cpu_limit = number_of(*command.cpu_limit, "--cpu-limit");
+  options.budget = command.budget ? number_of(*command.budget, "--budget") : k_usual_budget;
   // A foot that changes at angles that cross slowly has no sharp time, and nothing depends on it.
   options.is_event_counted = is_main_event;
   options.progress = [](const std::string& text) { log_detail(text); };
@@ -174,7 +176,8 @@ Command accuracy_command() {
   steplap accuracy my.toml --integrator dop853 --integrator rk4 --error 1e-6
   steplap accuracy my.toml --setting dop853@1e-9 --reference dop853@1e-13 --reference tsit5@1e-12
 Errors are the largest over all samples, divided by the range of the channel; the reference are two methods at
-tight tolerance, and where these do not agree nothing is said. Each model gets DIR/<name>/accuracy.csv and
+tight tolerance, and where these do not agree nothing is said. The ladder is climbed where the next rung costs least, until
+the budget is spent. Each model gets DIR/<name>/accuracy.csv and
 work_precision.svg.
 )";
   command.options = {
@@ -190,7 +193,9 @@ work_precision.svg.
        "given twice: the two that have to agree (dop853@1e-13, tsit5@1e-13)"},
       {"--error", &o->wanted, "E",
        "name the cheapest setting for this error (default: 1e-3, 1e-6, 1e-9)"},
-      {"--repeats", &o->repeats, "N", "runs of which the fastest counts (default: 3)"},
+      {"--repeats", &o->repeats, "N", "runs of which the fastest counts, at most; of long ones fewer (default: 3)"},
+      {"--budget", &o->budget, "S",
+       "CPU time for all settings of a model together, s, the reference not counted (default: 5)"},
       {"--cpu-limit", &o->cpu_limit, "S",
        "a run that needs more CPU time is given up, s (default: 60)"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};

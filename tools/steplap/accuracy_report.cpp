@@ -3,6 +3,7 @@
 #include "mbd/io/csv.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
@@ -45,13 +46,13 @@ void print_reference(std::ostream& out, const AccuracyStudy& study) {
   for (const ErrorKind kind : k_kinds) {
     const WorstError& worst = study.resolution.of(kind);
     out << "    " << small_text(worst.value) << " in " << name_of(kind);
-    if (!worst.where.empty()) out << " (" << worst.where << " at " << number_text(worst.t) << " s)";
+    if (!worst.where.empty()) out << " (" << worst.where << " at " << rounded_text(worst.t, 12) << " s)";
     if (!study.is_resolved(kind)) out << ": too much, nothing is said of them";
     out << "\n";
   }
   if (study.resolution.unmatched_events > 0)
-    out << "    " << study.resolution.unmatched_events
-        << " events have no partner: nothing is said of event times\n";
+    out << "    " << counted(static_cast<std::size_t>(study.resolution.unmatched_events), "event has", "events have")
+        << " no partner: nothing is said of event times\n";
 }
 
 std::string sentence(const AccuracyStudy& study, double wanted) {
@@ -179,6 +180,20 @@ std::vector<std::string> integrators_of(const std::vector<Drawn>& points) {
 
 } // namespace
 
+namespace {
+
+// Which settings a budget has room for hangs on the computer.
+void print_budget(std::ostream& out, const AccuracyStudy& study) {
+  std::string left_out;
+  for (const AccuracyEntry& e : study.entries)
+    if (e.is_left_out) left_out += (left_out.empty() ? "" : ", ") + e.setting.text();
+  out << "  budget: " << small_text(study.spent) << " of " << number_text(study.budget) << " s of CPU time";
+  if (!left_out.empty()) out << "; left out as too dear (--budget gives more): " << left_out;
+  out << "\n";
+}
+
+} // namespace
+
 void print_accuracy(std::ostream& out, const AccuracyStudy& study,
                     const std::vector<double>& wanted) {
   print_reference(out, study);
@@ -199,8 +214,9 @@ void print_accuracy(std::ostream& out, const AccuracyStudy& study,
   }
   out << table;
   for (const AccuracyEntry& e : study.entries)
-    if (!e.failure.empty())
+    if (!e.failure.empty() && !e.is_left_out)
       out << "  " << e.setting.text() << " gave nothing: " << e.failure << "\n";
+  print_budget(out, study);
   for (const ErrorSlope& s : study.slopes())
     out << "  " << s.integrator << ": error of positions ~ " << (s.is_step ? "step" : "tolerance")
         << "^" << small_text(s.slope) << " over " << small_text(s.decades) << " decades\n";
@@ -214,6 +230,8 @@ std::string accuracy_csv(const AccuracyStudy& study) {
   std::string csv =
       "integrator,tolerance,step [s],cpu [s],steps,rejected,evaluations,events,unmatched events,"
       "positions,velocities,reactions,event times,energy,constraints,pareto,failure\n";
+  csv += "# the times, what is Pareto by them and which settings the budget of " + number_text(study.budget) +
+         " s had room for hang on the computer and on its clock\n";
   for (const AccuracyEntry& e : study.entries) {
     const std::string value = number_text(e.setting.value);
     csv += e.setting.integrator + (e.setting.is_step ? ",," + value : "," + value + ",");
@@ -251,7 +269,8 @@ std::string work_precision_svg(const AccuracyStudy& study, const std::string& ti
                     "\" height=\"" + fixed(k_height) +
                     "\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" "
                     "height=\"100%\" fill=\"white\"/>\n" +
-                    label(k_left, 22.0, "start", escaped(title), " font-size=\"14\"") + grid(x, y);
+                    label(k_left, 22.0, "start", escaped(title), " font-size=\"14\"") + grid(x, y) +
+                    "<desc>Times are measured: they, and which settings a budget of time had room for, hang on the computer.</desc>\n";
   double resolution = 0.0;
   for (const ErrorKind kind : k_kinds)
     if (study.is_resolved(kind)) resolution = std::max(resolution, study.resolution.of(kind).value);

@@ -3,6 +3,7 @@
 #include "mbd/analysis/assembly.h"
 #include "mbd/analysis/freedom.h"
 #include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
 #include "mbd/model/validate.h"
 #include "tools/steplap/cross.h"
 #include "tools/steplap/run.h"
@@ -76,7 +77,7 @@ std::string run_text(const Model& model) {
   std::string text = s.integrator + ", 0 to " + number_text(s.end) + " s";
   if (s.step) {
     text += ", step " + number_text(*s.step) + " s";
-    if (has_fixed_step(s.integrator)) text += " (" + number_text(std::ceil(s.end / *s.step - 1e-9)) + " steps)";
+    if (has_fixed_step(s.integrator)) text += " (" + number_text(std::ceil(s.end / *s.step - 1e-9)) + (s.end / *s.step > 1.0 + 1e-9 ? " steps)" : " step)");
   }
   if (s.tolerance) text += ", tolerance " + number_text(*s.tolerance);
   return text + "; starts " + (s.initial == "equilibrium" ? "from equilibrium" : "as given");
@@ -109,7 +110,7 @@ void print_assembly(std::ostream& out, const LoadedModel& loaded) {
                    quantity_text(m.velocity, "m/s", 1e-3), quantity_text(m.angular_velocity, "rad/s", 1e-3)});
   }
   out << table;
-  if (moves.size() > k_shown_moves) out << "  and " << moves.size() - k_shown_moves << " bodies that moved less\n";
+  if (moves.size() > k_shown_moves) out << "  and " << counted(moves.size() - k_shown_moves, "body", "bodies") << " that moved less\n";
 }
 
 void print_model(std::ostream& out, const LoadedModel& loaded) {
@@ -123,7 +124,7 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
   print_freedom(table, *loaded.system);
   table.add_row({"run", run_text(model)});
   const Trajectory channels(*loaded.system, model.output.channels);
-  table.add_row({"output", std::to_string(channels.channels().size()) + " channels every " +
+  table.add_row({"output", counted(channels.channels().size(), "channel", "channels") + " every " +
                                number_text(model.output.step) + " s, " +
                                number_text(std::floor(model.simulation.end / model.output.step) + 1.0) + " rows"});
   out << table;

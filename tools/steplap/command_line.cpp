@@ -9,6 +9,8 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <ostream>
 
 namespace steplap {
@@ -142,6 +144,14 @@ int run_program(const Program& program, const std::vector<std::string>& argument
   for (const Command& command : commands)
     if (command.name == chosen) return static_cast<int>(run_command(command, console));
   return static_cast<int>(ExitCode::internal_error);
+}
+
+int code_of_output(std::ostream& out, std::ostream& err, int code) {
+  errno = 0;
+  out.flush();
+  if (out) return code;
+  err << "steplap: error: cannot write to the standard output" << (errno != 0 ? std::string(": ") + std::strerror(errno) : "") << "\n";
+  return code == 0 ? static_cast<int>(ExitCode::usage) : code;
 }
 
 int run_command_line(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err, bool is_terminal) {

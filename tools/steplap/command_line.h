@@ -14,6 +14,9 @@ namespace steplap {
 int run_command_line(const std::vector<std::string>& arguments, std::ostream& out,
                      std::ostream& err, bool is_terminal);
 
+/// At the end of a program: what was to be said has been written, or that is an error, too. Returns the exit code.
+int code_of_output(std::ostream& out, std::ostream& err, int code);
+
 /// A program of several commands.
 struct Program {
   std::string name, doc;

@@ -1,5 +1,6 @@
 #include "tools/steplap/equilibrium.h"
 
+#include "mbd/base/shown_text.h"
 #include "tools/steplap/edges.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/run.h"
@@ -73,7 +74,7 @@ void print_margins(std::ostream& out, const System& system, const std::vector<Fr
 }
 
 void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equilibrium& found) {
-  out << loaded.name << ": in stable equilibrium, the nearest downhill, after " << found.iterations << " iterations; acceleration left "
+  out << loaded.name << ": in stable equilibrium, the nearest downhill, after " << counted(static_cast<std::size_t>(found.iterations), "iteration", "iterations") << "; acceleration left "
       << small_text(found.residual) << " m/s²; moved at most " << quantity_text(found.moved, "m", k_unit) << "\n\n";
   print_poses(out, *loaded.system, loaded.system->initial_state(), found.state);
   print_reactions(out, *loaded.system, found.state);

@@ -1,5 +1,7 @@
 #include "tools/steplap/log.h"
 
+#include "mbd/base/shown_text.h"
+
 #include <spdlog/logger.h>
 #include <spdlog/sinks/ansicolor_sink.h>
 #include <spdlog/sinks/ostream_sink.h>
@@ -38,16 +40,16 @@ void set_log_level(Verbosity verbosity) {
 }
 
 void log_error(const std::string& text) {
-  logger().error(text);
+  logger().error(shown(text, true));
 }
 void log_warning(const std::string& text) {
-  logger().warn(text);
+  logger().warn(shown(text, true));
 }
 void log_info(const std::string& text) {
-  logger().info(text);
+  logger().info(shown(text, true));
 }
 void log_detail(const std::string& text) {
-  logger().debug(text);
+  logger().debug(shown(text, true));
 }
 
 } // namespace steplap

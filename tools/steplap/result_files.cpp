@@ -82,7 +82,8 @@ void write_all(const fs::path& staging, const fs::path& folder,
   for (const ResultFile& file : files) {
     const std::string path = (staging / file.name).string();
     try {
-      write_file(path, file.content);
+      if (file.parts) write_file(path, file.parts);
+      else write_file(path, file.content);
     } catch (const FileError& error) {
       std::string message = error.what();
       if (const auto at = message.find(path); at != std::string::npos)
@@ -122,24 +123,30 @@ std::vector<double> column_errors(const Run& run, const RunSummary& summary) {
 
 } // namespace
 
-std::string trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors) {
+void write_trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors, const FileSink& put) {
+  constexpr std::size_t k_part = 1 << 20; // bytes, about
   std::vector<std::string> header{"t [s]"};
   for (const Channel* channel : trajectory.channels())
     header.push_back(channel->name + (channel->unit.empty() ? "" : " [" + channel->unit + "]"));
-  CsvText csv(header, trajectory.size());
+  CsvText csv(header);
   if (!errors.empty()) {
     std::string comment = "# error estimate";
     for (const double error : errors) comment += "," + error_field(error);
     csv.add_comment(comment);
   }
-  std::vector<double> values(header.size());
   for (std::size_t row = 0; row < trajectory.size(); ++row) {
-    values[0] = trajectory.times()[row];
-    for (std::size_t column = 1; column < values.size(); ++column)
-      values[column] = trajectory.value(row, column - 1);
-    csv.add_row(values);
+    csv.add_row(trajectory.row(row));
+    if (csv.text().size() < k_part) continue;
+    put(csv.text());
+    csv.clear();
   }
-  return std::move(csv).text();
+  put(csv.text());
+}
+
+std::string trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors) {
+  std::string text;
+  write_trajectory_csv(trajectory, errors, [&text](std::string_view part) { text += part; });
+  return text;
 }
 
 std::string events_csv(const std::vector<Event>& events, const std::vector<double>* errors) {
@@ -157,7 +164,10 @@ std::vector<ResultFile> result_files(const Run& run, const RunSummary& summary) 
   const std::string prefix = run.failure.empty() ? "" : k_partial;
   const std::string head = "# Effective model of '" + run.loaded->path + "', written by steplap " +
                            k_version + ".\n\n";
-  return {{prefix + "trajectory.csv", trajectory_csv(*run.result.trajectory, column_errors(run, summary))},
+  const auto rows = [&run, errors = column_errors(run, summary)](const FileSink& put) {
+    write_trajectory_csv(*run.result.trajectory, errors, put);
+  };
+  return {{prefix + "trajectory.csv", "", rows},
           {prefix + "events.csv", events_csv(run.result.events, summary.global_error ? &summary.global_error->event_times : nullptr)},
           {prefix + "model.toml", head + run.loaded->text},
           {prefix + "drawing.json", drawing_json(run.loaded->model)},

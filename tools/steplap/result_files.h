@@ -11,6 +11,7 @@
 // that did not reach its end is saved as partial_trajectory.csv and so on.
 #pragma once
 
+#include "mbd/io/atomic_file.h"
 #include "tools/steplap/summary.h"
 
 #include <string>
@@ -21,12 +22,15 @@ namespace steplap {
 struct ResultFile {
   std::string name; ///< in the folder of the run
   std::string content;
+  FileContent parts{}; ///< of what is too large to be held: given part by part instead of `content`
 };
 
 /// `errors`: of the columns, none if they were not estimated; not-a-number is unknown.
+void write_trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors, const FileSink& put);
 [[nodiscard]] std::string trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors = {});
 [[nodiscard]] std::string events_csv(const std::vector<Event>& events, const std::vector<double>* errors = nullptr);
 [[nodiscard]] std::string summary_json(const Run& run, const RunSummary& summary);
+/// They refer to `run`, which has to outlive them.
 [[nodiscard]] std::vector<ResultFile> result_files(const Run& run, const RunSummary& summary);
 
 /// Throws UsageError if results stand in `folder` that may not be overwritten, FileError if it cannot

@@ -61,8 +61,8 @@ double number_of(const char*& begin, const char* end, const fs::path& file, std:
 }
 
 void read_trajectory(const fs::path& file, Results& results) {
-  const std::string text = read_text(file.string());
-  std::istringstream lines(text);
+  std::ifstream lines(file, std::ios::binary);
+  if (!lines) throw UsageError("cannot read '" + file.string() + "'");
   std::string line;
   if (!std::getline(lines, line)) damaged(file, 1, "empty");
   const std::vector<std::string> heads = cells_of(line);

@@ -3,9 +3,13 @@
 #include "elements/prescribed_motion.h"
 #include "mbd/analysis/assembly.h"
 #include "mbd/analysis/start.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/dynamics/dynamics.h"
+#include "mbd/system/element_failure.h"
 #include "mbd/io/reader.h"
 #include "mbd/io/presentation.h"
 #include "tools/steplap/catalogue.h"
+#include "tools/steplap/command.h"
 #include "tools/steplap/interruption.h"
 
 #include <cmath>
@@ -16,12 +20,29 @@ namespace steplap {
 
 namespace {
 
-// A step given in the wrong unit would fill memory and disk.
+// "wagon" of "models/wagon.toml". A name of dots alone would be another folder: it keeps its ending.
+std::string name_of_model(const std::string& path) {
+  if (has_control_character(path)) throw UsageError("the name '" + shown(path) + "' of a model file holds control characters: rename the file");
+  const std::filesystem::path file(path);
+  const std::string stem = file.stem().string();
+  return stem.find_first_not_of('.') == std::string::npos ? file.filename().string() : stem;
+}
+
+// Where a name stands: an element, a body.
+const Location* place_of(const Model& model, const std::string& name) {
+  for (const ElementEntry& entry : model.elements)
+    if (entry.element->name == name) return &entry.element->where;
+  for (const Body& body : model.bodies)
+    if (body.name == name) return &body.where;
+  return nullptr;
+}
+
+// A step given in the wrong unit would fill the disk.
 void refuse_endless_output(const Model& model, const System& system) {
   const double numbers = trajectory_numbers(model, system);
   if (!(numbers > model.output.most_numbers)) return;
   char text[160];
-  std::snprintf(text, sizeof text, "the trajectory would have %.3g numbers (%.3g GB of memory, some %.3g GB of text), more than the %.3g of 'most_numbers'",
+  std::snprintf(text, sizeof text, "the trajectory would have %.3g numbers (%.3g GB while it runs, some %.3g GB of text), more than the %.3g of 'most_numbers'",
                 numbers, 8e-9 * numbers, 20e-9 * numbers, model.output.most_numbers);
   throw ModelError(model.output.where, std::string(text) + ": choose a larger 'step', fewer 'channels', or raise 'most_numbers' of [output]");
 }
@@ -37,7 +58,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path,
                                               const std::vector<std::string>& overrides) {
   auto loaded = std::make_shared<LoadedModel>();
   loaded->path = path;
-  loaded->name = std::filesystem::path(path).stem().string();
+  loaded->name = name_of_model(path);
   loaded->overrides = overrides;
   loaded->model = read_model(path, program_catalogue(), overrides);
   loaded->text = effective_model_text(path, program_catalogue(), overrides);
@@ -64,12 +85,40 @@ load_models(const std::vector<std::string>& paths, const std::vector<std::string
   return models;
 }
 
+std::string text_with_places(const NumericalFailure& failure, const Model& model, const System& system) {
+  std::vector<std::string> names;
+  if (const auto* at_element = dynamic_cast<const ElementFailure*>(&failure)) names = at_element->elements();
+  if (const auto* constraint = dynamic_cast<const ConstraintFailure*>(&failure)) names = {system.element_names[constraint->element]};
+  std::string text = failure.what();
+  const char* before = " (";
+  for (const std::string& name : names) {
+    const Location* where = place_of(model, name);
+    if (!where || where->line == 0) continue;
+    text += before + ("'" + name + "': " + where->file + ":" + std::to_string(where->line));
+    before = ", ";
+  }
+  return *before == ',' ? text + ")" : text;
+}
+
+namespace {
+
+// What fails says where in the model's file it does.
+template <class Work> auto placed(const LoadedModel& loaded, const Work& work) {
+  try {
+    return work();
+  } catch (const NumericalFailure& failure) {
+    throw NumericalFailure(text_with_places(failure, loaded.model, *loaded.system));
+  }
+}
+
+} // namespace
+
 Equilibrium equilibrium_of(const LoadedModel& loaded) {
-  return equilibrium_at_start(*loaded.system, loaded.assembled);
+  return placed(loaded, [&] { return equilibrium_at_start(*loaded.system, loaded.assembled); });
 }
 
 State initial_state_of(const LoadedModel& loaded) {
-  return start_of(loaded.model, *loaded.system, loaded.assembled);
+  return placed(loaded, [&] { return start_of(loaded.model, *loaded.system, loaded.assembled); });
 }
 
 Run run_model(std::shared_ptr<const LoadedModel> loaded, std::function<void(double t)> progress) {
@@ -85,7 +134,7 @@ Run run_model(std::shared_ptr<const LoadedModel> loaded, std::function<void(doub
   try {
     simulation.run();
   } catch (const NumericalFailure& failure) {
-    run.failure = failure.what();
+    run.failure = text_with_places(failure, run.loaded->model, *run.loaded->system);
     is_over = true;
   }
   run.result = std::move(simulation).result();

@@ -32,6 +32,9 @@ load_model(const std::string& path, const std::vector<std::string>& overrides = 
 [[nodiscard]] std::vector<std::shared_ptr<const LoadedModel>>
 load_models(const std::vector<std::string>& paths, const std::vector<std::string>& overrides = {});
 
+/// What a failure says, with file and line of the elements it happened at.
+[[nodiscard]] std::string text_with_places(const NumericalFailure& failure, const Model& model, const System& system);
+
 /// Where the model rests, found from its poses without its initial velocities, which are given back
 /// with the pose. Throws NumericalFailure if there is no equilibrium.
 [[nodiscard]] Equilibrium equilibrium_of(const LoadedModel& loaded);

@@ -1,5 +1,6 @@
 #include "tools/steplap/run_screen.h"
 
+#include "mbd/base/shown_text.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/base/number_text.h"
 #include "mbd/model/validate.h"
@@ -210,7 +211,7 @@ void print_judgement(std::ostream& out, const FinishedRun& finished) {
 // "rk4, step 5e-05 s and 2.5e-05 s"
 std::string finer_text(const std::vector<SimulationOptions>& finer, const SimulationOptions& asked) {
   std::string text = finer.back().integrator, before = ", step ";
-  if (finer.back().settings.step == asked.settings.step) return text + ", tolerance " + number_text(finer.back().settings.tolerance);
+  if (finer.back().settings.step == asked.settings.step) return text + ", tolerance " + rounded_text(finer.back().settings.tolerance);
   for (const SimulationOptions& options : finer) {
     text += before + number_text(options.settings.step) + " s";
     before = " and ";
@@ -235,7 +236,7 @@ void print_global_error(std::ostream& out, const FinishedRun& finished) {
   if (estimate.finer.back().settings.step == asked.settings.step && times_tolerance > 1.0)
     out << "  the largest is " << small_text(times_tolerance) << " times the tolerance, which is meant for each step\n";
   if (estimate.error.unmatched_events > 0)
-    out << "  " << estimate.error.unmatched_events << " events are in one of the runs only: the run is not converged there\n";
+    out << "  " << counted(static_cast<std::size_t>(estimate.error.unmatched_events), "event is", "events are") << " in one of the runs only: the run is not converged there\n";
 }
 
 // Rows of the last table: name and how a run's value reads.
@@ -281,8 +282,8 @@ void print_place(std::ostream& out, const FinishedRun& finished) {
   const Trajectory& trajectory = *finished.run.result.trajectory;
   if (finished.folder.empty()) return;
   const char* const part = finished.run.failure.empty() ? "" : "partial_";
-  out << "Written to " << finished.folder << ": " << part << "trajectory.csv (" << trajectory.size() << " rows, "
-      << trajectory.channels().size() << " channels)";
+  out << "Written to " << finished.folder << ": " << part << "trajectory.csv (" << counted(trajectory.size(), "row", "rows") << ", "
+      << counted(trajectory.channels().size(), "channel", "channels") << ")";
   for (const char* file : {"events.csv", "summary.json", "model.toml", "drawing.json"}) out << ", " << part << file;
   out << "\n";
 }

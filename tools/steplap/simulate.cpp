@@ -1,6 +1,7 @@
 #include "tools/steplap/simulate.h"
 
 #include "mbd/analysis/assembly.h"
+#include "mbd/base/shown_text.h"
 #include "mbd/model/validate.h"
 #include "tools/steplap/edges.h"
 #include "tools/steplap/interruption.h"
@@ -90,6 +91,7 @@ void estimate_error(const SimulateOptions& options, FinishedRun& finished) {
   constexpr double k_little = 1.0; // s
   const LoadedModel& loaded = *finished.run.loaded;
   std::string& why_not = finished.summary.no_estimate;
+  finished.summary.is_estimate_asked = options.is_error_estimated || options.is_estimate_left_out;
   if (!finished.run.failure.empty() || noted_signal() != 0) {
     why_not = "the run broke off";
     return;
@@ -114,8 +116,8 @@ void note_assembly(const LoadedModel& loaded) {
   auto moves = assembly_moves(system.initial_state(), loaded.assembled, k_noticeable);
   std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });
   if (moves.empty()) return;
-  log_info("'" + loaded.path + "': assembling the joints moved " + std::to_string(moves.size()) +
-           " bodies, most of all '" + system.bodies[moves.front().body].name + "' by " +
+  log_info("'" + loaded.path + "': assembling the joints moved " + counted(moves.size(), "body", "bodies") +
+           ", most of all '" + system.bodies[moves.front().body].name + "' by " +
            quantity_text(moves.front().shift, "m", 1e-3) + " and " + quantity_text(moves.front().turn, "rad", 1e-3) +
            "; steplap check lists them");
 }
@@ -129,9 +131,9 @@ void warn_of_missing_values(const LoadedModel& loaded, const RunResult& result) 
 
 FinishedRun run_one(const SimulateOptions& options,
                     const std::shared_ptr<const LoadedModel>& loaded, Console& console) {
-  log_detail("'" + loaded->name + "': " + std::to_string(loaded->system->body_count() - 1) +
-             " bodies, " + std::to_string(loaded->system->rows.size()) + " constraint rows, " +
-             std::to_string(loaded->system->frictions.size()) + " joints with friction");
+  log_detail("'" + loaded->name + "': " + counted(static_cast<std::size_t>(loaded->system->body_count() - 1), "body", "bodies") + ", " +
+             counted(loaded->system->rows.size(), "constraint row", "constraint rows") + ", " +
+             counted(loaded->system->frictions.size(), "joint with friction", "joints with friction"));
   note_assembly(*loaded);
   FinishedRun finished;
   {
@@ -147,11 +149,11 @@ FinishedRun run_one(const SimulateOptions& options,
   estimate_error(options, finished);
   finished.folder = options.folder_of(*loaded);
   for (const Event& event : finished.run.result.events)
-    log_detail("t = " + std::to_string(event.t) + " s: '" + event.element + "' " + event.words());
+    log_detail("t = " + time_text(event.t) + " s: '" + event.element + "' " + event.words());
   write_results(finished.folder, result_files(finished.run, finished.summary),
                 options.is_overwriting);
   if (!finished.run.failure.empty())
-    log_error("'" + loaded->path + "': " + finished.run.failure +
+    log_error("'" + loaded->path + "': " + finished.run.failure + (finished.run.failure.ends_with('.') ? "" : ".") +
               " What was computed up to there is in '" + finished.folder + "' as partial_*");
   return finished;
 }

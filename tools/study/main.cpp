@@ -16,5 +16,6 @@ int main(int argc, char** argv) {
   const bool is_file = !arguments.empty() && arguments.front().front() != '-' &&
                        std::none_of(program.commands.begin(), program.commands.end(), [&](const Command& c) { return c.name == arguments.front(); });
   if (is_file) arguments.insert(arguments.begin(), "run");
-  return run_program(program, arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
+  const int code = run_program(program, arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
+  return code_of_output(std::cout, std::cerr, code);
 }

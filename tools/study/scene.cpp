@@ -52,9 +52,9 @@ double along(const Response& r, const Trajectory& trajectory) {
   double sum = 0.0;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const double before = trajectory.value(i - 1, column), after = trajectory.value(i, column);
-    sum += r.what == "path" ? std::abs(after - before) : 0.5 * (before + after) * (trajectory.times()[i] - trajectory.times()[i - 1]);
+    sum += r.what == "path" ? std::abs(after - before) : 0.5 * (before + after) * (trajectory.time(i) - trajectory.time(i - 1));
   }
-  return r.what == "path" ? sum : sum / (trajectory.times().back() - trajectory.times().front());
+  return r.what == "path" ? sum : sum / (trajectory.time(trajectory.size() - 1) - trajectory.time(0));
 }
 
 double of_events(const Response& r, const std::vector<Event>& events) {

@@ -53,6 +53,7 @@ void make_list(Node& table, const std::string& key) {
 class Reader {
 public:
   Reader(Document document, std::string file) : document_(std::move(document)) {
+    refuse_control_characters(document_);
     problems_ = std::move(document_.problems);
     study_.file = std::move(file);
   }
