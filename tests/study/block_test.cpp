@@ -2,6 +2,8 @@
 //   D(A, t, mu) = (A t)²/(2 mu g) (1 − mu g/A), if A > mu g
 #include "tests/study/block_scene.h"
 #include "tests/study/study_bench.h"
+#include "mbd/analysis/start.h"
+#include "mbd/model/completion.h"
 #include "tools/study/law.h"
 
 using namespace steplap;
@@ -10,8 +12,10 @@ using namespace steplap::testing;
 namespace {
 
 std::string with_friction(const std::string& kind, const std::string& settings, double mean, double cov) {
-  return "kind = \"" + kind + "\"\nmodel = \"block.toml\"\n" + settings + "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\n" +
-         "distribution = \"lognormal\"\nmean = " + std::to_string(mean) + "\ncov = " + std::to_string(cov) + "\n" + k_slid;
+  return "kind = \"" + kind + "\"\nmodel = \"block.toml\"\n" + settings +
+         "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\n" +
+         "distribution = \"lognormal\"\nmean = " + std::to_string(mean) + "\ncov = " + std::to_string(cov) + "\n" +
+         k_slid;
 }
 
 } // namespace
@@ -19,8 +23,10 @@ std::string with_friction(const std::string& kind, const std::string& settings, 
 TEST_CASE("a sweep over friction gives the distances of the closed form") {
   StudyBench bench;
   bench.write("block.toml", k_block);
-  const Outcome outcome = bench.run("kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\n"
-                                    "values = [0.1, 0.2, 0.3, 0.5, 0.7]\n" + k_slid);
+  const Outcome outcome = bench.run("kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = "
+                                    "\"element.deck friction.static_friction\"\n"
+                                    "values = [0.1, 0.2, 0.3, 0.5, 0.7]\n" +
+                                    k_slid);
   CAPTURE(outcome.err);
   REQUIRE(outcome.code == 0);
   study::Store store(bench.at("study.sqlite"));
@@ -38,12 +44,19 @@ TEST_CASE("the probability that it slides too far, friction lognormal") {
   struct Case {
     double mean, cov, limit, probability, beta;
   };
-  for (const Case& c : {Case{0.45, 0.20, 0.010, 0.529745757, -0.074630777}, {0.60, 0.15, 0.005, 0.164196877, 0.977353354}, {0.60, 0.10, 0.005, 0.063857722, 1.523172941}}) {
+  for (const Case& c : {Case{0.45, 0.20, 0.010, 0.529745757, -0.074630777},
+                        {0.60, 0.15, 0.005, 0.164196877, 0.977353354},
+                        {0.60, 0.10, 0.005, 0.063857722, 1.523172941}}) {
     StudyBench bench;
     bench.write("block.toml", k_block);
-    const std::string limit = "[[limit_state]]\nname = \"far\"\nexpression = \"" + std::to_string(c.limit) + " - slid\"\n";
+    const std::string limit =
+        "[[limit_state]]\nname = \"far\"\nexpression = \"" + std::to_string(c.limit) + " - slid\"\n";
     const Outcome outcome =
-        bench.run(with_friction("reliability", "[reliability]\nmethods = [\"form\", \"importance_sampling\"]\nsamples = 400\nconfidence = 0.999\nstarts = 2\n", c.mean, c.cov) + limit);
+        bench.run(with_friction("reliability",
+                                "[reliability]\nmethods = [\"form\", \"importance_sampling\"]\nsamples = "
+                                "400\nconfidence = 0.999\nstarts = 2\n",
+                                c.mean, c.cov) +
+                  limit);
     CAPTURE(outcome.err);
     CAPTURE(c.mean);
     // One variable and a monotonic response: first order is exact. Four digits are asked for.
@@ -84,10 +97,58 @@ TEST_CASE("responses of channels on request: friction's heat, and a formula of i
 TEST_CASE("a sample is replayed by the command that runs models") {
   StudyBench bench;
   bench.write("block.toml", k_block);
-  (void)bench.run("kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nvalues = [0.2, 0.3]\n" + k_slid);
-  const Outcome outcome = study_does({"replay", bench.at("study.toml"), "--store", bench.at("study.sqlite"), "--sample", "2", "-o", bench.at("replay")});
+  (void)bench.run("kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = \"element.deck "
+                  "friction.static_friction\"\nvalues = [0.2, 0.3]\n" +
+                  k_slid);
+  const Outcome outcome = study_does({"replay", bench.at("study.toml"), "--store", bench.at("study.sqlite"), "--sample",
+                                      "2", "-o", bench.at("replay")});
   CHECK(outcome.code == 0);
   CHECK(has(outcome.out, "\"element.deck friction.static_friction=0.3\""));
   CHECK(fs::exists(bench.at("replay/block/summary.json")));
   CHECK(study_does({"replay", bench.at("study.toml"), "--store", bench.at("study.sqlite"), "--sample", "3"}).code == 2);
+}
+
+// Runs of a study have only the channels that are asked for, and systems made from variants: their numbers are those of
+// the model with the values laid over it, compiled and run as a whole.
+TEST_CASE("a sample's numbers are those of the whole model with its values") {
+  StudyBench bench;
+  bench.write("block.toml", k_block);
+  const std::string text =
+      "kind = \"sweep\"\nmodel = \"block.toml\"\n[sweep]\ndesign = \"list\"\n"
+      "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nvalues = [0.1, 0.2, 0.45]\n"
+      "[[variable]]\nname = \"m\"\npath = [\"body.block.mass\", \"element.foot.preload\"]\nfactor = true\nvalues = [1, "
+      "1.5, 0.7]\n"
+      "[[variable]]\nname = \"x\"\npath = \"body.deck.position.0\"\nvalues = [0, 0, 0.25]\n" +
+      k_slid +
+      "[[response]]\nname = \"force\"\nchannel = \"foot.force\"\nwhat = \"highest\"\n"
+      "[[response]]\nname = \"end\"\nchannel = \"block.x\"\nwhat = \"final\"\n"
+      "[[response]]\nname = \"way\"\nchannel = \"deck.x\"\nwhat = \"path\"\n";
+  const Outcome outcome = bench.run(text);
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  const study::LoadedStudy loaded = study::read_study(bench.at("study.toml"));
+  study::Store store(bench.at("study.sqlite"));
+  std::vector<study::StoredSample> rows;
+  store.read(1, 3, rows);
+  for (const study::StoredSample& row : rows) {
+    const Model model = completed(study::model_with(loaded, *loaded.models.front(), row.values.data()));
+    const auto system = compile(model);
+    SimulationOptions options = options_of(model);
+    options.channels = {"*"};
+    const RunResult result = simulate(*system, start_of(model, *system), options);
+    const auto range = [&](const std::string& name) {
+      return *std::find_if(result.ranges.begin(), result.ranges.end(),
+                           [&](const ChannelRange& r) { return r.channel->name == name; });
+    };
+    const std::vector<double> deck = result.trajectory->series("deck.x");
+    double way = 0.0;
+    for (std::size_t i = 1; i < deck.size(); ++i) way += std::abs(deck[i] - deck[i - 1]);
+    // Where extremes are looked for hangs on the other channels too: to 1e-6 of their ranges. The rest is the same run.
+    CHECK(row.outcome.numbers[0] ==
+          doctest::Approx(std::abs(range("deck friction.slide").largest().value)).epsilon(1e-6));
+    CHECK(row.outcome.numbers[1] == doctest::Approx(range("foot.force").high.value).epsilon(1e-6));
+    CHECK(row.outcome.numbers[2] == range("block.x").final);
+    CHECK(row.outcome.numbers[3] == way);
+    CHECK(row.outcome.evaluations > 0.0);
+  }
 }

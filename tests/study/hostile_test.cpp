@@ -1,4 +1,5 @@
-// Studies that ask for what cannot be, or of what never has an answer: each gets one that is clear, and none that is wrong.
+// Studies that ask for what cannot be, or of what never has an answer: each gets one that is clear, and none that is
+// wrong.
 #include "tests/study/block_scene.h"
 #include "tests/study/study_bench.h"
 
@@ -11,10 +12,13 @@ std::string normal(const std::string& name) {
   return "[[variable]]\nname = \"" + name + "\"\ndistribution = \"normal\"\nmean = 0\nstandard_deviation = 1\n";
 }
 
-std::string limit(const std::string& expression) { return "[[limit_state]]\nname = \"g\"\nexpression = \"" + expression + "\"\n"; }
+std::string limit(const std::string& expression) {
+  return "[[limit_state]]\nname = \"g\"\nexpression = \"" + expression + "\"\n";
+}
 
 std::string reliability(const std::string& method, const std::string& expression) {
-  return "kind = \"reliability\"\n[reliability]\nmethods = [\"" + method + "\"]\nsamples = 2000\nstarts = 3\nsubset_samples = 500\n" + normal("x") + limit(expression);
+  return "kind = \"reliability\"\n[reliability]\nmethods = [\"" + method +
+         "\"]\nsamples = 2000\nstarts = 3\nsubset_samples = 500\n" + normal("x") + limit(expression);
 }
 
 const std::string k_mu = "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\n";
@@ -100,7 +104,8 @@ TEST_CASE("values that the model does not take") {
     CHECK(std::isnan(bench.find("monte_carlo", "mean").value));
   }
   SUBCASE("all, and the study is to stop") {
-    const Outcome outcome = bench.run("failed = \"stop\"\n" + head + "distribution = \"uniform\"\nlow = -2\nhigh = -1\nvalue = 0.3\n" + k_slid);
+    const Outcome outcome = bench.run("failed = \"stop\"\n" + head +
+                                      "distribution = \"uniform\"\nlow = -2\nhigh = -1\nvalue = 0.3\n" + k_slid);
     CHECK(outcome.code == 4);
     CHECK(has(outcome.err, "sample 1 impossible"));
   }
@@ -114,25 +119,38 @@ TEST_CASE("odd variables are told before anything runs") {
     CHECK(outcome.code == 3);
     return outcome.err;
   };
-  const std::string sweep = "kind = \"sweep\"\nmodel = \"block.toml\"\n", path = "\"element.deck friction.static_friction\"";
-  CHECK(has(said(sweep + "[[variable]]\nname = \"mu\"\npath = [" + path + ", " + path + "]\nvalues = [0.1]\n" + k_slid), "variable 'mu' names the path"));
-  CHECK(has(said(sweep + k_mu + "values = [0.1]\n[[variable]]\nname = \"nu\"\npath = " + path + "\nvalues = [0.2]\n" + k_slid), "two variables, 'mu' and 'nu'"));
-  const std::string sample = "kind = \"sample\"\n[[response]]\nname = \"r\"\nexpression = \"x\"\n[[variable]]\nname = \"x\"\n";
+  const std::string sweep = "kind = \"sweep\"\nmodel = \"block.toml\"\n",
+                    path = "\"element.deck friction.static_friction\"";
+  CHECK(has(said(sweep + "[[variable]]\nname = \"mu\"\npath = [" + path + ", " + path + "]\nvalues = [0.1]\n" + k_slid),
+            "variable 'mu' names the path"));
+  CHECK(has(said(sweep + k_mu + "values = [0.1]\n[[variable]]\nname = \"nu\"\npath = " + path + "\nvalues = [0.2]\n" +
+                 k_slid),
+            "two variables, 'mu' and 'nu'"));
+  const std::string sample =
+      "kind = \"sample\"\n[[response]]\nname = \"r\"\nexpression = \"x\"\n[[variable]]\nname = \"x\"\n";
   CHECK(has(said(sample + "distribution = \"uniform\"\nlow = 2\nhigh = 1\n"), "'low' must be below 'high'"));
   CHECK(has(said(sample + "distribution = \"triangular\"\nlow = 0\nmode = 2\nhigh = 1\n"), "'mode' must lie between"));
-  CHECK(has(said(sample + "distribution = \"normal\"\nmean = 0\nstandard_deviation = 1\nlower = 60\nupper = 61\n"), "support of the distribution"));
+  CHECK(has(said(sample + "distribution = \"normal\"\nmean = 0\nstandard_deviation = 1\nlower = 60\nupper = 61\n"),
+            "support of the distribution"));
   CHECK(has(said(sample + "distribution = \"normal\"\nmean = nan\nstandard_deviation = 1\n"), "must be finite"));
-  CHECK(has(said("kind = \"sample\"\n" + normal("x") + normal("y") + normal("z") + "[[response]]\nname = \"r\"\nexpression = \"x + y + z\"\n" +
-                 "[[correlation]]\nbetween = [\"x\", \"y\"]\nrho = 0.9\n[[correlation]]\nbetween = [\"y\", \"z\"]\nrho = 0.9\n" +
+  CHECK(has(said("kind = \"sample\"\n" + normal("x") + normal("y") + normal("z") +
+                 "[[response]]\nname = \"r\"\nexpression = \"x + y + z\"\n" +
+                 "[[correlation]]\nbetween = [\"x\", \"y\"]\nrho = 0.9\n[[correlation]]\nbetween = [\"y\", \"z\"]\nrho "
+                 "= 0.9\n" +
                  "[[correlation]]\nbetween = [\"x\", \"z\"]\nrho = -0.9\n"),
             "not positive definite"));
-  CHECK(has(said("kind = \"sample\"\n" + normal("x") + "[[response]]\nname = \"r\"\nexpression = \"x = 3\"\n"), "assigns with '='"));
-  CHECK(bench.run("kind = \"sample\"\n[sample]\nsamples = 10\n" + normal("x") + "[[response]]\nname = \"r\"\nexpression = \"x >= 0 && x != 3 && x == x\"\n").code == 0);
+  CHECK(has(said("kind = \"sample\"\n" + normal("x") + "[[response]]\nname = \"r\"\nexpression = \"x = 3\"\n"),
+            "assigns with '='"));
+  CHECK(bench
+            .run("kind = \"sample\"\n[sample]\nsamples = 10\n" + normal("x") +
+                 "[[response]]\nname = \"r\"\nexpression = \"x >= 0 && x != 3 && x == x\"\n")
+            .code == 0);
 }
 
 TEST_CASE("an expression that is zero all over has no critical value") {
   StudyBench bench;
-  const std::string text = "kind = \"critical\"\n[critical]\nvariable = \"x\"\nexpression = \"max(0, x - 0.5)\"\n[[variable]]\nname = \"x\"\nrange = [0, 1]\n";
+  const std::string text = "kind = \"critical\"\n[critical]\nvariable = \"x\"\nexpression = \"max(0, x - "
+                           "0.5)\"\n[[variable]]\nname = \"x\"\nrange = [0, 1]\n";
   CHECK(bench.run(text).code == 5);
   const study::Finding f = bench.find("critical", "critical value");
   CHECK(has(f.status, "zero all over"));

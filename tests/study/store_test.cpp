@@ -1,5 +1,6 @@
 // What happens to a store: threads, ranks, interruptions, changed studies, disks that cannot be written.
 #include "tests/study/study_bench.h"
+#include "tools/study/study_reader.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -16,7 +17,9 @@ using namespace steplap::testing;
 namespace {
 
 std::string reliability_text(const std::string& settings = "samples = 20000") {
-  return "kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"importance_sampling\", \"subset\", \"monte_carlo\"]\ncov = 0.02\n" + settings +
+  return "kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"importance_sampling\", \"subset\", "
+         "\"monte_carlo\"]\ncov = 0.02\n" +
+         settings +
          "\n[[variable]]\nname = \"x1\"\ndistribution = \"normal\"\nmean = 0\nstandard_deviation = 1\n"
          "[[variable]]\nname = \"x2\"\ndistribution = \"lognormal\"\nmean = 1\ncov = 0.3\n"
          "[[limit_state]]\nname = \"g\"\nexpression = \"2.5 - x1 - x2^2/3\"\n";
@@ -58,7 +61,8 @@ TEST_CASE("a study that is killed at any instant goes on, and comes to the same 
   const std::string text = reliability_text("samples = 100000");
   StudyBench whole;
   (void)whole.run(text);
-  const std::string wanted = whole.samples(), findings = study_does({"export", whole.at("study.sqlite"), "--findings"}).out;
+  const std::string wanted = whole.samples(),
+                    findings = study_does({"export", whole.at("study.sqlite"), "--findings"}).out;
   StudyBench bench;
   const std::string file = bench.write("study.toml", text), store = bench.at("study.sqlite");
   int killed = 0;
@@ -82,7 +86,8 @@ TEST_CASE("a study over MPI's ranks comes to the same bytes" * doctest::skip(std
   const std::string file = together.write("study.toml", text);
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1); // containers
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-  const int code = wait_for(start({STEPLAP_MPIRUN, "--oversubscribe", "-n", "3", STEPLAP_PROGRAM, "study", file, "-o", together.at("study.sqlite")}));
+  const int code = wait_for(start({STEPLAP_MPIRUN, "--oversubscribe", "-n", "3", STEPLAP_PROGRAM, "study", file, "-o",
+                                   together.at("study.sqlite")}));
   CHECK((code == 0 || code == 5));
   CHECK(together.samples() == alone.samples());
 }
@@ -126,7 +131,8 @@ TEST_CASE("stores that cannot be used are told, and left as they are") {
   const std::string file = bench.write("study.toml", reliability_text());
   SUBCASE("no store yet") { CHECK(has(study_does({"show", bench.at("none.sqlite")}).err, "there is no store")); }
   SUBCASE("not a store") {
-    const std::string other = bench.write("letter.sqlite", "Dear Sir or Madam, this is longer than a page head of a database, and more.");
+    const std::string other =
+        bench.write("letter.sqlite", "Dear Sir or Madam, this is longer than a page head of a database, and more.");
     const Outcome outcome = study_does({"run", file, "-o", other, "--restart"});
     CHECK(outcome.code == 2);
     CHECK(has(outcome.err, "no store of a study"));
@@ -142,6 +148,28 @@ TEST_CASE("stores that cannot be used are told, and left as they are") {
     CHECK(study_does({"show", bench.at("study.sqlite")}).code == 0); // readers are welcome
     close(held);
   }
+  SUBCASE("made by another version, or of another layout") {
+    (void)bench.write("study.toml", reliability_text());
+    study::StoreIdentity older = study::identity_of(study::read_study(file));
+    older.version = "0.0.1";
+    const std::string path = bench.at("older.sqlite");
+    { study::Store(path, older, study::StoreMode::run).flush(); }
+    Outcome outcome = study_does({"run", file, "-o", path});
+    CHECK(outcome.code == 2);
+    CHECK(has(outcome.err, "was made by version 0.0.1"));
+    std::fstream bytes(path, std::ios::binary | std::ios::in | std::ios::out);
+    bytes.seekp(60); // of an SQLite file's head: the user's version, most significant byte first
+    bytes.write("\0\0\0\x63", 4);
+    bytes.close();
+    const std::string before = text_of(path);
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"run", file, "-o", path}, {"show", path}, {"run", file, "-o", path, "--restart"}}) {
+      outcome = study_does(arguments);
+      CHECK(outcome.code == 2);
+      CHECK(has(outcome.err, "layout 99"));
+    }
+    CHECK(text_of(path) == before);
+  }
   SUBCASE("no file at all") {
     const Outcome outcome = study_does({"run", file, "-o", "/dev/full"});
     CHECK(outcome.code == 2);
@@ -151,7 +179,8 @@ TEST_CASE("stores that cannot be used are told, and left as they are") {
     StudyBench whole;
     (void)whole.run(reliability_text());
     // A shell's limit on the size of files stands for the end of the disk; blocks of 1024 bytes.
-    const std::string command = std::string("trap '' XFSZ; ulimit -f 800; ") + STEPLAP_PROGRAM + " study " + file + " -o " + bench.at("study.sqlite") + " 2> " + bench.at("said");
+    const std::string command = std::string("trap '' XFSZ; ulimit -f 800; ") + STEPLAP_PROGRAM + " study " + file +
+                                " -o " + bench.at("study.sqlite") + " 2> " + bench.at("said");
     CHECK(wait_for(start({"bash", "-c", command})) == 2);
     CHECK(has(text_of(bench.at("said")), "disk is full"));
     (void)bench.run(reliability_text());

@@ -16,7 +16,9 @@ namespace {
 
 using Point = std::array<double, 2>; ///< both variables, their ranges as [0, 1]
 
-Point along(const Point& p, const Point& direction, double s) { return {p[0] + s * direction[0], p[1] + s * direction[1]}; }
+Point along(const Point& p, const Point& direction, double s) {
+  return {p[0] + s * direction[0], p[1] + s * direction[1]};
+}
 double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
 bool is_inside(const Point& p) { return p[0] >= 0.0 && p[0] <= 1.0 && p[1] >= 0.0 && p[1] <= 1.0; }
 
@@ -28,14 +30,18 @@ struct Border {
 
 class Plane {
 public:
-  explicit Plane(StudyRun& run) : run_(run), settings_(run.study().map), place_(static_cast<std::size_t>(run.loaded.index_of_number("border"))) {
-    for (int i = 0; i < 2; ++i) variable_[i] = static_cast<std::size_t>(run.study().index_of_variable(settings_.variables[static_cast<std::size_t>(i)]));
+  explicit Plane(StudyRun& run)
+      : run_(run), settings_(run.study().map), place_(static_cast<std::size_t>(run.loaded.index_of_number("border"))) {
+    for (int i = 0; i < 2; ++i)
+      variable_[i] =
+          static_cast<std::size_t>(run.study().index_of_variable(settings_.variables[static_cast<std::size_t>(i)]));
   }
 
   [[nodiscard]] double value_of(int axis, double share) const {
     const std::vector<double>& range = run_.study().variables[variable_[axis]].range;
     if (share == 0.0 || share == 1.0) return range[share == 1.0];
-    return settings_.is_logarithmic ? range[0] * std::pow(range[1] / range[0], share) : range[0] + share * (range[1] - range[0]);
+    return settings_.is_logarithmic ? range[0] * std::pow(range[1] / range[0], share)
+                                    : range[0] + share * (range[1] - range[0]);
   }
 
   std::vector<double> at(const std::vector<Point>& places) {
@@ -59,7 +65,9 @@ public:
     const std::vector<double> g = at({along(p, direction, low), along(p, direction, high)});
     if (std::isnan(g[0]) || std::isnan(g[1]) || (g[0] < 0.0) == (g[1] < 0.0)) return {};
     std::vector<Crossing> one{{low, high, g[0], g[1]}};
-    close_crossings(one, settings_.tolerance, [&](const std::vector<std::size_t>&, const std::vector<double>& s) { return at({along(p, direction, s[0])}); });
+    close_crossings(one, settings_.tolerance, [&](const std::vector<std::size_t>&, const std::vector<double>& s) {
+      return at({along(p, direction, s[0])});
+    });
     if (one[0].is_bad) return {};
     has_jump_ = has_jump_ || one[0].is_jump;
     return one[0].root();
@@ -82,7 +90,9 @@ std::vector<Point> seeds_on_grid(Plane& plane, long points, double tolerance) {
   const auto n = static_cast<std::size_t>(points);
   std::vector<Point> grid;
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) grid.push_back({static_cast<double>(i) / static_cast<double>(n - 1), static_cast<double>(j) / static_cast<double>(n - 1)});
+    for (std::size_t j = 0; j < n; ++j)
+      grid.push_back(
+          {static_cast<double>(i) / static_cast<double>(n - 1), static_cast<double>(j) / static_cast<double>(n - 1)});
   const std::vector<double> g = plane.at(grid);
   std::vector<Crossing> crossings;
   std::vector<Point> from, direction;
@@ -97,11 +107,13 @@ std::vector<Point> seeds_on_grid(Plane& plane, long points, double tolerance) {
       if (i + 1 < n) look(i * n + j, (i + 1) * n + j);
       if (j + 1 < n) look(i * n + j, i * n + j + 1);
     }
-  close_crossings(crossings, tolerance * static_cast<double>(n - 1), [&](const std::vector<std::size_t>& which, const std::vector<double>& s) {
-    std::vector<Point> places;
-    for (std::size_t k = 0; k < which.size(); ++k) places.push_back(along(from[which[k]], direction[which[k]], s[k]));
-    return plane.at(places);
-  });
+  close_crossings(crossings, tolerance * static_cast<double>(n - 1),
+                  [&](const std::vector<std::size_t>& which, const std::vector<double>& s) {
+                    std::vector<Point> places;
+                    for (std::size_t k = 0; k < which.size(); ++k)
+                      places.push_back(along(from[which[k]], direction[which[k]], s[k]));
+                    return plane.at(places);
+                  });
   std::vector<Point> seeds;
   for (std::size_t k = 0; k < crossings.size(); ++k)
     if (!crossings[k].is_bad) seeds.push_back(along(from[k], direction[k], crossings[k].root()));
@@ -223,7 +235,10 @@ bool is_on(const Border& border, const Point& p, double near) {
   for (std::size_t i = 1; i < border.points.size(); ++i) {
     const Point &a = border.points[i - 1], &b = border.points[i];
     const double length = distance(a, b);
-    const double share = length > 0.0 ? std::clamp(((p[0] - a[0]) * (b[0] - a[0]) + (p[1] - a[1]) * (b[1] - a[1])) / (length * length), 0.0, 1.0) : 0.0;
+    const double share =
+        length > 0.0
+            ? std::clamp(((p[0] - a[0]) * (b[0] - a[0]) + (p[1] - a[1]) * (b[1] - a[1])) / (length * length), 0.0, 1.0)
+            : 0.0;
     if (distance(p, along(a, {b[0] - a[0], b[1] - a[1]}, share)) < near) return true;
   }
   return false;
@@ -234,15 +249,19 @@ void report(const Border& border, std::size_t number, Plane& plane, StudyRun& ru
   for (std::size_t k = 0; k < border.points.size(); ++k)
     for (int i = 0; i < 2; ++i) {
       const double share = border.points[k][i];
-      Finding f{"map", "border " + std::to_string(number) + " point " + std::to_string(k + 1), s.variables[static_cast<std::size_t>(i)], plane.value_of(i, share)};
+      Finding f{"map", "border " + std::to_string(number) + " point " + std::to_string(k + 1),
+                s.variables[static_cast<std::size_t>(i)], plane.value_of(i, share)};
       f.low = plane.value_of(i, std::max(0.0, share - s.tolerance));
       f.high = plane.value_of(i, std::min(1.0, share + s.tolerance));
       f.samples = run.evaluator.asked();
       if (k + 1 == border.points.size()) f.status = border.end;
       answer.findings.push_back(f);
     }
-  answer.notes.push_back("border " + std::to_string(number) + ": " + std::to_string(border.points.size()) + " points, " +
-                         (border.is_closed ? "closed" : border.end.empty() ? "from end to end of the ranges" : border.end));
+  answer.notes.push_back("border " + std::to_string(number) + ": " + std::to_string(border.points.size()) +
+                         " points, " +
+                         (border.is_closed     ? "closed"
+                          : border.end.empty() ? "from end to end of the ranges"
+                                               : border.end));
   if (!border.end.empty()) answer.degrade(Standing::not_met);
 }
 
@@ -263,8 +282,10 @@ void check_map(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
       continue;
     }
     const Variable& variable = loaded.study.variables[static_cast<std::size_t>(v)];
-    if (variable.range.size() != 2) problems.push_back({variable.where, "variable '" + name + "' needs a 'range' for a map"});
-    else if (s.is_logarithmic && !(variable.range[0] > 0.0)) problems.push_back({variable.where, "a logarithmic map needs ranges above zero"});
+    if (variable.range.size() != 2)
+      problems.push_back({variable.where, "variable '" + name + "' needs a 'range' for a map"});
+    else if (s.is_logarithmic && !(variable.range[0] > 0.0))
+      problems.push_back({variable.where, "a logarithmic map needs ranges above zero"});
   }
 }
 
@@ -274,18 +295,24 @@ Answer run_map(StudyRun& run) {
   const std::vector<Point> seeds = seeds_on_grid(plane, s.points, s.tolerance);
   std::vector<Border> borders;
   for (const Point& seed : seeds) {
-    const bool is_known = std::any_of(borders.begin(), borders.end(), [&](const Border& b) { return is_on(b, seed, 0.5 * s.step); });
+    const bool is_known =
+        std::any_of(borders.begin(), borders.end(), [&](const Border& b) { return is_on(b, seed, 0.5 * s.step); });
     if (!is_known) borders.push_back(Follower(plane, s.step).follow(seed));
   }
   Answer answer;
   for (std::size_t i = 0; i < borders.size(); ++i) report(borders[i], i + 1, plane, run, answer);
   if (borders.empty()) {
     answer.findings.push_back({"map", "border", "points", 0.0, std::nan(""), std::nan(""), run.evaluator.asked(),
-                               plane.bad() == run.evaluator.asked() ? "no run gave a value" : "the expression has one sign wherever it was looked at"});
+                               plane.bad() == run.evaluator.asked()
+                                   ? "no run gave a value"
+                                   : "the expression has one sign wherever it was looked at"});
     answer.degrade(Standing::not_met);
   }
-  if (plane.has_jump()) answer.notes.push_back("In places the expression jumps past zero: the border is then where it jumps.");
-  if (plane.bad() > 0) answer.notes.push_back(std::to_string(plane.bad()) + " runs did not reach their end or are not to be trusted: borders beside them are not seen");
+  if (plane.has_jump())
+    answer.notes.push_back("In places the expression jumps past zero: the border is then where it jumps.");
+  if (plane.bad() > 0)
+    answer.notes.push_back(std::to_string(plane.bad()) +
+                           " runs did not reach their end or are not to be trusted: borders beside them are not seen");
   return answer;
 }
 

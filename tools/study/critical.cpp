@@ -48,7 +48,8 @@ struct Look {
   std::vector<double> x, g;
 };
 
-// Between two looks at which the expression comes nearer to zero than beside them it may touch it: looked at more closely.
+// Between two looks at which the expression comes nearer to zero than beside them it may touch it: looked at more
+// closely.
 void look_closer(Line& line, Look& look) {
   constexpr int k_parts = 8;
   std::vector<double> more;
@@ -57,7 +58,8 @@ void look_closer(Line& line, Look& look) {
     const bool is_one_side = (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0);
     if (!is_one_side || !(std::abs(here) < std::abs(before) && std::abs(here) < std::abs(after))) continue;
     for (int k = 1; k < k_parts; ++k)
-      for (const std::size_t from : {i - 1, i}) more.push_back(look.x[from] + (look.x[from + 1] - look.x[from]) * k / k_parts);
+      for (const std::size_t from : {i - 1, i})
+        more.push_back(look.x[from] + (look.x[from + 1] - look.x[from]) * k / k_parts);
   }
   if (more.empty()) return;
   std::sort(more.begin(), more.end());
@@ -100,9 +102,12 @@ void add_flat(double low, double high, const std::string& variable, long samples
 void check_critical(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   const CriticalSettings& s = loaded.study.critical;
   const int v = loaded.study.index_of_variable(s.variable);
-  if (v < 0) problems.push_back({s.where, "there is no variable '" + s.variable + "'" + did_you_mean(s.variable, names_of(loaded.study))});
+  if (v < 0)
+    problems.push_back(
+        {s.where, "there is no variable '" + s.variable + "'" + did_you_mean(s.variable, names_of(loaded.study))});
   else if (loaded.study.variables[static_cast<std::size_t>(v)].range.size() != 2)
-    problems.push_back({loaded.study.variables[static_cast<std::size_t>(v)].where, "variable '" + s.variable + "' needs a 'range' to look for critical values in"});
+    problems.push_back({loaded.study.variables[static_cast<std::size_t>(v)].where,
+                        "variable '" + s.variable + "' needs a 'range' to look for critical values in"});
 }
 
 Answer run_critical(StudyRun& run) {
@@ -111,7 +116,9 @@ Answer run_critical(StudyRun& run) {
   const double low = v.range[0], width = v.range[1] - v.range[0];
   Line line(run);
   Look look;
-  for (long k = 0; k < s.points; ++k) look.x.push_back(k + 1 == s.points ? v.range[1] : low + width * static_cast<double>(k) / static_cast<double>(s.points - 1));
+  for (long k = 0; k < s.points; ++k)
+    look.x.push_back(k + 1 == s.points ? v.range[1]
+                                       : low + width * static_cast<double>(k) / static_cast<double>(s.points - 1));
   look.g = line.at(look.x);
   look_closer(line, look);
 
@@ -127,7 +134,8 @@ Answer run_critical(StudyRun& run) {
     if (a == 0.0 && i > 1) continue; // the end of the interval before
     if ((a < 0.0) != (b < 0.0) || a == 0.0 || b == 0.0) crossings.push_back({look.x[i - 1], look.x[i], a, b});
   }
-  close_crossings(crossings, s.tolerance * width, [&](const std::vector<std::size_t>&, const std::vector<double>& at) { return line.at(at); });
+  close_crossings(crossings, s.tolerance * width,
+                  [&](const std::vector<std::size_t>&, const std::vector<double>& at) { return line.at(at); });
 
   for (const Crossing& c : crossings) {
     Finding f{"critical", s.variable, "critical value", c.root(), c.low, c.high, run.evaluator.asked()};
@@ -140,13 +148,17 @@ Answer run_critical(StudyRun& run) {
     Finding f{"critical", s.variable, "critical value"};
     f.samples = run.evaluator.asked();
     const auto known = std::find_if(look.g.begin(), look.g.end(), [](double g) { return !std::isnan(g); });
-    f.status = known == look.g.end() ? "no run gave a value" : std::string("none in the range: the expression is ") + (*known < 0.0 ? "negative" : "positive") + " wherever it was looked at";
+    f.status = known == look.g.end() ? "no run gave a value"
+                                     : std::string("none in the range: the expression is ") +
+                                           (*known < 0.0 ? "negative" : "positive") + " wherever it was looked at";
     answer.findings.push_back(f);
     answer.degrade(Standing::not_met);
   }
   answer.notes.push_back("The expression " + monotonic_text(look) + ".");
   if (line.bad() > 0) {
-    answer.notes.push_back(std::to_string(line.bad()) + " runs did not reach their end or are not to be trusted: crossings beside them are not seen");
+    answer.notes.push_back(
+        std::to_string(line.bad()) +
+        " runs did not reach their end or are not to be trusted: crossings beside them are not seen");
     answer.degrade(Standing::not_met);
   }
   return answer;

@@ -103,7 +103,8 @@ public:
       for (std::size_t j = 0; j <= i; ++j)
         for (const double si : {1.0, -1.0})
           for (const double sj : {1.0, -1.0})
-            if (i != j || si == sj) add(i, 0.5 * si * h_ * (i == j ? 1.0 : 2.0), j, 0.5 * sj * h_ * (i == j ? 1.0 : 2.0));
+            if (i != j || si == sj)
+              add(i, 0.5 * si * h_ * (i == j ? 1.0 : 2.0), j, 0.5 * sj * h_ * (i == j ? 1.0 : 2.0));
     const std::vector<LimitValue>& g = limit_->at(points);
     for (const LimitValue& value : g)
       if (value.is_bad) throw BadSample("a run without result lay on the way");
@@ -124,9 +125,10 @@ private:
 
 OT::RandomVector event_of(LimitFunction& limit, double h) {
   // Second differences take a larger step: their noise goes with its square.
-  const OT::Function function{OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new LimitEvaluation(limit))),
-                              OT::Gradient(OT::Pointer<OT::GradientImplementation>(new LimitGradient(limit, h))),
-                              OT::Hessian(OT::Pointer<OT::HessianImplementation>(new LimitHessian(limit, std::max(10.0 * h, 1e-3))))};
+  const OT::Function function{
+      OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new LimitEvaluation(limit))),
+      OT::Gradient(OT::Pointer<OT::GradientImplementation>(new LimitGradient(limit, h))),
+      OT::Hessian(OT::Pointer<OT::HessianImplementation>(new LimitHessian(limit, std::max(10.0 * h, 1e-3))))};
   const OT::RandomVector input{OT::Distribution(OT::Normal(limit.dimension()))};
   return OT::ThresholdEvent(OT::CompositeRandomVector(function, input), OT::Less(), 0.0);
 }
@@ -137,7 +139,8 @@ OT::Point start_of(const LimitFunction& limit, const CounterRandom& random, long
   const std::size_t n = limit.dimension();
   OT::Point start(n, 0.0);
   if (k == 0) return start;
-  for (std::size_t i = 0; i < n; ++i) start[i] = random.normal(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i));
+  for (std::size_t i = 0; i < n; ++i)
+    start[i] = random.normal(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i));
   return start * (k_far / start.norm());
 }
 
@@ -192,8 +195,8 @@ void add_second_order(LimitFunction& limit, const OT::OptimizationAlgorithm& sea
 OT::AbdoRackwitz search_algorithm() {
   OT::Log::Show(OT::Log::NONE);
   OT::AbdoRackwitz search;
-  // Steps of 1e-6 standard deviations end it: beta is known to the square of that. Points that have not arrived are told
-  // by judge().
+  // Steps of 1e-6 standard deviations end it: beta is known to the square of that. Points that have not arrived are
+  // told by judge().
   search.setMaximumEvaluationNumber(1000);
   search.setMaximumIterationNumber(60);
   search.setMaximumAbsoluteError(1e-6);

@@ -28,7 +28,8 @@ std::vector<double> levels_of(const StudyRun& run, std::size_t i) {
   std::vector<double> levels;
   for (std::size_t k = 0; k < n; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(n - 1);
-    if (v.has_distribution()) levels.push_back(run.law.quantile(static_cast<std::size_t>(found - random.begin()), 0.05 + 0.9 * share));
+    if (v.has_distribution())
+      levels.push_back(run.law.quantile(static_cast<std::size_t>(found - random.begin()), 0.05 + 0.9 * share));
     else levels.push_back(k + 1 == n ? v.range[1] : v.range[0] + share * (v.range[1] - v.range[0]));
   }
   return levels;
@@ -62,7 +63,8 @@ public:
         answer.findings.push_back(f);
       }
     if (bad_) {
-      answer.notes.push_back(std::to_string(bad_) + " of " + std::to_string(total_) + " runs did not reach their end or are not to be trusted: see the reasons");
+      answer.notes.push_back(std::to_string(bad_) + " of " + std::to_string(total_) +
+                             " runs did not reach their end or are not to be trusted: see the reasons");
       answer.degrade(Standing::not_met);
     }
   }
@@ -120,7 +122,8 @@ void sweep_list(const std::vector<std::vector<double>>& levels, Sweeper& sweeper
   }
 }
 
-void sweep_one_at_a_time(const std::vector<std::vector<double>>& levels, const std::vector<double>& nominal, Sweeper& sweeper) {
+void sweep_one_at_a_time(const std::vector<std::vector<double>>& levels, const std::vector<double>& nominal,
+                         Sweeper& sweeper) {
   sweeper.add(nominal);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     std::vector<double> point = nominal;
@@ -146,7 +149,8 @@ public:
   MonteCarlo(std::uint64_t seed, std::size_t dimension) : random_(seed, 1), dimension_(dimension) {}
   void next(std::size_t count, std::vector<double>& uniform) override {
     for (std::size_t i = 0; i < count; ++i, ++sample_)
-      for (std::size_t d = 0; d < dimension_; ++d) uniform.push_back(random_.uniform(sample_, static_cast<std::uint32_t>(d)));
+      for (std::size_t d = 0; d < dimension_; ++d)
+        uniform.push_back(random_.uniform(sample_, static_cast<std::uint32_t>(d)));
   }
 
 private:
@@ -158,7 +162,8 @@ private:
 /// One point in each of as many strata as there are samples, of every variable; strata are paired at random.
 class LatinHypercube : public Design {
 public:
-  LatinHypercube(std::uint64_t seed, std::size_t dimension, std::size_t count) : random_(seed, 2), count_(count), strata_(dimension) {
+  LatinHypercube(std::uint64_t seed, std::size_t dimension, std::size_t count)
+      : random_(seed, 2), count_(count), strata_(dimension) {
     for (std::size_t d = 0; d < dimension; ++d) {
       strata_[d].resize(count);
       std::iota(strata_[d].begin(), strata_[d].end(), 0U);
@@ -198,7 +203,8 @@ private:
 std::unique_ptr<Design> design_of(const Study& study, std::size_t dimension) {
   const std::string& name = study.sample.design;
   const auto seed = static_cast<std::uint64_t>(study.seed);
-  if (name == "latin_hypercube") return std::make_unique<LatinHypercube>(seed, dimension, static_cast<std::size_t>(study.sample.samples));
+  if (name == "latin_hypercube")
+    return std::make_unique<LatinHypercube>(seed, dimension, static_cast<std::size_t>(study.sample.samples));
   if (name == "sobol") return std::make_unique<LowDiscrepancy<OT::SobolSequence>>(dimension);
   if (name == "halton") return std::make_unique<LowDiscrepancy<OT::HaltonSequence>>(dimension);
   return std::make_unique<MonteCarlo>(seed, dimension);
@@ -218,12 +224,15 @@ struct Moments {
     mean += difference / static_cast<double>(++count);
     squares += difference * (x - mean);
   }
-  [[nodiscard]] double deviation() const { return count > 1 ? std::sqrt(squares / static_cast<double>(count - 1)) : std::nan(""); }
+  [[nodiscard]] double deviation() const {
+    return count > 1 ? std::sqrt(squares / static_cast<double>(count - 1)) : std::nan("");
+  }
 };
 
 class Summary {
 public:
-  explicit Summary(const LoadedStudy& loaded) : loaded_(loaded), moments_(loaded.number_count()), failed_(loaded.study.limit_states.size(), 0) {}
+  explicit Summary(const LoadedStudy& loaded)
+      : loaded_(loaded), moments_(loaded.number_count()), failed_(loaded.study.limit_states.size(), 0) {}
 
   void add(const StoredSample& sample) {
     ++total_;
@@ -240,12 +249,15 @@ public:
     const std::vector<std::string> names = loaded_.number_names();
     for (std::size_t i = 0; i < names.size(); ++i) {
       const Moments& m = moments_[i];
-      const std::string status = m.missing ? std::to_string(m.missing) + " of " + std::to_string(total_) + " runs gave no finite value and are left out" : "";
+      const std::string status = m.missing ? std::to_string(m.missing) + " of " + std::to_string(total_) +
+                                                 " runs gave no finite value and are left out"
+                                           : "";
       Finding mean{method, names[i], "mean", m.count ? m.mean : std::nan("")};
       mean.samples = m.count;
       mean.status = status;
       if (is_random && m.count > 1) {
-        const double half = student_quantile(static_cast<double>(m.count - 1), 0.975) * m.deviation() / std::sqrt(static_cast<double>(m.count));
+        const double half = student_quantile(static_cast<double>(m.count - 1), 0.975) * m.deviation() /
+                            std::sqrt(static_cast<double>(m.count));
         mean.low = m.mean - half;
         mean.high = m.mean + half;
       }
@@ -270,9 +282,12 @@ private:
     Finding f{run.study().sample.design, loaded_.number_names()[i], text};
     const long n = run.store.count_of(i);
     f.samples = n;
-    if (n < total_) f.status = std::to_string(total_ - n) + " of " + std::to_string(total_) + " runs gave no value and are left out";
+    if (n < total_)
+      f.status = std::to_string(total_ - n) + " of " + std::to_string(total_) + " runs gave no value and are left out";
     if (n == 0) return f;
-    const auto place = [n](double share) { return std::clamp(static_cast<long>(std::floor(share * static_cast<double>(n))), 0L, n - 1); };
+    const auto place = [n](double share) {
+      return std::clamp(static_cast<long>(std::floor(share * static_cast<double>(n))), 0L, n - 1);
+    };
     f.value = run.store.order_statistic(i, place(p));
     if (!is_random) return f;
     const double half = 1.96 * std::sqrt(p * (1.0 - p) / static_cast<double>(n));
@@ -285,10 +300,12 @@ private:
     const Study& study = run.study();
     for (std::size_t i = 0; i < failed_.size(); ++i) {
       const auto add = [&](const char* quantity, long failures) {
-        Finding f{study.sample.design, study.limit_states[i].name, quantity, static_cast<double>(failures) / static_cast<double>(total_)};
+        Finding f{study.sample.design, study.limit_states[i].name, quantity,
+                  static_cast<double>(failures) / static_cast<double>(total_)};
         f.samples = total_;
         if (is_random) {
-          const Interval interval = proportion_interval(static_cast<double>(failures), static_cast<double>(total_), 0.95);
+          const Interval interval =
+              proportion_interval(static_cast<double>(failures), static_cast<double>(total_), 0.95);
           f.low = interval.low;
           f.high = interval.high;
         } else {
@@ -302,7 +319,8 @@ private:
       if (is_both) add("share of failures, runs without result as unsafe", failed_[i] + bad_);
     }
     if (bad_ > 0)
-      answer.notes.push_back(std::to_string(bad_) + " of " + std::to_string(total_) + " runs did not reach their end or are not to be trusted: see the reasons");
+      answer.notes.push_back(std::to_string(bad_) + " of " + std::to_string(total_) +
+                             " runs did not reach their end or are not to be trusted: see the reasons");
   }
 
   const LoadedStudy& loaded_;
@@ -318,16 +336,21 @@ void check_sweep(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   double count = 1.0;
   std::size_t longest = 0;
   for (const Variable& v : study.variables) {
-    const double levels = !v.values.empty() ? static_cast<double>(v.values.size()) : v.range.empty() && !v.has_distribution() ? 1.0 : static_cast<double>(study.sweep.points);
+    const double levels = !v.values.empty()                          ? static_cast<double>(v.values.size())
+                          : v.range.empty() && !v.has_distribution() ? 1.0
+                                                                     : static_cast<double>(study.sweep.points);
     count *= levels;
     if (study.sweep.design != "list" || levels == 1.0) continue;
     if (longest && static_cast<double>(longest) != levels)
-      problems.push_back({v.where, "variable '" + v.name + "' has " + number_text(levels) + " values, those before it " + std::to_string(longest) +
-                                       ": a sweep of the design \"list\" takes the first of all, then the second, and so on"});
+      problems.push_back(
+          {v.where, "variable '" + v.name + "' has " + number_text(levels) + " values, those before it " +
+                        std::to_string(longest) +
+                        ": a sweep of the design \"list\" takes the first of all, then the second, and so on"});
     longest = static_cast<std::size_t>(levels);
   }
   if (study.variables.empty()) problems.push_back({study.where, "a sweep needs a [[variable]]"});
-  if (study.sweep.design == "grid" && count > 1e9) problems.push_back({study.sweep.where, "the grid has " + number_text(count) + " points: too many"});
+  if (study.sweep.design == "grid" && count > 1e9)
+    problems.push_back({study.sweep.where, "the grid has " + number_text(count) + " points: too many"});
 }
 
 namespace {
@@ -363,20 +386,29 @@ void check_random(const LoadedStudy& loaded, bool takes_ranges, std::vector<Diag
   bool is_any = false;
   for (const Variable& v : loaded.study.variables) {
     is_any = is_any || v.has_distribution() || (takes_ranges && !v.range.empty());
-    if (!v.values.empty()) problems.push_back({v.where, "variable '" + v.name + "': a list of values is for sweeps; give a distribution, or 'value'"});
+    if (!v.values.empty())
+      problems.push_back(
+          {v.where, "variable '" + v.name + "': a list of values is for sweeps; give a distribution, or 'value'"});
     if (!v.range.empty() && !takes_ranges)
-      problems.push_back({v.where, "variable '" + v.name + "' has a range but no distribution: how likely its values are is not known"});
+      problems.push_back({v.where, "variable '" + v.name +
+                                       "' has a range but no distribution: how likely its values are is not known"});
   }
-  if (!is_any) problems.push_back({loaded.study.where, "a study of the kind '" + loaded.study.kind + "' needs a [[variable]] with a distribution"});
+  if (!is_any)
+    problems.push_back({loaded.study.where,
+                        "a study of the kind '" + loaded.study.kind + "' needs a [[variable]] with a distribution"});
 }
 
 void check_sample(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   check_random(loaded, true, problems);
   constexpr std::size_t k_most = 40; // of a low-discrepancy sequence that still fills space
   if (loaded.study.variables.size() > k_most && loaded.study.sample.design == "halton")
-    problems.push_back({loaded.study.sample.where, "Halton's sequence does not fill spaces of more than 40 variables: take \"sobol\" or \"latin_hypercube\""});
+    problems.push_back(
+        {loaded.study.sample.where,
+         "Halton's sequence does not fill spaces of more than 40 variables: take \"sobol\" or \"latin_hypercube\""});
   if (loaded.study.sample.design == "latin_hypercube" && loaded.study.sample.samples > 100000000)
-    problems.push_back({loaded.study.sample.where, "a Latin hypercube of so many samples does not fit into memory: take \"sobol\" or \"monte_carlo\""});
+    problems.push_back(
+        {loaded.study.sample.where,
+         "a Latin hypercube of so many samples does not fit into memory: take \"sobol\" or \"monte_carlo\""});
 }
 
 Answer run_sample(StudyRun& run) {

@@ -110,14 +110,17 @@ std::vector<Start> starts_of(StudyRun& run, const FitProblem& fit) {
   std::vector<VectorXd> points{fit.nominal()};
   for (long k = 1; k < run.study().fit.starts; ++k) {
     VectorXd z(fit.size());
-    for (Eigen::Index i = 0; i < z.size(); ++i) z[i] = random.uniform(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i));
+    for (Eigen::Index i = 0; i < z.size(); ++i)
+      z[i] = random.uniform(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i));
     points.push_back(z);
   }
   std::vector<VectorXd> rows = fit.problem().residuals(points);
   std::vector<Start> starts;
   for (std::size_t k = 0; k < points.size(); ++k)
     if (rows[k].size() > 0) starts.push_back({points[k], std::move(rows[k])});
-  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.residuals.squaredNorm() < b.residuals.squaredNorm(); });
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) {
+    return a.residuals.squaredNorm() < b.residuals.squaredNorm();
+  });
   return starts;
 }
 
@@ -132,12 +135,13 @@ std::vector<LeastSquaresMinimum> search(StudyRun& run, const FitProblem& fit) {
     f.samples = run.evaluator.asked();
     run.evaluator.note(f);
   }
-  std::stable_sort(minima.begin(), minima.end(), [](const LeastSquaresMinimum& a, const LeastSquaresMinimum& b) { return a.sum < b.sum; });
+  std::stable_sort(minima.begin(), minima.end(),
+                   [](const LeastSquaresMinimum& a, const LeastSquaresMinimum& b) { return a.sum < b.sum; });
   return minima;
 }
 
-// Other directions that span the same space, each of as few parameters as can be (Gauss and Jordan, on columns): several
-// combinations that a record does not tell have no order, and any mixture of them is another.
+// Other directions that span the same space, each of as few parameters as can be (Gauss and Jordan, on columns):
+// several combinations that a record does not tell have no order, and any mixture of them is another.
 Eigen::MatrixXd plainest(Eigen::MatrixXd ways) {
   for (Eigen::Index k = 0; k < ways.cols(); ++k) {
     Eigen::Index row = 0, column = 0;
@@ -177,8 +181,11 @@ public:
     keep_histories();
     char text[300];
     std::snprintf(text, sizeof text,
-                  "Intervals of %g %%: of first order, by %s, for residuals that are independent and normal; %ld measured values, %ld parameters.",
-                  100.0 * run_.study().fit.confidence, fit_.has_noise() ? "the normal distribution with the stated noise" : "Student's distribution with the noise found",
+                  "Intervals of %g %%: of first order, by %s, for residuals that are independent and normal; %ld "
+                  "measured values, %ld parameters.",
+                  100.0 * run_.study().fit.confidence,
+                  fit_.has_noise() ? "the normal distribution with the stated noise"
+                                   : "Student's distribution with the noise found",
                   static_cast<long>(best_.residuals.size()), static_cast<long>(fit_.size()));
     answer_.notes.emplace_back(text);
     return std::move(answer_);
@@ -222,9 +229,12 @@ private:
       if (rise > 0.5 && rise < 2.0) continue;
       for (Eigen::Index i = 0; i < fit_.size(); ++i)
         if (std::abs(told_.directions(i, static_cast<Eigen::Index>(j / 2))) > 0.1)
-          off_[static_cast<std::size_t>(i)] = std::isnan(rise) ? "at an end of its interval the run has no result"
-                                              : in_words("the interval is of first order, which is off: at its end the sum of squares rises %.2g "
-                                                         "times as much as it should", rise);
+          off_[static_cast<std::size_t>(i)] =
+              std::isnan(rise)
+                  ? "at an end of its interval the run has no result"
+                  : in_words("the interval is of first order, which is off: at its end the sum of squares rises %.2g "
+                             "times as much as it should",
+                             rise);
     }
   }
 
@@ -257,8 +267,10 @@ private:
     for (Eigen::Index i = 0; i < fit_.size(); ++i)
       for (Eigen::Index j = i + 1; j < fit_.size(); ++j) {
         if (is_untold(i) || is_untold(j)) continue;
-        Finding f = finding(fit_.variable(i).name + ", " + fit_.variable(j).name, "correlation", told_.covariance(i, j) / (deviation(i) * deviation(j)));
-        if (std::abs(f.value) > k_high) f.status = "hardly told apart: a change of one is nearly made up for by the other";
+        Finding f = finding(fit_.variable(i).name + ", " + fit_.variable(j).name, "correlation",
+                            told_.covariance(i, j) / (deviation(i) * deviation(j)));
+        if (std::abs(f.value) > k_high)
+          f.status = "hardly told apart: a change of one is nearly made up for by the other";
         answer_.findings.push_back(f);
       }
   }
@@ -278,10 +290,13 @@ private:
         if (std::abs(way[i]) < 0.05 * 0.01) continue;
         const Variable& v = fit_.variable(i);
         names += (names.empty() ? "" : ", ") + v.name;
-        changes += (changes.empty() ? "" : " and ") + v.name + " changes by " + in_words("%+.4g", way[i] * fit_.width(i)) + (v.unit.empty() || v.unit == "*" ? "" : " " + v.unit);
+        changes += (changes.empty() ? "" : " and ") + v.name + " changes by " +
+                   in_words("%+.4g", way[i] * fit_.width(i)) + (v.unit.empty() || v.unit == "*" ? "" : " " + v.unit);
       }
       Finding f = finding(names, "not told", seen);
-      f.status = names.find(',') == std::string::npos ? "the record does not hang on it" : "cannot be told apart: the record stays as it is where " + changes;
+      f.status = names.find(',') == std::string::npos
+                     ? "the record does not hang on it"
+                     : "cannot be told apart: the record stays as it is where " + changes;
       answer_.findings.push_back(f);
       answer_.degrade(Standing::not_met);
     }
@@ -302,33 +317,45 @@ private:
       const double share = h.noise ? products / n : together;
       const bool is_exact = sum <= 10.0 * fit_.problem().floor;
       if (count > 20 && !is_exact && share * std::sqrt(n) > k_sure)
-        f.status = in_words("residuals hang together (correlation %.2f from one to the next): the model does not describe the record to its noise, "
-                            "and the intervals are too narrow", together);
+        f.status = in_words("residuals hang together (correlation %.2f from one to the next): the model does not "
+                            "describe the record to its noise, "
+                            "and the intervals are too narrow",
+                            together);
       // χ² of n is nearly normal with deviation √(2n).
       else if (h.noise && sum > n + k_sure * std::sqrt(2.0 * n))
-        f.status = in_words("residuals are %.3g times the stated noise: the model does not describe the record, or the noise is larger", std::sqrt(sum / n));
+        f.status = in_words(
+            "residuals are %.3g times the stated noise: the model does not describe the record, or the noise is larger",
+            std::sqrt(sum / n));
       if (!f.status.empty()) answer_.degrade(Standing::not_trusted);
       answer_.findings.push_back(f);
       check_interpolation(h, place - count);
     }
   }
 
-  // Between samples of a run a straight line is off by an eighth of the second difference, which falls with the square of the step.
+  // Between samples of a run a straight line is off by an eighth of the second difference, which falls with the square
+  // of the step.
   void check_interpolation(const History& h, Eigen::Index place) {
-    const auto model = std::find_if(run_.loaded.models.begin(), run_.loaded.models.end(), [&](const auto& m) { return m->name == h.model; });
+    const auto model = std::find_if(run_.loaded.models.begin(), run_.loaded.models.end(),
+                                    [&](const auto& m) { return m->name == h.model; });
     const Sampling sampling = sampling_of(run_.study(), **model);
     if (sampling.is_exact) return;
     double largest = 0.0;
-    const auto fitted = [&](std::size_t i) { return h.measured[i] + best_.residuals[place + static_cast<Eigen::Index>(i)] * FitProblem::noise_of(h); };
+    const auto fitted = [&](std::size_t i) {
+      return h.measured[i] + best_.residuals[place + static_cast<Eigen::Index>(i)] * FitProblem::noise_of(h);
+    };
     for (std::size_t i = 1; i + 1 < h.t.size(); ++i) {
       const double a = h.t[i] - h.t[i - 1], b = h.t[i + 1] - h.t[i];
       const double curvature = 2.0 * ((fitted(i + 1) - fitted(i)) / b - (fitted(i) - fitted(i - 1)) / a) / (a + b);
       largest = std::max(largest, std::abs(curvature) * sampling.step * sampling.step / 8.0);
     }
     const double noise = std::sqrt(variance_) * FitProblem::noise_of(h);
-    answer_.notes.push_back("History '" + h.name + "': its times are no multiples of one step; runs are interpolated between samples every " +
-                            in_words("%.3g s, which is off by %.1g at most", sampling.step, largest) + " " + h.channel_unit + ".");
-    if (largest > 0.1 * noise) distrust("interpolating runs for '" + h.name + "' is off by more than a tenth of its noise; resample the record evenly");
+    answer_.notes.push_back("History '" + h.name +
+                            "': its times are no multiples of one step; runs are interpolated between samples every " +
+                            in_words("%.3g s, which is off by %.1g at most", sampling.step, largest) + " " +
+                            h.channel_unit + ".");
+    if (largest > 0.1 * noise)
+      distrust("interpolating runs for '" + h.name +
+               "' is off by more than a tenth of its noise; resample the record evenly");
   }
 
   // Another place that the record cannot tell from the best one.
@@ -340,7 +367,8 @@ private:
       way = way.cwiseProduct(told_.singular.head(told_.rank)) / std::sqrt(variance_);
       if (way.norm() < 2.0 * quantile_ || (other.at - best_.at).norm() < 1e-3) continue;
       std::string text;
-      for (Eigen::Index i = 0; i < fit_.size(); ++i) text += (i ? ", " : "") + fit_.variable(i).name + in_words(" = %.6g", fit_.value(i, other.at[i]));
+      for (Eigen::Index i = 0; i < fit_.size(); ++i)
+        text += (i ? ", " : "") + fit_.variable(i).name + in_words(" = %.6g", fit_.value(i, other.at[i]));
       Finding f = finding("", "another fit", other.sum / best_.sum);
       f.status = "fits as well: " + text;
       answer_.findings.push_back(f);
@@ -354,7 +382,8 @@ private:
     Eigen::Index place = 0;
     for (const History& h : run_.study().histories)
       for (std::size_t i = 0; i < h.t.size(); ++i)
-        points.push_back({h.name, h.t[i], h.measured[i], h.measured[i] + best_.residuals[place++] * FitProblem::noise_of(h)});
+        points.push_back(
+            {h.name, h.t[i], h.measured[i], h.measured[i] + best_.residuals[place++] * FitProblem::noise_of(h)});
     run_.store.set_histories(points);
   }
 
@@ -377,17 +406,25 @@ void check_fit(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   for (const Variable& v : study.variables) {
     fitted += !v.range.empty();
     if (!v.values.empty() || v.has_distribution())
-      problems.push_back({v.where, "variable '" + v.name + "': a fit takes 'range', where the parameter may lie, or 'value', which it keeps"});
+      problems.push_back(
+          {v.where,
+           "variable '" + v.name + "': a fit takes 'range', where the parameter may lie, or 'value', which it keeps"});
   }
-  if (fitted == 0 && !study.histories.empty()) problems.push_back({study.where, "a study of the kind 'fit' needs a [[variable]] with a range"});
-  const auto noisy = std::count_if(study.histories.begin(), study.histories.end(), [](const History& h) { return h.noise.has_value(); });
+  if (fitted == 0 && !study.histories.empty())
+    problems.push_back({study.where, "a study of the kind 'fit' needs a [[variable]] with a range"});
+  const auto noisy = std::count_if(study.histories.begin(), study.histories.end(),
+                                   [](const History& h) { return h.noise.has_value(); });
   if (study.histories.size() > 1 && noisy != static_cast<long>(study.histories.size()))
     problems.push_back({study.histories.back().where, "several histories need 'noise' each: it says what they weigh"});
   if (!study.histories.empty() && static_cast<long>(loaded.curve_size()) <= fitted)
-    problems.push_back({study.histories.front().where, std::to_string(loaded.curve_size()) + " measured values are too few for " + std::to_string(fitted) + " parameters"});
+    problems.push_back({study.histories.front().where, std::to_string(loaded.curve_size()) +
+                                                           " measured values are too few for " +
+                                                           std::to_string(fitted) + " parameters"});
   for (const Response& r : study.responses)
     if (r.what == "mean" || r.what == "path")
-      problems.push_back({r.where, "response '" + r.name + "': a fit samples runs at the measured times, not every output.step, which '" + r.what + "' is of"});
+      problems.push_back({r.where, "response '" + r.name +
+                                       "': a fit samples runs at the measured times, not every output.step, which '" +
+                                       r.what + "' is of"});
 }
 
 Answer run_fit(StudyRun& run) {

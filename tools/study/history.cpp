@@ -18,14 +18,17 @@ struct Conversion {
   double factor = 1.0, shift = 0.0;
 };
 
-Conversion conversion(const Node& entry, const char* key, const std::string& unit, const std::string& wanted, std::vector<Diagnostic>& problems) {
+Conversion conversion(const Node& entry, const char* key, const std::string& unit, const std::string& wanted,
+                      std::vector<Diagnostic>& problems) {
   if (unit.empty() || unit == wanted) return {};
   const Quantity zero = parse_quantity("0 " + unit, wanted), one = parse_quantity("1 " + unit, wanted);
-  if (!one.problem.empty()) problems.push_back({entry.find(key)->where(), "'" + std::string(key) + "': " + one.problem});
+  if (!one.problem.empty())
+    problems.push_back({entry.find(key)->where(), "'" + std::string(key) + "': " + one.problem});
   return {one.value - zero.value, zero.value};
 }
 
-std::optional<double> noise_of(const Node& entry, const History& h, const std::string& unit, std::vector<Diagnostic>& problems) {
+std::optional<double> noise_of(const Node& entry, const History& h, const std::string& unit,
+                               std::vector<Diagnostic>& problems) {
   if (h.noise_text.empty()) return {};
   double value = 0.0;
   const char* const end = h.noise_text.data() + h.noise_text.size();
@@ -36,7 +39,8 @@ std::optional<double> noise_of(const Node& entry, const History& h, const std::s
     value = quantity.value;
   }
   if (!(value > 0.0) || !std::isfinite(value))
-    problems.push_back({entry.find("noise")->where(), "'noise', the standard deviation of the measured values, must be above zero"});
+    problems.push_back(
+        {entry.find("noise")->where(), "'noise', the standard deviation of the measured values, must be above zero"});
   return value;
 }
 
@@ -45,11 +49,13 @@ std::optional<double> noise_of(const Node& entry, const History& h, const std::s
 void load_history(const Node& entry, const StudyModel& model, History& h, std::vector<Diagnostic>& problems) {
   const std::size_t before = problems.size();
   const auto& channels = model.system->channels;
-  const auto channel = std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == h.channel; });
+  const auto channel =
+      std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == h.channel; });
   if (channel == channels.end()) {
     std::vector<std::string> names;
     for (const Channel& c : channels) names.push_back(c.name);
-    problems.push_back({entry.find("channel")->where(), "no channel of model '" + model.name + "' is called '" + h.channel + "'" + did_you_mean(h.channel, names)});
+    problems.push_back({entry.find("channel")->where(), "no channel of model '" + model.name + "' is called '" +
+                                                            h.channel + "'" + did_you_mean(h.channel, names)});
     return;
   }
   const Conversion time = conversion(entry, "time_unit", h.time_unit, "s", problems);
@@ -67,11 +73,14 @@ void load_history(const Node& entry, const StudyModel& model, History& h, std::v
       const double at = time.factor * table.columns[t][i] + time.shift;
       if ((h.from && at < *h.from) || (h.to && at > *h.to)) continue;
       const Location line{h.file, table.lines[i], 1};
-      if (!h.t.empty() && !(at > h.t.back())) return problems.push_back({line, "the times of history '" + h.name + "' must rise from row to row"});
+      if (!h.t.empty() && !(at > h.t.back()))
+        return problems.push_back({line, "the times of history '" + h.name + "' must rise from row to row"});
       const double end = model.given.simulation.end;
       if (at < 0.0 || at > end * (1.0 + 1e-12))
-        return problems.push_back({line, "t = " + number_text(at) + " s of history '" + h.name + "' lies outside the run of model '" + model.name +
-                                             "', which goes from 0 to " + number_text(end) + " s: choose rows by 'from' and 'to', or let it end later"});
+        return problems.push_back({line, "t = " + number_text(at) + " s of history '" + h.name +
+                                             "' lies outside the run of model '" + model.name +
+                                             "', which goes from 0 to " + number_text(end) +
+                                             " s: choose rows by 'from' and 'to', or let it end later"});
       h.t.push_back(at);
       h.measured.push_back(value.factor * table.columns[y][i] + value.shift);
     }
@@ -100,7 +109,9 @@ Sampling sampling_of(const Study& study, const StudyModel& model) {
     const double step = gap / parts;
     // A step counted over the whole record is known better than one gap of it.
     const double fine = times.back() / std::round(times.back() / step);
-    if (std::all_of(times.begin(), times.end(), [&](double t) { return std::abs(t / fine - std::round(t / fine)) < k_off; })) return {fine, true};
+    if (std::all_of(times.begin(), times.end(),
+                    [&](double t) { return std::abs(t / fine - std::round(t / fine)) < k_off; }))
+      return {fine, true};
   }
   constexpr double k_parts = 8.0;
   return {std::max(gap / k_parts, times.back() / k_most), false};

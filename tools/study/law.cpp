@@ -35,7 +35,8 @@ struct JointLaw::Marginal {
     if (form == Form::normal) return a + b * z;
     if (form == Form::lognormal) return location + std::exp(a + b * z);
     // Both tails to full precision.
-    return z < 0.0 ? distribution.computeQuantile(normal_cdf(z), false)[0] : distribution.computeQuantile(normal_cdf(-z), true)[0];
+    return z < 0.0 ? distribution.computeQuantile(normal_cdf(z), false)[0]
+                   : distribution.computeQuantile(normal_cdf(-z), true)[0];
   }
 };
 
@@ -71,21 +72,23 @@ void check_fields(const Variable& v) {
     bool is_given;
     const char* of; ///< distributions that take it
   };
-  const Given all[] = {{"mean", v.mean.has_value(), "normal lognormal uniform weibull gumbel beta exponential"},
-                       {"standard_deviation", v.standard_deviation.has_value(), "normal lognormal uniform weibull gumbel beta"},
-                       {"cov", v.cov.has_value(), "normal lognormal uniform weibull gumbel beta"},
-                       {"low", v.low.has_value(), "uniform triangular beta"},
-                       {"high", v.high.has_value(), "uniform triangular beta"},
-                       {"mode", v.mode.has_value(), "triangular"},
-                       {"shape", v.shape.has_value(), "weibull beta"},
-                       {"shape2", v.shape2.has_value(), "beta"},
-                       {"scale", v.scale.has_value(), "weibull gumbel exponential"},
-                       {"location", v.location.has_value(), "lognormal weibull gumbel exponential"}};
+  const Given all[] = {
+      {"mean", v.mean.has_value(), "normal lognormal uniform weibull gumbel beta exponential"},
+      {"standard_deviation", v.standard_deviation.has_value(), "normal lognormal uniform weibull gumbel beta"},
+      {"cov", v.cov.has_value(), "normal lognormal uniform weibull gumbel beta"},
+      {"low", v.low.has_value(), "uniform triangular beta"},
+      {"high", v.high.has_value(), "uniform triangular beta"},
+      {"mode", v.mode.has_value(), "triangular"},
+      {"shape", v.shape.has_value(), "weibull beta"},
+      {"shape2", v.shape2.has_value(), "beta"},
+      {"scale", v.scale.has_value(), "weibull gumbel exponential"},
+      {"location", v.location.has_value(), "lognormal weibull gumbel exponential"}};
   for (const Given& given : all)
     if (given.is_given && (" " + std::string(given.of) + " ").find(" " + v.distribution + " ") == std::string::npos)
       complain(v, "a " + v.distribution + " distribution has no '" + given.name + "'");
   const bool has_moments = v.mean || v.standard_deviation || v.cov;
-  if (has_moments && (v.shape || v.scale || (v.distribution == "gumbel" && v.location) || (v.distribution == "uniform" && (v.low || v.high))))
+  if (has_moments && (v.shape || v.scale || (v.distribution == "gumbel" && v.location) ||
+                      (v.distribution == "uniform" && (v.low || v.high))))
     complain(v, "give either its moments or its parameters, not both");
 }
 
@@ -113,8 +116,10 @@ OT::Distribution by_parameters(const Variable& v) {
     return OT::Uniform(*v.low, *v.high);
   }
   if (v.low && v.high && *v.low >= *v.high) complain(v, "'low' must be below 'high'");
-  if (v.mode && v.low && v.high && (*v.mode < *v.low || *v.mode > *v.high)) complain(v, "'mode' must lie between 'low' and 'high'");
-  if (kind == "triangular") return OT::Triangular(needed(v, v.low, "low"), needed(v, v.mode, "mode"), needed(v, v.high, "high"));
+  if (v.mode && v.low && v.high && (*v.mode < *v.low || *v.mode > *v.high))
+    complain(v, "'mode' must lie between 'low' and 'high'");
+  if (kind == "triangular")
+    return OT::Triangular(needed(v, v.low, "low"), needed(v, v.mode, "mode"), needed(v, v.high, "high"));
   if (kind == "weibull") {
     if (!v.mean) return OT::WeibullMin(needed(v, v.scale, "scale"), needed(v, v.shape, "shape"), location);
     const Moments m = moments_of(v);
@@ -154,19 +159,21 @@ OT::Distribution fitted(const Variable& v, const OT::Sample& sample) {
 }
 
 OT::Distribution by_measurements(const Variable& v, std::string& text) {
-  const bool has_more = v.mean || v.standard_deviation || v.cov || v.low || v.high || v.mode || v.shape || v.shape2 || v.scale || v.location;
+  const bool has_more = v.mean || v.standard_deviation || v.cov || v.low || v.high || v.mode || v.shape || v.shape2 ||
+                        v.scale || v.location;
   if (has_more) complain(v, "a distribution fitted to 'measured' takes no parameters");
   const CsvTable table = read_csv(v.measured, v.where);
   const std::size_t column = table.columns.size() == 1 && v.column.empty() ? 0 : table.column(v.column, v.where);
   const std::vector<double>& values = table.columns[column];
   constexpr std::size_t k_fewest = 5;
-  if (values.size() < k_fewest) complain(v, "'" + v.measured + "' has " + std::to_string(values.size()) + " values: too few for a distribution");
+  if (values.size() < k_fewest)
+    complain(v, "'" + v.measured + "' has " + std::to_string(values.size()) + " values: too few for a distribution");
   OT::Sample sample(values.size(), 1);
   for (std::size_t i = 0; i < values.size(); ++i) sample(i, 0) = values[i];
   const OT::Distribution distribution = fitted(v, sample);
   const double p = OT::FittingTest::Kolmogorov(sample, distribution, 0.05).getPValue();
-  text = ", fitted to " + std::to_string(values.size()) + " values (Kolmogorov's p " + number_text(std::round(p * 1000.0) / 1000.0) +
-         (p < 0.05 ? ": it does not fit" : "") + ")";
+  text = ", fitted to " + std::to_string(values.size()) + " values (Kolmogorov's p " +
+         number_text(std::round(p * 1000.0) / 1000.0) + (p < 0.05 ? ": it does not fit" : "") + ")";
   return distribution;
 }
 
@@ -191,8 +198,8 @@ std::string words_of(const Variable& v, const OT::Distribution& d, const std::st
     return std::string(text);
   };
   const std::string unit = v.unit.empty() || v.unit == "*" ? "" : " " + v.unit;
-  return (v.has_distribution() ? v.distribution : "uniform") + ", mean " + digits(d.getMean()[0]) + unit + ", standard deviation " +
-         digits(d.getStandardDeviation()[0]) + unit + fit;
+  return (v.has_distribution() ? v.distribution : "uniform") + ", mean " + digits(d.getMean()[0]) + unit +
+         ", standard deviation " + digits(d.getStandardDeviation()[0]) + unit + fit;
 }
 
 } // namespace
@@ -215,7 +222,8 @@ double mean_of(const Variable& variable) {
   return distribution_of(variable, text).getMean()[0];
 }
 
-JointLaw::JointLaw(const Study& study, std::vector<double> nominal, std::vector<Diagnostic>& problems) : nominal_(std::move(nominal)) {
+JointLaw::JointLaw(const Study& study, std::vector<double> nominal, std::vector<Diagnostic>& problems)
+    : nominal_(std::move(nominal)) {
   for (std::size_t i = 0; i < study.variables.size(); ++i) {
     const Variable& v = study.variables[i];
     if (!v.has_distribution() && v.range.size() != 2) continue;
@@ -268,7 +276,8 @@ public:
     const OT::Point weights = rule.getWeights();
     for (int i = 0; i < k_points; ++i) {
       z_.push_back(k_reach * (2.0 * nodes(i, 0) - 1.0));
-      w_.push_back(2.0 * k_reach * weights[i] * std::exp(-0.5 * z_.back() * z_.back()) / std::sqrt(2.0 * std::numbers::pi));
+      w_.push_back(2.0 * k_reach * weights[i] * std::exp(-0.5 * z_.back() * z_.back()) /
+                   std::sqrt(2.0 * std::numbers::pi));
     }
     standardise(a, a_);
     // Of the second at every z that may be met: a fine table is not exact, so it is evaluated where needed.
@@ -287,7 +296,8 @@ public:
     double sum = 0.0;
     for (int i = 0; i < k_points; ++i)
       for (int j = 0; j < k_points; ++j)
-        if (w_[i] * w_[j] > 1e-18) sum += w_[i] * w_[j] * a_[i] * (b_(rho0 * z_[i] + rest * z_[j]) - mean_b_) / deviation_b_;
+        if (w_[i] * w_[j] > 1e-18)
+          sum += w_[i] * w_[j] * a_[i] * (b_(rho0 * z_[i] + rest * z_[j]) - mean_b_) / deviation_b_;
     return sum;
   }
 
@@ -334,13 +344,14 @@ void JointLaw::correlate(const Study& study, std::vector<Diagnostic>& problems) 
   for (const Correlation& c : study.correlations) {
     std::size_t place[2]{};
     for (int k = 0; k < 2; ++k)
-      place[k] = static_cast<std::size_t>(std::find(random_.begin(), random_.end(), study.index_of_variable(c.between[k])) - random_.begin());
+      place[k] = static_cast<std::size_t>(
+          std::find(random_.begin(), random_.end(), study.index_of_variable(c.between[k])) - random_.begin());
     double rho = c.rho;
     if (c.of == "ranks") rho = 2.0 * std::sin(std::numbers::pi * c.rho / 6.0);
     if (c.of == "values") rho = normal_correlation(NatafIntegral(marginals_[place[0]], marginals_[place[1]]), c.rho);
     if (std::isnan(rho))
-      problems.push_back({c.where, "'" + c.between[0] + "' and '" + c.between[1] + "' cannot have a correlation of " + number_text(c.rho) +
-                                       ": their distributions differ too much"});
+      problems.push_back({c.where, "'" + c.between[0] + "' and '" + c.between[1] + "' cannot have a correlation of " +
+                                       number_text(c.rho) + ": their distributions differ too much"});
     matrix[place[0] * n + place[1]] = matrix[place[1] * n + place[0]] = rho;
   }
   root_.assign(n * (n + 1) / 2, 0.0);
@@ -353,7 +364,8 @@ void JointLaw::correlate(const Study& study, std::vector<Diagnostic>& problems) 
         continue;
       }
       if (!(sum > 1e-12)) {
-        problems.push_back({study.correlations.front().where, "the correlations contradict each other: their matrix is not positive definite"});
+        problems.push_back({study.correlations.front().where,
+                            "the correlations contradict each other: their matrix is not positive definite"});
         return;
       }
       root_[i * (i + 1) / 2 + i] = std::sqrt(sum);

@@ -16,8 +16,8 @@ using Eigen::VectorXd;
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
-// Central differences, `times` the problem's step wide. Where a point beside has no residuals, or lies beyond the end of a
-// range, the quotient is one-sided; where neither side has any, the column is not-a-number.
+// Central differences, `times` the problem's step wide. Where a point beside has no residuals, or lies beyond the end
+// of a range, the quotient is one-sided; where neither side has any, the column is not-a-number.
 MatrixXd differences(const LeastSquaresProblem& problem, const VectorXd& at, const VectorXd& here, double times) {
   const Eigen::Index n = at.size();
   std::vector<VectorXd> points;
@@ -32,7 +32,8 @@ MatrixXd differences(const LeastSquaresProblem& problem, const VectorXd& at, con
     const auto below = static_cast<std::size_t>(2 * i), above = below + 1;
     const bool has_below = rows[below].size() > 0, has_above = rows[above].size() > 0;
     const double left = has_below ? points[below][i] : at[i], right = has_above ? points[above][i] : at[i];
-    if (right > left) jacobian.col(i) = ((has_above ? rows[above] : here) - (has_below ? rows[below] : here)) / (right - left);
+    if (right > left)
+      jacobian.col(i) = ((has_above ? rows[above] : here) - (has_below ? rows[below] : here)) / (right - left);
     else jacobian.col(i).setConstant(k_nan);
   }
   return jacobian;
@@ -73,7 +74,8 @@ struct Linear {
 // At an end of its range, and it would go beyond.
 std::vector<bool> held_by(const VectorXd& at, const VectorXd& gradient) {
   std::vector<bool> held;
-  for (Eigen::Index i = 0; i < at.size(); ++i) held.push_back((at[i] <= 0.0 && gradient[i] > 0.0) || (at[i] >= 1.0 && gradient[i] < 0.0));
+  for (Eigen::Index i = 0; i < at.size(); ++i)
+    held.push_back((at[i] <= 0.0 && gradient[i] > 0.0) || (at[i] >= 1.0 && gradient[i] < 0.0));
   return held;
 }
 
@@ -132,7 +134,8 @@ LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd&
     while (!try_steps(problem, linear, damping, m)) {
       damping *= 1e5;
       if (damping < k_widest) continue;
-      if (left > k_stuck * m.sum / freedom) m.problem = "the search got stuck: the sum of squares has a kink or a jump there";
+      if (left > k_stuck * m.sum / freedom)
+        m.problem = "the search got stuck: the sum of squares has a kink or a jump there";
       return finish(), m;
     }
     if (before - m.sum <= 1e-12 * before && left <= k_stuck * m.sum / freedom) { // what is left is rounding
@@ -158,7 +161,8 @@ Identified identify(const LeastSquaresMinimum& minimum, double variance) {
     ++told.rank;
   told.covariance = MatrixXd::Zero(n, n);
   for (int k = 0; k < told.rank; ++k)
-    told.covariance += variance / (told.singular[k] * told.singular[k]) * told.directions.col(k) * told.directions.col(k).transpose();
+    told.covariance +=
+        variance / (told.singular[k] * told.singular[k]) * told.directions.col(k) * told.directions.col(k).transpose();
   return told;
 }
 

@@ -1,8 +1,9 @@
 // Least squares of residuals that cost a run each: Levenberg's and Marquardt's method with differences as derivatives.
 //
-// Parameters are given as shares of their ranges, 0 to 1, which bound them. Steps of difference follow the error of the runs
-// themselves: h = ∛ε of the parameter's size, where the error of the quotient by curvature, h², meets that by the run, ε/h.
-// Jacobians at h and 2h tell what the derivatives are known to. All that can be asked at once is asked at once.
+// Parameters are given as shares of their ranges, 0 to 1, which bound them. Steps of difference follow the error of the
+// runs themselves: h = ∛ε of the parameter's size, where the error of the quotient by curvature, h², meets that by the
+// run, ε/h. Jacobians at h and 2h tell what the derivatives are known to. All that can be asked at once is asked at
+// once.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,7 +34,8 @@ struct LeastSquaresMinimum {
 };
 
 /// From `start`, where there are residuals.
-[[nodiscard]] LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& residuals);
+[[nodiscard]] LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const Eigen::VectorXd& start,
+                                           const Eigen::VectorXd& residuals);
 
 /// What a minimum says about its parameters.
 struct Identified {
@@ -43,8 +45,8 @@ struct Identified {
   int rank = 0;                           ///< directions that are told
 };
 
-/// `variance`: of a residual. A direction is told if the Jacobian's singular value is beyond what derivatives are known to, and its
-/// standard deviation is less than half of the range.
+/// `variance`: of a residual. A direction is told if the Jacobian's singular value is beyond what derivatives are known
+/// to, and its standard deviation is less than half of the range.
 [[nodiscard]] Identified identify(const LeastSquaresMinimum& minimum, double variance);
 
 } // namespace steplap::study

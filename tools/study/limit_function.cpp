@@ -29,7 +29,8 @@ const std::vector<LimitValue>& LimitFunction::at(const std::vector<double>& poin
     LimitValue& limit = limits_[i];
     limit.is_bad = outcome.status != SampleStatus::ok;
     limit.g = outcome.numbers[places_[0]];
-    for (const std::size_t place : places_) limit.g = is_any_ ? std::min(limit.g, outcome.numbers[place]) : std::max(limit.g, outcome.numbers[place]);
+    for (const std::size_t place : places_)
+      limit.g = is_any_ ? std::min(limit.g, outcome.numbers[place]) : std::max(limit.g, outcome.numbers[place]);
     bad_ += limit.is_bad;
     if (limit.is_bad || limit.g >= 0.0) continue;
     const double distance = length_of(&points[i * n], n);

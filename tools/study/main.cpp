@@ -1,5 +1,5 @@
-// libexec/steplap-study: what `steplap study` runs. A program of its own, so that the libraries of studies cost the other
-// commands nothing at their start.
+// libexec/steplap-study: what `steplap study` runs. A program of its own, so that the libraries of studies cost the
+// other commands nothing at their start.
 #include "tools/steplap/command_line.h"
 #include "tools/study/commands.h"
 
@@ -12,9 +12,11 @@ int main(int argc, char** argv) {
   using namespace steplap;
   std::vector<std::string> arguments(argv + 1, argv + argc);
   const study::Ranks ranks;
-  const Program program{"steplap study", "studies: what if, how likely, how much does it matter; see docs/studies.md", study::study_commands(ranks)};
+  const Program program{"steplap study", "studies: what if, how likely, how much does it matter; see docs/studies.md",
+                        study::study_commands(ranks)};
   const bool is_file = !arguments.empty() && arguments.front().front() != '-' &&
-                       std::none_of(program.commands.begin(), program.commands.end(), [&](const Command& c) { return c.name == arguments.front(); });
+                       std::none_of(program.commands.begin(), program.commands.end(),
+                                    [&](const Command& c) { return c.name == arguments.front(); });
   if (is_file) arguments.insert(arguments.begin(), "run");
   const int code = run_program(program, arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1);
   return code_of_output(std::cout, std::cerr, code);

@@ -55,7 +55,8 @@ bool comes_back(const Model& given, const ModelVariant& variant) {
     Model model = given;
     variant.apply(model);
     const Model whole = completed(model);
-    return std::any_of(whole.elements.begin(), whole.elements.end(), [&](const ElementEntry& e) { return e.element->name == variant.gone; });
+    return std::any_of(whole.elements.begin(), whole.elements.end(),
+                       [&](const ElementEntry& e) { return e.element->name == variant.gone; });
   } catch (const ModelError&) {
     return false; // told by the sample
   }
@@ -101,7 +102,8 @@ void check_needs(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   if (loaded.models.size() != 1) problems.push_back({study.where, "a study of the kind 'needs' takes one model"});
   if (study.responses.empty()) problems.push_back({study.where, "a study of the kind 'needs' needs a [[response]]"});
   for (const Response& r : study.responses)
-    if (r.what == "verdict") problems.push_back({r.where, "a verdict is no response here: variants drop the model's criteria"});
+    if (r.what == "verdict")
+      problems.push_back({r.where, "a verdict is no response here: variants drop the model's criteria"});
 }
 
 Answer run_needs(StudyRun& run) {
@@ -132,11 +134,13 @@ Answer run_needs(StudyRun& run) {
       row.refused = std::string("cannot be: ") + name_of(outcome.status) + ": " + outcome.reason;
       row.change = std::numeric_limits<double>::infinity();
     }
-    if (comes_back(run.loaded.models.front()->given, variants[k])) row.refused = "cannot be: a table of the model puts it in again";
+    if (comes_back(run.loaded.models.front()->given, variants[k]))
+      row.refused = "cannot be: a table of the model puts it in again";
     for (std::size_t r = 0; r < responses && row.refused.empty(); ++r) {
       const double change = change_of(base.numbers[r], outcome.numbers[r]);
       if (std::isnan(change)) row.refused = "'" + run.study().responses[r].name + "' has no value then";
-      if (change > row.change || row.response.empty()) row.change = change, row.response = run.study().responses[r].name;
+      if (change > row.change || row.response.empty())
+        row.change = change, row.response = run.study().responses[r].name;
     }
     rows.push_back(row);
   }
@@ -154,8 +158,10 @@ Answer run_needs(StudyRun& run) {
     answer.findings.push_back(f);
   }
   char text[160];
-  std::snprintf(text, sizeof text, "%ld of %zu simplifications change no response by more than %g of its value, each by itself; together they may.", dispensable,
-                rows.size(), run.study().needs.accuracy);
+  std::snprintf(
+      text, sizeof text,
+      "%ld of %zu simplifications change no response by more than %g of its value, each by itself; together they may.",
+      dispensable, rows.size(), run.study().needs.accuracy);
   answer.notes.emplace_back(text);
   return answer;
 }

@@ -42,7 +42,9 @@ public:
     for (const Estimate& e : estimates_) add_findings(e, limit_, run_.study().failed, answer_);
     compare_estimates();
     if (limit_.bad() > 0)
-      answer_.notes.push_back(std::to_string(limit_.bad()) + " runs did not reach their end or are not to be trusted: they count as \"" + run_.study().failed + "\"");
+      answer_.notes.push_back(std::to_string(limit_.bad()) +
+                              " runs did not reach their end or are not to be trusted: they count as \"" +
+                              run_.study().failed + "\"");
     return std::move(answer_);
   }
 
@@ -68,11 +70,14 @@ private:
   // What speaks against a design point, "" if nothing does.
   std::string doubt(const DesignPoint& p) const {
     if (p.off_surface >= 1e-4 * std::max(1.0, std::abs(p.beta)))
-      return text_of("not on the limit state: |g| is %.3g there, %.3g standard deviations from zero", std::abs(p.g), p.off_surface);
-    if (!p.is_found) return text_of("not the nearest point around it: off the gradient's line by 1 - cos = %.3g", p.misalignment);
+      return text_of("not on the limit state: |g| is %.3g there, %.3g standard deviations from zero", std::abs(p.g),
+                     p.off_surface);
+    if (!p.is_found)
+      return text_of("not the nearest point around it: off the gradient's line by 1 - cos = %.3g", p.misalignment);
     const double slack = 1e-3 * std::max(1.0, p.beta);
     if (p.beta > 0.0 && limit_.nearest_failure() < p.beta - slack)
-      return text_of("another design point beats it: a sample failed at a distance of %.5g, nearer than %.5g", limit_.nearest_failure(), p.beta);
+      return text_of("another design point beats it: a sample failed at a distance of %.5g, nearer than %.5g",
+                     limit_.nearest_failure(), p.beta);
     return "";
   }
 
@@ -107,17 +112,27 @@ private:
     if (asks("sorm")) report_sorm(first);
     report_points();
     if (points_.failed_starts > 0)
-      answer_.notes.push_back(std::to_string(points_.failed_starts) + " of " + std::to_string(points_.starts) + " searches for a design point gave up: " + points_.trouble);
+      answer_.notes.push_back(std::to_string(points_.failed_starts) + " of " + std::to_string(points_.starts) +
+                              " searches for a design point gave up: " + points_.trouble);
   }
 
   void report_sorm(const DesignPoint& first) {
-    const std::pair<const char*, double> all[] = {{"probability (Breitung)", first.breitung}, {"probability (Hohenbichler)", first.hohenbichler}, {"probability (Tvedt)", first.tvedt}};
+    const std::pair<const char*, double> all[] = {{"probability (Breitung)", first.breitung},
+                                                  {"probability (Hohenbichler)", first.hohenbichler},
+                                                  {"probability (Tvedt)", first.tvedt}};
     for (const auto& [quantity, p] : all) {
       std::string status = doubt(first);
       const bool is_known = p > 0.0 && p < 1.0;
-      if (status.empty()) status = is_known ? sampling_doubt(p, "second order") : "the curvatures at the design point are too large for it, or unknown";
+      if (status.empty())
+        status = is_known ? sampling_doubt(p, "second order")
+                          : "the curvatures at the design point are too large for it, or unknown";
       add("sorm", quantity, is_known ? p : std::nan(""), status);
-      if (is_known) add("sorm", quantity == std::string("probability (Breitung)") ? "beta (Breitung)" : quantity == std::string("probability (Tvedt)") ? "beta (Tvedt)" : "beta (Hohenbichler)", -normal_quantile(p), status);
+      if (is_known)
+        add("sorm",
+            quantity == std::string("probability (Breitung)") ? "beta (Breitung)"
+            : quantity == std::string("probability (Tvedt)")  ? "beta (Tvedt)"
+                                                              : "beta (Hohenbichler)",
+            -normal_quantile(p), status);
     }
   }
 
@@ -132,19 +147,25 @@ private:
       answer_.findings.push_back({"form", name, "beta", p.beta, std::nan(""), std::nan(""), points_.samples, doubt(p)});
       for (std::size_t i = 0; i < random.size(); ++i) {
         const std::string& variable = run_.study().variables[random[i]].name;
-        answer_.findings.push_back({"form", name, variable, values[random[i]], std::nan(""), std::nan(""), points_.samples});
-        answer_.findings.push_back({"form", name, "importance of " + variable, p.alpha[i] * p.alpha[i], std::nan(""), std::nan(""), points_.samples});
+        answer_.findings.push_back(
+            {"form", name, variable, values[random[i]], std::nan(""), std::nan(""), points_.samples});
+        answer_.findings.push_back({"form", name, "importance of " + variable, p.alpha[i] * p.alpha[i], std::nan(""),
+                                    std::nan(""), points_.samples});
       }
     }
-    if (k > 1) answer_.notes.push_back(std::to_string(k) + " design points: the first order probability is of the nearest alone");
+    if (k > 1)
+      answer_.notes.push_back(std::to_string(k) +
+                              " design points: the first order probability is of the nearest alone");
   }
 
   void add(const char* method, const char* quantity, double value, const std::string& status) {
-    answer_.findings.push_back({method, limit_.subject(), quantity, value, std::nan(""), std::nan(""), points_.samples, status});
+    answer_.findings.push_back(
+        {method, limit_.subject(), quantity, value, std::nan(""), std::nan(""), points_.samples, status});
   }
 
   [[nodiscard]] bool has_trusted_estimate() const {
-    return std::any_of(estimates_.begin(), estimates_.end(), [](const Estimate& e) { return e.is_trusted && std::isfinite(e.cov); });
+    return std::any_of(estimates_.begin(), estimates_.end(),
+                       [](const Estimate& e) { return e.is_trusted && std::isfinite(e.cov); });
   }
 
   // Two samplings whose intervals lie apart: one of them has missed something.
@@ -153,8 +174,10 @@ private:
       for (std::size_t j = 0; j < i; ++j) {
         const Interval a = estimates_[i].interval(run_.study().failed), b = estimates_[j].interval(run_.study().failed);
         const double width = 0.5 * ((a.high - a.low) + (b.high - b.low));
-        if (a.low <= b.high + width && b.low <= a.high + width) continue; // 95 % intervals may miss each other by a little
-        answer_.notes.push_back(estimates_[i].method + " and " + estimates_[j].method + " contradict each other: one of them has missed a part of the failures");
+        if (a.low <= b.high + width && b.low <= a.high + width)
+          continue; // 95 % intervals may miss each other by a little
+        answer_.notes.push_back(estimates_[i].method + " and " + estimates_[j].method +
+                                " contradict each other: one of them has missed a part of the failures");
         answer_.degrade(Standing::not_trusted);
       }
   }
@@ -178,11 +201,13 @@ std::string list_text(const std::vector<std::string>& names) {
 void check_reliability(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   check_random(loaded, false, problems);
   const ReliabilitySettings& s = loaded.study.reliability;
-  if (loaded.study.limit_states.empty()) problems.push_back({loaded.study.where, "a study of the kind 'reliability' needs a [[limit_state]]"});
+  if (loaded.study.limit_states.empty())
+    problems.push_back({loaded.study.where, "a study of the kind 'reliability' needs a [[limit_state]]"});
   if (s.methods.empty()) problems.push_back({s.where, "'methods' is empty; there are " + list_text(k_methods)});
   for (const std::string& method : s.methods)
     if (std::find(k_methods.begin(), k_methods.end(), method) == k_methods.end())
-      problems.push_back({s.where, "there is no method '" + method + "'" + did_you_mean(method, k_methods) + "; there are " + list_text(k_methods)});
+      problems.push_back({s.where, "there is no method '" + method + "'" + did_you_mean(method, k_methods) +
+                                       "; there are " + list_text(k_methods)});
   std::vector<std::string> names;
   for (const LimitState& l : loaded.study.limit_states) names.push_back(l.name);
   for (const std::string& name : s.limit_states)

@@ -17,8 +17,11 @@ std::size_t block_of(const LimitFunction& limit, const SamplingTarget& target) {
 
 class Clock {
 public:
-  Clock(LimitFunction& limit, const SamplingTarget& target) : limit_(limit), target_(target), begin_(limit.run().evaluator.seconds()) {}
-  [[nodiscard]] bool is_over() const { return target_.seconds && limit_.run().evaluator.seconds() - begin_ > *target_.seconds; }
+  Clock(LimitFunction& limit, const SamplingTarget& target)
+      : limit_(limit), target_(target), begin_(limit.run().evaluator.seconds()) {}
+  [[nodiscard]] bool is_over() const {
+    return target_.seconds && limit_.run().evaluator.seconds() - begin_ > *target_.seconds;
+  }
 
 private:
   LimitFunction& limit_;
@@ -30,7 +33,8 @@ void say_why_it_ended(Estimate& e, const SamplingTarget& target, bool is_late) {
   e.is_target_met = e.cov <= target.cov;
   if (e.is_target_met) return;
   char text[160];
-  std::snprintf(text, sizeof text, "%s: coefficient of variation %.3g, %.3g was asked for", is_late ? "time was up" : "all samples used", e.cov, target.cov);
+  std::snprintf(text, sizeof text, "%s: coefficient of variation %.3g, %.3g was asked for",
+                is_late ? "time was up" : "all samples used", e.cov, target.cov);
   e.status = text;
 }
 
@@ -84,7 +88,8 @@ Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target) {
     const std::size_t count = std::min(block, static_cast<std::size_t>(target.samples - e.samples));
     points.clear();
     for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t d = 0; d < n; ++d) points.push_back(random.normal(static_cast<std::uint64_t>(e.samples) + i, static_cast<std::uint32_t>(d)));
+      for (std::size_t d = 0; d < n; ++d)
+        points.push_back(random.normal(static_cast<std::uint64_t>(e.samples) + i, static_cast<std::uint32_t>(d)));
     for (const LimitValue& value : limit.at(points)) {
       bad += value.is_bad;
       failures += !value.is_bad && value.g < 0.0;
@@ -122,7 +127,10 @@ public:
   void draw(const CounterRandom& random, std::uint64_t sample, std::vector<double>& points) const {
     const double share = random.uniform(sample, 0);
     const bool is_wide = share < k_wide;
-    const std::size_t k = is_wide ? 0 : std::min(centres_.size() - 1, static_cast<std::size_t>((share - k_wide) / (1.0 - k_wide) * static_cast<double>(centres_.size())));
+    const std::size_t k =
+        is_wide ? 0
+                : std::min(centres_.size() - 1, static_cast<std::size_t>((share - k_wide) / (1.0 - k_wide) *
+                                                                         static_cast<double>(centres_.size())));
     for (std::size_t d = 0; d < dimension_; ++d) {
       const double z = random.normal(sample, static_cast<std::uint32_t>(d + 2));
       points.push_back(is_wide ? wide_ * z : centres_[k][d] + z);
@@ -147,7 +155,8 @@ private:
   // Densities over that of the standard normal.
   [[nodiscard]] double wide_part(const double* u) const {
     const double distance = length_of(u, dimension_);
-    return k_wide * std::pow(wide_, -static_cast<double>(dimension_)) * std::exp(0.5 * distance * distance * (1.0 - 1.0 / (wide_ * wide_)));
+    return k_wide * std::pow(wide_, -static_cast<double>(dimension_)) *
+           std::exp(0.5 * distance * distance * (1.0 - 1.0 / (wide_ * wide_)));
   }
 
   static constexpr double k_wide = 0.2;
@@ -172,7 +181,8 @@ Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const S
   std::vector<double> points, stray;
   double nearest_stray = std::numeric_limits<double>::infinity();
   constexpr long k_fewest = 500; // before that an estimate of the scatter says little
-  while (e.samples < target.samples && !(safe.count >= k_fewest && e.cov <= target.cov) && !(is_late = clock.is_over())) {
+  while (e.samples < target.samples && !(safe.count >= k_fewest && e.cov <= target.cov) &&
+         !(is_late = clock.is_over())) {
     const std::size_t count = std::min(block, static_cast<std::size_t>(target.samples - e.samples));
     points.clear();
     for (std::size_t i = 0; i < count; ++i) proposal.draw(random, static_cast<std::uint64_t>(e.samples) + i, points);
@@ -214,7 +224,8 @@ Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const S
     e.status = "no failure was met around the design points";
     e.is_trusted = false;
   } else if (safe.largest > k_uneven * safe.sum) {
-    e.status += std::string(e.status.empty() ? "" : "; ") + "one sample carries more than a tenth of the estimate: its interval is not to be relied on";
+    e.status += std::string(e.status.empty() ? "" : "; ") +
+                "one sample carries more than a tenth of the estimate: its interval is not to be relied on";
     e.is_trusted = false;
   }
   return e;
@@ -223,7 +234,9 @@ Estimate importance_sampling(LimitFunction& limit, DesignPoints& design, const S
 namespace {
 
 // Beyond the radius what is left is below 1e-16 of the probability space, or so.
-double reach_of(std::size_t n) { return std::sqrt(OT::DistFunc::qGamma(0.5 * static_cast<double>(n), 1e-16, true) * 2.0); }
+double reach_of(std::size_t n) {
+  return std::sqrt(OT::DistFunc::qGamma(0.5 * static_cast<double>(n), 1e-16, true) * 2.0);
+}
 // Probability of being further out than r in n dimensions.
 double beyond(std::size_t n, double r) { return OT::DistFunc::pGamma(0.5 * static_cast<double>(n), 0.5 * r * r, true); }
 
@@ -236,7 +249,8 @@ struct Bracket {
 // Crossings of g along rays from the origin, all rays at a time: a look at even distances, then Illinois' rule.
 class Rays {
 public:
-  Rays(LimitFunction& limit, std::vector<double> directions) : limit_(limit), directions_(std::move(directions)), n_(limit.dimension()), count_(directions_.size() / n_) {}
+  Rays(LimitFunction& limit, std::vector<double> directions)
+      : limit_(limit), directions_(std::move(directions)), n_(limit.dimension()), count_(directions_.size() / n_) {}
 
   /// Probability of failure on each ray, given its direction; `is_bad` where a run on it had no result.
   void find(std::vector<double>& probability, std::vector<char>& is_bad, const LimitValue& origin) {
@@ -252,7 +266,8 @@ public:
       for (int k = 1; k <= k_looks; ++k) {
         const LimitValue& here = looks[i * k_looks + static_cast<std::size_t>(k - 1)];
         if (here.is_bad) is_bad[i] = 1;
-        else if ((here.g < 0.0) != (before < 0.0)) open.push_back({i, reach * (k - 1) / k_looks, reach * k / k_looks, before, here.g});
+        else if ((here.g < 0.0) != (before < 0.0))
+          open.push_back({i, reach * (k - 1) / k_looks, reach * k / k_looks, before, here.g});
         if (!here.is_bad) before = here.g;
       }
     }
@@ -329,7 +344,8 @@ Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
   WeightSum safe, unsafe;
   bool is_late = false;
   std::uint64_t ray = 0;
-  while (limit.asked() - before < target.samples && !(safe.count >= k_fewest && e.cov <= target.cov) && !(is_late = clock.is_over())) {
+  while (limit.asked() - before < target.samples && !(safe.count >= k_fewest && e.cov <= target.cov) &&
+         !(is_late = clock.is_over())) {
     std::vector<double> directions(k_rays * n);
     for (std::size_t i = 0; i < k_rays; ++i, ++ray) {
       for (std::size_t d = 0; d < n; ++d) directions[i * n + d] = random.normal(ray, static_cast<std::uint32_t>(d));
@@ -356,7 +372,8 @@ Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
   if (safe.hits == 0) e.status = "no ray met failure";
   constexpr double k_uneven = 0.2;
   if (safe.hits && safe.largest > k_uneven * safe.sum) {
-    e.status += std::string(e.status.empty() ? "" : "; ") + "one ray carries more than a fifth of the estimate: its interval is not to be relied on";
+    e.status += std::string(e.status.empty() ? "" : "; ") +
+                "one ray carries more than a fifth of the estimate: its interval is not to be relied on";
     e.is_trusted = false;
   }
   return e;
@@ -365,11 +382,15 @@ Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
 void add_findings(const Estimate& e, const LimitFunction& limit, const std::string& failed, Answer& answer) {
   const bool is_both = e.bad > 0 && failed == "bounds";
   const auto add = [&](const char* quantity, double p, const Interval& interval) {
-    answer.findings.push_back({e.method, limit.subject(), quantity, p, interval.low, interval.high, e.samples, e.status});
+    answer.findings.push_back(
+        {e.method, limit.subject(), quantity, p, interval.low, interval.high, e.samples, e.status});
     const auto beta = [](double q) { return q > 0.0 && q < 1.0 ? -normal_quantile(q) : std::nan(""); };
-    answer.findings.push_back({e.method, limit.subject(), "beta", beta(p), beta(interval.high), beta(interval.low), e.samples, e.status});
+    answer.findings.push_back(
+        {e.method, limit.subject(), "beta", beta(p), beta(interval.high), beta(interval.low), e.samples, e.status});
   };
-  if (!is_both) add("probability", failed == "unsafe" ? e.unsafe : e.safe, failed == "unsafe" ? e.unsafe_interval : e.safe_interval);
+  if (!is_both)
+    add("probability", failed == "unsafe" ? e.unsafe : e.safe,
+        failed == "unsafe" ? e.unsafe_interval : e.safe_interval);
   if (is_both) add("probability, runs without result as safe", e.safe, e.safe_interval);
   if (is_both) add("probability, runs without result as unsafe", e.unsafe, e.unsafe_interval);
   if (!e.is_trusted) answer.degrade(Standing::not_trusted);

@@ -46,13 +46,15 @@ const ChannelRange* range_of(const Response& r, const std::vector<ChannelRange>&
 // Over the samples written: of curves between them nothing is known here.
 double along(const Response& r, const Trajectory& trajectory) {
   const auto& channels = trajectory.channels();
-  const auto found = std::find_if(channels.begin(), channels.end(), [&](const Channel* c) { return matches_pattern(c->name, r.channel); });
+  const auto found = std::find_if(channels.begin(), channels.end(),
+                                  [&](const Channel* c) { return matches_pattern(c->name, r.channel); });
   if (found == channels.end() || trajectory.size() < 2) return k_nan;
   const auto column = static_cast<std::size_t>(found - channels.begin());
   double sum = 0.0;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const double before = trajectory.value(i - 1, column), after = trajectory.value(i, column);
-    sum += r.what == "path" ? std::abs(after - before) : 0.5 * (before + after) * (trajectory.time(i) - trajectory.time(i - 1));
+    sum += r.what == "path" ? std::abs(after - before)
+                            : 0.5 * (before + after) * (trajectory.time(i) - trajectory.time(i - 1));
   }
   return r.what == "path" ? sum : sum / (trajectory.time(trajectory.size() - 1) - trajectory.time(0));
 }
@@ -99,15 +101,17 @@ Model model_with(const LoadedStudy& loaded, const StudyModel& model, const doubl
   for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
     const Variable& v = loaded.study.variables[i];
     if (!is_set_in(v, model)) continue;
-    for (const std::string& path : v.paths) set_value(changed, path, v.is_factor ? values[i] * number_of(model.given, path) : values[i]);
+    for (const std::string& path : v.paths)
+      set_value(changed, path, v.is_factor ? values[i] * number_of(model.given, path) : values[i]);
   }
-  const std::size_t variant = loaded.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded.study.variables.size() - 1]);
+  const std::size_t variant =
+      loaded.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded.study.variables.size() - 1]);
   if (variant > 0) loaded.variants[variant - 1].apply(changed);
   return changed;
 }
 
-// What is the same in all runs of a model. A quarter of a run's time would go into extremes of channels that nobody asks for:
-// only those asked for are made, and those that tell whether a run is to be trusted.
+// What is the same in all runs of a model. A quarter of a run's time would go into extremes of channels that nobody
+// asks for: only those asked for are made, and those that tell whether a run is to be trusted.
 struct Scene::Runner {
   /// Number `variable` of the study is set at a path, times what the model has there or as it is.
   struct Setting {
@@ -124,7 +128,8 @@ struct Scene::Runner {
   std::vector<double> numbers;        ///< for the settings
   std::unique_ptr<Variants> variants;
 
-  Runner(const LoadedStudy& loaded, const StudyModel& which) : model(which), sampling(sampling_of(loaded.study, which)) {
+  Runner(const LoadedStudy& loaded, const StudyModel& which)
+      : model(which), sampling(sampling_of(loaded.study, which)) {
     for (const Response& r : loaded.study.responses)
       if (r.model == model.name && r.expression.empty()) ask(r);
     for (const History& h : loaded.study.histories)
@@ -188,7 +193,8 @@ void Scene::compare(const Runner& runner, const RunResult& result, Outcome& outc
   }
 }
 
-void Scene::look(const Runner& runner, const Model& whole, const System& system, const RunResult& result, Outcome& outcome) {
+void Scene::look(const Runner& runner, const Model& whole, const System& system, const RunResult& result,
+                 Outcome& outcome) {
   const Judgement judgement = judge(whole, system, result, "");
   if (!result.stop_reason.empty()) worsen(outcome, SampleStatus::stopped, result.stop_reason);
   if (!judgement.distrust.empty()) worsen(outcome, SampleStatus::untrusted, judgement.distrust);
@@ -224,11 +230,13 @@ void Scene::run_system(const Runner& runner, const Model& whole, System& system,
 
 void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
   try {
-    const std::size_t variant = loaded_.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded_.study.variables.size() - 1]);
+    const std::size_t variant =
+        loaded_.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded_.study.variables.size() - 1]);
     std::unique_ptr<System> system;
     std::optional<Model> changed; // the variants' own model does where nothing of it is changed
     if (variant == 0) {
-      for (std::size_t i = 0; i < runner.settings.size(); ++i) runner.numbers[i] = runner.settings[i].factor * values[runner.settings[i].variable];
+      for (std::size_t i = 0; i < runner.settings.size(); ++i)
+        runner.numbers[i] = runner.settings[i].factor * values[runner.settings[i].variable];
       system = runner.variants->make(runner.numbers);
       if (runner.is_judged) changed = runner.variants->model();
     } else {
@@ -240,7 +248,8 @@ void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
   } catch (const NumericalFailure& error) {
     worsen(outcome, SampleStatus::gave_up, error.what());
   } catch (const ModelError& error) {
-    worsen(outcome, SampleStatus::impossible, error.diagnostics().empty() ? error.what() : error.diagnostics().front().message);
+    worsen(outcome, SampleStatus::impossible,
+           error.diagnostics().empty() ? error.what() : error.diagnostics().front().message);
   } catch (const std::exception& error) {
     worsen(outcome, SampleStatus::gave_up, std::string("internal error: ") + error.what());
   }
@@ -261,7 +270,8 @@ void Scene::run(const double* values, Outcome& outcome) {
   for (const auto& [place, expression] : expressions_)
     values_[variables + place] = outcome.numbers[place] = expression(values_.data());
   for (std::size_t i = loaded_.study.responses.size(); i < numbers; ++i)
-    if (std::isnan(outcome.numbers[i])) worsen(outcome, SampleStatus::not_a_number, "limit state '" + loaded_.number_names()[i] + "' has no value");
+    if (std::isnan(outcome.numbers[i]))
+      worsen(outcome, SampleStatus::not_a_number, "limit state '" + loaded_.number_names()[i] + "' has no value");
   if (has_models) outcome.cpu_seconds = thread_cpu_seconds() - begin;
 }
 

@@ -68,13 +68,16 @@ struct Repetition {
 
 Repetition repeat(LimitFunction& limit, bool is_bad_unsafe, long k) {
   const Study& study = limit.run().study();
-  OT::RandomGenerator::SetSeed(static_cast<OT::UnsignedInteger>(study.seed * 1000003 + k * 7919 + (is_bad_unsafe ? 1 : 0)));
+  OT::RandomGenerator::SetSeed(
+      static_cast<OT::UnsignedInteger>(study.seed * 1000003 + k * 7919 + (is_bad_unsafe ? 1 : 0)));
   SubsetEvaluation evaluation(limit, is_bad_unsafe);
   const auto tally = evaluation.tally_;
   const auto samples = static_cast<OT::UnsignedInteger>(study.reliability.subset_samples);
-  const OT::UnsignedInteger block = std::max<OT::UnsignedInteger>(1, samples / 10), blocks = (samples + block - 1) / block;
+  const OT::UnsignedInteger block = std::max<OT::UnsignedInteger>(1, samples / 10),
+                            blocks = (samples + block - 1) / block;
   tally->first_level = static_cast<long>(blocks * block);
-  const OT::Function function{OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new SubsetEvaluation(evaluation)))};
+  const OT::Function function{
+      OT::Evaluation(OT::Pointer<OT::EvaluationImplementation>(new SubsetEvaluation(evaluation)))};
   const OT::RandomVector input{OT::Distribution(OT::Normal(limit.dimension()))};
   OT::SubsetSampling subset(OT::ThresholdEvent(OT::CompositeRandomVector(function, input), OT::Less(), 0.0));
   subset.setMaximumOuterSampling(blocks);
@@ -85,7 +88,8 @@ Repetition repeat(LimitFunction& limit, bool is_bad_unsafe, long k) {
   } catch (const OT::Exception& error) {
     problem = error.what();
   }
-  // Where the first level is all, it is crude Monte Carlo, and counted as such (OpenTURNS finds no variance there now and then).
+  // Where the first level is all, it is crude Monte Carlo, and counted as such (OpenTURNS finds no variance there now
+  // and then).
   const double share = static_cast<double>(tally->early) / static_cast<double>(tally->first_level);
   if (tally->samples >= tally->first_level && share >= subset.getConditionalProbability())
     return {share, std::sqrt((1.0 - share) / static_cast<double>(tally->early)), tally->early, tally->first_level, ""};
@@ -93,7 +97,8 @@ Repetition repeat(LimitFunction& limit, bool is_bad_unsafe, long k) {
   // Levels that come no nearer end without a failure, which OpenTURNS counts as if they had arrived.
   if (tally->failures == 0) return {0.0, 0.0, 0, 0, "no failure was met: its levels came no nearer"};
   const OT::Point thresholds = subset.getThresholdPerStep();
-  if (thresholds.getSize() == 0 || thresholds[thresholds.getSize() - 1] > 0.0) return {0.0, 0.0, 0, 0, "its levels did not arrive at failure"};
+  if (thresholds.getSize() == 0 || thresholds[thresholds.getSize() - 1] > 0.0)
+    return {0.0, 0.0, 0, 0, "its levels did not arrive at failure"};
   const OT::ProbabilitySimulationResult result = subset.getResult();
   return {result.getProbabilityEstimate(), result.getCoefficientOfVariation(), 0, 0, ""};
 }
@@ -112,8 +117,10 @@ Mean mean_of(const std::vector<Repetition>& all, double confidence) {
   if (least <= 0.0 || all.size() < 2) return mean;
   if (std::all_of(all.begin(), all.end(), [](const Repetition& r) { return r.samples > 0; })) {
     double failures = 0.0, samples = 0.0;
-    for (const Repetition& r : all) failures += static_cast<double>(r.failures), samples += static_cast<double>(r.samples);
-    return {failures / samples, std::sqrt((1.0 - failures / samples) / failures), proportion_interval(failures, samples, confidence)};
+    for (const Repetition& r : all)
+      failures += static_cast<double>(r.failures), samples += static_cast<double>(r.samples);
+    return {failures / samples, std::sqrt((1.0 - failures / samples) / failures),
+            proportion_interval(failures, samples, confidence)};
   }
   double squares = 0.0, inner = 0.0;
   for (const Repetition& r : all) {
@@ -127,13 +134,14 @@ Mean mean_of(const std::vector<Repetition>& all, double confidence) {
   return mean;
 }
 
-// Where all repetitions met nothing, a probability of zero with the bounds of nothing known is an honest answer; where some
-// did, their mean is none.
+// Where all repetitions met nothing, a probability of zero with the bounds of nothing known is an honest answer; where
+// some did, their mean is none.
 void add_problems(const std::vector<Repetition>& all, Estimate& e) {
   const auto failed = std::count_if(all.begin(), all.end(), [](const Repetition& r) { return !r.problem.empty(); });
   if (failed == 0) return;
   const auto first = std::find_if(all.begin(), all.end(), [](const Repetition& r) { return !r.problem.empty(); });
-  e.status = std::to_string(failed) + " of " + std::to_string(all.size()) + " repetitions have no result: " + first->problem;
+  e.status =
+      std::to_string(failed) + " of " + std::to_string(all.size()) + " repetitions have no result: " + first->problem;
   e.is_target_met = false;
   e.is_trusted = e.is_trusted && failed == static_cast<long>(all.size());
 }
@@ -167,7 +175,8 @@ Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target) {
   e.is_target_met = e.cov <= target.cov;
   if (!e.is_target_met) {
     char text[120];
-    std::snprintf(text, sizeof text, "%zu repetitions: coefficient of variation %.3g, %.3g was asked for", unsafe.size(), e.cov, target.cov);
+    std::snprintf(text, sizeof text, "%zu repetitions: coefficient of variation %.3g, %.3g was asked for",
+                  unsafe.size(), e.cov, target.cov);
     e.status = text;
   }
   add_problems(unsafe, e);
