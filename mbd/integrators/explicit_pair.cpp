@@ -37,14 +37,17 @@ void ExplicitPair::on_restart(Dynamics&) {
   start_pivot_ = highest_pivot_ = 1.0;
 }
 
-bool ExplicitPair::end_step(Dynamics& dynamics) {
-  if (!try_finish_step(dynamics)) return false;
+double ExplicitPair::shorter(double error) const {
+  if (!std::isfinite(error)) return k_shorter;
+  return std::clamp(0.9 * portable::pow(error, -1.0 / order_), k_shortest_retry, 0.9);
+}
+
+void ExplicitPair::note_end(double pivot) {
   ++steps_;
   // The first step's end tells what is usual here.
   const bool is_first = highest_pivot_ == 1.0;
-  start_pivot_ = dynamics.layout().smallest_pivot();
+  start_pivot_ = pivot;
   highest_pivot_ = is_first ? start_pivot_ : std::max(highest_pivot_, start_pivot_);
-  return true;
 }
 
 SingularCrossing::Step ExplicitPair::crossing_step(Dynamics& dynamics) {
@@ -112,7 +115,10 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
     if (!has_tried_crossing && comes_near_singularity(dynamics)) [[unlikely]] {
       has_tried_crossing = true;
       const double h_next = cross_singularity(dynamics, left);
-      if (h_next == 0.0 && end_step(dynamics)) return;
+      if (h_next == 0.0 && try_finish_step(dynamics)) {
+        note_end(dynamics.layout().smallest_pivot());
+        return;
+      }
       h = h_next == 0.0 ? k_shorter * h_ : h_next;
       continue;
     }
@@ -121,26 +127,29 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
       h = SingularPassage::k_shorter_end * h_;
       continue;
     }
+    double inside = 0.0;
     if (error <= 1.0) {
-      const double factor = control_.factor(error, is_retry);
-      // A step cut short by the limit says nothing against the longer one that was planned.
-      const double h_next = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
-      if (end_step(dynamics)) {
-        next_h_ = h_next;
+      if (!try_finish_step(dynamics)) {
+        ++rejections_;
+        h = k_shorter * h_;
+        continue;
+      }
+      const double pivot = dynamics.layout().smallest_pivot();
+      inside = dense_error(dynamics);
+      if (inside <= 1.0) {
+        const double factor = control_.factor(std::max(error, inside), is_retry);
+        // A step cut short by the limit says nothing against the longer one that was planned.
+        next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
+        note_end(pivot);
         return;
       }
-      ++rejections_;
-      h = k_shorter * h_;
-      continue;
     }
     ++rejections_;
-    if (passage.wants_other_stages()) {
+    if (inside <= 1.0 && passage.wants_other_stages()) {
       h = SingularPassage::k_shorter_across * h_;
       continue;
     }
-    h = std::isfinite(error)
-            ? h_ * std::clamp(0.9 * portable::pow(error, -1.0 / order_), k_shortest_retry, 0.9)
-            : k_shorter * h_;
+    h = h_ * shorter(std::max(error, inside));
     if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
       throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                              " s: the motion becomes singular there, or the tolerance is too small");

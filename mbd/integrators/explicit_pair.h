@@ -28,6 +28,9 @@ protected:
   [[nodiscard]] virtual double share_of_stability(Dynamics& dynamics) = 0;
   /// Stages, y1 and the error norm (accepted when ≤ 1) of a step of h_ from t0_.
   virtual double try_step(Dynamics& dynamics) = 0;
+  /// Of a step whose end is accepted and finished: error norm of its dense output, where the end's does not bound it;
+  /// beyond 1, which is no number too (infinite), the step is refused like any other.
+  [[nodiscard]] virtual double dense_error(Dynamics& /*dynamics*/) { return 0.0; }
   void on_restart(Dynamics& dynamics) override;
 
   template <const auto& Rows, std::size_t Row>
@@ -56,7 +59,8 @@ protected:
 private:
   [[nodiscard]] bool comes_near_singularity(const Dynamics& dynamics) const;
   double cross_singularity(Dynamics& dynamics, double left);
-  [[nodiscard]] bool end_step(Dynamics& dynamics);
+  void note_end(double pivot);
+  [[nodiscard]] double shorter(double error) const;
   [[nodiscard]] SingularCrossing::Step crossing_step(Dynamics& dynamics);
 
   StepControl control_;

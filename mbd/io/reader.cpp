@@ -343,7 +343,9 @@ void Reader::complete_model() {
   const std::size_t before = problems_.size();
   if (!complete(model_, places, problems_)) excuse_empty_scene();
   // A table that could not be applied might have given them.
-  report_missing_masses(model_.tables.empty() || problems_.size() == before);
+  // A table that could not be read might have given them: its own errors come first.
+  const bool are_tables_usable = std::all_of(tables_.begin(), tables_.end(), [](const TableSource& t) { return t.is_usable; });
+  report_missing_masses(model_.tables.empty() || (are_tables_usable && problems_.size() == before));
 }
 
 void Reader::report_missing_masses(bool is_certain) {

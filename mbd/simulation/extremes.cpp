@@ -394,6 +394,9 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
     if (sign * at(c, best) + 2.0 * gain + error <= record + slack) continue;
     if (2.0 * gain + error <= slack) continue;
     if (error > slack) return false;
+    // Beyond its pole's bound it is followed by its size, which the nodes have told: between them a polynomial of one over
+    // rounding may have any sign.
+    if (ranges_[c].channel->unit.empty() && std::abs(at(c, best)) > k_at_pole) continue;
     double a = k_thetas[low], b = k_thetas[high];
     double p = a + k_golden * (b - a), q = b - k_golden * (b - a);
     double at_p = sign * interpolate(c, level, p), at_q = sign * interpolate(c, level, q);
