@@ -135,7 +135,10 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
         continue;
       }
       const double pivot = dynamics.layout().smallest_pivot();
-      inside = dense_error(dynamics);
+      // Beside a singular position of joints what projection takes away is no error, and most of what stages differ by.
+      const double lowest = dynamics.lowest_pivot();
+      const bool is_beside_singular = lowest < k_crossed_pivot && lowest < 0.5 * highest_pivot_;
+      inside = is_beside_singular ? 0.0 : dense_error(dynamics);
       if (inside <= 1.0) {
         const double factor = control_.factor(std::max(error, inside), is_retry);
         // A step cut short by the limit says nothing against the longer one that was planned.

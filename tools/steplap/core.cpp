@@ -174,6 +174,14 @@ void print_steel(std::ostream& out, const Core& core, const CoreGeometry& geomet
   out << table;
 }
 
+// Is it not the only table whose yokes are in its active part?
+bool is_one_of_several(const Core& core, const Model& model) {
+  return std::count_if(model.tables.begin(), model.tables.end(), [&core](const TableEntry& entry) {
+           const auto* other = dynamic_cast<const Core*>(entry.table.get());
+           return other && other->active_part == core.active_part;
+         }) > 1;
+}
+
 void print_core(std::ostream& out, const Core& core, const Model& model) {
   const CoreGeometry geometry(core);
   out << core.name << ": ";
@@ -188,7 +196,7 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
   }
   if (const auto steel = yoke_steel(model, core.active_part))
     out << "  yokes: " << quantity_text(*steel, "kg") << " of the " << quantity_text(model.find_body(core.active_part)->mass, "kg") << " of '"
-        << core.active_part << "'\n";
+        << core.active_part << "'" << (is_one_of_several(core, model) ? ", those of all its tables together" : "") << "\n";
   for (std::size_t i = 0; i < core.all_limbs().size(); ++i) {
     out << "\n"
         << core.joint_name(i) << ": '" << core.all_limbs()[i] << "'"

@@ -89,8 +89,11 @@ std::string time_of_text(const RunSummary& summary, const ChannelRange& range, c
   return extreme_time_text(extreme.t, summary.error_of(range, &extreme == &range.low ? &ChannelError::t_low : &ChannelError::t_high));
 }
 
+// Of a joint that bears nothing but rounding, digits of its margin would say something that is not so.
 std::string small_margin_text(double margin, std::optional<double> error) {
+  constexpr double k_unloaded = 1e9; // beyond it a margin is followed by its size only (mbd/simulation/extremes.cpp)
   if (!std::isfinite(margin)) return "–";
+  if (margin > k_unloaded) return "> 1e9";
   if (error) return measured_text(margin, error, "");
   char text[32];
   std::snprintf(text, sizeof text, "%.3f", margin);
