@@ -1,10 +1,10 @@
 #include "elements/patch/polygon.h"
 
-#include "mbd/base/shown_text.h"
 #include "elements/patch/exact_polygon.h"
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 namespace steplap {
@@ -68,8 +68,9 @@ bool is_idle(const Vec2& a, const Vec2& b, const Vec2& c, double size) {
 }
 
 std::string vertex_name(const TracedRing& r, std::size_t i) {
-  return "vertex " + std::to_string(r.from[i]) + " (" + rounded_text(r.ring[i].x()) + ", " +
-         rounded_text(r.ring[i].y()) + ")";
+  std::ostringstream name; // six digits, of places that may be micrometres
+  name << "vertex " << r.from[i] << " (" << r.ring[i].x() << ", " << r.ring[i].y() << ")";
+  return name.str();
 }
 
 TracedRing without_idle_vertices(const Ring& input, const std::string& name) {
