@@ -38,8 +38,7 @@ STEPLAP_INLINE void add_rows(const SchurRow* rows, std::size_t count, const doub
 
 } // namespace
 
-ConstraintSolution::ConstraintSolution(const System& system, const Kinematics& kinematics)
-    : system_(system), motion_(kinematics.motion().data()) {}
+ConstraintSolution::ConstraintSolution(const Kinematics& kinematics) : motion_(kinematics.motion().data()) {}
 
 void ConstraintSolution::use(Layout& layout, const State& state) {
   layout_ = &layout;

@@ -22,7 +22,7 @@ struct Residual {
 
 class ConstraintSolution {
 public:
-  ConstraintSolution(const System& system, const Kinematics& kinematics);
+  explicit ConstraintSolution(const Kinematics& kinematics);
 
   /// Both must outlive the use of this object or be set anew.
   void use(Layout& layout, const State& state);
@@ -64,7 +64,6 @@ private:
   void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
   [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
 
-  const System& system_;
   const Motion<double>* motion_; ///< per slot
   Layout* layout_ = nullptr;
   const State* state_ = nullptr;

@@ -15,7 +15,7 @@ constexpr double k_placed_pivot = 1e-4;
 
 Dynamics::Dynamics(const System& system)
     : system_(system), force_(system.bodies.size() + system.links.slot_count()), kinematics_(system),
-      rows_(system, kinematics_), reactions_(system, kinematics_, force_.data()), motion_(kinematics_.motion().data()),
+      rows_(kinematics_), reactions_(system, kinematics_, force_.data()), motion_(kinematics_.motion().data()),
       friction_force_(reactions_.friction_force().data()) {
   contact_force_.assign(system.contact_count, 0.0);
   watch_.assign(system.watch_count, 1.0);

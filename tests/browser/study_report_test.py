@@ -242,8 +242,8 @@ class StudyReportTest(unittest.TestCase):
             # In sight without scrolling to the side.
             right = self.run_js("return Math.max(...[...document.querySelectorAll('#answer .doubt')].map(e => e.getBoundingClientRect().right))")
             self.assertLessEqual(right, width)
-        self.open("sample")
-        self.assertEqual(self.find(".badge").text, "DONE")
+        self.open("sample") # some of its runs have no result
+        self.assertEqual(self.find(".badge").text, "NOT MET")
 
     def test_failed_runs_are_counted_with_their_reasons(self):
         samples = self.export("sample")

@@ -265,9 +265,9 @@ TEST_CASE("cutouts that cannot be meant are named with their place in the file")
     CHECK(text.find(place) != std::string::npos);
   };
   refuses("[" + good + ", [[8.25, 0], [8.5, 0], [8.5, 0.25]]]", "'limb_cutouts[1]'", "lies outside the outer ring", "(8.5");
-  refuses("[[[5, -2], [9, -2], [9, 2], [5, 2]]]", "'limb_cutouts[0]'", "lies outside the outer ring", "(5.0");
+  refuses("[[[5, -2], [9, -2], [9, 2], [5, 2]]]", "'limb_cutouts[0]'", "lies outside the outer ring", "(5, 2)");
   refuses("[[[7.75, 0], [8.5, 0], [8.5, 0.25]]]", "outer ring", "meets 'limb_cutouts[0]''s", "(7.75");
-  refuses("[[[7.75, 0], [8, 0], [7.75, 0.25]]]", "outer ring", "must not cross or touch", "(8.0");
+  refuses("[[[7.75, 0], [8, 0], [7.75, 0.25]]]", "outer ring", "must not cross or touch", "(8, 0)");
   refuses("[[[6.25, 0], [6.5, 0.25], [6.5, 0], [6.25, 0.25]]]", "'limb_cutouts[0]'", "must not cross or touch itself", "(6.25");
   refuses("[[[6.25, 0], [6.5, 0.25], [6.75, 0.5]]]", "'limb_cutouts[0]'", "has no area", "(6.25");
   refuses("[[[6.25, 0], [6.5, 0.25]]]", "'limb_cutouts[0]'", "has no area", "(6.25");

@@ -217,18 +217,18 @@ TEST_CASE("Rodas5P is stiffly accurate and L-stable") {
 TEST_CASE("Gauss' method of eight stages: B(16), C(8), nodes symmetric; so of order 16 (Butcher)") {
   const steplap::GaussTable& table = steplap::gauss_table();
   constexpr int n = steplap::GaussTable::n;
-  constexpr double k_rounding = 1e-15; // coefficients are rounded from extended precision
+  constexpr double k_in_double = 1e-15; // coefficients are rounded from extended precision
   for (int k = 1; k <= 2 * n; ++k) {
     double sum = 0.0;
     for (int i = 0; i < n; ++i) sum += table.b[i] * std::pow(table.c[i], k - 1);
-    CHECK(std::abs(sum - 1.0 / k) < k_rounding);
+    CHECK(std::abs(sum - 1.0 / k) < k_in_double);
   }
   for (int i = 0; i < n; ++i) {
-    CHECK(std::abs(table.c[i] + table.c[n - 1 - i] - 1.0) < k_rounding);
+    CHECK(std::abs(table.c[i] + table.c[n - 1 - i] - 1.0) < k_in_double);
     for (int k = 1; k <= n; ++k) {
       double sum = 0.0;
       for (int j = 0; j < n; ++j) sum += table.a[i][j] * std::pow(table.c[j], k - 1);
-      CHECK(std::abs(sum - std::pow(table.c[i], k) / k) < k_rounding);
+      CHECK(std::abs(sum - std::pow(table.c[i], k) / k) < k_in_double);
     }
   }
   // Dense output: weights to the nodes are the rows of a, to the end b; at a node only that node counts. The

@@ -39,6 +39,27 @@ void hold(SceneWriter& w, RandomNumber own, const std::string& body) {
   }
 }
 
+// A convex outline that falls on the ground beside everything else: in a few scenes, drawn from a stream of its own.
+void drop(SceneWriter& w, RandomNumber own) {
+  constexpr double k_some = 0.1, k_depth = 1e-3; // how deep it sinks at rest, of its size
+  if (!own.chance(k_some)) return;
+  const int corners = 3 + own.below(4);
+  const double radius = 0.5 * w.size, turn = own.between(0.0, 6.0), m = w.mass * own.between(0.5, 2.0);
+  std::string outline = "[";
+  for (int i = 0; i < corners; ++i) {
+    const double angle = turn + 6.283185307179586 * (i + 0.3 * own.between(-1.0, 1.0)) / corners;
+    outline += (i > 0 ? ", " : "") + pair(neat(radius * std::cos(angle)), neat(radius * std::sin(angle)));
+  }
+  const double speed = w.size / w.duration;
+  const std::string body = w.body(m, 0.4 * m * radius * radius, {-10.0 * w.size, own.between(1.05, 2.0) * radius},
+                                  {{"outline", outline + "]"}, {"velocity", pair(speed * own.between(-2.0, 2.0), 0.0)}});
+  const double weight = m * std::max(w.gravity, speed * speed / w.size);
+  SceneWriter::Fields fields{{"a", quoted(body)}, {"stiffness", number(weight / (k_depth * w.size * w.size))}};
+  if (own.chance(0.7)) fields.push_back({"static_friction", number(own.between(0.05, 0.8))});
+  if (own.chance(0.5)) fields.push_back({"dissipation", number(own.between(0.01, 0.2) / speed)});
+  w.element("polygon_contact", fields, {body});
+}
+
 void add_cell(SceneWriter& w, const std::vector<NamedCell>& cells, At place, std::vector<std::string>& ends) {
   const NamedCell& cell = w.r.one_of(cells);
   w.scene.cells.insert(cell.name);
@@ -60,6 +81,7 @@ Scene random_scene(std::uint64_t seed) {
   for (std::size_t i = 1; i < ends.size(); ++i)
     if (w.r.chance(0.5)) couple(w, ends[i - 1], ends[i]);
   if (!ends.empty()) hold(w, RandomNumber(~seed), ends.front());
+  drop(w, RandomNumber(~seed * 3));
   return w.scene;
 }
 

@@ -138,6 +138,7 @@ TEST_CASE("what cannot be said is an error, of every command") {
       {"report", bench.at("ran") + "/a -o " + bench.at("r.html")},
       {"plot", bench.at("ran") + "/a --channels ball.y -o " + bench.at("p.svg")},
       {"check", model},
+      {"channels", model},
       {"equilibrium", model},
       {"modes", model},
       {"joint", core},
