@@ -71,7 +71,7 @@ struct RankFactor {
     const Eigen::Index k = cols - rank;
     NullSpace found;
     MatX vectors = MatX::Zero(cols, k);
-    vectors.bottomRows(k).setIdentity();
+    if (k > 0) vectors.bottomRows(k).setIdentity(); // of an empty matrix it would be an offset from null
     if (rank == 0) {
       for (Eigen::Index j = 0; j < k; ++j) found.pivots.push_back(static_cast<int>(j));
       found.vectors = vectors;
@@ -113,7 +113,8 @@ NullSpace null_space_of(const MatX& matrix, const std::vector<char>& left_out) {
   const MatX others = factor.solve(-matrix(Eigen::all, out));
   for (std::size_t k = 0; k < kept.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    found.vectors.row(kept[k]).head(known) = exact.vectors.row(i);
+    if (known > 0) found.vectors.row(kept[k]).head(known) = exact.vectors.row(i);
+    if (out.empty()) continue;
     found.vectors.row(kept[k]).tail(count - known) = (others.row(i).array().abs() < k_no_part).select(0.0, others.row(i));
   }
   for (const int pivot : exact.pivots) found.pivots.push_back(static_cast<int>(kept[pivot]));

@@ -1,6 +1,7 @@
 // Random polygons, twists and wrenches for the tests of elements/patch, the same on every machine.
 #pragma once
 
+#include "tests/sanitized.h"
 #include "elements/patch/limit_surface.h"
 #include "elements/patch/overlap.h"
 
@@ -13,7 +14,7 @@
 namespace steplap::patch_cases {
 
 /// Fewer cases under the address sanitizer, which is some twenty times slower.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef STEPLAP_TESTS_SANITIZED
 inline constexpr int k_thin_out = 20;
 #else
 inline constexpr int k_thin_out = 1;
@@ -23,6 +24,7 @@ inline constexpr int cases(int n) {
 }
 
 /// Uniform and other draws straight from the generator: the library's distributions differ.
+/// In which order arguments are drawn is the compiler's choice: clang's shapes are not GCC's.
 class Draw {
 public:
   explicit Draw(std::uint64_t seed) : engine_(seed) {}

@@ -1,5 +1,6 @@
 // Every hard case under every integrator: the known answer, energy, constraints, no number that is
 // none.
+#include "tests/sanitized.h"
 #include "tests/hard/hard_cases.h"
 
 #include <doctest/doctest.h>
@@ -9,7 +10,7 @@ using namespace steplap::hard;
 namespace {
 
 // Under the sanitizers each case is run by some of the methods in turn: that they are right is for the optimised build.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef STEPLAP_TESTS_SANITIZED
 constexpr std::size_t k_every = 5;
 #else
 constexpr std::size_t k_every = 1;
@@ -22,7 +23,7 @@ TEST_CASE("hard cases: every integrator gives the known answer") {
   for (const HardCase& hard_case : hard_cases())
     for (const std::string& integrator : integrators()) {
       if (++turn % k_every != 0) continue;
-#ifdef __SANITIZE_ADDRESS__ // some 3e5 steps, each with a dozen evaluations
+#ifdef STEPLAP_TESTS_SANITIZED // some 3e5 steps, each with a dozen evaluations
       if (hard_case.file == "belt_cycles" && is_first_order(integrator)) continue;
 #endif
       CAPTURE(hard_case.name);

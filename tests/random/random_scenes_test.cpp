@@ -1,5 +1,6 @@
 // Random scenes: all methods agree on them, and with an integration that shares nothing with them; and what looks at
 // them sees what is wrong where something is.
+#include "tests/sanitized.h"
 #include "mbd/analysis/assembly.h"
 #include "mbd/analysis/cross_check.h"
 #include "mbd/io/reader.h"
@@ -24,7 +25,7 @@ using namespace steplap::random;
 
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef STEPLAP_TESTS_SANITIZED
 constexpr std::uint64_t k_scenes = 15; // ten times as slow
 #else
 constexpr std::uint64_t k_scenes = 60; // of 500 that the tool runs: what a test has time for

@@ -1,5 +1,6 @@
 // What README and guides tell to type, typed: every command, in the order in which they stand, in a clean copy. What is left out
 // says why. A block begins with ```sh; transcripts and outputs do not.
+#include "tests/sanitized.h"
 #include "tests/tools/workbench.h"
 
 #include "tools/steplap/commands.h"
@@ -14,7 +15,7 @@ using namespace steplap::testing;
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef STEPLAP_TESTS_SANITIZED
 constexpr bool k_is_sanitized = true;
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)

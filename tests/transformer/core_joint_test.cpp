@@ -117,7 +117,8 @@ TEST_CASE("all joints of a core are as compliant, pressed and bounded as it says
   CHECK(all_of<StepLapJoint>(model_of("", {"core.core.tangential_stiffness=3 GN/m"}))[1]->tangential_stiffness == 3e9);
   // Rigid, without edges, uniform unless it says so.
   const StepLapJoint plain;
-  for (const StepLapJoint* joint : all_of<StepLapJoint>(model_of(""))) {
+  const Model without = model_of("");
+  for (const StepLapJoint* joint : all_of<StepLapJoint>(without)) {
     CHECK_FALSE(is_elastic(*joint));
     CHECK_FALSE(joint->edge_stiffness);
     CHECK_FALSE(joint->steel_thickness);
