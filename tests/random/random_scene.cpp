@@ -51,8 +51,9 @@ void drop(SceneWriter& w, RandomNumber own) {
     outline += (i > 0 ? ", " : "") + pair(neat(radius * std::cos(angle)), neat(radius * std::sin(angle)));
   }
   const double speed = w.size / w.duration;
-  const std::string body = w.body(m, 0.4 * m * radius * radius, {-10.0 * w.size, own.between(1.05, 2.0) * radius},
-                                  {{"outline", outline + "]"}, {"velocity", pair(speed * own.between(-2.0, 2.0), 0.0)}});
+  const double height = own.between(1.05, 2.0) * radius, along = speed * own.between(-2.0, 2.0);
+  const std::string body = w.body(m, 0.4 * m * radius * radius, {-10.0 * w.size, height},
+                                  {{"outline", outline + "]"}, {"velocity", pair(along, 0.0)}});
   const double weight = m * std::max(w.gravity, speed * speed / w.size);
   SceneWriter::Fields fields{{"a", quoted(body)}, {"stiffness", number(weight / (k_depth * w.size * w.size))}};
   if (own.chance(0.7)) fields.push_back({"static_friction", number(own.between(0.05, 0.8))});
