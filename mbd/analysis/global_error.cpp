@@ -233,11 +233,15 @@ std::vector<SimulationOptions> finer_options(const System& system, const Simulat
   return {finer, finest};
 }
 
-double predicted_cost(const System& system, const SimulationOptions& options, const RunStatistics& run) {
-  if (is_adaptive(system, options.integrator)) return k_finer_cost * run.cpu_seconds;
+double times_of_finer_runs(const System& system, const SimulationOptions& options) {
+  if (is_adaptive(system, options.integrator)) return k_finer_cost;
   double times = 0.0;
   for (const SimulationOptions& finer : finer_options(system, options)) times += options.settings.step / finer.settings.step;
-  return times * run.cpu_seconds;
+  return times;
+}
+
+double parts_evaluated(const System& system, const RunStatistics& run) {
+  return static_cast<double>(run.evaluations) * static_cast<double>(system.bodies.size() + system.element_names.size());
 }
 
 GlobalErrorEstimate estimate_global_error(const System& system, const State& initial, const SimulationOptions& options,

@@ -51,8 +51,11 @@ struct GlobalErrorEstimate {
 /// The options of the finer runs.
 [[nodiscard]] std::vector<SimulationOptions> finer_options(const System& system, const SimulationOptions& options);
 
-/// CPU time that the finer runs will take, from what the first one took, s.
-[[nodiscard]] double predicted_cost(const System& system, const SimulationOptions& options, const RunStatistics& run);
+/// How many times what the first run took the finer ones take together.
+[[nodiscard]] double times_of_finer_runs(const System& system, const SimulationOptions& options);
+
+/// Of a run: its evaluations times the bodies and elements that each of them goes through. The same on every computer.
+[[nodiscard]] double parts_evaluated(const System& system, const RunStatistics& run);
 
 /// `run` was made from `initial` with `options`, which ask for samples and extremes. Throws NumericalFailure if a finer
 /// run cannot be finished.

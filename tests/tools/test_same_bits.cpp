@@ -108,8 +108,6 @@ std::string first_difference(const std::string& a, const std::string& b) {
   return "one is longer";
 }
 
-// Say in the arguments whether errors are to be estimated: unasked, they are where that takes about a second, which a slow
-// machine may reach in one of the two runs only.
 void check_same_bytes(const std::string& arguments) {
   CAPTURE(arguments);
   const Workbench bench;

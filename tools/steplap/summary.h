@@ -19,7 +19,6 @@ struct RunSummary {
   std::map<std::string, long> event_counts;  ///< by the words of the kind
   double relative_energy_residual = 0.0;     ///< of the energy exchanged
   std::optional<GlobalErrorEstimate> global_error; ///< unless there is none
-  bool is_estimate_asked = false;            ///< --estimate-error or --no-estimate; else the time of computing decided
   std::string no_estimate;                   ///< why: "left out with --no-estimate"
   std::optional<double> estimate_cost;       ///< s, of computing, for which it was left out
   Judgement judgement;

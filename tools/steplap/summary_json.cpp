@@ -235,9 +235,6 @@ std::string summary_json(const Run& run, const RunSummary& summary) {
   json["accuracy"] = accuracy_json(statistics, summary);
   if (summary.global_error) json["global_error"] = global_error_json(*summary.global_error);
   else json["error_not_estimated"] = summary.no_estimate;
-  if (!summary.is_estimate_asked && run.failure.empty())
-    json["error_estimated_if_quick"] = "whether errors stand here was decided by the time the run took to compute, which hangs on the "
-                                       "computer; no other number does. --estimate-error or --no-estimate decide it for every computer";
   json["events"] = {{"count", run.result.events.size()}, {"by_kind", summary.event_counts}};
   if (Json joints = joints_json(run, summary); !joints.empty()) json["joints"] = std::move(joints);
   // Without criteria there is nothing to say, unless the run itself is not to be trusted.
