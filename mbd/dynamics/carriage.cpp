@@ -19,29 +19,28 @@ STEPLAP_INLINE Slide slide_at(const Carriage& k, double c, double s, double plac
   return now;
 }
 
-// W of the coordinates that are not locked: by cofactors, of which M has six.
+// W of the coordinates that are not locked, of three by cofactors.
 STEPLAP_INLINE void invert(Carrier& k) {
-  const auto& m = k.m;
-  auto& w = k.w;
+  const double* const m = k.m;
+  double* const w = k.w;
   if (k.free_count == 2) [[likely]] {
-    const int i = k.free[0], j = k.free[1];
-    const double inverse = 1.0 / (m[i][i] * m[j][j] - m[i][j] * m[i][j]);
-    w[i][i] = inverse * m[j][j];
-    w[j][j] = inverse * m[i][i];
-    w[i][j] = w[j][i] = -inverse * m[i][j];
-  } else if (k.free_count == 1) {
-    const int i = k.free[0]; // the rest of W is zero and stays so
-    w[i][i] = 1.0 / m[i][i];
+    const int i = k.free[0], j = k.free[1], ij = Carrier::mixed(i, j);
+    const double across = m[ij];
+    const double inverse = 1.0 / (m[i] * m[j] - across * across);
+    w[i] = inverse * m[j];
+    w[j] = inverse * m[i];
+    w[ij] = -(inverse * across);
   } else if (k.free_count == 3) {
-    const double c00 = m[1][1] * m[2][2] - m[1][2] * m[1][2], c01 = m[0][2] * m[1][2] - m[0][1] * m[2][2],
-                 c02 = m[0][1] * m[1][2] - m[0][2] * m[1][1];
-    const double inverse = 1.0 / (m[0][0] * c00 + m[0][1] * c01 + m[0][2] * c02);
-    w[0][0] = inverse * c00;
-    w[0][1] = w[1][0] = inverse * c01;
-    w[0][2] = w[2][0] = inverse * c02;
-    w[1][1] = inverse * (m[0][0] * m[2][2] - m[0][2] * m[0][2]);
-    w[1][2] = w[2][1] = inverse * (m[0][1] * m[0][2] - m[0][0] * m[1][2]);
-    w[2][2] = inverse * (m[0][0] * m[1][1] - m[0][1] * m[0][1]);
+    const double xx = m[1] * m[2] - m[5] * m[5], xy = m[4] * m[5] - m[3] * m[2], xt = m[3] * m[5] - m[4] * m[1];
+    const double inverse = 1.0 / (m[0] * xx + m[3] * xy + m[4] * xt);
+    w[0] = inverse * xx;
+    w[1] = inverse * (m[0] * m[2] - m[4] * m[4]);
+    w[2] = inverse * (m[0] * m[1] - m[3] * m[3]);
+    w[3] = inverse * xy;
+    w[4] = inverse * xt;
+    w[5] = inverse * (m[3] * m[4] - m[0] * m[5]);
+  } else if (k.free_count == 1) {
+    w[k.free[0]] = 1.0 / m[k.free[0]];
   }
 }
 
@@ -163,19 +162,15 @@ void Carriages::weigh() {
       yt += my * k.place;
       tt += k.inertia + k.mass * k.place * k.place;
     }
-    auto& m = carrier.m;
-    m[0][0] = xx;
-    m[0][1] = m[1][0] = xy;
-    m[1][1] = yy;
-    m[0][2] = m[2][0] = xt;
-    m[1][2] = m[2][1] = yt;
-    m[2][2] = tt;
+    double* const m = carrier.m;
+    m[0] = xx;
+    m[1] = yy;
+    m[2] = tt;
+    m[3] = xy;
+    m[4] = xt;
+    m[5] = yt;
     invert(carrier);
   }
-}
-
-void Carriages::weigh_rows(SchurRow* rows) const {
-  for (const Side& at : sides_) carriers[at.carrier].multiply(rows[at.row].j[at.side], rows[at.row].wj[at.side]);
 }
 
 void Carriages::weigh_row(SchurRow& row) const {
@@ -216,9 +211,8 @@ void Carriages::accelerate(const BodyForce* force, double* a) {
     for (int l = 0; l < carrier.locked_count; ++l) {
       const int at = carrier.locked[l];
       const double known = out[at];
-      left[0] -= carrier.m[0][at] * known;
-      left[1] -= carrier.m[1][at] * known;
-      left[2] -= carrier.m[2][at] * known;
+      for (int r = 0; r < carrier.free_count; ++r)
+        left[carrier.free[r]] -= carrier.m[Carrier::mixed(carrier.free[r], at)] * known;
     }
     carrier.multiply(left, out);
   }
@@ -258,8 +252,10 @@ void Carriages::expand(const double* a, double* cluster_a) const {
 }
 
 double Carriages::lack(const Carrier& carrier, int coordinate, const double* a) {
-  const double* const m = carrier.m[coordinate];
-  return m[0] * a[0] + m[1] * a[1] + m[2] * a[2] - carrier.force[coordinate];
+  double sum = carrier.m[coordinate] * a[coordinate] - carrier.force[coordinate];
+  for (int c = 0; c < 3; ++c)
+    if (c != coordinate) sum += carrier.m[Carrier::mixed(c, coordinate)] * a[c];
+  return sum;
 }
 
 BodyForce Carriages::held_by(const Carriage& k, const double* cluster_a, const BodyForce* force) const {

@@ -48,24 +48,28 @@ struct Carrier {
   int begin = 0, end = 0;  ///< carriages
   double mass = 0.0, inertia = 0.0;
   Pair<double> weight;
-  double m[3][3] = {};     ///< M
-  double w[3][3] = {};     ///< its inverse, without locked coordinates
+  double m[6] = {};        ///< M: xx, yy, θθ, xy, xθ, yθ
+  double w[6] = {};        ///< its inverse, likewise; of the coordinates that are free, the rest is not used
   double force[3] = {};    ///< f
   int free[3] = {}, free_count = 0, locked[3] = {}, locked_count = 0;
 
+  /// Where the entry of two different coordinates is.
+  [[nodiscard]] static constexpr int mixed(int i, int j) { return i + j + 2; }
+
   /// a = W f; locked coordinates stay as they are.
   STEPLAP_INLINE void multiply(const double* f, double* a) const {
-    if (free_count == 2) {
+    if (free_count == 2) [[likely]] {
       const int i = free[0], j = free[1];
-      const double ai = w[i][i] * f[i] + w[i][j] * f[j];
-      a[j] = w[i][j] * f[i] + w[j][j] * f[j];
-      a[i] = ai;
-      return;
-    }
-    const double all[3] = {f[0], f[1], f[2]};
-    for (int k = 0; k < free_count; ++k) {
-      const double* const row = w[free[k]];
-      a[free[k]] = row[0] * all[0] + row[1] * all[1] + row[2] * all[2];
+      const double fi = f[i], fj = f[j], across = w[mixed(i, j)];
+      a[i] = w[i] * fi + across * fj;
+      a[j] = across * fi + w[j] * fj;
+    } else if (free_count == 3) {
+      const double x = f[0], y = f[1], t = f[2];
+      a[0] = w[0] * x + w[3] * y + w[4] * t;
+      a[1] = w[3] * x + w[1] * y + w[5] * t;
+      a[2] = w[4] * x + w[5] * y + w[2] * t;
+    } else if (free_count == 1) {
+      a[free[0]] = w[free[0]] * f[free[0]];
     }
   }
 };
@@ -94,7 +98,9 @@ public:
   /// M and W.
   void weigh();
   /// W Jᵀ of the rows, whose gradients are filled in, where they act on carriers; of one that is not the layout's.
-  void weigh_rows(SchurRow* rows) const;
+  STEPLAP_INLINE void weigh_rows(SchurRow* rows) const {
+    for (const Side& at : sides_) carriers[at.carrier].multiply(rows[at.row].j[at.side], rows[at.row].wj[at.side]);
+  }
   void weigh_row(SchurRow& row) const;
   /// Accelerations of carriers without rows, those of locked coordinates being known; `force` per slot.
   void accelerate(const BodyForce* force, double* a);
