@@ -1,4 +1,5 @@
 #include "mbd/dynamics/constraint_solution.h"
+#include "mbd/dynamics/carriage.h"
 #include "mbd/dynamics/row_pull.h"
 
 #include <algorithm>
@@ -94,6 +95,7 @@ MeasureValue<double> ConstraintSolution::load(const RowSpec& spec, SchurRow& row
   for (int side = 0; side < 2; ++side)
     if (row.body[side] >= 0) std::copy_n(layout_->clusters[row.body[side]].w, 3, row.w[side]);
   to_clusters(spec, m, row);
+  if (layout_->carriages) layout_->carriages->weigh_row(row);
   m.bias = cluster_bias(spec, m);
   return m;
 }
@@ -156,8 +158,10 @@ STEPLAP_INLINE double ConstraintSolution::pull(std::size_t r) {
 void ConstraintSolution::prepare() {
   Layout& layout = *layout_;
   const auto count = static_cast<std::size_t>(layout.schur.size());
+  if (layout.carriages) layout.carriages->weigh();
   if (count == 0) return;
   for (std::size_t r = 0; r < count; ++r) multiplier_[r] = pull(r);
+  if (layout.carriages) layout.carriages->weigh_rows(layout.schur_rows.data());
   layout.schur.factor(layout.schur_rows);
 }
 
@@ -207,12 +211,14 @@ double ConstraintSolution::power_of_drives() const {
 // --- a projection -------------------------------------------------------------------------------------
 
 void ConstraintSolution::compare(double t) {
+  if (layout_->carriages) layout_->carriages->weigh();
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
     const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), t);
     const MeasureValue<double> m = load_active<false>(r);
     off_[r] = off_target(*layout_->active[r].spec, m.value, target.value);
     rate_off_[r] = m.rate - target.rate;
   }
+  if (layout_->carriages) layout_->carriages->weigh_rows(layout_->schur_rows.data());
   for (Mechanism& m : layout_->mechanisms) m.reduce_rows(layout_->schur_rows.data() + m.first_row);
 }
 
@@ -241,9 +247,11 @@ void ConstraintSolution::take_away(const double* r, double* change) {
   double* const response = response_.data();
   for (std::size_t i = 0; i < layout.active.size(); ++i) response[i] = -r[i];
   layout.schur.solve(layout.schur_rows, response);
+  if (layout.carriages) layout.carriages->hold_back(change);
   for (std::size_t i = 0; i < static_cast<std::size_t>(layout.schur.size()); ++i)
     for (int side = 0; side < 2; ++side)
       if (layout.schur_rows[i].body[side] >= 0) add_side(layout.schur_rows[i], side, response[i], change);
+  if (layout.carriages) layout.carriages->let_go(change);
   for (const Mechanism& m : layout.mechanisms) {
     if (m.row_count == 0) continue;
     m.solve_rows(response + m.first_row);

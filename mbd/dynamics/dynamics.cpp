@@ -1,5 +1,7 @@
 #include "mbd/dynamics/dynamics.h"
 
+#include "mbd/dynamics/carriage.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -59,7 +61,7 @@ void Dynamics::set_state(const State& state) {
     if (placed_.size() < packed.size()) placed_.resize(packed.size());
     if (kept_.size() < layout_->active.size()) kept_.resize(layout_->active.size());
   }
-  if (layout_->has_mechanisms()) cluster_a_.resize(3 * layout_->clusters.size());
+  if (layout_->has_joint_coordinates()) cluster_a_.resize(3 * layout_->clusters.size());
   decide_rank();
 }
 
@@ -209,7 +211,9 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
     a[k] = kinematics_.lock_target(i).acceleration;
     dy[k] = kinematics_.lock_target(i).rate;
   }
+  if (layout.carriages) layout.carriages->accelerate(force_.data(), a);
   rows_.solve(t, force_.data(), a);
+  if (layout.carriages) layout.carriages->follow(a);
   finish_power(a);
   finish_watches();
   double* const power = dy + 2 * n + inner_count();
@@ -274,7 +278,7 @@ Snapshot Dynamics::snapshot(const double* dy) {
   const double* const lambda = multipliers().data();
   reactions_.find_accelerations(cluster_a);
   reactions_.find_joints(cluster_a, lambda);
-  if (layout.has_mechanisms()) reactions_.find_pins(cluster_a, lambda);
+  if (layout.has_joint_coordinates()) reactions_.find_pins(cluster_a, lambda);
   reactions_.take_rows(dy + coordinate_count(), lambda);
   settle_loads();
   Snapshot s;

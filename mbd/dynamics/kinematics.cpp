@@ -1,5 +1,7 @@
 #include "mbd/dynamics/kinematics.h"
 
+#include "mbd/dynamics/carriage.h"
+
 namespace steplap {
 
 Kinematics::Kinematics(const System& system) : system_(system) {
@@ -31,6 +33,8 @@ void Kinematics::place(double t, const double* q, const double* v) {
   Motion<double>* const motion = motion_.data();
   for (Mechanism& m : layout_->mechanisms) m.place(q + m.first_coordinate, v + m.first_coordinate, motion);
   const int* const slots = layout.slots.data();
+  const double* const all_q = q;
+  const double* const all_v = v;
   for (int k = 0; k < layout.absolute_count; ++k) {
     Motion<double>& m = motion[slots[k]];
     m.x = q[0];
@@ -53,13 +57,17 @@ void Kinematics::place(double t, const double* q, const double* v) {
       (lock.coordinate == 0 ? m.vx : lock.coordinate == 1 ? m.vy : m.omega) = target.rate;
     }
   }
+  if (layout.carriages) layout.carriages->place(all_q, all_v, motion);
   for (const int i : layout.riding) place_member(i);
-  for (const ActiveLink& link : layout.links) motion[link.slot] = seen_from(motion[link.a], motion[link.b]);
+  const ActiveLink* const links = layout.links.data();
+  const std::size_t count = layout.carriages ? layout.carriages->plain_links : layout.links.size();
+  for (std::size_t i = 0; i < count; ++i) motion[links[i].slot] = seen_from(motion[links[i].a], motion[links[i].b]);
 }
 
 bool Kinematics::is_placed(double t, const double* y) const {
   if (t != time_) return false;
   const double* const v = y + layout_->coordinate_count;
+  if (layout_->carriages && !layout_->carriages->is_at(y, v)) return false;
   for (const Mechanism& m : layout_->mechanisms)
     if (!m.is_at(y + m.first_coordinate, v + m.first_coordinate)) return false;
   for (int k = 0; k < layout_->absolute_count; ++k) {

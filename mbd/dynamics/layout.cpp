@@ -1,6 +1,6 @@
 #include "mbd/dynamics/layout.h"
 
-#include "mbd/dynamics/mechanism_layout.h"
+#include "mbd/dynamics/carriage_layout.h"
 #include "mbd/math/portable_math.h"
 
 #include <algorithm>
@@ -227,8 +227,8 @@ void add_rows(const System& system, std::vector<ActiveRow> wanted, Layout& layou
   }
 }
 
-// Clusters of mechanisms behind the others, each mechanism's together.
-void take_joint_coordinates(JointCoordinates found, Layout& layout) {
+// Clusters of mechanisms behind the others, each mechanism's together, then carriages.
+void take_joint_coordinates(JointCoordinates found, std::unique_ptr<Carriages> carriages, Layout& layout) {
   std::vector<int> order, place(layout.clusters.size());
   for (int in = -1; in < static_cast<int>(found.mechanisms.size()); ++in) {
     if (in >= 0) found.mechanisms[in].first_cluster = static_cast<int>(order.size());
@@ -236,6 +236,8 @@ void take_joint_coordinates(JointCoordinates found, Layout& layout) {
       if (found.mechanism_of[k] == in) order.push_back(k);
     if (in < 0) layout.absolute_count = static_cast<int>(order.size());
   }
+  if (carriages)
+    for (const Carriage& k : carriages->carriages) order.push_back(k.cluster);
   const std::vector<Cluster> clusters = layout.clusters;
   for (std::size_t i = 0; i < order.size(); ++i) {
     place[order[i]] = static_cast<int>(i);
@@ -248,22 +250,63 @@ void take_joint_coordinates(JointCoordinates found, Layout& layout) {
     for (Member& member : m.members)
       if (member.cluster >= 0) member.cluster = place[member.cluster];
   layout.mechanisms = std::move(found.mechanisms);
+  layout.carriages = std::move(carriages);
+  if (!layout.carriages) return;
+  for (Carriage& k : layout.carriages->carriages) k.cluster = place[k.cluster];
+  for (Carrier& k : layout.carriages->carriers) k.cluster = place[k.cluster];
 }
 
 // Coordinates of the absolute clusters and of the mechanisms behind them.
 void number_coordinates(const System& system, Layout& layout) {
   int next = 3 * layout.absolute_count;
   for (int i = 0; i < next; ++i) layout.scales.push_back({i % 3 < 2, 0.0});
-  for (std::size_t i = 0; i < layout.mechanisms.size(); ++i) {
-    Mechanism& m = layout.mechanisms[i];
-    const int end = i + 1 < layout.mechanisms.size() ? layout.mechanisms[i + 1].first_cluster : layout.cluster_count();
+  for (Mechanism& m : layout.mechanisms) {
+    const auto clusters = std::count_if(m.members.begin(), m.members.end(), [](const Member& k) { return k.cluster >= 0; });
     m.first_coordinate = next;
-    m.close(end - m.first_cluster, system.gravity, layout.schur_rows.data() + m.first_row);
+    m.close(static_cast<int>(clusters), system.gravity, layout.schur_rows.data() + m.first_row);
     for (int k = 0; k < m.size(); ++k) layout.scales.push_back({m.is_place(k), m.reach(k)});
     next += m.size();
   }
+  if (layout.carriages)
+    for (Carriage& k : layout.carriages->carriages) {
+      k.coordinate = next++;
+      layout.scales.push_back({true, 0.0});
+    }
   layout.coordinate_count = next;
   layout.inverse_mass.resize(next, 1.0);
+}
+
+bool acts_on_carrier(const Layout& layout, const SchurRow& row) {
+  return layout.carriages && (layout.carriages->find_carrier(row.body[0]) || layout.carriages->find_carrier(row.body[1]));
+}
+
+// Their equations are not the clusters' own.
+void close_carriages(Layout& layout) {
+  Carriages& all = *layout.carriages;
+  all.close(layout.schur_rows);
+  for (Carrier& k : all.carriers)
+    for (int c = 0; c < 3; ++c) {
+      const bool is_locked = layout.clusters[k.cluster].w[c] == 0.0;
+      layout.inverse_mass[3 * k.cluster + c] = is_locked ? 0.0 : 1.0;
+      if (is_locked) k.locked[k.locked_count++] = c;
+      else k.free[k.free_count++] = c;
+    }
+  for (const Lock& lock : layout.locks) {
+    const Carrier* const k = all.find_carrier(lock.cluster);
+    all.carrier_of_lock.push_back(k ? static_cast<int>(k - all.carriers.data()) : -1);
+  }
+  // How a carrier sees what slides on it is known without looking.
+  const auto carriage_of = [&](const ActiveLink& link) -> Carriage* {
+    for (const int body : {link.a, link.b})
+      if (body == k_ground || !layout.placements[body].is_trivial || layout.placements[body].angle != 0.0) return nullptr;
+    const Carriage* const k = all.find(layout.placements[link.a].cluster);
+    const bool is_on = k && k->carrier >= 0 && all.carriers[k->carrier].cluster == layout.placements[link.b].cluster;
+    return is_on ? &all.carriages[k - all.carriages.data()] : nullptr;
+  };
+  const auto first = std::stable_partition(layout.links.begin(), layout.links.end(),
+                                           [&](const ActiveLink& link) { return !carriage_of(link); });
+  all.plain_links = static_cast<int>(first - layout.links.begin());
+  for (auto link = first; link != layout.links.end(); ++link) carriage_of(*link)->link = link->slot;
 }
 
 // Links of force elements are needed always, those of rows while they hold.
@@ -284,12 +327,14 @@ void find_links(const System& system, const State& state, Layout& layout) {
       layout.links.push_back({system.links.slot(i), system.links[i].a, system.links[i].b});
 }
 
-// One row of each pin or rod by which a member of a mechanism hangs.
+// One row of each pin or rod by which a member of a mechanism hangs, and of the guides of carriages.
 std::vector<const RowSpec*> pin_rows(const System& system, const Layout& layout) {
   std::vector<const RowSpec*> rows;
   for (const Mechanism& mechanism : layout.mechanisms)
     for (const Member& m : mechanism.members)
       if (m.block >= 0) rows.push_back(&system.rows[system.row_blocks[m.block].first]);
+  if (layout.carriages)
+    for (const Carriage& k : layout.carriages->carriages) rows.push_back(&system.rows[system.row_blocks[k.block].first]);
   return rows;
 }
 
@@ -308,6 +353,11 @@ void find_riding(const System& system, const State& state, Layout& layout) {
 }
 
 } // namespace
+
+Layout::Layout() = default;
+Layout::~Layout() = default;
+Layout::Layout(Layout&&) noexcept = default;
+Layout& Layout::operator=(Layout&&) noexcept = default;
 
 void layout_key(const State& state, Coordinates coordinates, LayoutKey& key) {
   key.resize(state.friction.size() + 1);
@@ -336,8 +386,10 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   if (coordinates != Coordinates::absolute && system.inner_count() == 0) {
     JointCoordinates found =
         find_joint_coordinates(system, state, layout, coordinates, is_block_merged, is_friction_merged);
+    std::unique_ptr<Carriages> carriages =
+        find_carriages(system, state, layout, coordinates, is_block_merged, is_friction_merged, found);
     is_pin = found.is_pin;
-    if (!found.mechanisms.empty()) take_joint_coordinates(std::move(found), layout);
+    if (carriages || !found.mechanisms.empty()) take_joint_coordinates(std::move(found), std::move(carriages), layout);
   }
   layout.is_carried.assign(system.bodies.size(), 0);
   if (std::find(is_merged.begin(), is_merged.end(), 1) != is_merged.end())
@@ -362,6 +414,7 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
     layout.inverse_mass.insert(layout.inverse_mass.end(), cluster.w, cluster.w + 3);
   }
   number_coordinates(system, layout);
+  if (layout.carriages) close_carriages(layout);
   for (Lock& lock : layout.locks)
     for (int r = 0; r < static_cast<int>(layout.active.size()); ++r)
       for (int side = 0; side < 2; ++side)
@@ -374,6 +427,10 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   for (std::size_t r = 0; r < layout.active.size(); ++r) {
     if (layout.active[r].spec->kind != MeasureKind::angle) continue;
     SchurRow& row = layout.schur_rows[r];
+    if (acts_on_carrier(layout, row)) { // there W is not
+      layout.active[r].pull = RowPullKind::other;
+      continue;
+    }
     row.is_constant = true;
     row.j[0][2] = 1.0;
     row.j[1][2] = -1.0;

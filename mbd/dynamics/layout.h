@@ -5,8 +5,8 @@
 // locked (infinite mass); what remains are rows. A layout is found once for a set of modes.
 //
 // Coordinates are the clusters' own, x, y and θ of each, or, in small islands with pins, joint coordinates
-// (mechanism.h). Clusters and active rows are numbered so that those in absolute coordinates come first; coordinates
-// likewise.
+// (mechanism.h), or the place along a guide (carriage.h). Clusters and active rows are numbered so that those in
+// absolute coordinates come first, then those of mechanisms, then carriages; coordinates likewise.
 #pragma once
 
 #include "mbd/dynamics/load_sharing.h"
@@ -19,6 +19,8 @@
 #include <vector>
 
 namespace steplap {
+
+class Carriages;
 
 /// What describes islands for which there is a choice; `automatic`: joint coordinates where they pay.
 enum class Coordinates : unsigned char { automatic, joint, absolute };
@@ -104,10 +106,16 @@ struct CoordinateScale {
 using LayoutKey = std::vector<std::uint64_t>;
 
 struct Layout {
+  Layout();
+  ~Layout();
+  Layout(Layout&&) noexcept;
+  Layout& operator=(Layout&&) noexcept;
+
   LayoutKey key;
   std::vector<Cluster> clusters;
   int absolute_count = 0;            ///< clusters in absolute coordinates, the first ones
   std::vector<Mechanism> mechanisms; ///< of the others
+  std::unique_ptr<Carriages> carriages; ///< and what slides on a guide; null: nothing
   int coordinate_count = 0;
   std::vector<CoordinateScale> scales; ///< per coordinate
   std::vector<Placement> placements; ///< per body
@@ -141,6 +149,8 @@ struct Layout {
 
   [[nodiscard]] int cluster_count() const { return static_cast<int>(clusters.size()); }
   [[nodiscard]] bool has_mechanisms() const { return !mechanisms.empty(); }
+  /// Some clusters are not in absolute coordinates.
+  [[nodiscard]] bool has_joint_coordinates() const { return !mechanisms.empty() || carriages; }
   /// The mechanism of a cluster or row that is not absolute.
   [[nodiscard]] const Mechanism& mechanism_of_cluster(int cluster) const {
     return *std::find_if(mechanisms.rbegin(), mechanisms.rend(),

@@ -14,7 +14,8 @@
 // and M⁻¹Jᵀ apart. They follow from those of the clusters, T being their velocities by the coordinates' rates, by
 //   δv = T δṡ + (∂(T ṡ)/∂s) δs,   D_s = Tᵀ(D T − m ∂a/∂ṡ)
 //   K_s = Tᵀ(K T + D ∂(T ṡ)/∂s − m ∂a/∂s) + (∂Tᵀ/∂s)(Q + Jᵀλ − m a)
-// with a = T s̈ + b at constant s̈: all in closed form, since a coordinate turns but its own member's vectors.
+// with a = T s̈ + b at constant s̈: all in closed form, since a coordinate turns but its own member's vectors. The same of
+// carriages and their carriers (carriage.h), where an angle turns the guide as well.
 //
 // Inner states of force elements (roles.h) bring forces of their own and follow rates of their own,
 //   δQ += F_z δz,   δż = P δq + V δv + Z δz,
@@ -30,6 +31,9 @@
 
 namespace steplap {
 
+struct Carriage;
+struct Carrier;
+
 class Linearization {
 public:
   using Triplet = Eigen::Triplet<double, int>;
@@ -40,14 +44,14 @@ public:
 
   [[nodiscard]] int coordinates() const { return n_; } ///< of the layout
   [[nodiscard]] int rows() const { return m_; }        ///< active constraint rows
-  /// Inverse masses and inertias, 1/kg and 1/(kg m²); zero where locked, 1 in mechanisms. n entries.
+  /// Inverse masses and inertias, 1/kg and 1/(kg m²); zero where locked, 1 in mechanisms and of carriers. n entries.
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return *inverse_mass_; }
 
   // Sparse: duplicates add up. SI units, rad.
   [[nodiscard]] const std::vector<Triplet>& stiffness() const { return stiffness_; } ///< K, n × n
   [[nodiscard]] const std::vector<Triplet>& damping() const { return damping_; }     ///< D, n × n
   [[nodiscard]] const std::vector<Triplet>& gradient() const { return gradient_; }   ///< J, m × n
-  /// M⁻¹ Jᵀ, n × m; empty without mechanisms.
+  /// M⁻¹ Jᵀ, n × m; empty where all clusters are in absolute coordinates.
   [[nodiscard]] const std::vector<Triplet>& response() const { return response_; }
   [[nodiscard]] const std::vector<Triplet>& bias_by_pose() const { return bias_q_; } ///< G_q, m × n
   [[nodiscard]] const std::vector<Triplet>& bias_by_velocity() const { return bias_v_; } ///< G_v, m × n
@@ -76,6 +80,12 @@ private:
   void reduce();
   void find_levers();
   void reduce_forces(const Mechanism& m);
+  void start_columns(int rows);
+  void find_carriage_levers();
+  void reduce_carriages(const Carrier* carrier, int begin, int end);
+  void add_carriage_inertia(const Carriage& k, int at, int slide);
+  void respond_on_carriers();
+  [[nodiscard]] bool is_of_carrier(int coordinate) const;
   void add_inertia(const Mechanism& m, const Member& member);
   void reduce_rows();
   void add_sliding(int friction);
@@ -99,12 +109,15 @@ private:
     bool is_own = false;   ///< it is the cluster's angle
     double omega = 0.0, alpha = 0.0;
     Pair<double> arm;      ///< what it turns
+    bool has_slide = false; ///< it turns a guide as well, along which a carriage moves; the three behind are due to that
+    Pair<double> rate_by_pose, acceleration_by_pose, acceleration_by_rate;
   };
   /// By what a cluster's coordinate changes: its rate by that of a lever's coordinate, its rate and its acceleration by
   /// the coordinate, its acceleration by the rate.
   struct LeverRates {
     double rate, rate_by_pose, acceleration_by_pose, acceleration_by_rate;
   };
+  [[nodiscard]] static Lever place_lever(int coordinate, int axis);
   [[nodiscard]] static LeverRates rates_of(const Lever& lever, int c);
   template <class F> void for_levers(int at, const F& f) const;
   std::vector<std::vector<Lever>> levers_; ///< per cluster; empty: absolute

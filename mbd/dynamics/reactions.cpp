@@ -1,5 +1,7 @@
 #include "mbd/dynamics/reactions.h"
 
+#include "mbd/dynamics/carriage.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -79,6 +81,7 @@ void Reactions::add_carried(const RowSpec& spec, double lambda) {
 // Multipliers of the pins and rods of mechanisms, which are no rows of theirs: what hangs on them lacks so much.
 void Reactions::find_pins(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
+  if (layout.carriages) find_guides(cluster_a);
   for (const Mechanism& mechanism : layout.mechanisms) {
     mechanism.pin_forces(cluster_a, force_, layout.schur_rows.data() + mechanism.first_row, lambda + mechanism.first_row,
                          pin_force_);
@@ -98,6 +101,22 @@ void Reactions::find_pins(const double* cluster_a, const double* lambda) {
         row_force_[r] = layout.placements[spec.a].cluster == m.cluster ? on_a : -on_a;
       }
     }
+  }
+}
+
+// Multipliers of the guides of carriages: across the axis at the point where a is led, and the couple.
+void Reactions::find_guides(const double* cluster_a) {
+  const Layout& layout = *layout_;
+  for (const Carriage& k : layout.carriages->carriages) {
+    const RowSpec& spec = system_.rows[system_.row_blocks[k.block].first];
+    const BodyForce held = layout.carriages->held_by(k, cluster_a, force_);
+    const double sign = layout.placements[spec.a].cluster == k.cluster ? 1.0 : -1.0;
+    const Pair<double> n = to_ground(motion_[spec.b], spec.direction);
+    const Motion<double>& a = motion_[spec.a];
+    const Pair<double> lever = offset(a, motion_[k.slot]) + to_ground(a, spec.point_a);
+    double* const along = &row_force_[system_.row_blocks[k.block].first];
+    along[0] = sign * (held.fx * n.x + held.fy * n.y);
+    along[1] = sign * held.m - cross(lever, n) * along[0];
   }
 }
 
@@ -130,6 +149,12 @@ void Reactions::find_joints(const double* cluster_a, const double* lambda) {
         const RowBlock& block = system_.row_blocks[m.block];
         for (int r = block.first; r < block.first + block.count; ++r) add_carried(system_.rows[r], row_force_[r]);
       }
+    if (layout.carriages)
+      for (const Carriage& k : layout.carriages->carriages)
+        for (int r = 0; r < 2; ++r) {
+          const int row = system_.row_blocks[k.block].first + r;
+          add_carried(system_.rows[row], row_force_[row]);
+        }
   }
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {
     const RigidEdge& edge = layout.edges[e];
@@ -155,10 +180,16 @@ void Reactions::find_joints(const double* cluster_a, const double* lambda) {
 double Reactions::of_lock(const Lock& lock, const double* a, const double* lambda) const {
   const Layout& layout = *layout_;
   const int k = 3 * lock.cluster + lock.coordinate;
-  const Cluster& cluster = layout.clusters[lock.cluster];
-  const BodyForce& f = force_[cluster.motion];
-  double force = (lock.coordinate < 2 ? cluster.mass : cluster.inertia) * a[k] - layout.weight[k] -
-                 (lock.coordinate == 0 ? f.fx : lock.coordinate == 1 ? f.fy : f.m);
+  const int carrier = layout.carriages ? layout.carriages->carrier_of_lock[&lock - layout.locks.data()] : -1;
+  double force = 0.0;
+  if (carrier >= 0) {
+    force = Carriages::lack(layout.carriages->carriers[carrier], lock.coordinate, a + 3 * lock.cluster);
+  } else {
+    const Cluster& cluster = layout.clusters[lock.cluster];
+    const BodyForce& f = force_[cluster.motion];
+    force = (lock.coordinate < 2 ? cluster.mass : cluster.inertia) * a[k] - layout.weight[k] -
+            (lock.coordinate == 0 ? f.fx : lock.coordinate == 1 ? f.fy : f.m);
+  }
   for (const LockedTerm& term : lock.terms)
     force -= layout.schur_rows[term.row].j[term.side][lock.coordinate] * lambda[term.row];
   return force;

@@ -23,7 +23,7 @@ public:
   void find_accelerations(const double* cluster_a);
   /// Of joints inside clusters, which go to row_force() and friction_force(). `lambda`: per active row.
   void find_joints(const double* cluster_a, const double* lambda);
-  /// Of the rows and rods by which members of mechanisms hang.
+  /// Of the rows and rods by which members of mechanisms hang, and of the guides of carriages.
   void find_pins(const double* cluster_a, const double* lambda);
   /// Of active rows, of locks, and none where friction does not act. `a`: of the layout's coordinates.
   void take_rows(const double* a, const double* lambda);
@@ -37,6 +37,7 @@ public:
 private:
   void place_edges();
   void add_carried(const RowSpec& spec, double lambda);
+  void find_guides(const double* cluster_a);
   [[nodiscard]] double* multipliers_of(const RigidEdge& edge);
 
   const System& system_;

@@ -23,10 +23,21 @@ STEPLAP_INLINE RowPull pull_along_axis(const RowSpec& row, const Motion<double>&
   return p;
 }
 
+// SlideMeasure. With the shaft s, a unit vector, α = n·s and the gap δ along it, the unit force on a is g = −ẑ×s/α at the tip,
+// r − δ s from a's centre if r is the contact's point; r·s and r×s are fixed in a:
+//   couple on a = (δ − r·s)/α,  rate = g·v + ω · couple,  bias = ω (2 (v·s − rate β) + ω r×s)/α,  β = s × n
 STEPLAP_INLINE RowPull pull_along_slide(const RowSpec& row, const Motion<double>& link) {
-  const MeasureValue<double> m = SlideMeasure{row.point_a, row.point_b, row.direction, row.contact_axis, true}
-                                     .at<true>(link, Origin{});
-  return {m.direction, cross(m.lever_a, m.direction), cross(m.lever_b, m.direction), m.bias};
+  RowPull p;
+  const Pair<double> s = to_ground(link, row.contact_axis), r = to_ground(link, row.point_a);
+  const Pair<double> n{row.direction.x(), row.direction.y()}, v{link.vx, link.vy};
+  const double inverse = 1.0 / dot(n, s);
+  const double gap = inverse * (n.x * (link.x + r.x - row.point_b.x()) + n.y * (link.y + r.y - row.point_b.y()));
+  p.direction = {inverse * s.y, -(inverse * s.x)};
+  p.couple_a = inverse * (gap - dot(r, s));
+  p.couple_b = p.couple_a + cross(Pair<double>{link.x, link.y}, p.direction);
+  const double rate = dot(p.direction, v) + link.omega * p.couple_a;
+  p.bias = inverse * link.omega * (2.0 * (dot(v, s) - rate * cross(s, n)) + link.omega * cross(r, s));
+  return p;
 }
 
 /// Fills one side of a row in the clusters' coordinates.

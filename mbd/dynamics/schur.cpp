@@ -196,6 +196,23 @@ void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
   if (is_rank_open_) [[unlikely]] keep_rank(rows, shift);
 }
 
+// One row alone is never near to others.
+template <> void SchurSolver::factor_dense<1>(const std::vector<SchurRow>& rows) {
+  const auto* const first = reinterpret_cast<const double*>(rows.data());
+  double sum = dense_constant_[0];
+  for (const DenseProduct& p : dense_products_) {
+    const double* const a = first + p.wj;
+    const double* const b = first + p.j;
+    sum += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+  for (const DenseProduct& p : dense_turns_) sum += first[p.wj + 2] * first[p.j + 2];
+  const double d = sum * (1.0 + shift_);
+  const bool is_out = leaves_out(0, d, d);
+  smallest_pivot_ = 1.0;
+  dependent_count_ = is_out ? 1 : 0;
+  inverse_d_[0] = is_out ? 0.0 : 1.0 / d;
+}
+
 void SchurSolver::factor_as_is(const std::vector<SchurRow>& rows, double shift) {
   shift_ = shift;
   switch (n_) {
@@ -298,6 +315,10 @@ void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
 }
 
 void SchurSolver::solve(const std::vector<SchurRow>& rows, double* x) const {
+  if (n_ == 1) {
+    x[0] *= inverse_d_[0];
+    return;
+  }
   if (!is_near_singular() || shift_ > 0.0) [[likely]]
     return eliminate(x);
   std::copy(x, x + n_, right_.begin());
@@ -338,7 +359,6 @@ void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right,
 void SchurSolver::eliminate(double* x) const {
   switch (n_) {
   case 0: return;
-  case 1: return solve_dense<1>(x);
   case 2: return solve_dense<2>(x);
   case 3: return solve_dense<3>(x);
   case 4: return solve_dense<4>(x);

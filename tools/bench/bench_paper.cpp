@@ -42,6 +42,7 @@ const Scene& scene(const std::string& path) {
 void evaluation(benchmark::State& state, const std::string& path) {
   const Scene& s = scene(path);
   Dynamics dynamics(*s.system);
+  dynamics.use_coordinates(Coordinates::automatic);
   dynamics.set_state(s.state);
   std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
   dynamics.pack(s.state, y.data());
@@ -58,6 +59,7 @@ void evaluation(benchmark::State& state, const std::string& path) {
 void step(benchmark::State& state, const std::string& path, const std::string& method) {
   const Scene& s = scene(path);
   Dynamics dynamics(*s.system);
+  dynamics.use_coordinates(Coordinates::automatic);
   dynamics.set_state(s.state);
   IntegratorSettings settings;
   settings.step = 1e-4;

@@ -26,6 +26,7 @@ void profile(const char* path, double time, long count) {
   options.end = time;
   const State state = simulate(*system, system->initial_state(), options).final_state;
   Dynamics dynamics(*system);
+  dynamics.use_coordinates(options.coordinates);
   dynamics.set_state(state);
   std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
   dynamics.pack(state, y.data());
