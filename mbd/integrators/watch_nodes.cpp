@@ -28,50 +28,35 @@ void WatchNodes::add(double theta, const double* watch) {
   while (place > 0 && theta_[order_[place - 1]] > theta) --place;
   if (place > 0 && theta_[order_[place - 1]] == theta) {
     // Of two stages at one place, the midpoints of rk4, one is off to either side, by h² a/8: their mean is not.
-    double* const known = values_.data() + static_cast<std::ptrdiff_t>(order_[place - 1]) * slots_;
+    double* const known = values_.data() + static_cast<std::ptrdiff_t>(order_[place - 1]) * stride_;
     for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + watch[k]);
-    is_range_known_ = false;
     return;
   }
   for (int i = count_; i > place; --i) order_[i] = order_[i - 1];
   order_[place] = count_;
   theta_[count_] = theta;
-  double* __restrict const value = values_.data() + static_cast<std::ptrdiff_t>(count_) * slots_;
-  double* __restrict const low = low_.data();
-  double* __restrict const high = high_.data();
-  for (int i = 0; i < slots_; ++i) {
-    const double w = watch[i];
-    value[i] = w;
-    low[i] = w < low[i] ? w : low[i];
-    high[i] = w > high[i] ? w : high[i];
-  }
+  std::copy_n(watch, slots_, values_.data() + static_cast<std::ptrdiff_t>(count_) * stride_);
   ++count_;
 }
 
-void WatchNodes::widen(const double* watch) {
-  double* __restrict const low = low_.data();
-  double* __restrict const high = high_.data();
-  for (int i = 0; i < slots_; ++i) {
-    low[i] = watch[i] < low[i] ? watch[i] : low[i];
-    high[i] = watch[i] > high[i] ? watch[i] : high[i];
-  }
-}
-
-void WatchNodes::clear() {
-  count_ = 0;
-  is_range_known_ = true;
-  std::fill(low_.begin(), low_.end(), std::numeric_limits<double>::infinity());
-  std::fill(high_.begin(), high_.end(), -std::numeric_limits<double>::infinity());
-}
-
 void WatchNodes::close(const double* watch0, const double* watch1) {
-  if (!is_range_known_) {
-    std::copy(watch0, watch0 + slots_, low_.begin());
-    std::copy(watch0, watch0 + slots_, high_.begin());
-    for (int k = 0; k < count_; ++k) widen(values_.data() + static_cast<std::ptrdiff_t>(k) * slots_);
+  for (int i = 0; i < slots_; ++i) {
+    low_[i] = watch0[i] < watch1[i] ? watch0[i] : watch1[i];
+    high_[i] = watch0[i] < watch1[i] ? watch1[i] : watch0[i];
   }
-  widen(watch0);
-  widen(watch1);
+  for (int first = 0; first < stride_; first += k_block) {
+    std::array<double, k_block> low, high;
+    std::copy_n(low_.begin() + first, k_block, low.begin());
+    std::copy_n(high_.begin() + first, k_block, high.begin());
+    const double* value = values_.data() + first;
+    for (int k = 0; k < count_; ++k, value += stride_)
+      for (std::size_t i = 0; i < k_block; ++i) {
+        low[i] = value[i] < low[i] ? value[i] : low[i];
+        high[i] = value[i] > high[i] ? value[i] : high[i];
+      }
+    std::copy_n(low.begin(), k_block, low_.begin() + first);
+    std::copy_n(high.begin(), k_block, high_.begin() + first);
+  }
 }
 
 bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const WatchEnd& end) const {
@@ -81,7 +66,7 @@ bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const Watch
   w[0] = start.value;
   for (int j = 1; j < n; ++j) {
     x[j] = theta_[order_[j - 1]];
-    w[j] = values_[static_cast<std::size_t>(order_[j - 1]) * slots_ + slot];
+    w[j] = values_[static_cast<std::size_t>(order_[j - 1]) * stride_ + slot];
     if (!(w[j] > 0.0)) return false;
   }
   x[n] = 1.0;
@@ -109,7 +94,7 @@ bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const Watch
 bool WatchNodes::crosses_once(int slot) const {
   bool is_negative = false;
   for (int k = 0; k < count_; ++k) {
-    const double w = values_[static_cast<std::size_t>(order_[k]) * slots_ + slot];
+    const double w = values_[static_cast<std::size_t>(order_[k]) * stride_ + slot];
     if (is_negative && w >= 0.0) return false;
     is_negative = is_negative || w < 0.0;
   }
