@@ -20,6 +20,22 @@ bool is_positive_between(double a, double b, double g, double m) {
   return a + slope * s - 0.5 * m * s * (g - s) > 0.0;
 }
 
+// Ranges by the values at four places.
+void widen(int slots, const std::array<const double*, 4>& values, double* __restrict low, double* __restrict high) {
+  const double *__restrict a = values[0], *__restrict b = values[1], *__restrict c = values[2], *__restrict d = values[3];
+  for (int i = 0; i < slots; ++i) {
+    double least = low[i], most = high[i];
+    least = a[i] < least ? a[i] : least;
+    most = a[i] > most ? a[i] : most;
+    least = b[i] < least ? b[i] : least;
+    most = b[i] > most ? b[i] : most;
+    least = c[i] < least ? c[i] : least;
+    most = c[i] > most ? c[i] : most;
+    low[i] = d[i] < least ? d[i] : least;
+    high[i] = d[i] > most ? d[i] : most;
+  }
+}
+
 } // namespace
 
 void WatchNodes::add(double theta, const double* watch) {
@@ -44,19 +60,8 @@ void WatchNodes::close(const double* watch0, const double* watch1) {
     low_[i] = watch0[i] < watch1[i] ? watch0[i] : watch1[i];
     high_[i] = watch0[i] < watch1[i] ? watch1[i] : watch0[i];
   }
-  for (int first = 0; first < stride_; first += k_block) {
-    std::array<double, k_block> low, high;
-    std::copy_n(low_.begin() + first, k_block, low.begin());
-    std::copy_n(high_.begin() + first, k_block, high.begin());
-    const double* value = values_.data() + first;
-    for (int k = 0; k < count_; ++k, value += stride_)
-      for (std::size_t i = 0; i < k_block; ++i) {
-        low[i] = value[i] < low[i] ? value[i] : low[i];
-        high[i] = value[i] > high[i] ? value[i] : high[i];
-      }
-    std::copy_n(low.begin(), k_block, low_.begin() + first);
-    std::copy_n(high.begin(), k_block, high_.begin() + first);
-  }
+  const auto at = [this](int place) { return values_.data() + static_cast<std::ptrdiff_t>(std::min(place, count_ - 1)) * stride_; };
+  for (int k = 0; k < count_; k += 4) widen(slots_, {at(k), at(k + 1), at(k + 2), at(k + 3)}, low_.data(), high_.data());
 }
 
 bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const WatchEnd& end) const {
