@@ -25,8 +25,8 @@ constexpr double k_closed = 4.0;          // a bracket of so many times its ends
 } // namespace
 
 // What is known of the fired values so far goes into polynomials; the first of their roots is looked at next.
-// Once that is known to the spacing of t, a millionth of the tolerance, or the rounding of the values, a look on either
-// side of it closes the bracket.
+// Once that is known to the spacing of t, a millionth of the tolerance, or the rounding of the values, a look beyond it
+// closes the bracket, if the values there and their slopes say that the root lies as near as that; else one on either side.
 void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
   const double spacing = 2.0 * std::numeric_limits<double>::epsilon() *
                          std::max(std::abs(integrator.t1()), integrator.h()) / integrator.h();
@@ -44,12 +44,16 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
     const bool is_closed = looks < k_free_looks && aim_.is_settled && width <= k_closed * aim_.reach;
     if (is_closed && polished++ == k_polish) return;
     double theta = 0.5 * (low_.theta + high_.theta);
-    const bool is_below = aim_.root - low_.theta > high_.theta - aim_.root;
+    const bool is_known_beyond = high_.theta - aim_.root <= 2.0 * aim_.reach;
+    bool is_below = is_known_beyond && aim_.root - low_.theta > high_.theta - aim_.root;
     // A kink or a pole inside the bracket cannot stall the search for long.
     if (is_closed) theta = first_secant();
     else if (aim_.is_settled && looks < k_free_looks) theta = is_below ? aim_.root - aim_.reach : aim_.root + aim_.reach;
-    else if (since_halved < k_patience && looks < k_free_looks) theta = next_look(theta);
-    else aim_ = at_first;
+    else if (since_halved < k_patience && looks < k_free_looks) {
+      theta = next_look(theta);
+      is_below = false;
+      if (aim_.is_settled) theta = aim_.root + aim_.reach; // there is nothing left to be learned at the root itself
+    } else aim_ = at_first;
     const double edge = std::min(0.5 * width, 0.5 * spacing);
     theta = std::clamp(theta, low_.theta + edge, high_.theta - edge);
     watch_at(integrator, dynamics, theta, middle_);
@@ -59,6 +63,7 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
     const bool is_beyond = crosses(low_, middle_);
     if (!is_beyond) fired_ = fired_before_;
     std::swap(is_beyond ? high_ : low_, middle_);
+    if (is_beyond && aim_.is_settled && is_root_just_before(high_, k_closed * at_first.reach)) return;
     if (aim_.is_settled && !is_closed && is_beyond == is_below) { // not yet on the other side
       aim_.root = theta;
       aim_.reach *= k_wider;
@@ -67,6 +72,15 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
     since_halved = high_.theta - low_.theta < 0.5 * halved ? 0 : since_halved + 1;
     if (since_halved == 0) halved = high_.theta - low_.theta;
   }
+}
+
+// By the slopes of the values that have fired, or where they are not known, of their chords over the bracket.
+bool EventFinder::is_root_just_before(const Look& beyond, double reach) const {
+  return std::all_of(fired_.begin(), fired_.end(), [&](int slot) {
+    const double chord = (beyond.watch[slot] - low_.watch[slot]) / (beyond.theta - low_.theta);
+    const double slope = std::isnan(beyond.rate[slot]) ? chord : beyond.rate[slot];
+    return slope < 0.0 && beyond.watch[slot] >= reach * slope;
+  });
 }
 
 double EventFinder::first_secant() const {

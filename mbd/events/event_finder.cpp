@@ -110,9 +110,12 @@ EventFinder::Bracket EventFinder::bracket_whole(const Integrator& integrator) {
 }
 
 bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh) {
+  is_step_withdrawn_ = false;
   if (slots_ == 0) return false;
   const Suspicion suspected = suspicion(integrator, fresh);
   if (suspected == Suspicion::none) return false;
+  is_step_withdrawn_ = !integrator.bears_look(dynamics);
+  if (is_step_withdrawn_) return false;
   set_slack(integrator, dynamics);
   is_merged_near_ = is_any_merged_near(integrator, dynamics);
   const Bracket bracket = suspected == Suspicion::inside ? survey(integrator, dynamics, fresh)

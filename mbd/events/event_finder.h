@@ -30,6 +30,9 @@ public:
   /// tell which. `fresh[slot]` as above.
   bool find(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
 
+  /// find() has found nothing, for the step does not bear to be looked into: it has to be made again.
+  [[nodiscard]] bool is_step_withdrawn() const { return is_step_withdrawn_; }
+
   [[nodiscard]] double theta() const { return theta_; }
   [[nodiscard]] const std::vector<double>& state() const { return y_; }
   [[nodiscard]] const std::vector<int>& fired() const { return fired_; }
@@ -68,6 +71,7 @@ private:
   void close_in(Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] double next_look(double middle);
   [[nodiscard]] double first_secant() const;
+  [[nodiscard]] bool is_root_just_before(const Look& beyond, double reach) const;
 
   void watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look);
   static void look_at_end(const Integrator& integrator, bool is_last, Look& look);
@@ -83,6 +87,7 @@ private:
   const System& system_;
   int slots_;
   double theta_ = 0.0;
+  bool is_step_withdrawn_ = false;
   std::vector<double> y_, dy_;
   Look low_, high_, middle_;     ///< the bracket's ends, and a place between them
   static constexpr std::size_t k_most_known = 7;

@@ -35,20 +35,12 @@ EventHandler::EventHandler(const System& system, Dynamics& dynamics)
       friction_of_slot_[system.frictions[f].watch + w] = static_cast<int>(f);
 }
 
-void EventHandler::evaluate(const State& state) {
-  dynamics_.set_state(state);
-  dynamics_.pack(state, y_.data());
-  dynamics_.rates(state.t, y_.data(), dy_.data());
-  dynamics_.watch_merged(dy_.data());
-}
-
-void EventHandler::slip_rates(const State& state, int f, double* rate) const {
+void EventHandler::slip_rates(const State& state, int f, double* rate) {
   const FrictionElement& friction = *system_.frictions[f].friction;
   const RowSpec* rows = friction.rows(state.friction[f]);
-  std::vector<Motion<double>> motion;
-  place_bodies(state.q, state.v, motion);
+  place_bodies(state.q, state.v, motion_);
   for (int r = 0; r < friction.dimension(); ++r)
-    rate[r] = evaluate_row<false>(rows[r], motion.data()).rate;
+    rate[r] = evaluate_row<false>(rows[r], motion_.data()).rate;
 }
 
 // Element f has got its normal force: at the place that the pose asks for (it is not watched while there
@@ -95,7 +87,7 @@ void EventHandler::start(State& state) {
     const Unit& unit = system_.units[u];
     state.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
   }
-  evaluate(state);
+  modes_.evaluate(state);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state.friction[f];
     modes_.set_anchor(state, f);
@@ -103,9 +95,10 @@ void EventHandler::start(State& state) {
         system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction))
       load(state, f);
   }
-  modes_.decide(state);
+  modes_.forget_evaluation();
+  (void)modes_.decide(state);
   const auto slips = [](const FrictionState& friction) { return friction.phase == FrictionPhase::slip; };
-  if (std::any_of(state.friction.begin(), state.friction.end(), slips)) evaluate(state); // decide() may end with a trial
+  if (std::any_of(state.friction.begin(), state.friction.end(), slips)) modes_.evaluate(state); // decide() may end with a trial
   clear_fresh();
 }
 
@@ -143,7 +136,7 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
   } else if (friction.phase == FrictionPhase::stick) {
     friction.phase = FrictionPhase::slip;
     friction.has_slipped = friction.is_starting = true;
-    const Snapshot snapshot = dynamics_.snapshot(dy_.data());
+    const Snapshot snapshot = dynamics_.snapshot(modes_.rates());
     unit.friction->begin_slip(dynamics_.evaluation(), friction, snapshot.friction_force + unit.row);
   } else if (friction.phase == FrictionPhase::slip) {
     double rate[3];
@@ -162,10 +155,9 @@ void EventHandler::move_on(State& state, int f) {
   const bool is_acting = friction.phase == FrictionPhase::stick || friction.phase == FrictionPhase::slip;
   if (!is_acting || element.never_slips()) return;
   const RowSpec& row = *element.rows(friction);
-  std::vector<Motion<double>> motion;
-  place_bodies(state.q, state.v, motion);
-  const auto m = evaluate_row<false>(row, motion.data());
-  const double speed = point_speed(motion[row.a], m.lever_a, m.couple) + point_speed(motion[row.b], m.lever_b, m.couple);
+  place_bodies(state.q, state.v, motion_);
+  const auto m = evaluate_row<false>(row, motion_.data());
+  const double speed = point_speed(motion_[row.a], m.lever_a, m.couple) + point_speed(motion_[row.b], m.lever_b, m.couple);
   if (std::abs(m.rate) <= k_rest_velocity + k_rest_share * speed) return;
   friction.phase = FrictionPhase::slip;
   friction.has_slipped = true;
@@ -173,8 +165,9 @@ void EventHandler::move_on(State& state, int f) {
   element.aim(friction, &m.rate);
 }
 
-// Friction gains or loses its normal force with the contacts.
-void EventHandler::update_loading(State& state) {
+// Friction gains or loses its normal force with the contacts. True if any does.
+bool EventHandler::update_loading(State& state) {
+  bool is_any = false;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state.friction[f];
     if (friction.phase == FrictionPhase::apart) continue;
@@ -182,11 +175,14 @@ void EventHandler::update_loading(State& state) {
     if (is_loaded && friction.phase == FrictionPhase::free) {
       load(state, f);
       if (friction.phase == FrictionPhase::slip) friction.has_slipped = true;
+      is_any = true;
     } else if (!is_loaded && friction.phase != FrictionPhase::free) {
       if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
       friction.phase = FrictionPhase::free;
+      is_any = true;
     }
   }
+  return is_any;
 }
 
 bool EventHandler::is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const {
@@ -216,9 +212,9 @@ void EventHandler::note_start(const State& state, std::vector<Event>& events) co
       events.push_back({state.t, system_.element_names[system_.frictions[f].element], slip_kind(f, {}, state.friction[f])});
 }
 
-void EventHandler::note_friction(const State& before, const State& state, std::vector<Event>& events) {
+void EventHandler::note_friction(const std::vector<FrictionState>& before, const State& state, std::vector<Event>& events) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
-    const FrictionState& old = before.friction[f];
+    const FrictionState& old = before[f];
     const FrictionState& now = state.friction[f];
     const bool is_same_slip = now.phase != FrictionPhase::slip || is_same_direction(f, old, now);
     if (old.phase == now.phase && old.foot == now.foot && is_same_slip) continue;
@@ -238,7 +234,9 @@ void EventHandler::note_friction(const State& before, const State& state, std::v
     events.push_back({state.t, name, kind});
     if (now.phase == FrictionPhase::apart && unit.friction->stops_when_apart())
       stop_reason_ = "'" + name + "' came apart";
-    if (unit.friction->is_rigid()) dynamics_.forget_layouts();
+    if (!unit.friction->is_rigid()) continue;
+    dynamics_.forget_layouts();
+    modes_.forget_evaluation();
   }
 }
 
@@ -246,7 +244,7 @@ void EventHandler::settle_phases(State& state) {
   clear_fresh();
   forget_moved_layouts(state);
   settle(state);
-  modes_.decide(state);
+  (void)modes_.decide(state);
   std::fill(fresh_.begin(), fresh_.end(), 1); // none of the watch values was followed up to here
 }
 
@@ -257,57 +255,74 @@ void EventHandler::note_changes(const State& before, const State& state, std::ve
     const EventKind kind = unit.group->transition(before.mode[u], state.mode[u]);
     if (kind != EventKind::none) events.push_back({state.t, system_.element_names[unit.element], kind});
   }
-  note_friction(before, state, events);
+  note_friction(before.friction, state, events);
   clear_fresh();
 }
 
-void EventHandler::handle(State& state, const std::vector<int>& fired, std::vector<Event>& events) {
-  clear_fresh();
-  settled_ = 0.0;
-  const State before = state;
-  forget_moved_layouts(state);
-  evaluate(state);
-  const bool is_contact_changed = switch_units(state, fired, events);
+// The friction of the slots that have fired leaves its phase or place. True if any then is at rest.
+bool EventHandler::fire(State& state, const std::vector<int>& fired) {
   bool is_any_at_rest = false;
   const LoadSharing* const sharing = dynamics_.sharing();
-  std::vector<char> is_released(sharing ? sharing->groups().size() : 0, 0), has_fired(system_.frictions.size(), 0);
+  is_released_.assign(sharing ? sharing->groups().size() : 0, 0);
+  has_fired_.assign(system_.frictions.size(), 0);
   for (const int slot : fired) {
     const int f = friction_of_slot_[slot];
     if (f < 0) continue;
     const int group = sharing && slot != system_.frictions[f].watch + 2 ? sharing->group_of(f) : -1;
     if (group >= 0 && slot == system_.frictions[f].watch + 1) continue; // its rows move apart: decide() finds out how
     if (group >= 0) { // fires in the slots of all its elements
-      if (!is_released[group]) modes_.release(state, group);
-      is_released[group] = 1;
+      if (!is_released_[group]) modes_.release(state, group);
+      is_released_[group] = 1;
       continue;
     }
     // What both slots of an element say was said of the phase before: the first one changes it.
     if (slot != system_.frictions[f].watch + 2) {
-      if (has_fired[f]) continue;
-      has_fired[f] = 1;
+      if (has_fired_[f]) continue;
+      has_fired_[f] = 1;
     }
     fire_friction(state, f, slot);
     is_any_at_rest = is_any_at_rest || state.friction[f].phase == FrictionPhase::stick;
   }
+  return is_any_at_rest;
+}
+
+// A state is evaluated, and set to rest, once in each set of modes that is tried: twice at most events, and what the last
+// evaluation found is where the next step begins.
+void EventHandler::handle(State& state, const std::vector<int>& fired, std::vector<Event>& events) {
+  clear_fresh();
+  settled_ = 0.0;
+  before_ = state.friction;
+  forget_moved_layouts(state);
+  modes_.evaluate(state);
+  const bool is_contact_changed = switch_units(state, fired, events);
+  const bool is_any_at_rest = fire(state, fired);
+  if (!fired.empty()) modes_.forget_evaluation();
+  bool is_settled = false; // in the modes that it has
   // The mode problem is one of elements at rest: what little is left of a slip that has ended goes first.
   if (is_any_at_rest) {
     settle(state);
-    modes_.rejoin(state);
+    is_settled = !modes_.rejoin(state);
   }
   if (is_contact_changed) {
-    evaluate(state);
-    update_loading(state);
+    modes_.evaluate(state);
+    if (update_loading(state)) {
+      modes_.forget_evaluation();
+      is_settled = false;
+    }
   }
-  if (modes_.catch_reversals(state, before.friction)) settle(state);
-  modes_.decide(state);
-  note_friction(before, state, events);
-  if (has_new_rows(before, state)) settle(state);
+  if (modes_.catch_reversals(state, before_)) {
+    settle(state);
+    is_settled = true;
+  }
+  if (!modes_.decide(state)) is_settled = false;
+  note_friction(before_, state, events);
+  if (!is_settled && has_new_rows(before_, state)) settle(state);
 }
 
 // Some friction holds that did not, or holds elsewhere: the state was not projected onto its rows yet.
-bool EventHandler::has_new_rows(const State& before, const State& state) {
+bool EventHandler::has_new_rows(const std::vector<FrictionState>& before, const State& state) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
-    const FrictionState &old = before.friction[f], &now = state.friction[f];
+    const FrictionState &old = before[f], &now = state.friction[f];
     if (now.phase == FrictionPhase::stick && (old.phase != now.phase || old.foot != now.foot)) return true;
   }
   return false;
@@ -316,6 +331,7 @@ bool EventHandler::has_new_rows(const State& before, const State& state) {
 // What sticks may still have a relative velocity of the size of errors: projecting it away books what
 // is lost as dissipated.
 void EventHandler::settle(State& state) {
+  modes_.forget_evaluation();
   dynamics_.set_state(state);
   dynamics_.pack(state, y_.data());
   const double energy = system_.kinetic_energy(state);

@@ -46,24 +46,28 @@ public:
   [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
   /// Kinetic energy that setting to rest took in the last handle(), J: what errors have left of it.
   [[nodiscard]] double settled() const { return settled_; }
+  /// Did handle() end with an evaluation of the state that it left? Then packed() and rates() are its.
+  [[nodiscard]] bool is_evaluated() const { return modes_.is_evaluated(); }
+  [[nodiscard]] const double* packed() const { return modes_.packed(); }
+  [[nodiscard]] const double* rates() const { return modes_.rates(); }
   void clear_fresh() { std::fill(fresh_.begin(), fresh_.end(), 0); }
 
 private:
-  void evaluate(const State& state);
   void meet_constraints(State& state);
   bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
   void fire_friction(State& state, int f, int slot);
   void move_on(State& state, int f);
-  void update_loading(State& state);
+  bool update_loading(State& state);
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   [[nodiscard]] bool has_capacity(const State& state, std::size_t f) const;
   [[nodiscard]] EventKind slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const;
-  void note_friction(const State& before, const State& state, std::vector<Event>& events);
+  void note_friction(const std::vector<FrictionState>& before, const State& state, std::vector<Event>& events);
   void forget_moved_layouts(const State& state);
   void load(State& state, int f);
-  void slip_rates(const State& state, int f, double* rate) const;
+  bool fire(State& state, const std::vector<int>& fired);
+  void slip_rates(const State& state, int f, double* rate);
   void settle(State& state);
-  [[nodiscard]] static bool has_new_rows(const State& before, const State& state);
+  [[nodiscard]] static bool has_new_rows(const std::vector<FrictionState>& before, const State& state);
 
   const System& system_;
   Dynamics& dynamics_;
@@ -73,6 +77,10 @@ private:
   std::string stop_reason_;
   double settled_ = 0.0;
   std::vector<double> y_, dy_;
+  std::vector<FrictionState> before_;    ///< as friction was when handle() began
+  std::vector<char> is_released_;        ///< per group of those that share a load
+  std::vector<char> has_fired_;          ///< per friction element
+  std::vector<Motion<double>> motion_;   ///< of the bodies: scratch
 };
 
 } // namespace steplap

@@ -166,11 +166,10 @@ FrictionModes::FrictionModes(const System& system, Dynamics& dynamics)
 void FrictionModes::set_anchor(State& state, int f) const {
   const FrictionElement& friction = *system_.frictions[f].friction;
   const RowSpec* rows = friction.rows(state.friction[f]);
-  std::vector<Motion<double>> motion;
-  place_bodies(state.q, state.v, motion);
+  place_bodies(state.q, state.v, motion_);
   for (int r = 0; r < friction.dimension(); ++r)
     if (rows[r].memory >= 0)
-      state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion.data()).value;
+      state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion_.data()).value;
 }
 
 // Within one slip the direction does not change.
@@ -181,11 +180,21 @@ void FrictionModes::end_slip(State& state, int f) const {
   if (rows[0].memory >= 0) state.friction[f].slid += std::abs(state.memory[rows[0].memory] - before);
 }
 
-std::vector<int> FrictionModes::violated(const State& state) {
+void FrictionModes::evaluate(const State& state) {
   dynamics_.set_state(state);
   dynamics_.pack(state, y_.data());
   dynamics_.rates(state.t, y_.data(), dy_.data());
   dynamics_.watch_merged(dy_.data());
+  is_evaluated_ = true;
+}
+
+std::vector<int> FrictionModes::violated(const State& state) {
+  evaluate(state);
+  return held_beyond(state);
+}
+
+// By the watch values at hand.
+std::vector<int> FrictionModes::held_beyond(const State& state) const {
   std::vector<int> result;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     if (state.friction[f].phase != FrictionPhase::stick) continue;
@@ -246,14 +255,14 @@ bool FrictionModes::release_overloaded(State& state) const {
 bool FrictionModes::is_at_rest(const State& state, int f) const {
   const FrictionElement& friction = *system_.frictions[f].friction;
   const RowSpec* rows = friction.rows(state.friction[f]);
-  std::vector<Motion<double>> motion;
-  place_bodies(state.q, state.v, motion);
+  place_bodies(state.q, state.v, motion_);
   for (int r = 0; r < friction.dimension(); ++r)
-    if (std::abs(evaluate_row<false>(rows[r], motion.data()).rate) > k_rest_velocity) return false;
+    if (std::abs(evaluate_row<false>(rows[r], motion_.data()).rate) > k_rest_velocity) return false;
   return true;
 }
 
-void FrictionModes::rejoin(State& state) {
+bool FrictionModes::rejoin(State& state) {
+  bool is_any = false;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     if (state.friction[f].phase != FrictionPhase::slip || !is_at_rest(state, f)) continue;
     State trial = state;
@@ -265,21 +274,26 @@ void FrictionModes::rejoin(State& state) {
     const bool is_held = sharing && sharing->group_of(f) >= 0 && watch[0] >= 0.0 && watch[1] >= 0.0;
     if (is_held) std::swap(state, trial);
     dynamics_.set_state(state);
+    is_any = is_any || is_held;
+    is_evaluated_ = false;
   }
+  return is_any;
 }
 
 bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionState>& before) {
   std::vector<int> slow;
-  std::vector<Motion<double>> motion;
+  bool is_placed = false;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const FrictionElement& friction = *system_.frictions[f].friction;
     if (friction.dimension() != 1 || state.friction[f].phase != FrictionPhase::slip || before[f].phase != FrictionPhase::slip)
       continue;
-    if (motion.empty()) place_bodies(state.q, state.v, motion);
-    const double rate = evaluate_row<false>(*friction.rows(state.friction[f]), motion.data()).rate;
+    if (!is_placed) place_bodies(state.q, state.v, motion_);
+    is_placed = true;
+    const double rate = evaluate_row<false>(*friction.rows(state.friction[f]), motion_.data()).rate;
     if (state.friction[f].sign * rate <= k_rest_at_event) slow.push_back(f);
   }
   if (slow.empty()) return false;
+  is_evaluated_ = false;
   dynamics_.set_state(state);
   dynamics_.pack(state, y_.data());
   dynamics_.rates(state.t, y_.data(), dy_.data());
@@ -330,15 +344,19 @@ void FrictionModes::anchor_resting(State& state) const {
   }
 }
 
-void FrictionModes::decide(State& state) {
-  std::vector<int> candidates = violated(state);
-  if (candidates.empty()) return;
+bool FrictionModes::decide(State& state) {
+  if (!is_evaluated_) evaluate(state);
+  std::vector<int> candidates = held_beyond(state);
+  if (candidates.empty()) return true;
   anchor_resting(state);
   let_go_moving(state);
   candidates = violated(state);
-  if (candidates.empty()) return;
-  settle_candidates(state, std::move(candidates));
-  rejoin(state);
+  if (!candidates.empty()) {
+    settle_candidates(state, std::move(candidates));
+    rejoin(state);
+  }
+  is_evaluated_ = false;
+  return false;
 }
 
 void FrictionModes::settle_candidates(State& state, std::vector<int> candidates) {

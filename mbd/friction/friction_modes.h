@@ -19,16 +19,26 @@ public:
 
   /// Decides the phases of all elements that stick or are at rest (phase stick) in `state`, at its
   /// pose and velocity; those in phase slip stay so. Leaves `dynamics` on the layout of the result.
-  /// Throws NumericalFailure if the problem cannot be solved.
-  void decide(State& state);
+  /// Throws NumericalFailure if the problem cannot be solved. True if all of them hold as they are.
+  bool decide(State& state);
+
+  /// `dynamics` in the modes and at the pose and velocity of `state`, with all watch values.
+  void evaluate(const State& state);
+  /// The state has changed since, or `dynamics` was used for something else.
+  void forget_evaluation() { is_evaluated_ = false; }
+  /// What is known of the present state: it was evaluated last, and nothing has moved or changed its mode since.
+  [[nodiscard]] bool is_evaluated() const { return is_evaluated_; }
+  /// Of the last evaluate(): the packed state and its rates.
+  [[nodiscard]] const double* packed() const { return y_.data(); }
+  [[nodiscard]] const double* rates() const { return dy_.data(); }
 
   /// Lets go those of a group (LoadSharing) that slip when it gives way; `dynamics` was last asked for its watch
   /// values at `state`.
   void release(State& state, int group) const;
 
   /// Elements in phase slip that are at rest, since others which stick hold them, share in bearing the load: they
-  /// stick, if the group they make can bear it.
-  void rejoin(State& state);
+  /// stick, if the group they make can bear it. True if any does.
+  bool rejoin(State& state);
 
   /// Elements of one dimension in phase slip that have come to rest and would turn round, as they do at the very instant
   /// at which another, geared to them, does: they become candidates (phase stick). `was_slipping`: per element, before
@@ -42,6 +52,7 @@ public:
 
 private:
   [[nodiscard]] std::vector<int> violated(const State& state);
+  [[nodiscard]] std::vector<int> held_beyond(const State& state) const;
   void solve(State& state, const std::vector<int>& candidates);
   void anchor_resting(State& state) const;
   void let_go_moving(State& state);
@@ -52,6 +63,8 @@ private:
   const System& system_;
   Dynamics& dynamics_;
   std::vector<double> y_, dy_;
+  bool is_evaluated_ = false;
+  mutable std::vector<Motion<double>> motion_; ///< of the bodies at an anchor: scratch
 };
 
 } // namespace steplap

@@ -30,6 +30,16 @@ public:
   [[nodiscard]] const char* name() const override { return "auto"; }
   [[nodiscard]] bool is_adaptive() const override { return true; }
   [[nodiscard]] WatchNodes& watch_nodes() override { return active_->watch_nodes(); }
+  void expect_looks(bool are_expected) override {
+    Integrator::expect_looks(are_expected);
+    explicit_->expect_looks(are_expected);
+    if (implicit_) implicit_->expect_looks(are_expected);
+  }
+  [[nodiscard]] bool bears_look(Dynamics& dynamics) override {
+    const bool bears = active_->bears_look(dynamics);
+    if (!bears) note_counts();
+    return bears;
+  }
   void limit_step(double longest) override {
     Integrator::limit_step(longest);
     explicit_->limit_step(longest);
@@ -47,8 +57,7 @@ public:
     std::copy(active_->rate1(), active_->rate1() + n_, k1_);
     watch1_ = active_->watch1();
     watch_rate1_ = active_->watch_rate1();
-    steps_ = explicit_->steps() + (implicit_ ? implicit_->steps() : 0);
-    rejections_ = explicit_->rejections() + (implicit_ ? implicit_->rejections() : 0);
+    note_counts();
     residual_.position = std::max(residual_.position, active_->max_position_residual());
     residual_.velocity = std::max(residual_.velocity, active_->max_velocity_residual());
     judge(dynamics);
@@ -65,6 +74,11 @@ protected:
   void on_restart(Dynamics&) override { is_started_ = false; }
 
 private:
+  void note_counts() {
+    steps_ = explicit_->steps() + (implicit_ ? implicit_->steps() : 0);
+    rejections_ = explicit_->rejections() + (implicit_ ? implicit_->rejections() : 0);
+  }
+
   // Counts what speaks for the other method; the change itself waits until the step has been used.
   void judge(Dynamics& dynamics) {
     if (active_ == explicit_.get()) {
@@ -90,6 +104,7 @@ private:
       settings_of_implicit_.step = 10.0 * explicit_step_;
       implicit_ = make_rodas5p(dynamics, settings_of_implicit_, max_dimension_);
       implicit_->limit_step(longest_step_);
+      implicit_->expect_looks(are_looks_expected());
     }
     active_ = implicit_.get();
   }

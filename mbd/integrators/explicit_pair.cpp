@@ -12,6 +12,8 @@ namespace {
 
 constexpr double k_shortest_retry = 0.1;
 constexpr double k_shorter = 0.2; // after a step that came to nothing
+// The control lets steps as they are where f(e, e) = 1: e = safety^(1/(1/order − 1.75 beta)), 0.15 to 0.4.
+constexpr double k_settled_error = 0.1;
 // A step with a stage nearer than this (a square, rad²) to a singular position is made by collocation.
 constexpr double k_crossed_pivot = 2e-2;
 // Unless it begins so near that it would have to be tiny.
@@ -31,9 +33,10 @@ ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& s
   control_.order = order;
 }
 
-// The step size survives an event: what limited it was the motion, which goes on much the same.
+// The step size survives an event: what limited it was the motion, which goes on much the same. The errors that steps had
+// before it say nothing of those behind: the control begins as if the last one had been what steps settle at.
 void ExplicitPair::on_restart(Dynamics&) {
-  control_.previous_error = 1e-4;
+  control_.previous_error = k_settled_error;
   start_pivot_ = highest_pivot_ = 1.0;
 }
 
@@ -44,6 +47,8 @@ double ExplicitPair::shorter(double error) const {
 
 void ExplicitPair::note_end(double pivot) {
   ++steps_;
+  before_.start_pivot = start_pivot_;
+  before_.highest_pivot = highest_pivot_;
   // The first step's end tells what is usual here.
   const bool is_first = highest_pivot_ == 1.0;
   start_pivot_ = pivot;
@@ -60,6 +65,33 @@ SingularCrossing::Step ExplicitPair::crossing_step(Dynamics& dynamics) {
   step.norm = [this](const double* error) { return error_norm(error); };
   step.note_stage = [this, &dynamics](const double* rates, double theta) { note_stage_watches(dynamics, rates, theta); };
   return step;
+}
+
+// Beside a singular position of joints what projection takes away is no error, and most of what stages differ by.
+double ExplicitPair::error_inside(Dynamics& dynamics) {
+  is_inside_known_ = true;
+  return is_beside_singular_ ? 0.0 : dense_error(dynamics);
+}
+
+void ExplicitPair::refuse_shorter_than_rounding(double h) const {
+  if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
+    throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
+                           " s: the motion becomes singular there, or the tolerance is too small");
+}
+
+bool ExplicitPair::bears_look(Dynamics& dynamics) {
+  if (is_crossing_ || is_inside_known_) return true;
+  const double inside = error_inside(dynamics);
+  if (inside <= 1.0) return true;
+  --steps_;
+  ++rejections_;
+  start_pivot_ = before_.start_pivot;
+  highest_pivot_ = before_.highest_pivot;
+  control_.previous_error = before_.error;
+  next_h_ = h_ * shorter(inside);
+  refuse_shorter_than_rounding(next_h_);
+  dynamics.rates(t0_, y0_.data(), scratch_.data()); // where the next try begins
+  return false;
 }
 
 void ExplicitPair::dense(Dynamics& dynamics, double theta, double* out) {
@@ -110,7 +142,7 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
     t1_ = is_last ? t_limit : t0_ + h_;
     begin_watch_nodes();
     passage.begin_try();
-    is_crossing_ = false;
+    is_crossing_ = is_inside_known_ = false;
     const double error = try_step(dynamics);
     if (!has_tried_crossing && comes_near_singularity(dynamics)) [[unlikely]] {
       has_tried_crossing = true;
@@ -135,11 +167,11 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
         continue;
       }
       const double pivot = dynamics.layout().smallest_pivot();
-      // Beside a singular position of joints what projection takes away is no error, and most of what stages differ by.
       const double lowest = dynamics.lowest_pivot();
-      const bool is_beside_singular = lowest < k_crossed_pivot && lowest < 0.5 * highest_pivot_;
-      inside = is_beside_singular ? 0.0 : dense_error(dynamics);
+      is_beside_singular_ = lowest < k_crossed_pivot && lowest < 0.5 * highest_pivot_;
+      if (are_looks_expected()) inside = error_inside(dynamics);
       if (inside <= 1.0) {
+        before_.error = control_.previous_error;
         const double factor = control_.factor(std::max(error, inside), is_retry);
         // A step cut short by the limit says nothing against the longer one that was planned.
         next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
@@ -153,9 +185,7 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
       continue;
     }
     h = h_ * shorter(std::max(error, inside));
-    if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
-      throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
-                             " s: the motion becomes singular there, or the tolerance is too small");
+    refuse_shorter_than_rounding(h);
   }
 }
 

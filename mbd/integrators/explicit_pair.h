@@ -18,6 +18,7 @@ public:
                int stages, int order);
   [[nodiscard]] bool is_adaptive() const override { return true; }
   void step(Dynamics& dynamics, double t_limit) override;
+  [[nodiscard]] bool bears_look(Dynamics& dynamics) final;
   void dense(Dynamics& dynamics, double theta, double* out) final;
   [[nodiscard]] double stability_share(Dynamics& dynamics) final {
     return is_crossing_ ? 0.0 : share_of_stability(dynamics);
@@ -60,6 +61,8 @@ private:
   [[nodiscard]] bool comes_near_singularity(const Dynamics& dynamics) const;
   double cross_singularity(Dynamics& dynamics, double left);
   void note_end(double pivot);
+  [[nodiscard]] double error_inside(Dynamics& dynamics);
+  void refuse_shorter_than_rounding(double h) const;
   [[nodiscard]] double shorter(double error) const;
   [[nodiscard]] SingularCrossing::Step crossing_step(Dynamics& dynamics);
 
@@ -70,6 +73,13 @@ private:
   double start_pivot_ = 1.0;                   ///< of the constraints at t0, 1: not known
   double highest_pivot_ = 1.0;                 ///< since the last restart
   bool is_crossing_ = false;                   ///< the step made is one
+  bool is_inside_known_ = false;               ///< of the step made: it bears a look
+  bool is_beside_singular_ = false;            ///< the step made is
+  /// What was before the step made, if it is withdrawn.
+  struct Before {
+    double start_pivot = 1.0, highest_pivot = 1.0, error = 1e-4;
+  };
+  Before before_;
 };
 
 } // namespace steplap

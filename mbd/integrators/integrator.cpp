@@ -36,13 +36,27 @@ Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& setti
   length_scale_ = size > 0.0 ? size : 1.0;
 }
 
-void Integrator::restart(Dynamics& dynamics, double t, const double* y) {
+void Integrator::begin_at(Dynamics& dynamics, double t, const double* y) {
   n_ = dynamics.dimension();
   t0_ = t1_ = t;
   std::copy(y, y + n_, y0_.begin());
   on_restart(dynamics);
+}
+
+void Integrator::restart(Dynamics& dynamics, double t, const double* y) {
+  begin_at(dynamics, t, y);
   dynamics.rates(t, y0_.data(), k0_);
   dynamics.watch_merged(k0_);
+  note_begin(dynamics);
+}
+
+void Integrator::restart_evaluated(Dynamics& dynamics, double t, const double* y, const double* dy) {
+  begin_at(dynamics, t, y);
+  std::copy(dy, dy + n_, k0_);
+  note_begin(dynamics);
+}
+
+void Integrator::note_begin(Dynamics& dynamics) {
   watch0_ = dynamics.watch();
   watch_rate0_ = dynamics.watch_rate();
   is_restarted_ = true;
@@ -150,6 +164,7 @@ double Integrator::error_norm(const double* error) const {
 
 double Integrator::projected_error_norm(Dynamics& dynamics, double* error) const {
   const double all = error_norm(error);
+  if (!dynamics.is_near_singular()) return all;
   dynamics.remove_held(error);
   return std::max(error_norm(error), k_turned_share * all);
 }

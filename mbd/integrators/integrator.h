@@ -35,6 +35,14 @@ public:
   [[nodiscard]] virtual bool is_adaptive() const = 0;
   /// Begins at (t, y) in the layout that `dynamics` has now; evaluates the rates there.
   void restart(Dynamics& dynamics, double t, const double* y);
+  /// The same where `dynamics` was evaluated there last, merged joints watched, and found the rates `dy`.
+  void restart_evaluated(Dynamics& dynamics, double t, const double* y, const double* dy);
+  /// Will somebody look into every step (samples, extremes)? Then, and unless told otherwise, step() makes none whose dense
+  /// output is worse than its ends allow; if not, bears_look() tells.
+  virtual void expect_looks(bool are_expected) { are_looks_expected_ = are_expected; }
+  /// To be asked before anybody looks into the step made. False: its dense output is worse than its ends allow; the step is
+  /// withdrawn, and step() makes another, shorter one.
+  [[nodiscard]] virtual bool bears_look(Dynamics& /*dynamics*/) { return true; }
   /// No step is longer than this, s: Simulation sets it anew wherever the loads' and drives' harmonics change.
   virtual void limit_step(double longest) { longest_step_ = longest; }
   /// No step turns a harmonic of a load or drive further than this, rad: its places resolve a quarter of a period.
@@ -81,6 +89,9 @@ public:
 
 protected:
   virtual void on_restart(Dynamics& /*dynamics*/) {}
+  [[nodiscard]] bool are_looks_expected() const { return are_looks_expected_; }
+  void begin_at(Dynamics& dynamics, double t, const double* y);
+  void note_begin(Dynamics& dynamics);
   /// Where the rates at both ends are kept; a method with more stages points them into its own.
   void set_rate_storage(double* k0, double* k1) {
     k0_ = k0;
@@ -120,6 +131,7 @@ protected:
   IntegratorSettings settings_;
   int n_ = 0; ///< dimension now
   bool is_restarted_ = false; ///< no step was made since
+  bool are_looks_expected_ = true;
   double t0_ = 0.0, t1_ = 0.0, h_ = 0.0;
   std::vector<double> y0_, y1_, weight_, scratch_;
   double* k0_ = nullptr;

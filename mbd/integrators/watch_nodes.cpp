@@ -20,6 +20,22 @@ bool is_positive_between(double a, double b, double g, double m) {
   return a + slope * s - 0.5 * m * s * (g - s) > 0.0;
 }
 
+// Ranges by the values at four places.
+void widen(int slots, const std::array<const double*, 4>& values, double* __restrict low, double* __restrict high) {
+  const double *__restrict a = values[0], *__restrict b = values[1], *__restrict c = values[2], *__restrict d = values[3];
+  for (int i = 0; i < slots; ++i) {
+    double least = low[i], most = high[i];
+    least = a[i] < least ? a[i] : least;
+    most = a[i] > most ? a[i] : most;
+    least = b[i] < least ? b[i] : least;
+    most = b[i] > most ? b[i] : most;
+    least = c[i] < least ? c[i] : least;
+    most = c[i] > most ? c[i] : most;
+    low[i] = d[i] < least ? d[i] : least;
+    high[i] = d[i] > most ? d[i] : most;
+  }
+}
+
 } // namespace
 
 void WatchNodes::add(double theta, const double* watch) {
@@ -28,50 +44,24 @@ void WatchNodes::add(double theta, const double* watch) {
   while (place > 0 && theta_[order_[place - 1]] > theta) --place;
   if (place > 0 && theta_[order_[place - 1]] == theta) {
     // Of two stages at one place, the midpoints of rk4, one is off to either side, by h² a/8: their mean is not.
-    double* const known = values_.data() + static_cast<std::ptrdiff_t>(order_[place - 1]) * slots_;
+    double* const known = values_.data() + static_cast<std::ptrdiff_t>(order_[place - 1]) * stride_;
     for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + watch[k]);
-    is_range_known_ = false;
     return;
   }
   for (int i = count_; i > place; --i) order_[i] = order_[i - 1];
   order_[place] = count_;
   theta_[count_] = theta;
-  double* __restrict const value = values_.data() + static_cast<std::ptrdiff_t>(count_) * slots_;
-  double* __restrict const low = low_.data();
-  double* __restrict const high = high_.data();
-  for (int i = 0; i < slots_; ++i) {
-    const double w = watch[i];
-    value[i] = w;
-    low[i] = w < low[i] ? w : low[i];
-    high[i] = w > high[i] ? w : high[i];
-  }
+  std::copy_n(watch, slots_, values_.data() + static_cast<std::ptrdiff_t>(count_) * stride_);
   ++count_;
 }
 
-void WatchNodes::widen(const double* watch) {
-  double* __restrict const low = low_.data();
-  double* __restrict const high = high_.data();
-  for (int i = 0; i < slots_; ++i) {
-    low[i] = watch[i] < low[i] ? watch[i] : low[i];
-    high[i] = watch[i] > high[i] ? watch[i] : high[i];
-  }
-}
-
-void WatchNodes::clear() {
-  count_ = 0;
-  is_range_known_ = true;
-  std::fill(low_.begin(), low_.end(), std::numeric_limits<double>::infinity());
-  std::fill(high_.begin(), high_.end(), -std::numeric_limits<double>::infinity());
-}
-
 void WatchNodes::close(const double* watch0, const double* watch1) {
-  if (!is_range_known_) {
-    std::copy(watch0, watch0 + slots_, low_.begin());
-    std::copy(watch0, watch0 + slots_, high_.begin());
-    for (int k = 0; k < count_; ++k) widen(values_.data() + static_cast<std::ptrdiff_t>(k) * slots_);
+  for (int i = 0; i < slots_; ++i) {
+    low_[i] = watch0[i] < watch1[i] ? watch0[i] : watch1[i];
+    high_[i] = watch0[i] < watch1[i] ? watch1[i] : watch0[i];
   }
-  widen(watch0);
-  widen(watch1);
+  const auto at = [this](int place) { return values_.data() + static_cast<std::ptrdiff_t>(std::min(place, count_ - 1)) * stride_; };
+  for (int k = 0; k < count_; k += 4) widen(slots_, {at(k), at(k + 1), at(k + 2), at(k + 3)}, low_.data(), high_.data());
 }
 
 bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const WatchEnd& end) const {
@@ -81,7 +71,7 @@ bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const Watch
   w[0] = start.value;
   for (int j = 1; j < n; ++j) {
     x[j] = theta_[order_[j - 1]];
-    w[j] = values_[static_cast<std::size_t>(order_[j - 1]) * slots_ + slot];
+    w[j] = values_[static_cast<std::size_t>(order_[j - 1]) * stride_ + slot];
     if (!(w[j] > 0.0)) return false;
   }
   x[n] = 1.0;
@@ -109,7 +99,7 @@ bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const Watch
 bool WatchNodes::crosses_once(int slot) const {
   bool is_negative = false;
   for (int k = 0; k < count_; ++k) {
-    const double w = values_[static_cast<std::size_t>(order_[k]) * slots_ + slot];
+    const double w = values_[static_cast<std::size_t>(order_[k]) * stride_ + slot];
     if (is_negative && w >= 0.0) return false;
     is_negative = is_negative || w < 0.0;
   }

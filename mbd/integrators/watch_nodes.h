@@ -22,11 +22,10 @@ struct WatchEnd {
 class WatchNodes {
 public:
   explicit WatchNodes(int slots)
-      : slots_(slots), values_(static_cast<std::size_t>(k_most) * slots), low_(slots), high_(slots) {
-    clear();
-  }
+      : slots_(slots), stride_((slots + k_block - 1) / k_block * k_block),
+        values_(static_cast<std::size_t>(k_most) * stride_), low_(stride_), high_(stride_) {}
 
-  void clear();
+  void clear() { count_ = 0; }
   /// Values at `theta` (0: the step's start, 1: its end); those at the ends, and beyond capacity, are not kept.
   void add(double theta, const double* watch);
 
@@ -40,14 +39,13 @@ public:
   [[nodiscard]] bool crosses_once(int slot) const;
 
 private:
-  void widen(const double* watch);
-
   static constexpr int k_most = 18;
-  int slots_, count_ = 0;
-  bool is_range_known_ = true; ///< low_ and high_ are those of what was added
+  static constexpr int k_block = 4; ///< slots whose ranges are found side by side
+  int slots_, stride_, count_ = 0;
   std::array<double, k_most> theta_{};
   std::array<int, k_most> order_{}; ///< by theta
-  std::vector<double> values_, low_, high_;
+  std::vector<double> values_; ///< `stride_` for each place
+  std::vector<double> low_, high_;
 };
 
 } // namespace steplap

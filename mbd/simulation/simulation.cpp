@@ -81,6 +81,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
     ledger_ = std::make_unique<PowerLedger>(system, system.largest_dimension());
     dynamics_.show_integrals(ledger_.get());
   }
+  integrator_->expect_looks(extremes_ || ledger_ || options_.output_step > 0.0);
   restart();
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
   if (options_.output_step > 0.0) record_sample(state_.t);
@@ -105,17 +106,23 @@ double Simulation::next_limit() const {
 
 // What signals do up to the next breakpoint.
 void Simulation::approach_limit() {
-  const double limit = next_limit();
-  dynamics_.set_time_limit(limit);
-  const double fastest = system_.fastest_at(0.5 * (state_.t + limit));
+  limit_ = next_limit();
+  dynamics_.set_time_limit(limit_);
+  const double fastest = system_.fastest_at(0.5 * (state_.t + limit_));
   integrator_->limit_step(fastest > 0.0 ? Integrator::k_largest_turn / fastest : std::numeric_limits<double>::infinity());
 }
 
-void Simulation::restart() {
-  dynamics_.set_state(state_);
+// `is_evaluated`: by the handler, as this state is.
+void Simulation::restart(bool is_evaluated) {
+  is_evaluated = is_evaluated && next_limit() == limit_;
+  if (!is_evaluated) dynamics_.set_state(state_);
   approach_limit();
-  dynamics_.pack(state_, y_.data());
-  integrator_->restart(dynamics_, state_.t, y_.data());
+  if (is_evaluated) {
+    integrator_->restart_evaluated(dynamics_, state_.t, handler_.packed(), handler_.rates());
+  } else {
+    dynamics_.pack(state_, y_.data());
+    integrator_->restart(dynamics_, state_.t, y_.data());
+  }
   if (!integrator_->stepped_state()) check_holding(state_.t, integrator_->watch0());
   if (ledger_) ledger_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
   if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
@@ -244,7 +251,7 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
   energy_.check_step(dynamics_, t, y_.data());
   dynamics_.unpack(t, y_.data(), state_);
-  if (fired.empty()) dynamics_.set_time_limit(next_limit()); // on the far side of the breakpoint
+  if (fired.empty()) dynamics_.set_time_limit(limit_ = next_limit()); // on the far side of the breakpoint
   if (ledger_ && ledger_->has_stored()) {
     dynamics_.rates(t, y_.data(), dy_.data());
     ledger_->end(dynamics_.snapshot(dy_.data()));
@@ -259,7 +266,7 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
     for (std::size_t i = known; i < events_.size(); ++i)
       if (!is_kink(events_[i].kind) && storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
   if (!fired.empty()) guard_against_chatter(t);
-  restart();
+  restart(handler_.is_evaluated());
 }
 
 // An element whose events crowd is not followed from one to the next: time stepping goes over an interval,
@@ -305,32 +312,40 @@ void Simulation::look_for_extremes(long evaluations, bool is_last) {
   extremes_->add_step(*integrator_, dynamics_, is_at_end, is_last);
 }
 
-bool Simulation::advance() {
-  if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
-  const double limit = next_limit();
+// False: in other coordinates first.
+bool Simulation::make_step(double limit) {
   try {
     integrator_->step(dynamics_, limit);
+    return true;
   } catch (const JointsNearSingular&) { // rounding is spread otherwise over places and angles
     state_ = current_state();
     options_.coordinates = Coordinates::absolute;
     dynamics_.use_coordinates(Coordinates::absolute);
     restart();
-    return true;
+    return false;
   }
+}
+
+bool Simulation::advance() {
+  if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
+  const double limit = next_limit();
+  if (!make_step(limit)) return true;
   constexpr long k_now_and_then = 64; // steps: also where no sample is due for long
   if (options_.progress && integrator_->steps() % k_now_and_then == 0) options_.progress(state_.t);
   const long evaluations = dynamics_.evaluations();
   guard_against_crawl();
   if (integrator_->stepped_state()) return pass_stepped();
   check_finite();
-  if (finder_.find(*integrator_, dynamics_, handler_.fresh())) {
+  const bool is_event = finder_.find(*integrator_, dynamics_, handler_.fresh());
+  if (finder_.is_step_withdrawn()) return advance();
+  if (is_event) {
     const double t = integrator_->t0() + finder_.theta() * integrator_->h();
-    std::vector<double> at_event = finder_.state();
-    if (are_joints(finder_.fired()) && integrator_->end_at(dynamics_, finder_.theta())) std::copy_n(integrator_->y1(), at_event.size(), at_event.begin());
+    const bool is_ended = are_joints(finder_.fired()) && integrator_->end_at(dynamics_, finder_.theta());
+    const double* const at_event = is_ended ? integrator_->y1() : finder_.state().data();
     keep_ledger(t);
     if (extremes_) extremes_->end_at(t, *integrator_, dynamics_);
     sample_until(std::nextafter(t, 0.0) - k_output_slack * options_.output_step);
-    pass_event(t, at_event.data(), finder_.fired());
+    pass_event(t, at_event, finder_.fired());
     if (!handler_.stop_reason().empty()) end_run();
     return true;
   }
@@ -340,8 +355,7 @@ bool Simulation::advance() {
   sample_until(t1);
   handler_.clear_fresh();
   if (t1 >= limit && limit < options_.end) {
-    const std::vector<double> at_limit(integrator_->y1(), integrator_->y1() + dynamics_.dimension());
-    pass_event(t1, at_limit.data(), {});
+    pass_event(t1, integrator_->y1(), {});
     return true;
   }
   check_holding(t1, integrator_->watch1());

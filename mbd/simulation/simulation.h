@@ -83,7 +83,7 @@ public:
   [[nodiscard]] RunResult result() &&;
 
 private:
-  void restart();
+  void restart(bool is_evaluated = false);
   void end_run();
   void look_for_extremes(long evaluations, bool is_last);
   void sample_until(double t);
@@ -99,6 +99,7 @@ private:
   void guard_against_crawl();
   [[noreturn]] void fail_infinite(double t) const;
   void refuse_time_stepping() const;
+  [[nodiscard]] bool make_step(double limit);
   [[nodiscard]] double next_limit() const;
   [[nodiscard]] Coordinates chosen_coordinates() const;
   void approach_limit();
@@ -121,6 +122,7 @@ private:
   long sample_ = 0;
   EnergyAccount energy_;
   bool is_between_events_ = false; ///< the integrator and state_ fit each other
+  double limit_ = 0.0;             ///< up to which signals are read: the last breakpoint set, or the end
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
   long kinks_ = 0; ///< of characteristics, which long tables have many of: max_events leaves them out
