@@ -23,7 +23,11 @@ constexpr double k_most_looks = 1000.0; // along a step
 constexpr int k_most_trials = 44, k_most_corrections = 4, k_most_projections = 25, k_most_polishing = 4;
 constexpr int k_most_dense = 90; // coordinates: beyond, sparse algebra is faster
 
-int most_iterations(int n) { return n <= 90 ? 3000 : 600; }
+// Of a sparse projection: what does not get there fast is too far, and half as far costs less than more rounds.
+constexpr int k_most_sparse_projections = 12;
+constexpr double k_slow = 0.5;
+
+int most_iterations(int n) { return n <= 1000 ? 3000 : 1000; }
 
 } // namespace
 
@@ -85,7 +89,8 @@ bool Descent::project() {
         if (!(std::abs(off[r]) <= 1e-7 * length_ * std::max(1.0, landscape_->row_size()[r]))) return false;
       return true;
     }
-    if (i == k_most_projections || (i > 4 && size > 0.9 * before)) return false;
+    if (i == (is_sparse_ ? k_most_sparse_projections : k_most_projections)) return false;
+    if (i > 4 && size > (is_sparse_ ? k_slow : 0.9) * before) return false;
     before = size;
     for (int k = 0; k < n_; ++k) state_.q[k + 3] -= scale_[k] * way[k];
   }
@@ -186,6 +191,11 @@ void Descent::adapt_region(double factor, const VecX& step, bool is_straight) {
     double& most = k % 3 < 2 ? moved : turned;
     most = std::max(most, std::abs(step[k]) * scale_[k]); // the scale of a displacement is 1
   }
+  if (factor < 1.0 && is_sparse_ && system_.contact_count == 0) {
+    radius_ = std::max(1.5 * moved, 0.25 * radius_);
+    turn_ = std::min(k_small_turn, std::max(1.5 * turned, 0.25 * turn_));
+    return;
+  }
   if (factor < 1.0) {
     radius_ = std::clamp(4.0 * moved, 0.25 * radius_, radius_);
     turn_ = std::min(k_small_turn, std::clamp(4.0 * turned, 0.25 * turn_, turn_));
@@ -214,6 +224,8 @@ bool Descent::advance(const VecX& step) {
     }
     if (is_taken) break;
     (is_too_far ? high : low) = factor;
+    // A large scene goes on from here: to search for how far it gets in this direction costs as much as many steps.
+    if (is_sparse_ && low > 0.0 && slope < 0.0 && high < whole) break;
     if (trial > 12 && low > 0.0 && high - low < 1e-3 * high) break;
     factor = 0.5 * (low + high);
   }

@@ -113,6 +113,7 @@ public:
       if (high > 0.0 && low > 0.0 && high < k_close * low) break;
     }
     used_sigma_ = last_sigma_ = high;
+    if (high > loose_ && size(best) < k_well_inside) add_soft_direction(size, best);
     return best;
   }
 
@@ -194,6 +195,22 @@ public:
   }
 
 private:
+  // Where forces hardly push along the direction of the least eigenvalue, the step goes along it to the border of the
+  // region: downhill on either side.
+  void add_soft_direction(const StepSize& size, VecX& step) {
+    VecX soft = Spread().vector(n_), next;
+    if (!factor(used_sigma_)) return;
+    for (int i = 0; i < 6; ++i) {
+      if (!steps_.solve(inertia_.cwiseProduct(soft), next)) return;
+      soft = next / std::sqrt(next.cwiseAbs2().dot(scene_.mass));
+    }
+    // By Rayleigh's quotient: only if it is negative.
+    if (!(soft.dot(VecX(hat_ * soft)) < 0.0)) return;
+    if (soft.dot(force_) < 0.0) soft = -soft;
+    const double whole = size(soft);
+    if (whole > 0.0) step += (1.0 - size(step)) / whole * soft;
+  }
+
   // Of unit length, at the present evaluation; what they allow is then known, too.
   void collect_rows() {
     const Statics& statics = scene_.statics;
