@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 
 namespace steplap {
 
@@ -42,7 +43,8 @@ struct Slip {
 
 class RestSearch {
 public:
-  RestSearch(const System& system, const State& start) : system_(system), start_(start), state_(start) {
+  RestSearch(const System& system, const State& start, RestAlgebra algebra)
+      : system_(system), algebra_(algebra), start_(start), state_(start) {
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
     start_drives(system_, state_);
     for (FrictionState& friction : state_.friction)
@@ -52,11 +54,12 @@ public:
   Equilibrium run() {
     if (system_.body_count() <= 1) return at_rest();
     while (true) {
-      Descent descent(system_, state_);
+      Descent descent(system_, state_, algebra_);
       const DescentEnd end = descent.run();
       result_.iterations += descent.iterations();
       result_.residual = descent.residual();
       result_.indifferent = descent.indifferent();
+      result_.more_indifferent = descent.more_indifferent();
       result_.left.insert(result_.left.end(), descent.left().begin(), descent.left().end());
       length_ = std::max(length_, descent.length());
       if (descent.yielding_at_start() > yielding_)
@@ -271,20 +274,29 @@ private:
     throw ElementFailure(text, std::move(names));
   }
 
+  // Those that joints lead to the ground.
+  [[nodiscard]] std::vector<char> led_bodies() const {
+    std::vector<std::vector<int>> joined(system_.bodies.size());
+    for (const RowSpec& row : system_.rows) {
+      joined[row.a].push_back(row.b);
+      joined[row.b].push_back(row.a);
+    }
+    std::vector<char> is_led(system_.bodies.size(), 0);
+    std::vector<int> next{k_ground};
+    is_led[k_ground] = 1;
+    while (!next.empty()) {
+      const int body = next.back();
+      next.pop_back();
+      for (const int other : joined[body])
+        if (std::exchange(is_led[other], char{1}) == 0) next.push_back(other);
+    }
+    return is_led;
+  }
+
   // A body that no joint leads stood on something, or tipped over.
   void note_tipping() {
     if (system_.contact_count == 0) return;
-    std::vector<char> is_led(system_.bodies.size(), 0);
-    is_led[k_ground] = 1;
-    for (std::size_t round = 0; round < system_.rows.size(); ++round) {
-      bool is_changed = false;
-      for (const RowSpec& row : system_.rows) {
-        if (is_led[row.a] == is_led[row.b]) continue;
-        is_led[row.a] = is_led[row.b] = 1;
-        is_changed = true;
-      }
-      if (!is_changed) break;
-    }
+    const std::vector<char> is_led = led_bodies();
     for (int i = 1; i < system_.body_count(); ++i) {
       const double turn = state_.q[3 * i + 2] - start_.q[3 * i + 2];
       if (is_led[i] || std::abs(turn) < k_tipped || std::abs(turn) < std::abs(result_.turned)) continue;
@@ -309,6 +321,7 @@ private:
   };
 
   const System& system_;
+  const RestAlgebra algebra_;
   int flows_ = 0;                  ///< of elastic joints, in the search
   std::vector<double> last_flow_;  ///< per inner state
   const State& start_;
@@ -337,6 +350,8 @@ std::vector<std::string> remarks_on(const System& system, const Equilibrium& fou
                       " leaves it, and so did the search");
   for (const MotionPart& part : found.indifferent)
     remarks.push_back("indifferent: nothing holds " + part_text(system, part) + " or against it; it rests wherever it is");
+  if (found.more_indifferent > 0)
+    remarks.push_back("indifferent: so it is in " + std::to_string(found.more_indifferent) + " more directions");
   if (found.turned != 0.0)
     remarks.push_back("'" + system.bodies[found.turned_body].name + "' turned by " +
                       rounded(found.turned * 180.0 / std::numbers::pi) +
@@ -350,6 +365,8 @@ std::vector<std::string> remarks_on(const System& system, const Equilibrium& fou
   return remarks;
 }
 
-Equilibrium find_equilibrium(const System& system, const State& start) { return RestSearch(system, start).run(); }
+Equilibrium find_equilibrium(const System& system, const State& start, RestAlgebra algebra) {
+  return RestSearch(system, start, algebra).run();
+}
 
 } // namespace steplap

@@ -30,6 +30,7 @@ struct Equilibrium {
   int iterations = 0;
   std::vector<FrictionMargin> margins; ///< of those that hold
   std::vector<MotionPart> indifferent; ///< directions along which nothing holds it, by their largest parts
+  int more_indifferent = 0;            ///< and how many more, where they are too many to be named
   std::vector<MotionPart> left;        ///< poses that balanced on the way, but that a nudge would leave
   std::vector<int> slid;               ///< friction elements that slid to where they hold
   int turned_body = 0;                 ///< of those that no joint leads the one that turned furthest, if so far that it
@@ -38,7 +39,9 @@ struct Equilibrium {
 };
 
 /// From `start`'s pose. Throws NumericalFailure if there is no equilibrium, saying what would move where and why.
-[[nodiscard]] Equilibrium find_equilibrium(const System& system, const State& start);
+/// `algebra`: for tests that hold one against the other.
+[[nodiscard]] Equilibrium find_equilibrium(const System& system, const State& start,
+                                           RestAlgebra algebra = RestAlgebra::by_size);
 
 /// "'bob' along -x", "'bob' turning clockwise".
 [[nodiscard]] std::string part_text(const System& system, const MotionPart& part);

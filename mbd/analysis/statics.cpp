@@ -49,33 +49,41 @@ int place_of(const RowSpec& row, int k) {
 }
 
 // k += w ∂²(measure)/∂q².
-void add_curvature(const RowSpec& row, const std::vector<Motion<double>>& motion, double w, MatX& k) {
+void add_curvature(const RowSpec& row, const std::vector<Motion<double>>& motion, double w, std::vector<Statics::Entry>& k) {
   D12 j[6];
   put_gradient(measured(row, seeded(motion[row.a], 0), seeded(motion[row.b], 3)), j);
   for (int i = 0; i < 6; ++i)
     for (int l = 0; l < 6; ++l)
-      if (const int r = place_of(row, i), c = place_of(row, l); r >= 0 && c >= 0) k(r, c) += w * j[i].d[l];
+      if (const int r = place_of(row, i), c = place_of(row, l); r >= 0 && c >= 0) k.emplace_back(r, c, w * j[i].d[l]);
 }
 
-void add_pair(int a, int b, const Eigen::Matrix<double, 6, 6>& part, MatX& whole) {
-  const int body[2] = {a, b};
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j)
-      if (body[i] != k_ground && body[j] != k_ground)
-        whole.block<3, 3>(3 * body[i] - 3, 3 * body[j] - 3) += part.block<3, 3>(3 * i, 3 * j);
+void add_pair(int a, int b, const Eigen::Matrix<double, 6, 6>& part, std::vector<Statics::Entry>& whole) {
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      if (const int row = i < 3 ? a : b, column = j < 3 ? a : b; row != k_ground && column != k_ground)
+        whole.emplace_back(3 * row - 3 + i % 3, 3 * column - 3 + j % 3, part(i, j));
+}
+
+MatX dense(const std::vector<Statics::Entry>& entries, Eigen::Index rows, Eigen::Index columns) {
+  MatX matrix = MatX::Zero(rows, columns);
+  for (const Statics::Entry& entry : entries) matrix(entry.row(), entry.col()) += entry.value();
+  return matrix;
 }
 
 } // namespace
 
 double static_target(const RowSpec& row, const State& state) { return row_target(row, state.memory.data(), state.t).value; }
 
-void anchor_friction(const System& system, State& state, int f) {
+void anchor_friction(const System& system, State& state, int f, const Motion<double>* motion) {
   const FrictionElement& friction = *system.frictions[f].friction;
   const RowSpec* const rows = friction.rows(state.friction[f]);
-  std::vector<Motion<double>> motion;
-  place_bodies(state.q, state.v, motion);
+  std::vector<Motion<double>> placed;
+  if (!motion) {
+    place_bodies(state.q, state.v, placed);
+    motion = placed.data();
+  }
   for (int r = 0; r < friction.dimension(); ++r)
-    if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion.data()).value;
+    if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion).value;
 }
 
 Statics::Statics(const System& system) : system_(system), n_(3 * (system.body_count() - 1)) {
@@ -169,15 +177,19 @@ void Statics::collect_rows(const State& state) {
 }
 
 MatX Statics::gradient() const {
-  MatX gradient = MatX::Zero(static_cast<Eigen::Index>(rows_.size()), n_);
+  std::vector<Entry> entries;
+  gradient(entries);
+  return dense(entries, static_cast<Eigen::Index>(rows_.size()), n_);
+}
+
+void Statics::gradient(std::vector<Entry>& entries) const {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const RowSpec& row = *rows_[r].spec;
     double j[6];
     put_gradient(measured(row, motion_[row.a], motion_[row.b]), j);
     for (int k = 0; k < 6; ++k)
-      if (const int at = place_of(row, k); at >= 0) gradient(static_cast<Eigen::Index>(r), at) += j[k];
+      if (const int at = place_of(row, k); at >= 0) entries.emplace_back(static_cast<int>(r), at, j[k]);
   }
-  return gradient;
 }
 
 VecX Statics::off() const {
@@ -191,31 +203,37 @@ VecX Statics::off() const {
 }
 
 MatX Statics::stiffness(const VecX& lambda) const {
-  MatX k = MatX::Zero(n_, n_);
+  std::vector<Entry> entries;
+  stiffness(lambda, entries);
+  return dense(entries, n_, n_);
+}
+
+void Statics::stiffness(const VecX& lambda, std::vector<Entry>& k, bool with_sliding) const {
   std::vector<PairJacobian> parts;
   for (const auto& group : system_.groups) group->add_jacobian(evaluation_, parts);
   for (const PairJacobian& part : parts) add_pair(part.a, part.b, part.stiffness, k);
   for (std::size_t r = 0; r < rows_.size(); ++r)
     add_curvature(*rows_[r].spec, motion_, lambda[static_cast<Eigen::Index>(r)], k);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f)
-    if (state_->friction[f].phase == FrictionPhase::slip) add_sliding_stiffness(f, parts, k);
-  return k;
+    if (state_->friction[f].phase == FrictionPhase::slip) add_sliding_stiffness(f, parts, with_sliding, k);
 }
 
 MatX Statics::damping() const {
-  MatX d = MatX::Zero(n_, n_);
+  std::vector<Entry> d;
   std::vector<PairJacobian> parts;
   for (const auto& group : system_.groups) group->add_jacobian(evaluation_, parts);
   for (const PairJacobian& part : parts) add_pair(part.a, part.b, part.damping, d);
-  return d;
+  return dense(d, n_, n_);
 }
 
 // Force w(N) along the row: w ∂²(measure) and what the normal forces change. w is linear in them.
-void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, MatX& k) const {
+void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding,
+                                    std::vector<Entry>& k) const {
   const RowSpec& row = *system_.frictions[f].friction->rows(state_->friction[f]);
   double wrench[3], more[3], j[6];
   slip_wrench(f, wrench);
   add_curvature(row, motion_, wrench[0], k);
+  if (!with_sliding) return;
   put_gradient(measured(row, motion_[row.a], motion_[row.b]), j);
   for (const PairJacobian& part : parts) {
     if (part.contact < 0) continue;
@@ -229,7 +247,7 @@ void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& part
     for (int i = 0; i < 6; ++i)
       for (int l = 0; l < 6; ++l) {
         const int r = place_of(row, i), body = l < 3 ? part.a : part.b;
-        if (r >= 0 && body != k_ground) k(r, 3 * body - 3 + l % 3) += slope * j[i] * part.normal[l];
+        if (r >= 0 && body != k_ground) k.emplace_back(r, 3 * body - 3 + l % 3, slope * j[i] * part.normal[l]);
       }
   }
 }

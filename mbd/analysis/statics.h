@@ -9,6 +9,8 @@
 
 #include "mbd/system/system.h"
 
+#include <Eigen/SparseCore>
+
 #include <memory>
 #include <vector>
 
@@ -40,6 +42,11 @@ public:
   [[nodiscard]] VecX off() const;                            ///< of each row from its target, m or rad
   [[nodiscard]] MatX stiffness(const VecX& lambda) const;    ///< K
   [[nodiscard]] MatX damping() const;                        ///< ∂Q/∂v
+  // The same entry by entry; duplicates add up.
+  using Entry = Eigen::Triplet<double, int>;
+  void gradient(std::vector<Entry>& entries) const;
+  /// Of K; without what a normal force changes of the friction that slides on it, if asked for.
+  void stiffness(const VecX& lambda, std::vector<Entry>& entries, bool with_sliding = true) const;
   [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
   /// Normal force of a contact, for whoever asks what friction would do with another.
@@ -50,7 +57,7 @@ public:
 private:
   void set_modes(State& state);
   void add_sliding_forces();
-  void add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, MatX& k) const;
+  void add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding, std::vector<Entry>& k) const;
 
   const System& system_;
   int n_ = 0, bilateral_count_ = 0;
@@ -69,7 +76,7 @@ private:
 
 /// Value of the target of `row` at rest at the time of `state`.
 [[nodiscard]] double static_target(const RowSpec& row, const State& state);
-/// Anchors the rows of friction element f at the pose of `state`.
-void anchor_friction(const System& system, State& state, int f);
+/// Anchors the rows of friction element f at the pose of `state`; `motion`: of its bodies there, if it is known.
+void anchor_friction(const System& system, State& state, int f, const Motion<double>* motion = nullptr);
 
 } // namespace steplap
