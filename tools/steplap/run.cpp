@@ -11,6 +11,7 @@
 #include "tools/steplap/catalogue.h"
 #include "tools/steplap/command.h"
 #include "tools/steplap/interruption.h"
+#include "tools/steplap/tipping.h"
 
 #include <cmath>
 #include <cstdio>
@@ -102,12 +103,14 @@ std::string text_with_places(const NumericalFailure& failure, const Model& model
 
 namespace {
 
-// What fails says where in the model's file it does.
+// What finds no rest says where in the model's file, and what tips over as it is given.
 template <class Work> auto placed(const LoadedModel& loaded, const Work& work) {
   try {
     return work();
   } catch (const NumericalFailure& failure) {
-    throw NumericalFailure(text_with_places(failure, loaded.model, *loaded.system));
+    std::string text = text_with_places(failure, loaded.model, *loaded.system);
+    for (const std::string& tips : tipping_over(loaded, loaded.assembled)) text += "; " + tips;
+    throw NumericalFailure(text);
   }
 }
 
