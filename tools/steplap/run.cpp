@@ -1,6 +1,5 @@
 #include "tools/steplap/run.h"
 
-#include "elements/prescribed_motion.h"
 #include "mbd/analysis/assembly.h"
 #include "mbd/analysis/start.h"
 #include "mbd/base/shown_text.h"
@@ -65,7 +64,6 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path,
   loaded->text = effective_model_text(path, program_catalogue(), overrides);
   loaded->system = compile(loaded->model);
   refuse_endless_output(loaded->model, *loaded->system);
-  refuse_initial_jumps(loaded->model, *loaded->system);
   loaded->plots_left_out = check_presentation(loaded->model, *loaded->system);
   loaded->assembled = assemble(loaded->model, *loaded->system); // joints that cannot be met are the model's error
   return loaded;
