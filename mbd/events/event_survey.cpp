@@ -112,6 +112,7 @@ EventFinder::Unclear EventFinder::unclear_place(const Part& part, std::size_t la
       largest = std::max(largest, std::abs(w));
       for (int j = 0; j <= k_order; ++j) a[j] += table.transform[j][k] * w;
     }
+    if (largest == 0.0) continue; // what touches and does not move: zero is not below zero, however fine one looks
     double error = k_tail * (std::abs(a[k_order]) + std::abs(a[k_order - 1]));
     if (error < k_rounding * largest) error = 0.0;
     // What dividing does not make more exact is rounding (a contact that touches without being pressed), or a jump: its

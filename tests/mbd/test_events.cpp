@@ -249,3 +249,39 @@ stiffness = 1e4
   CHECK(std::abs(t - std::sqrt(2.0 / 9.81)) < 1e-14); // of rounding in y over the velocity, 2e-16/4.4, and of t
   CHECK(dynamics.evaluations() - before <= 6);
 }
+
+// A contact that touches and does not move has the value zero at every look. Each of 100 steps takes 4 stages and the 6 looks of
+// one survey; before, such steps were divided to the last part allowed, 4800 evaluations each.
+TEST_CASE("events: what touches without being pressed costs a look, not a search") {
+  const Run r = run(R"(
+[[body]]
+name = "pendulum"
+mass = 1.0
+inertia = 0.1
+position = [1.0, 0.0]
+[[element]]
+kind = "revolute"
+name = "pin"
+a = { body = "pendulum", at = [0.0, 0.0] }
+[[body]]
+name = "still"
+mass = 1.0
+inertia = 0.1
+position = [0.0, 5.0]
+[[element]]
+kind = "weld"
+name = "hold"
+a = "still"
+[[element]]
+kind = "unilateral_contact"
+name = "touch"
+a = "still"
+b = { body = "ground", at = [0.0, 5.0] }
+stiffness = 1e6
+gap = 0.0
+)",
+                    {"rk4", 0.01, 1.0});
+  CHECK(r.result.statistics.steps == 100);
+  CHECK(r.result.statistics.evaluations < 15 * r.result.statistics.steps);
+  CHECK(r.result.events.empty());
+}

@@ -1,5 +1,6 @@
 // A drive whose place or velocity would jump is refused, whatever the signal; what is accepted keeps all joints closed
 // through its breakpoints.
+#include "mbd/base/number_text.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 
@@ -12,32 +13,34 @@ using namespace steplap::testing;
 
 namespace {
 
-std::string arm(const std::string& signal, const std::string& level, const std::string& end) {
+// Stretched out at `angle`, where a position has to begin.
+std::string arm(const std::string& signal, const std::string& level, const std::string& end, double angle = 0.0) {
+  const auto at = [angle](double r) { return "[" + number_text(r * std::cos(angle)) + ", " + number_text(r * std::sin(angle)) + "]"; };
+  const std::string turned = "; angle = " + number_text(angle);
   return k_no_gravity + "[simulation]\nend = " + end + "\n" + signal +
-         body("upper", "mass = 2.0; inertia = 0.1; position = [0.5, 0.0]") +
-         body("fore", "mass = 1.0; inertia = 0.1; position = [1.5, 0.0]") +
+         body("upper", "mass = 2.0; inertia = 0.1; position = " + at(0.5) + turned) +
+         body("fore", "mass = 1.0; inertia = 0.1; position = " + at(1.5) + turned) +
          element("revolute", "shoulder",
                  "a = { body = 'upper', at = [0.0, 0.0] }; b = { body = 'ground', at = [0.0, 0.0] }") +
-         element("revolute", "elbow",
-                 "a = { body = 'fore', at = [1.0, 0.0] }; b = { body = 'upper', at = [1.0, 0.0] }") +
-         element("prescribed_motion", "drive", "a = 'upper'; coordinate = 'angle'; signal = 's'; as = '" + level +
-                     (level == "position" ? "'; zero = 'reference'" : "'")); // from where the arm is: it does not jump there
+         element("revolute", "elbow", "a = { body = 'fore', at = " + at(1.0) + " }; b = { body = 'upper', at = " + at(1.0) + " }") +
+         element("prescribed_motion", "drive", "a = 'upper'; coordinate = 'angle'; signal = 's'; as = '" + level + "'");
 }
 
 struct Kind {
   std::string name, fields;
   bool as_position, as_velocity; ///< accepted
+  double begins = 0.0;           ///< at t = 0
 };
 
 const std::vector<Kind> k_kinds = {
-    {"constant", "value = 0.3", true, true},
+    {"constant", "value = 0.3", true, true, 0.3},
     {"haversine", "peak = 0.4; start = 0.1; duration = 0.2", true, true},
     {"half_sine", "peak = 0.4; start = 0.1; duration = 0.2", false, true},
     {"triangle", "peak = 0.4; start = 0.1; duration = 0.2", false, true},
     {"trapezoid", "peak = 0.4; start = 0.1; duration = 0.2; rise = 0.05; fall = 0.05", false, true},
     {"trapezoid", "peak = 0.4; start = 0.1; duration = 0.2; rise = 0.0; fall = 0.05", false, false},
     {"rectangle", "peak = 0.4; start = 0.1; duration = 0.2", false, false},
-    {"harmonics", "amplitudes = [0.2]; frequencies = [2.0]", true, true},
+    {"harmonics", "amplitudes = [0.2]; frequencies = [2.0]", true, true, 0.2},
     // 0.2 (1 − cos): two whole periods begin and end at rest
     {"harmonics", "offset = 0.2; amplitudes = [-0.2]; frequencies = [10.0]; start = 0.1; duration = 0.2", true, true},
     {"harmonics", "offset = 0.2; amplitudes = [-0.2]; frequencies = [10.0]; start = 0.1; duration = 0.17", false,
@@ -53,7 +56,7 @@ TEST_CASE("every kind of signal at every level: refused where a velocity would j
       CAPTURE(kind.name);
       CAPTURE(kind.fields);
       CAPTURE(level);
-      const std::string text = arm(signal_entry(kind.name, "s", kind.fields), level, "0.4");
+      const std::string text = arm(signal_entry(kind.name, "s", kind.fields), level, "0.4", level == "position" ? kind.begins : 0.0);
       const bool is_accepted = level == "acceleration" || (level == "velocity" ? kind.as_velocity : kind.as_position);
       if (!is_accepted) {
         CHECK_THROWS_AS(static_cast<void>(compile(scene(text))), ModelError);

@@ -2,6 +2,7 @@
 
 #include "elements/contact_depth.h"
 #include "elements/unilateral_contact.h"
+#include "tools/steplap/places.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
@@ -14,50 +15,6 @@ namespace steplap {
 namespace {
 
 constexpr double k_beyond = 1e-3; // of the outline's width: feet may stand on an edge
-
-// A place on a body, from its centre of gravity in its own axes.
-struct Place {
-  const Body* body = nullptr; ///< null: the ground
-  Vec2 point = Vec2::Zero();
-  double angle = 0.0;
-};
-
-template <class T> const T* named(const std::vector<T>& list, const std::string& name) {
-  const auto found = std::find_if(list.begin(), list.end(), [&](const T& entry) { return entry.name == name; });
-  return found == list.end() ? nullptr : &*found;
-}
-
-Place place_of(const Model& model, const std::string& name) {
-  Place place;
-  const Marker* const marker = named(model.markers, name);
-  place.body = named(model.bodies, marker ? marker->body : name);
-  if (!marker) return place;
-  place.angle = marker->angle;
-  if (!place.body) {
-    place.point = marker->point.value_or(marker->at.value_or(Vec2::Zero()));
-    return place;
-  }
-  if (marker->point) place.point = *marker->point - place.body->cg;
-  else if (marker->at) {
-    const Vec3 pose = place.body->reference_pose();
-    place.point = rotated(*marker->at - Vec2(pose.x(), pose.y()), -pose.z());
-  }
-  return place;
-}
-
-// (x, y, θ) of a body's centre of gravity.
-Vec3 pose_of(const System& system, const State& state, const Body* body) {
-  if (!body) return Vec3::Zero();
-  for (std::size_t i = 1; i < system.bodies.size(); ++i)
-    if (system.bodies[i].name == body->name) return {state.q[3 * i], state.q[3 * i + 1], state.q[3 * i + 2]};
-  return body->reference_pose();
-}
-
-bool is_closed(const System& system, const State& state, const std::string& element) {
-  for (std::size_t u = 0; u < system.units.size(); ++u)
-    if (system.element_names[system.units[u].element] == element) return state.mode[u] != k_contact_open;
-  return false;
-}
 
 // Of b behind the contact's line, where b has an outline.
 std::optional<double> thickness_below(const UnilateralContact& contact, const Model& model) {

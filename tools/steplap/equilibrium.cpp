@@ -6,6 +6,7 @@
 #include "tools/steplap/run.h"
 #include "tools/steplap/summary.h"
 #include "tools/steplap/text_table.h"
+#include "tools/steplap/tipping.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +80,9 @@ void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equil
   print_poses(out, *loaded.system, loaded.system->initial_state(), found.state);
   print_reactions(out, *loaded.system, found.state);
   print_margins(out, *loaded.system, found.margins);
-  const std::vector<std::string> remarks = remarks_on(*loaded.system, found);
+  print_tipping(out, loaded, found.state);
+  std::vector<std::string> remarks = remarks_on(*loaded.system, found);
+  for (std::string& text : tipping_over(loaded, loaded.assembled)) remarks.push_back(std::move(text));
   if (!remarks.empty()) out << "\n";
   for (const std::string& remark : remarks) out << "Note: " << remark << "\n";
 }

@@ -1,6 +1,5 @@
 #include "tools/steplap/run.h"
 
-#include "elements/prescribed_motion.h"
 #include "mbd/analysis/assembly.h"
 #include "mbd/analysis/start.h"
 #include "mbd/base/shown_text.h"
@@ -11,6 +10,7 @@
 #include "tools/steplap/catalogue.h"
 #include "tools/steplap/command.h"
 #include "tools/steplap/interruption.h"
+#include "tools/steplap/tipping.h"
 
 #include <cmath>
 #include <cstdio>
@@ -64,7 +64,6 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path,
   loaded->text = effective_model_text(path, program_catalogue(), overrides);
   loaded->system = compile(loaded->model);
   refuse_endless_output(loaded->model, *loaded->system);
-  refuse_initial_jumps(loaded->model, *loaded->system);
   loaded->plots_left_out = check_presentation(loaded->model, *loaded->system);
   loaded->assembled = assemble(loaded->model, *loaded->system); // joints that cannot be met are the model's error
   return loaded;
@@ -102,12 +101,14 @@ std::string text_with_places(const NumericalFailure& failure, const Model& model
 
 namespace {
 
-// What fails says where in the model's file it does.
+// What finds no rest says where in the model's file, and what tips over as it is given.
 template <class Work> auto placed(const LoadedModel& loaded, const Work& work) {
   try {
     return work();
   } catch (const NumericalFailure& failure) {
-    throw NumericalFailure(text_with_places(failure, loaded.model, *loaded.system));
+    std::string text = text_with_places(failure, loaded.model, *loaded.system);
+    for (const std::string& tips : tipping_over(loaded, loaded.assembled)) text += "; " + tips;
+    throw NumericalFailure(text);
   }
 }
 

@@ -1,0 +1,20 @@
+// Where bodies stand on each other: a point for each foot, wheel or corner that touches.
+#pragma once
+
+#include "tools/steplap/run.h"
+
+namespace steplap {
+
+/// A place of contact. Of outlines whose faces lie on each other there are two, at the ends of the common part.
+struct Foot {
+  std::string name; ///< of the element, and which end of the face
+  int a = k_ground, b = k_ground;
+  Vec2 point = Vec2::Zero();
+  Vec2 normal = Vec2::Zero(); ///< of the force on a
+};
+
+/// Of all contacts that are closed in `state`, or open by less than a thousandth of the bodies' size: a pose as it is given
+/// has its contacts just touching.
+[[nodiscard]] std::vector<Foot> feet_of(const LoadedModel& loaded, const State& state);
+
+} // namespace steplap
