@@ -3,6 +3,7 @@
 #include "mbd/analysis/admissible_rest.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/system/element_failure.h"
+#include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
 #include <cmath>
@@ -350,6 +351,12 @@ std::vector<std::string> remarks_on(const System& system, const Equilibrium& fou
   return remarks;
 }
 
-Equilibrium find_equilibrium(const System& system, const State& start) { return RestSearch(system, start).run(); }
+Equilibrium find_equilibrium(const System& system, const State& start) {
+  if (const OneSidedRow* rope = first_one_sided_row(system)) {
+    const std::string& name = system.element_names[rope->row.element];
+    throw ElementFailure("the search for rest does not know inextensible ropes: give '" + name + "' a stiffness", {name});
+  }
+  return RestSearch(system, start).run();
+}
 
 } // namespace steplap
