@@ -18,6 +18,10 @@ constexpr double k_rest_share = 1e-9;            // of the velocities that make 
 // Ropes that are this near to their lengths, in dead bands, reach them at the same instant.
 constexpr double k_same_length = 10.0;
 constexpr double k_rounded_share = 1e-13;
+// Of its length: a taut rope that would leave it by no more than this before it is pulled back stays taut, if its tension lets
+// it. Two ropes that are caught in turn, each blow shortening the other, would else come to rest after infinitely many ever
+// smaller blows; and no nearer than the dead band, which gives each flight a little speed.
+constexpr double k_shortest_flight = 1e-9;
 
 double point_speed(const Motion<double>& m, const Pair<double>& lever) {
   return std::abs(m.vx - m.omega * lever.y) + std::abs(m.vy + m.omega * lever.x);
@@ -31,6 +35,7 @@ double rest_rate(const OneSidedRow& rope, const MeasureValue<double>& m, const s
 struct Struck {
   std::vector<int> ropes;
   std::vector<double> rate, rounding;
+  std::vector<double> acceleration; ///< with all of them slack
 };
 
 // Those that can take a part in the blow.
@@ -52,7 +57,7 @@ Struck ropes_at_length(const System& system, const State& state) {
   return struck;
 }
 
-BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& loose, const Struck& struck) {
+BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& loose, Struck& struck) {
   std::vector<double> y(static_cast<std::size_t>(system.largest_dimension())), dy(y.size());
   dynamics.set_state(loose);
   dynamics.pack(loose, y.data());
@@ -60,6 +65,7 @@ BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& l
   Dynamics::Candidates answer;
   for (const int f : struck.ropes) answer.rows.push_back(system.frictions[f].friction->rows(loose.friction[f]));
   dynamics.respond(answer, dy.data());
+  struck.acceleration = answer.acceleration;
   const auto n = static_cast<Eigen::Index>(struck.ropes.size());
   const MatX a = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(answer.compliance.data(), n, n);
   const VecX u = Eigen::Map<const VecX>(struck.rate.data(), n), rounding = Eigen::Map<const VecX>(struck.rounding.data(), n);
@@ -104,7 +110,7 @@ bool set_ropes(const System& system, State& state) {
 }
 
 void take_blow(const System& system, Dynamics& dynamics, State& state) {
-  const Struck struck = ropes_at_length(system, state);
+  Struck struck = ropes_at_length(system, state);
   if (struck.ropes.empty()) return;
   State after = state;
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
@@ -116,11 +122,13 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
   for (std::size_t i = 0; i < struck.ropes.size(); ++i) {
     const int f = struck.ropes[i];
     FrictionState& friction = after.friction[f];
-    friction.phase = solution.is_free[i] != 0 ? FrictionPhase::stick : FrictionPhase::slip;
+    const OneSidedRow& rope = *one_sided_row(*system.frictions[f].friction);
+    const double left_with = solution.g[static_cast<Eigen::Index>(i)];
+    const bool hardly_leaves = left_with * left_with <= 2.0 * k_shortest_flight * rope.length * std::abs(struck.acceleration[i]);
+    friction.phase = solution.is_free[i] != 0 || hardly_leaves ? FrictionPhase::stick : FrictionPhase::slip;
     friction.sign = 0;
     const double impulse = -solution.w[static_cast<Eigen::Index>(i)];
     if (!(impulse > 0.0)) continue;
-    const OneSidedRow& rope = *one_sided_row(*system.frictions[f].friction);
     state.memory[rope.blow] = impulse;
     state.memory[rope.blow + 1] += 0.5 * impulse * std::max(struck.rate[i], 0.0);
   }

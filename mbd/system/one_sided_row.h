@@ -60,7 +60,7 @@ public:
 
 /// Null where a friction element is none.
 [[nodiscard]] inline const OneSidedRow* one_sided_row(const FrictionElement& friction) {
-  return dynamic_cast<const OneSidedRow*>(&friction);
+  return friction.never_slips() ? dynamic_cast<const OneSidedRow*>(&friction) : nullptr;
 }
 [[nodiscard]] inline const OneSidedRow* first_one_sided_row(const System& system) {
   for (const FrictionUnit& unit : system.frictions)
