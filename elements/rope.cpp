@@ -1,9 +1,15 @@
 #include "elements/rope.h"
 
 #include "elements/contact_laws.h"
+#include "mbd/base/shown_text.h"
 #include "mbd/math/dual.h"
+#include "mbd/model/method.h"
+#include "mbd/system/one_sided_row.h"
 #include "mbd/system/system.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace steplap {
@@ -157,11 +163,72 @@ private:
 };
 
 bool check(const Rope& e, SystemBuilder& builder) {
-  if (e.length.has_value() + e.pretension.has_value() + e.slack.has_value() > 1) {
-    builder.error("give one of 'length', 'pretension' and 'slack'");
-    return false;
-  }
-  return true;
+  const auto fails = [&builder](bool is_wrong, const char* message) {
+    if (is_wrong) builder.error(message);
+    return is_wrong;
+  };
+  bool is_bad = fails(e.length.has_value() + e.pretension.has_value() + e.slack.has_value() > 1,
+                      "give one of 'length', 'pretension' and 'slack'");
+  if (!e.inextensible) return !fails(!e.stiffness, "give its 'stiffness', or inextensible = true") && !is_bad;
+  is_bad |= fails(e.stiffness.has_value(), "give either 'stiffness' or inextensible = true");
+  is_bad |= fails(e.damping > 0.0, "with inextensible = true it has no 'damping': it does not stretch");
+  is_bad |= fails(e.pretension.has_value(), "with inextensible = true its tension follows from the motion: give no 'pretension'");
+  return !is_bad;
+}
+
+void refuse_time_stepping(SystemBuilder& builder) {
+  const std::string& integrator = builder.model().simulation.integrator;
+  for (const Method& m : methods())
+    if (m.name == integrator && m.is_time_stepping)
+      builder.error("'" + integrator + "' does not locate where an inextensible rope becomes taut or slack: choose another "
+                    "'integrator', auto for one, or give the rope a 'stiffness'");
+}
+
+double lighter_mass(int a, int b, const SystemBuilder& builder) {
+  double mass = std::numeric_limits<double>::infinity();
+  for (const Body& body : builder.model().bodies)
+    if (const int index = builder.body(body.name); (index == a || index == b) && !body.fixed) mass = std::min(mass, body.mass);
+  return std::isfinite(mass) ? mass : 0.0;
+}
+
+// `entry`: as of an elastic rope, `now` its way in the reference pose.
+void add_inextensible(const RopeGroup::Entry& entry, double now, double length, SystemBuilder& builder) {
+  constexpr double k_least_acceleration = 1e-11; // m/s²: a tension that gives less to the lighter body is rounding
+  constexpr double k_dead_band = 1e-11, k_least_band = 4e-12; // of the length; m, above what projection leaves
+  refuse_time_stepping(builder);
+  if (entry.parts.size() > 1)
+    return builder.error("with inextensible = true just one of its straight parts may be between two different bodies, here " +
+                         std::to_string(entry.parts.size()) + " are: give it a 'stiffness' instead");
+  if (now > length * (1.0 + OneSidedRow::k_too_long))
+    return builder.error("its 'length' of " + rounded_text(length) + " m is less than the way over its points, " + rounded_text(now) +
+                         " m: it does not stretch");
+  const RopePart& part = entry.parts.front();
+  auto rope = std::make_unique<OneSidedRow>();
+  rope->length = length - entry.fixed_length;
+  if (!(rope->length > 0.0)) return builder.error("its 'length' leaves nothing for the part between its two bodies");
+  rope->dead_band = k_dead_band * rope->length + k_least_band;
+  rope->rest_tension = k_least_acceleration * lighter_mass(part.a, part.b, builder);
+  rope->row.kind = MeasureKind::distance;
+  rope->row.a = part.a;
+  rope->row.b = part.b;
+  rope->row.point_a = part.measure.point_a;
+  rope->row.point_b = part.measure.point_b;
+  rope->row.quantity = "length";
+  rope->row.element = builder.element_index();
+  rope->row.memory = builder.add_memory(rope->length);
+  rope->blow = builder.add_memory();
+  const int force = builder.next_friction_row(), f = builder.next_friction(), blow = rope->blow;
+  const OneSidedRow* const self = rope.get();
+  builder.add_channel("length", "m", "length of the way over its points",
+                      [self, fixed = entry.fixed_length](const Snapshot& s) { return fixed + self->measured(s.motion).value; });
+  builder.add_channel("rate", "m/s", {"of that length", "positive: it grows"},
+                      [self](const Snapshot& s) { return self->measured(s.motion).rate; });
+  builder.add_channel("tension", "N", {"force all along it, zero while it is slack", "positive: it pulls"}, [force, f](const Snapshot& s) {
+    return s.evaluation->friction[f].phase == FrictionPhase::stick ? -s.friction_force[force] : 0.0;
+  });
+  builder.add_channel("impulse", "N s", {"of the last blow that it took, zero before the first", "positive: it pulled"},
+                      [blow](const Snapshot& s) { return s.memory[blow]; });
+  builder.add_friction(std::move(rope));
 }
 
 void compile_rope(const Element& element, SystemBuilder& builder) {
@@ -188,9 +255,10 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
   if (entry.parts.empty()) return builder.error("joins a body with itself: name markers on two different bodies");
   double length = e.length.value_or(now);
   if (e.slack) length = now + *e.slack;
-  if (e.pretension) length = now - *e.pretension / e.stiffness;
+  if (e.inextensible) return add_inextensible(entry, now, length, builder);
+  if (e.pretension) length = now - *e.pretension / *e.stiffness;
   if (!(length > 0.0)) return builder.error("its 'pretension' stretches it by more than its length: give more 'stiffness'");
-  entry.law = {e.stiffness, e.damping, -length};
+  entry.law = {*e.stiffness, e.damping, -length};
   RopeGroup& group = builder.group<RopeGroup>();
   group.entries.push_back(std::move(entry));
   builder.add_unit(group, KelvinVoigtContact::k_watches);
@@ -216,7 +284,8 @@ const ElementKind& rope_kind() {
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker at its beginning");
     f.add("b", &T::b).as(FieldType::marker).doc("marker at its end");
     f.add("over", &T::over).doc("names of the markers that it runs over, in order from a to b");
-    f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("of the whole rope; none is inextensible");
+    f.add("stiffness", &T::stiffness).in("N/m").positive().doc("of the whole rope; required unless it is inextensible");
+    f.add("inextensible", &T::inextensible).doc("true: it does not stretch, and becomes taut by a blow without rebound; just one of its straight parts is between two bodies");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("while it is taut; never pushes");
     f.add("length", &T::length).in("m").positive().doc("without load; default: the way over its points in the reference pose");
     f.add("pretension", &T::pretension).in("N").not_negative().doc("in the reference pose");

@@ -4,8 +4,11 @@
 // friction, fixed in its body, so that the tension is the same all along:
 //   T = max(0, k (L − L₀) + c L̇) while L > L₀, else 0.
 // Each straight part pulls its two points towards each other with T. Potential ½ k (L − L₀)²; the damper dissipates
-// T L̇ less the change of that. Points keep their order, whether or not the rope would leave a pulley. An inextensible
-// rope is not offered: a stiff one stretches by T/k.
+// T L̇ less the change of that. Points keep their order, whether or not the rope would leave a pulley.
+//
+// An inextensible rope is a row that comes and goes (mbd/system/one_sided_row.h): L ≤ L₀, T ≥ 0, T (L₀ − L) = 0. It becomes
+// taut by a blow without restitution (mbd/events/blow.h). Rows are between two bodies: exactly one of its straight parts
+// may be between different ones, the others only add to its length.
 #pragma once
 
 #include "mbd/model/model.h"
@@ -15,7 +18,9 @@ namespace steplap {
 struct Rope : Element {
   std::string a, b = "ground";
   std::vector<std::string> over;    ///< markers between its ends, in order
-  double stiffness = 0.0, damping = 0.0;
+  std::optional<double> stiffness;
+  bool inextensible = false;
+  double damping = 0.0;
   std::optional<double> length;     ///< without load
   std::optional<double> pretension; ///< in the reference pose
   std::optional<double> slack;      ///< in the reference pose: length less the way

@@ -2,7 +2,9 @@
 
 #include "mbd/analysis/admissible_rest.h"
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/events/blow.h"
 #include "mbd/system/element_failure.h"
+#include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +20,9 @@ constexpr double k_admissible = 1.0 + 1e-9; // share of what friction can bear: 
 constexpr double k_least_used = 1e-9;       // less is rounding
 constexpr double k_flowed = 1e-12; // of the scene's length: what an elastic joint has slid in the search is rounding
 constexpr int k_most_flows = 200;
+constexpr double k_pushes = 1e3;     // tensions of a rope that are rounding: forces of a rest are known to some 1e-9 m/s²
+constexpr double k_on_rows = 1e-12;  // m, rad
+constexpr std::size_t k_most_rope_changes = 8; // for each rope
 constexpr double k_short = 0.999;
 constexpr int k_most_slips = 12;            // of one friction element, on the way to where it holds
 constexpr double k_tipped = 0.75; // rad
@@ -49,6 +54,7 @@ public:
     start_drives(system_, state_);
     for (FrictionState& friction : state_.friction)
       if (friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
+    (void)set_ropes(system_, state_);
   }
 
   Equilibrium run() {
@@ -66,9 +72,11 @@ public:
         for (Slip& slip : slips_) slip.gives_way = slip.gives_way || slip.is_new;
       for (Slip& slip : slips_) slip.is_new = false;
       yielding_ = descent.yielding();
+      if (end != DescentEnd::rest && tighten_all()) continue;
       if (end != DescentEnd::rest) fail(descent, end);
       if (let_flow()) continue;
       find_margins(descent);
+      if (change_ropes()) continue;
       if (overloads_.empty()) break;
       if (!share_anew(descent)) let_go();
     }
@@ -79,7 +87,7 @@ public:
 private:
   Equilibrium at_rest() {
     for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f) {
-      if (state_.friction[f].phase != FrictionPhase::slip) continue;
+      if (state_.friction[f].phase != FrictionPhase::slip || one_sided_row(*system_.frictions[f].friction)) continue;
       state_.friction[f].phase = FrictionPhase::stick;
       anchor_friction(system_, state_, f);
     }
@@ -134,6 +142,7 @@ private:
   void find_margins(const Descent& descent) {
     result_.margins.clear();
     overloads_.clear();
+    pushing_.clear();
     if (system_.frictions.empty()) return;
     const State held = with_drives_held();
     Dynamics dynamics(system_);
@@ -150,6 +159,9 @@ private:
     for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
       const FrictionUnit& unit = system_.frictions[f];
       const FrictionPhase phase = state_.friction[f].phase;
+      if (const OneSidedRow* rope = one_sided_row(*unit.friction);
+          rope && phase == FrictionPhase::stick && wrench[unit.row] > k_pushes * rope->rest_tension)
+        pushing_.push_back({f, {wrench[unit.row], 0.0, 0.0}, 0.0});
       if ((phase != FrictionPhase::stick && phase != FrictionPhase::slip) || unit.friction->never_slips()) continue;
       double* const own = &wrench[unit.row];
       if (phase == FrictionPhase::slip) descent.statics().slip_wrench(f, own);
@@ -166,6 +178,55 @@ private:
       for (const Release& release : sharing->releases(group))
         if (release.friction == f) overloads_.push_back({f, {release.wrench[0], 0.0, 0.0}, margin.used});
     }
+  }
+
+  // Inextensible ropes are taut where the search found them taut, and slack else: at rest none may push, and none may be
+  // longer than it is. True if one changes.
+  bool change_ropes() {
+    const auto worst = std::max_element(pushing_.begin(), pushing_.end(),
+                                        [](const Overload& a, const Overload& b) { return a.wrench[0] < b.wrench[0]; });
+    if (worst != pushing_.end()) {
+      state_.friction[worst->friction].phase = FrictionPhase::slip;
+      return count_rope(worst->friction);
+    }
+    std::vector<Motion<double>> motion;
+    place_bodies(state_.q, state_.v, motion);
+    for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+      const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
+      if (!rope || state_.friction[f].phase == FrictionPhase::stick || rope->left(motion.data()) >= -OneSidedRow::k_at_length * rope->length) continue;
+      state_.friction[f].phase = FrictionPhase::stick;
+      put_on_rows();
+      return count_rope(f);
+    }
+    return false;
+  }
+  bool count_rope(int f) {
+    if (++rope_changes_ <= k_most_rope_changes * system_.frictions.size()) return true;
+    throw ElementFailure("no static equilibrium found: whether '" + name_of(f) + "' and other ropes are taut at rest cannot be decided", {name_of(f)});
+  }
+  // What runs away may hang on ropes that are slack where it begins: once more with all of them taut.
+  bool tighten_all() {
+    bool is_any = false;
+    if (was_tightened_) return false;
+    was_tightened_ = true;
+    for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+      if (!one_sided_row(*system_.frictions[f].friction) || state_.friction[f].phase == FrictionPhase::stick) continue;
+      state_.friction[f].phase = FrictionPhase::stick;
+      is_any = true;
+    }
+    if (!is_any) return false;
+    state_.q = start_.q;
+    put_on_rows();
+    return true;
+  }
+  void put_on_rows() {
+    Dynamics dynamics(system_);
+    dynamics.set_state(state_);
+    std::vector<double> y(static_cast<std::size_t>(dynamics.dimension()));
+    dynamics.pack(state_, y.data());
+    dynamics.project(state_.t, y.data(), k_on_rows);
+    dynamics.unpack(state_.t, y.data(), state_);
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
   }
 
   [[nodiscard]] double share_used(const Evaluation& evaluation, int f, const double* wrench) const {
@@ -332,6 +393,9 @@ private:
   bool was_shared_anew_ = false;
   std::vector<Slip> slips_;
   std::vector<Overload> overloads_;
+  std::vector<Overload> pushing_;  ///< taut ropes that would have to push
+  std::size_t rope_changes_ = 0;
+  bool was_tightened_ = false;
   Equilibrium result_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "mbd/math/dual.h"
 #include "mbd/system/law_group.h"
+#include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
 
@@ -76,6 +77,7 @@ double static_target(const RowSpec& row, const State& state) { return row_target
 
 void anchor_friction(const System& system, State& state, int f, const Motion<double>* motion) {
   const FrictionElement& friction = *system.frictions[f].friction;
+  if (one_sided_row(friction)) return; // held at its length
   const RowSpec* const rows = friction.rows(state.friction[f]);
   std::vector<Motion<double>> placed;
   if (!motion) {

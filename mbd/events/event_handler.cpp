@@ -1,5 +1,8 @@
 #include "mbd/events/event_handler.h"
 
+#include "mbd/events/blow.h"
+#include "mbd/system/one_sided_row.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -87,9 +90,11 @@ void EventHandler::start(State& state) {
     const Unit& unit = system_.units[u];
     state.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
   }
+  if (set_ropes(system_, state)) take_blow(system_, dynamics_, state);
   modes_.evaluate(state);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state.friction[f];
+    if (one_sided_row(*system_.frictions[f].friction)) continue;
     modes_.set_anchor(state, f);
     if (friction.phase != FrictionPhase::apart &&
         system_.frictions[f].friction->is_loaded(dynamics_.evaluation(), friction))
@@ -128,7 +133,10 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
 void EventHandler::fire_friction(State& state, int f, int slot) {
   const FrictionUnit& unit = system_.frictions[f];
   FrictionState& friction = state.friction[f];
-  if (slot == unit.watch + 2) {
+  if (one_sided_row(*unit.friction)) { // slack from here on; one that has reached its length is struck
+    friction.phase = FrictionPhase::slip;
+    friction.sign = 0;
+  } else if (slot == unit.watch + 2) {
     if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
     unit.friction->change_place(dynamics_.evaluation(), friction);
     modes_.set_anchor(state, f);
@@ -210,12 +218,44 @@ void EventHandler::note_start(const State& state, std::vector<Event>& events) co
   for (std::size_t f = 0; f < state.friction.size(); ++f)
     if (state.friction[f].phase == FrictionPhase::slip && has_capacity(state, f))
       events.push_back({state.t, system_.element_names[system_.frictions[f].element], slip_kind(f, {}, state.friction[f])});
+  for (std::size_t f = 0; f < state.friction.size(); ++f)
+    if (one_sided_row(*system_.frictions[f].friction) && was_struck(system_, f, system_.initial_memory, state))
+      events.push_back({state.t, system_.element_names[system_.frictions[f].element], EventKind::closes_gap,
+                        blow_text(system_, f, system_.initial_memory, state)});
 }
 
-void EventHandler::note_friction(const std::vector<FrictionState>& before, const State& state, std::vector<Event>& events) {
+namespace {
+
+// What a rope has done: taut, slack, or taut and slack again at once.
+void note_rope(const System& system, std::size_t f, FrictionPhase phase_before, const std::vector<double>& memory_before, const State& state, std::vector<Event>& events) {
+  const std::string& name = system.element_names[system.frictions[f].element];
+  const bool was_taut = phase_before == FrictionPhase::stick, is_taut = state.friction[f].phase == FrictionPhase::stick;
+  const bool is_caught = !was_taut && (is_taut || was_struck(system, f, memory_before, state));
+  if (is_caught) events.push_back({state.t, name, EventKind::closes_gap, blow_text(system, f, memory_before, state)});
+  if ((was_taut || is_caught) && !is_taut) events.push_back({state.t, name, EventKind::enters_gap});
+}
+
+// Slots whose values were not negative, and are.
+std::vector<int> fallen(const std::vector<double>& before, const std::vector<double>& now) {
+  std::vector<int> slots;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (before[i] >= 0.0 && now[i] < 0.0) slots.push_back(static_cast<int>(i));
+  return slots;
+}
+
+} // namespace
+
+void EventHandler::note_friction(const std::vector<FrictionState>& before, const std::vector<double>& memory_before,
+                                 const State& state, std::vector<Event>& events) {
   for (std::size_t f = 0; f < state.friction.size(); ++f) {
     const FrictionState& old = before[f];
     const FrictionState& now = state.friction[f];
+    if (one_sided_row(*system_.frictions[f].friction)) {
+      const std::size_t known = events.size();
+      note_rope(system_, f, before[f].phase, memory_before, state, events);
+      for (int w = 0; w < k_friction_watches && events.size() > known; ++w) fresh_[system_.frictions[f].watch + w] = 1;
+      continue;
+    }
     const bool is_same_slip = now.phase != FrictionPhase::slip || is_same_direction(f, old, now);
     if (old.phase == now.phase && old.foot == now.foot && is_same_slip) continue;
     const FrictionUnit& unit = system_.frictions[f];
@@ -255,19 +295,24 @@ void EventHandler::note_changes(const State& before, const State& state, std::ve
     const EventKind kind = unit.group->transition(before.mode[u], state.mode[u]);
     if (kind != EventKind::none) events.push_back({state.t, system_.element_names[unit.element], kind});
   }
-  note_friction(before.friction, state, events);
+  note_friction(before.friction, before.memory, state, events);
   clear_fresh();
 }
 
-// The friction of the slots that have fired leaves its phase or place. True if any then is at rest.
-bool EventHandler::fire(State& state, const std::vector<int>& fired) {
-  bool is_any_at_rest = false;
+// The friction of the slots that have fired leaves its phase or place; ropes at their length are struck behind it.
+EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fired) {
+  Fired found;
   const LoadSharing* const sharing = dynamics_.sharing();
   is_released_.assign(sharing ? sharing->groups().size() : 0, 0);
   has_fired_.assign(system_.frictions.size(), 0);
   for (const int slot : fired) {
     const int f = friction_of_slot_[slot];
     if (f < 0) continue;
+    if (one_sided_row(*system_.frictions[f].friction) && slot == system_.frictions[f].watch + 2) {
+      found.is_any_tight = true;
+      fresh_[slot] = 1;
+      continue;
+    }
     const int group = sharing && slot != system_.frictions[f].watch + 2 ? sharing->group_of(f) : -1;
     if (group >= 0 && slot == system_.frictions[f].watch + 1) continue; // its rows move apart: decide() finds out how
     if (group >= 0) { // fires in the slots of all its elements
@@ -281,9 +326,32 @@ bool EventHandler::fire(State& state, const std::vector<int>& fired) {
       has_fired_[f] = 1;
     }
     fire_friction(state, f, slot);
-    is_any_at_rest = is_any_at_rest || state.friction[f].phase == FrictionPhase::stick;
+    found.is_any_at_rest = found.is_any_at_rest || state.friction[f].phase == FrictionPhase::stick;
   }
-  return is_any_at_rest;
+  return found;
+}
+
+// Contacts and friction behind a blow are those of the new velocities. True if a contact has changed its mode.
+bool EventHandler::strike(State& state, std::vector<Event>& events) {
+  modes_.evaluate(state);
+  const std::vector<double> watch = dynamics_.watch();
+  const State unhurt = state;
+  take_blow(system_, dynamics_, state);
+  modes_.evaluate(state);
+  const bool is_contact_changed = switch_units(state, fallen(watch, dynamics_.watch()), events);
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    const FrictionPhase phase = state.friction[f].phase;
+    if ((phase != FrictionPhase::stick && phase != FrictionPhase::slip) || one_sided_row(*system_.frictions[f].friction)) continue;
+    double rate_before[3] = {0, 0, 0}, rate[3] = {0, 0, 0};
+    slip_rates(unhurt, f, rate_before);
+    slip_rates(state, f, rate);
+    if (std::equal(rate, rate + 3, rate_before, [](double x, double y) { return std::abs(x - y) <= k_rest_velocity; })) continue;
+    if (phase == FrictionPhase::slip) modes_.end_slip(state, f);
+    load(state, f);
+    if (state.friction[f].phase == FrictionPhase::slip) state.friction[f].has_slipped = true;
+  }
+  modes_.forget_evaluation();
+  return is_contact_changed;
 }
 
 // A state is evaluated, and set to rest, once in each set of modes that is tried: twice at most events, and what the last
@@ -292,14 +360,16 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
   clear_fresh();
   settled_ = 0.0;
   before_ = state.friction;
+  memory_before_ = state.memory;
   forget_moved_layouts(state);
   modes_.evaluate(state);
-  const bool is_contact_changed = switch_units(state, fired, events);
-  const bool is_any_at_rest = fire(state, fired);
+  bool is_contact_changed = switch_units(state, fired, events);
+  const Fired found = fire(state, fired);
   if (!fired.empty()) modes_.forget_evaluation();
+  if (found.is_any_tight && strike(state, events)) is_contact_changed = true;
   bool is_settled = false; // in the modes that it has
   // The mode problem is one of elements at rest: what little is left of a slip that has ended goes first.
-  if (is_any_at_rest) {
+  if (found.is_any_at_rest) {
     settle(state);
     is_settled = !modes_.rejoin(state);
   }
@@ -315,7 +385,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
     is_settled = true;
   }
   if (!modes_.decide(state)) is_settled = false;
-  note_friction(before_, state, events);
+  note_friction(before_, memory_before_, state, events);
   if (!is_settled && has_new_rows(before_, state)) settle(state);
 }
 

@@ -61,10 +61,16 @@ private:
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   [[nodiscard]] bool has_capacity(const State& state, std::size_t f) const;
   [[nodiscard]] EventKind slip_kind(std::size_t f, const FrictionState& old, const FrictionState& now) const;
-  void note_friction(const std::vector<FrictionState>& before, const State& state, std::vector<Event>& events);
+  void note_friction(const std::vector<FrictionState>& before, const std::vector<double>& memory_before, const State& state,
+                     std::vector<Event>& events);
   void forget_moved_layouts(const State& state);
   void load(State& state, int f);
-  bool fire(State& state, const std::vector<int>& fired);
+  struct Fired {
+    bool is_any_at_rest = false;
+    bool is_any_tight = false; ///< a rope has reached its length
+  };
+  Fired fire(State& state, const std::vector<int>& fired);
+  bool strike(State& state, std::vector<Event>& events);
   void slip_rates(const State& state, int f, double* rate);
   void settle(State& state);
   [[nodiscard]] static bool has_new_rows(const std::vector<FrictionState>& before, const State& state);
@@ -78,6 +84,7 @@ private:
   double settled_ = 0.0;
   std::vector<double> y_, dy_;
   std::vector<FrictionState> before_;    ///< as friction was when handle() began
+  std::vector<double> memory_before_;
   std::vector<char> is_released_;        ///< per group of those that share a load
   std::vector<char> has_fired_;          ///< per friction element
   std::vector<Motion<double>> motion_;   ///< of the bodies: scratch

@@ -17,10 +17,10 @@ constexpr int k_most_steps = 2; // to the minimum of one set of free variables: 
 
 class ActiveSet {
 public:
-  ActiveSet(const MatX& a, const VecX& b, const VecX& c, const VecX& rounding)
-      : a_(a), b_(b), c_(c), rounding_(rounding), n_(b.size()), w_(VecX::Zero(n_)), at_bound_(n_, 0) {
+  ActiveSet(const MatX& a, const VecX& b, const VecX& lower, const VecX& upper, const VecX& rounding)
+      : a_(a), b_(b), lower_(lower), upper_(upper), rounding_(rounding), n_(b.size()), w_(VecX::Zero(n_)), at_bound_(n_, 0) {
     for (Eigen::Index i = 0; i < n_; ++i)
-      if (!(c_[i] > 0.0)) at_bound_[i] = 1;
+      if (!(upper_[i] > lower_[i])) at_bound_[i] = 1;
   }
 
   BoxSolution solve() {
@@ -77,9 +77,9 @@ private:
     double step = is_endless ? std::numeric_limits<double>::infinity() : 1.0;
     Eigen::Index first = -1;
     for (Eigen::Index i = 0; i < m; ++i) {
-      const double d = direction[i], w = w_[free[i]], c = c_[free[i]];
+      const double d = direction[i];
       if (d == 0.0) continue;
-      const double reach = std::max(0.0, ((d > 0.0 ? c : -c) - w) / d);
+      const double reach = std::max(0.0, ((d > 0.0 ? upper_ : lower_)[free[i]] - w_[free[i]]) / d);
       if (reach >= step) continue;
       step = reach;
       first = i;
@@ -91,7 +91,7 @@ private:
       return true;
     }
     steps_to_minimum_ = 0;
-    w_[free[first]] = direction[first] > 0.0 ? c_[free[first]] : -c_[free[first]];
+    w_[free[first]] = (direction[first] > 0.0 ? upper_ : lower_)[free[first]];
     at_bound_[free[first]] = direction[first] > 0.0 ? 1 : -1;
     return true;
   }
@@ -102,7 +102,7 @@ private:
     Eigen::Index worst = -1;
     double most = 0.0;
     for (Eigen::Index i = 0; i < n_; ++i) {
-      if (at_bound_[i] == 0 || !(c_[i] > 0.0) || !pulls(i, g[i])) continue;
+      if (at_bound_[i] == 0 || !(upper_[i] > lower_[i]) || !pulls(i, g[i])) continue;
       const double back = at_bound_[i] * g[i] / (a_(i, i) > 0.0 ? std::sqrt(a_(i, i)) : 1.0);
       if (back <= most) continue;
       most = back;
@@ -115,7 +115,7 @@ private:
   }
 
   const MatX& a_;
-  const VecX &b_, &c_, &rounding_;
+  const VecX &b_, &lower_, &upper_, &rounding_;
   Eigen::Index n_;
   VecX w_;
   int steps_to_minimum_ = 0; ///< of the present set
@@ -125,7 +125,11 @@ private:
 } // namespace
 
 BoxSolution solve_box_problem(const MatX& a, const VecX& b, const VecX& c, const VecX& rounding) {
-  return ActiveSet(a, b, c, rounding).solve();
+  return solve_box_problem(a, b, -c, c, rounding);
+}
+
+BoxSolution solve_box_problem(const MatX& a, const VecX& b, const VecX& lower, const VecX& upper, const VecX& rounding) {
+  return ActiveSet(a, b, lower, upper, rounding).solve();
 }
 
 } // namespace steplap

@@ -1,4 +1,5 @@
-// Convex quadratic problems with bounds: min ½ wᵀA w + bᵀw over |w_i| ≤ c_i, A symmetric and positive semidefinite.
+// Convex quadratic problems with bounds: min ½ wᵀA w + bᵀw over |w_i| ≤ c_i, A symmetric and positive semidefinite; or
+// over lower_i ≤ w_i ≤ upper_i, of which one may be infinite (ropes: they pull without bound and never push).
 //
 // The dual of the mode problem for friction of one dimension: A the compliance of the candidates' rows, b their
 // relative acceleration without friction, g = A w + b the one with it. A solution has g_i = 0 where |w_i| < c_i, and
@@ -24,5 +25,7 @@ struct BoxSolution {
 
 /// `rounding`: how much of b_i is not known.
 [[nodiscard]] BoxSolution solve_box_problem(const MatX& a, const VecX& b, const VecX& c, const VecX& rounding);
+/// lower ≤ 0 ≤ upper.
+[[nodiscard]] BoxSolution solve_box_problem(const MatX& a, const VecX& b, const VecX& lower, const VecX& upper, const VecX& rounding);
 
 } // namespace steplap

@@ -3,6 +3,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/friction/box_problem.h"
+#include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,15 +59,17 @@ private:
   void solve_flat() {
     const auto n = static_cast<Eigen::Index>(n_);
     MatX a(n, n);
-    VecX b(n), bound(n), rounding(n);
+    VecX b(n), lower(n), upper(n), rounding(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const double no_compliance = 0.0, pull = -1.0;
       b[i] = candidates_.acceleration[i];
       rounding[i] = candidates_.rounding[i];
-      bound[i] = block_of(i, &no_compliance, &pull).wrench[0];
+      const bool is_rope = one_sided_row(*system_.frictions[elements_[i]].friction) != nullptr;
+      upper[i] = is_rope ? 0.0 : block_of(i, &no_compliance, &pull).wrench[0];
+      lower[i] = is_rope ? -std::numeric_limits<double>::infinity() : -upper[i];
       for (Eigen::Index j = 0; j < n; ++j) a(i, j) = candidates_.compliance[i * n + j];
     }
-    const BoxSolution solution = solve_box_problem(a, b, bound, rounding);
+    const BoxSolution solution = solve_box_problem(a, b, lower, upper, rounding);
     if (!solution.is_solved) return sweep_until_settled(); // its set of bounds repeats itself, by rounding
     for (Eigen::Index i = 0; i < n; ++i) {
       FrictionBlock& block = blocks_[i];
@@ -158,6 +161,18 @@ private:
   bool is_flat_ = true; ///< all of one dimension
 };
 
+// Ropes that would push although their row holds without them: others hold it, and one of them has none of the load.
+bool slacken_idle(const System& system, const Dynamics& dynamics, State& state) {
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const FrictionUnit& unit = system.frictions[f];
+    if (state.friction[f].phase != FrictionPhase::stick || dynamics.watch()[unit.watch] >= 0.0 || !one_sided_row(*unit.friction)) continue;
+    state.friction[f].phase = FrictionPhase::slip;
+    state.friction[f].sign = 0;
+    return true;
+  }
+  return false;
+}
+
 } // namespace
 
 FrictionModes::FrictionModes(const System& system, Dynamics& dynamics)
@@ -165,6 +180,7 @@ FrictionModes::FrictionModes(const System& system, Dynamics& dynamics)
 
 void FrictionModes::set_anchor(State& state, int f) const {
   const FrictionElement& friction = *system_.frictions[f].friction;
+  if (one_sided_row(friction)) return; // held at its length, wherever it is
   const RowSpec* rows = friction.rows(state.friction[f]);
   place_bodies(state.q, state.v, motion_);
   for (int r = 0; r < friction.dimension(); ++r)
@@ -224,6 +240,10 @@ void FrictionModes::solve(State& state, const std::vector<int>& candidates) {
     FrictionState& friction = state.friction[candidates[i]];
     friction.phase = blocks[i].is_inside ? FrictionPhase::stick : FrictionPhase::slip;
     std::copy(blocks[i].direction, blocks[i].direction + 3, friction.direction);
+    if (one_sided_row(*system_.frictions[candidates[i]].friction)) {
+      friction.sign = 0;
+      continue;
+    }
     friction.sign = blocks[i].direction[0] > 0.0 ? 1 : -1;
     friction.is_starting = !blocks[i].is_inside;
     if (!blocks[i].is_inside) friction.has_slipped = true;
@@ -264,7 +284,7 @@ bool FrictionModes::is_at_rest(const State& state, int f) const {
 bool FrictionModes::rejoin(State& state) {
   bool is_any = false;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
-    if (state.friction[f].phase != FrictionPhase::slip || !is_at_rest(state, f)) continue;
+    if (state.friction[f].phase != FrictionPhase::slip || one_sided_row(*system_.frictions[f].friction) || !is_at_rest(state, f)) continue;
     State trial = state;
     end_slip(trial, f);
     trial.friction[f].phase = FrictionPhase::stick;
@@ -285,7 +305,8 @@ bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionStat
   bool is_placed = false;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const FrictionElement& friction = *system_.frictions[f].friction;
-    if (friction.dimension() != 1 || state.friction[f].phase != FrictionPhase::slip || before[f].phase != FrictionPhase::slip)
+    if (friction.dimension() != 1 || state.friction[f].phase != FrictionPhase::slip || before[f].phase != FrictionPhase::slip ||
+        one_sided_row(friction))
       continue;
     if (!is_placed) place_bodies(state.q, state.v, motion_);
     is_placed = true;
@@ -370,7 +391,9 @@ void FrictionModes::settle_candidates(State& state, std::vector<int> candidates)
     const bool is_any_over = !more.empty();
     std::erase_if(more, [&](int f) { return std::find(candidates.begin(), candidates.end(), f) != candidates.end(); });
     // Candidates that were found to stick and yet are overloaded: rounding. Of a group limit analysis tells.
-    if (more.empty()) {
+    if (more.empty() && is_any_over && slacken_idle(system_, dynamics_, state)) {
+      candidates = violated(state);
+    } else if (more.empty()) {
       if (!is_any_over || !release_overloaded(state)) return;
       candidates = violated(state);
     } else {

@@ -2,6 +2,7 @@
 
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
+#include "mbd/system/one_sided_row.h"
 #include "mbd/base/number_text.h"
 #include "mbd/integrators/explicit_pair.h"
 #include "mbd/model/method.h"
@@ -93,7 +94,12 @@ Coordinates Simulation::chosen_coordinates() const {
 }
 
 void Simulation::refuse_time_stepping() const {
-  if (!method(options_.integrator).is_time_stepping || system_.inner_count() == 0) return;
+  if (!method(options_.integrator).is_time_stepping) return;
+  if (const OneSidedRow* rope = first_one_sided_row(system_))
+    throw NumericalFailure("'" + options_.integrator + "' does not locate where the inextensible rope '" +
+                           system_.element_names[rope->row.element] +
+                           "' becomes taut or slack: choose another integrator, auto for one, or give the rope a stiffness");
+  if (system_.inner_count() == 0) return;
   throw NumericalFailure("'" + options_.integrator + "' does not follow what '" + system_.element_names[system_.inner_elements[0]] +
                          "' remembers (the slid distance of an elastic joint, whether a tie has broken): choose another "
                          "integrator, auto for one");
@@ -262,7 +268,7 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
   const auto is_at_kink = [](const Event& event) { return is_kink(event.kind); };
   const auto first_new = events_.begin() + static_cast<std::ptrdiff_t>(known);
   if (first_new != events_.end() && std::all_of(first_new, events_.end(), is_at_kink)) ++kinks_;
-  if (method(options_.integrator).may_step_over_storms && system_.inner_count() == 0 && handler_.stop_reason().empty())
+  if (method(options_.integrator).may_step_over_storms && system_.inner_count() == 0 && !first_one_sided_row(system_) && handler_.stop_reason().empty())
     for (std::size_t i = known; i < events_.size(); ++i)
       if (!is_kink(events_[i].kind) && storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
   if (!fired.empty()) guard_against_chatter(t);

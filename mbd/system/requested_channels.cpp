@@ -1,6 +1,7 @@
 #include "mbd/system/requested_channels.h"
 
 #include "mbd/base/name_pattern.h"
+#include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
 #include <memory>
@@ -183,6 +184,10 @@ void RequestedChannels::add_share(const Share& share) {
   for (std::size_t r = share.first_row; r < share.row_end; ++r)
     if (system.rows[r].drive) driven.push_back(r);
 
+  std::vector<int> blows; // of ropes: where the memory keeps what they have lost
+  for (const std::size_t f : frictions)
+    if (const OneSidedRow* rope = one_sided_row(*system.frictions[f].friction)) blows.push_back(rope->blow + 1);
+
   const auto stored = [givers, inner](const Snapshot& s) {
     double sum = 0.0;
     for (const ForceGroup* group : givers) sum += group->potential(s.motion);
@@ -198,6 +203,12 @@ void RequestedChannels::add_share(const Share& share) {
       return power;
     };
     if (!inner.empty()) integrand.stored = stored;
+    if (!blows.empty())
+      integrand.stored = [blows](const Snapshot& s) {
+        double lost = 0.0;
+        for (const int slot : blows) lost += s.memory[slot];
+        return -lost;
+      };
     add_energy(share, "dissipated", "energy that it has turned into heat since the start", std::move(integrand));
   }
   if (!givers.empty())

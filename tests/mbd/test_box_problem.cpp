@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 using namespace steplap;
@@ -97,4 +98,31 @@ TEST_CASE("sets of bounds that repeat themselves end, and are told") {
   const BoxSolution s = solve_box_problem(a, b, c, VecX::Zero(2));
   CHECK_FALSE(s.is_solved);
   for (Eigen::Index i = 0; i < 2; ++i) CHECK(std::abs(s.w[i]) <= c[i]);
+}
+
+// Ropes: bounded on one side only. Their conditions say all: w ≤ 0, A w + b ≤ 0, one of them zero.
+TEST_CASE("bounds on one side: what pulls does not push") {
+  unsigned seed = 7;
+  const auto number = [&seed] {
+    seed = seed * 1664525U + 1013904223U;
+    return static_cast<double>(seed >> 8U) / 8388608.0 - 1.0;
+  };
+  for (int round = 0; round < 200; ++round) {
+    const Eigen::Index n = 1 + round % 6;
+    MatX j(n, 4); // beyond 4 rows they depend on each other
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index k = 0; k < 4; ++k) j(i, k) = number();
+    const MatX a = j * j.transpose();
+    VecX v(4);
+    for (Eigen::Index k = 0; k < 4; ++k) v[k] = number();
+    const VecX b = j * v; // what dependent rows are off by depends likewise
+    const VecX lower = VecX::Constant(n, -std::numeric_limits<double>::infinity());
+    const BoxSolution s = solve_box_problem(a, b, lower, VecX::Zero(n), VecX::Constant(n, 1e-13));
+    REQUIRE(s.is_solved);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      CHECK(s.w[i] <= 0.0);
+      CHECK(s.g[i] <= 1e-9); // the condition of rows of 4 random numbers
+      CHECK(std::abs(s.w[i] * s.g[i]) <= 1e-8 * (1.0 + std::abs(s.w[i])));
+    }
+  }
 }

@@ -11,10 +11,15 @@ long asked = 0;
 
 } // namespace
 
-steplap::BoxSolution steplap::solve_box_problem(const MatX& /*a*/, const VecX& b, const VecX& c, const VecX& /*rounding*/) {
+steplap::BoxSolution steplap::solve_box_problem(const MatX& a, const VecX& b, const VecX& c, const VecX& rounding) {
+  return solve_box_problem(a, b, -c, c, rounding);
+}
+
+steplap::BoxSolution steplap::solve_box_problem(const MatX& /*a*/, const VecX& b, const VecX& lower, const VecX& /*upper*/,
+                                                const VecX& /*rounding*/) {
   ++asked;
   BoxSolution wrong; // not to be used
-  wrong.w = -c;
+  wrong.w = lower;
   wrong.g = VecX::Constant(b.size(), 1e3);
   wrong.is_free.assign(static_cast<std::size_t>(b.size()), 0);
   return wrong;

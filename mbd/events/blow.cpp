@@ -1,0 +1,164 @@
+#include "mbd/events/blow.h"
+
+#include "mbd/base/shown_text.h"
+#include "mbd/friction/box_problem.h"
+#include "mbd/system/element_failure.h"
+#include "mbd/system/one_sided_row.h"
+
+#include <cmath>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_projection_tolerance = 1e-12; // m, rad
+constexpr double k_rest_velocity = 1e-12;        // m/s: far above the rounding of a projected one
+constexpr double k_rest_share = 1e-9;            // of the velocities that make up a rate
+// Ropes that are this near to their lengths, in dead bands, reach them at the same instant.
+constexpr double k_same_length = 10.0;
+constexpr double k_rounded_share = 1e-13;
+// Of its length: a taut rope that would leave it by no more than this before it is pulled back stays taut, if its tension lets
+// it. Two ropes that are caught in turn, each blow shortening the other, would else come to rest after infinitely many ever
+// smaller blows; and no nearer than the dead band, which gives each flight a little speed.
+constexpr double k_shortest_flight = 1e-9;
+
+double point_speed(const Motion<double>& m, const Pair<double>& lever) {
+  return std::abs(m.vx - m.omega * lever.y) + std::abs(m.vy + m.omega * lever.x);
+}
+
+double rest_rate(const OneSidedRow& rope, const MeasureValue<double>& m, const std::vector<Motion<double>>& motion) {
+  return k_rest_velocity +
+         k_rest_share * (point_speed(motion[rope.row.a], m.lever_a) + point_speed(motion[rope.row.b], m.lever_b));
+}
+
+struct Struck {
+  std::vector<int> ropes;
+  std::vector<double> rate, rounding;
+  std::vector<double> acceleration; ///< with all of them slack
+};
+
+// Those that can take a part in the blow.
+Struck ropes_at_length(const System& system, const State& state) {
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  Struck struck;
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const OneSidedRow* const rope = one_sided_row(*system.frictions[f].friction);
+    if (!rope) continue;
+    const auto m = rope->measured(motion.data());
+    const bool is_reached = rope->length - m.value <= k_same_length * rope->dead_band && m.rate > 0.0;
+    if (state.friction[f].phase != FrictionPhase::stick && !is_reached) continue;
+    struck.ropes.push_back(static_cast<int>(f));
+    struck.rate.push_back(m.rate);
+    struck.rounding.push_back(k_rest_velocity + k_rounded_share * (point_speed(motion[rope->row.a], m.lever_a) +
+                                                                   point_speed(motion[rope->row.b], m.lever_b)));
+  }
+  return struck;
+}
+
+BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& loose, Struck& struck) {
+  std::vector<double> y(static_cast<std::size_t>(system.largest_dimension())), dy(y.size());
+  dynamics.set_state(loose);
+  dynamics.pack(loose, y.data());
+  dynamics.rates(loose.t, y.data(), dy.data());
+  Dynamics::Candidates answer;
+  for (const int f : struck.ropes) answer.rows.push_back(system.frictions[f].friction->rows(loose.friction[f]));
+  dynamics.respond(answer, dy.data());
+  struck.acceleration = answer.acceleration;
+  const auto n = static_cast<Eigen::Index>(struck.ropes.size());
+  const MatX a = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(answer.compliance.data(), n, n);
+  const VecX u = Eigen::Map<const VecX>(struck.rate.data(), n), rounding = Eigen::Map<const VecX>(struck.rounding.data(), n);
+  BoxSolution solution =
+      solve_box_problem(a, u, VecX::Constant(n, -std::numeric_limits<double>::infinity()), VecX::Zero(n), rounding);
+  if (solution.is_solved) return solution;
+  throw ElementFailure("at t = " + rounded_text(loose.t, 12) + " s it cannot be decided which ropes take the blow",
+                       {system.element_names[system.frictions[struck.ropes.front()].element]});
+}
+
+bool is_any_driven(const System& system) {
+  for (const RowSpec& row : system.rows)
+    if (row.drive) return true;
+  return false;
+}
+
+} // namespace
+
+bool set_ropes(const System& system, State& state) {
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  bool is_any_pulled = false;
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const OneSidedRow* const rope = one_sided_row(*system.frictions[f].friction);
+    if (!rope) continue;
+    FrictionState& friction = state.friction[f];
+    state.memory[rope->blow] = state.memory[rope->blow + 1] = 0.0;
+    const auto m = rope->measured(motion.data());
+    if (m.value > rope->length * (1.0 + OneSidedRow::k_too_long)) {
+      const std::string& name = system.element_names[system.frictions[f].element];
+      throw ElementFailure("the ends of rope '" + name + "' are " + rounded_text(m.value - rope->length, 4) +
+                               " m farther apart at the start than its length lets them be",
+                           {name});
+    }
+    const double rest = rest_rate(*rope, m, motion);
+    const bool is_at_length = m.value >= rope->length * (1.0 - OneSidedRow::k_at_length);
+    friction = {};
+    friction.phase = is_at_length && m.rate >= -rest ? FrictionPhase::stick : FrictionPhase::slip;
+    is_any_pulled = is_any_pulled || (is_at_length && m.rate > rest);
+  }
+  return is_any_pulled;
+}
+
+void take_blow(const System& system, Dynamics& dynamics, State& state) {
+  Struck struck = ropes_at_length(system, state);
+  if (struck.ropes.empty()) return;
+  State after = state;
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const FrictionElement& friction = *system.frictions[f].friction;
+    if (!friction.never_slips() && after.friction[f].phase != FrictionPhase::apart) after.friction[f].phase = FrictionPhase::free;
+  }
+  for (const int f : struck.ropes) after.friction[f].phase = FrictionPhase::slip;
+  const BoxSolution solution = impulses_of(system, dynamics, after, struck);
+  for (std::size_t i = 0; i < struck.ropes.size(); ++i) {
+    const int f = struck.ropes[i];
+    FrictionState& friction = after.friction[f];
+    const OneSidedRow& rope = *one_sided_row(*system.frictions[f].friction);
+    const double left_with = solution.g[static_cast<Eigen::Index>(i)];
+    const bool hardly_leaves = left_with * left_with <= 2.0 * k_shortest_flight * rope.length * std::abs(struck.acceleration[i]);
+    friction.phase = solution.is_free[i] != 0 || hardly_leaves ? FrictionPhase::stick : FrictionPhase::slip;
+    friction.sign = 0;
+    const double impulse = -solution.w[static_cast<Eigen::Index>(i)];
+    if (!(impulse > 0.0)) continue;
+    state.memory[rope.blow] = impulse;
+    state.memory[rope.blow + 1] += 0.5 * impulse * std::max(struck.rate[i], 0.0);
+  }
+  std::vector<double> y(static_cast<std::size_t>(system.largest_dimension()));
+  dynamics.set_state(after);
+  dynamics.pack(after, y.data());
+  dynamics.project(after.t, y.data(), k_projection_tolerance);
+  dynamics.close_velocities(after.t, y.data());
+  dynamics.unpack(after.t, y.data(), after);
+  const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
+  State jump = after;
+  for (std::size_t i = 0; i < jump.v.size(); ++i) jump.v[i] -= state.v[i];
+  const double lost = is_any_driven(system) ? system.kinetic_energy(jump) : -gained;
+  state.dissipated += lost;
+  state.work += gained + lost;
+  state.q = std::move(after.q);
+  state.v = std::move(after.v);
+  for (const int f : struck.ropes) state.friction[f] = after.friction[f];
+}
+
+bool was_struck(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {
+  const int blow = one_sided_row(*system.frictions[f].friction)->blow;
+  return before[blow + 1] != state.memory[blow + 1];
+}
+
+std::string blow_text(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {
+  const int blow = one_sided_row(*system.frictions[f].friction)->blow;
+  if (!was_struck(system, f, before, state)) return {};
+  return "with " + rounded_text(state.memory[blow], 4) + " N s, " + rounded_text(state.memory[blow + 1] - before[blow + 1], 4) +
+         " J lost";
+}
+
+} // namespace steplap

@@ -1,0 +1,27 @@
+// The blow when inextensible ropes reach their length: velocities jump, places do not.
+//
+// Impulses Λ ≥ 0 along the ropes that are taut or at their length, with u their rates of lengthening before:
+//   u⁺ = u − A Λ ≤ 0,  Λᵀu⁺ = 0,  A = J P Jᵀ, P the inverse mass under what holds (joints, drives)
+// without restitution: a rope that bears a part of the blow lengthens no more. What gives forces only bears none of it: springs,
+// contacts, and friction, whose bound is a multiple of a force (what sticks may slide behind the blow). What is lost,
+// ½ Δvᵀ M Δv = ½ Λᵀu, is dissipated; what drives that move give beside that is their work.
+#pragma once
+
+#include "mbd/dynamics/dynamics.h"
+
+#include <string>
+
+namespace steplap {
+
+/// Ropes at the pose of `state`, as a run begins: taut at their length unless they shorten, else slack. True if some would
+/// lengthen beyond it, which takes a blow. Throws where one is too short for its pose.
+[[nodiscard]] bool set_ropes(const System& system, State& state);
+
+/// Changes velocities, the ropes' phases and memories, dissipated energy and work; phases of friction are left as they were.
+void take_blow(const System& system, Dynamics& dynamics, State& state);
+
+/// Of the last blow that a rope took; `before`: the memory as it was then.
+[[nodiscard]] bool was_struck(const System& system, std::size_t friction, const std::vector<double>& before, const State& state);
+[[nodiscard]] std::string blow_text(const System& system, std::size_t friction, const std::vector<double>& before, const State& state);
+
+} // namespace steplap

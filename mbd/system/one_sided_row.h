@@ -1,0 +1,71 @@
+// A distance that pulls and never pushes: the row of an inextensible rope, which comes and goes.
+//
+// Among the friction elements, for its row holds and lets go as those of friction do; of their phases it has two:
+//   stick   taut: the length is a constraint, the tension T = −λ its multiplier, admissible while T ≥ 0
+//   slip    slack: no force, admissible while the length is below the rope's
+// What a taut rope bears has no bound, so it never slips in the sense of friction. A slack rope that reaches its length
+// while that grows is caught: velocities jump (EventHandler::catch_ropes), and the memory notes the blow.
+#pragma once
+
+#include "mbd/system/system.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace steplap {
+
+class OneSidedRow final : public FrictionElement {
+public:
+  static constexpr double k_at_length = 1e-9; ///< of its length: nearer than this it starts taut
+  static constexpr double k_too_long = 1e-6;  ///< of its length: what the digits of a file may be off by
+
+  RowSpec row;               ///< a distance; its memory holds what that may be at most
+  double length = 0.0;       ///< the same, m
+  double dead_band = 0.0;    ///< m: a slack rope is caught beyond it; far above the rounding of places
+  double rest_tension = 0.0; ///< N: less than it is rounding
+  int blow = 0;              ///< slots of the memory: impulse of the last blow, N s; energy lost in all of them, J
+
+  [[nodiscard]] MeasureValue<double> measured(const Motion<double>* motion) const { return evaluate_row<false>(row, motion); }
+  [[nodiscard]] double left(const Motion<double>* motion) const { return length - measured(motion).value; }
+
+  [[nodiscard]] int dimension() const override { return 1; }
+  [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
+  [[nodiscard]] bool never_slips() const override { return true; }
+  void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
+  [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
+  void slip_wrench(const Evaluation&, const FrictionState&, const double*, double* wrench) const override { wrench[0] = 0.0; }
+  [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double*) const override { return 0.0; }
+  void watch_stick(const Evaluation&, const FrictionState&, const double* wrench, double* watch) const override {
+    watch[0] = rest_tension - wrench[0];
+    watch[1] = 1.0;
+  }
+  void watch_slip(const Evaluation&, const FrictionState&, const double*, double* watch) const override {
+    watch[0] = watch[1] = 1.0;
+  }
+  [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
+    return state.phase == FrictionPhase::slip ? left(e.motion) + dead_band : 1.0;
+  }
+  void begin_slip(const Evaluation&, FrictionState&, const double*) const override {}
+  void aim(FrictionState& state, const double*) const override { state.sign = 0; }
+  /// w ≤ 0: it pulls.
+  [[nodiscard]] FrictionBlock solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
+                                          bool /*kinetic*/) const override {
+    FrictionBlock block;
+    const double wanted = a[0] > 0.0 ? -b[0] / a[0] : 0.0;
+    block.is_inside = a[0] > 0.0 ? wanted <= 0.0 : !(b[0] < 0.0);
+    block.wrench[0] = std::min(wanted, 0.0);
+    return block;
+  }
+};
+
+/// Null where a friction element is none.
+[[nodiscard]] inline const OneSidedRow* one_sided_row(const FrictionElement& friction) {
+  return friction.never_slips() ? dynamic_cast<const OneSidedRow*>(&friction) : nullptr;
+}
+[[nodiscard]] inline const OneSidedRow* first_one_sided_row(const System& system) {
+  for (const FrictionUnit& unit : system.frictions)
+    if (const OneSidedRow* rope = one_sided_row(*unit.friction)) return rope;
+  return nullptr;
+}
+
+} // namespace steplap
