@@ -72,7 +72,7 @@ public:
         for (Slip& slip : slips_) slip.gives_way = slip.gives_way || slip.is_new;
       for (Slip& slip : slips_) slip.is_new = false;
       yielding_ = descent.yielding();
-      if (end != DescentEnd::rest && tighten_all()) continue;
+      if (end != DescentEnd::rest && tighten_long()) continue;
       if (end != DescentEnd::rest) fail(descent, end);
       if (let_flow()) continue;
       find_margins(descent);
@@ -204,20 +204,27 @@ private:
     if (++rope_changes_ <= k_most_rope_changes * system_.frictions.size()) return true;
     throw ElementFailure("no static equilibrium found: whether '" + name_of(f) + "' and other ropes are taut at rest cannot be decided", {name_of(f)});
   }
-  // What runs away may hang on ropes that are slack where it begins: once more with all of them taut.
-  bool tighten_all() {
-    bool is_any = false;
-    if (was_tightened_) return false;
-    was_tightened_ = true;
+  // What runs away may hang on ropes that were slack where it began: once more with those taut that it has run beyond.
+  bool tighten_long() {
+    std::vector<Motion<double>> motion;
+    place_bodies(state_.q, state_.v, motion);
+    int changed = -1;
     for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
-      if (!one_sided_row(*system_.frictions[f].friction) || state_.friction[f].phase == FrictionPhase::stick) continue;
+      const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
+      if (!rope || state_.friction[f].phase == FrictionPhase::stick || rope->left(motion.data()) >= 0.0) continue;
       state_.friction[f].phase = FrictionPhase::stick;
-      is_any = true;
+      changed = f;
     }
-    if (!is_any) return false;
+    if (changed < 0) return false;
+    const std::vector<double> ran_to = state_.q;
     state_.q = start_.q;
-    put_on_rows();
-    return true;
+    try {
+      put_on_rows();
+    } catch (const ConstraintFailure&) { // they cannot all be taut
+      state_.q = ran_to;
+      return false;
+    }
+    return count_rope(changed);
   }
   void put_on_rows() {
     Dynamics dynamics(system_);
@@ -395,7 +402,6 @@ private:
   std::vector<Overload> overloads_;
   std::vector<Overload> pushing_;  ///< taut ropes that would have to push
   std::size_t rope_changes_ = 0;
-  bool was_tightened_ = false;
   Equilibrium result_;
 };
 

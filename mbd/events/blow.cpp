@@ -15,8 +15,9 @@ namespace {
 constexpr double k_projection_tolerance = 1e-12; // m, rad
 constexpr double k_rest_velocity = 1e-12;        // m/s: far above the rounding of a projected one
 constexpr double k_rest_share = 1e-9;            // of the velocities that make up a rate
-// Ropes that are this near to their lengths, in dead bands, reach them at the same instant.
-constexpr double k_same_length = 10.0;
+// Ropes that are this near to their lengths, of these, share a blow, whether or not they lengthen before it: as far as a
+// flight that is none.
+constexpr double k_same_length = 1e-9;
 constexpr double k_rounded_share = 1e-13;
 // Of its length: a taut rope that would leave it by no more than this before it is pulled back stays taut, if its tension lets
 // it. Two ropes that are caught in turn, each blow shortening the other, would else come to rest after infinitely many ever
@@ -47,7 +48,7 @@ Struck ropes_at_length(const System& system, const State& state) {
     const OneSidedRow* const rope = one_sided_row(*system.frictions[f].friction);
     if (!rope) continue;
     const auto m = rope->measured(motion.data());
-    const bool is_reached = rope->length - m.value <= k_same_length * rope->dead_band && m.rate > 0.0;
+    const bool is_reached = rope->length - m.value <= k_same_length * rope->length;
     if (state.friction[f].phase != FrictionPhase::stick && !is_reached) continue;
     struck.ropes.push_back(static_cast<int>(f));
     struck.rate.push_back(m.rate);

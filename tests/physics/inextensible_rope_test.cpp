@@ -271,11 +271,14 @@ TEST_CASE("a start that stretches it is a blow at the start") {
 // With sin φ = s where it goes slack the energy above the bottom is (1 + 3 s/2) m g L; it is caught with the radial velocity
 // 8 (v cos φ)³/(g L), so that each blow takes 32 s³ (1 − s²)³ m g L, ever less: it goes on forever, on ever more of a circle.
 TEST_CASE("a pendulum that is caught again and again loses what the closed form says each time") {
-  const std::string text = body("bob", "mass = 1; inertia = 0.1; position = [0.0, -1.0]; velocity = [4.6456431201718456, 0.0]") + // √(2.2 g)
-                           rope("line", std::string("a = \"bob\"; ") + k_ceiling);
   for (const Coordinates coordinates : {Coordinates::absolute, Coordinates::joint}) {
-    const Run r = run_in(text, coordinates, 8.0);
-    const std::size_t blows = r.event_times("line", "closes its gap").size();
+    Run r;
+    const Model model = read_model(STEPLAP_MODELS "/machines/rope_pendulum.toml", transformer_catalog());
+    r.system = compile(model);
+    SimulationOptions o = options({"dop853", 1e-11, 8.0});
+    o.coordinates = coordinates;
+    r.result = simulate(*r.system, r.system->initial_state(), o);
+    const std::size_t blows = r.event_times("rope", "closes its gap").size();
     REQUIRE(blows >= 3);
     CHECK(blows < 10);
     double s = 0.2 / 3.0, lost = 0.0;
@@ -287,6 +290,30 @@ TEST_CASE("a pendulum that is caught again and again loses what the closed form 
     CHECK(std::abs(r.result.statistics.dissipated - lost * k_g) < 1e-7);
     CHECK(r.result.statistics.energy_residual < 1e-8);
   }
+}
+
+// A beam of much inertia (J > m l²) on two ropes is dropped askew: each blow lifts both of its ends, so that they are caught in turn, ever
+// sooner. That ends with both taut, since a flight of a billionth of the length is none. What is left of the motion there does not
+// hang on how exactly it was followed: at both tolerances the same blows within 1e-6 of the velocities.
+TEST_CASE("ropes that are caught in turn come to rest") {
+  const std::string text = body("beam", "mass = 6; inertia = 30; position = [0.0, -1.0]; angle = 0.05") +
+                           rope("left", "a = { body = \"beam\", at = [-1.0, -1.05] }; b = { body = \"ground\", at = [-1.2, 0.0] }; length = 1.3") +
+                           rope("right", "a = { body = \"beam\", at = [1.0, -0.95] }; b = { body = \"ground\", at = [1.2, 0.0] }; length = 1.3");
+  std::vector<double> lost;
+  for (const double tolerance : {1e-9, 1e-11}) {
+    Run r;
+    r.system = compile(scene(text + "\n[simulation]\nstep = 1e-3\n"));
+    r.result = simulate(*r.system, r.system->initial_state(), options({"dop853", tolerance, 3.0}));
+    CHECK(r.event_times("left").size() + r.event_times("right").size() >= 3);
+    CHECK(r.event_times("left").size() + r.event_times("right").size() < 100);
+    CHECK(std::abs(r.last("left.length") - 1.3) < 1e-9);
+    CHECK(std::abs(r.last("right.length") - 1.3) < 1e-9);
+    CHECK(r.last("left.tension") > 0.0);
+    CHECK(r.last("right.tension") > 0.0);
+    CHECK(r.result.statistics.energy_residual < 1e-6);
+    lost.push_back(r.result.statistics.dissipated);
+  }
+  CHECK(std::abs(lost[0] - lost[1]) < 1e-6 * lost[0]);
 }
 
 TEST_CASE("the energy that blows take counts with the rope's own") {

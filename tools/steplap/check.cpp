@@ -5,6 +5,7 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/validate.h"
+#include "mbd/system/one_sided_row.h"
 #include "tools/steplap/cross.h"
 #include "tools/steplap/run.h"
 #include "tools/steplap/text_table.h"
@@ -93,7 +94,8 @@ void print_freedom(TextTable& table, const System& system) {
   table.add_row({"constraint rows", rows});
   std::string degrees = std::to_string(freedom.degrees());
   if (!system.frictions.empty())
-    degrees += "; " + std::to_string(freedom.degrees_sticking()) + " while all friction sticks";
+    degrees += "; " + std::to_string(freedom.degrees_sticking()) +
+               (first_one_sided_row(system) ? " while all friction sticks and all inextensible ropes are taut" : " while all friction sticks");
   table.add_row({"degrees of freedom", degrees});
 }
 
