@@ -45,15 +45,12 @@ void EventFinder::close_in(Integrator& integrator, Dynamics& dynamics) {
     if (is_closed && polished++ == k_polish) return;
     double theta = 0.5 * (low_.theta + high_.theta);
     const bool is_known_beyond = high_.theta - aim_.root <= 2.0 * aim_.reach;
-    bool is_below = is_known_beyond && aim_.root - low_.theta > high_.theta - aim_.root;
+    const bool is_below = is_known_beyond && aim_.root - low_.theta > high_.theta - aim_.root;
     // A kink or a pole inside the bracket cannot stall the search for long.
     if (is_closed) theta = first_secant();
     else if (aim_.is_settled && looks < k_free_looks) theta = is_below ? aim_.root - aim_.reach : aim_.root + aim_.reach;
-    else if (since_halved < k_patience && looks < k_free_looks) {
-      theta = next_look(theta);
-      is_below = false;
-      if (aim_.is_settled) theta = aim_.root + aim_.reach; // there is nothing left to be learned at the root itself
-    } else aim_ = at_first;
+    else if (since_halved < k_patience && looks < k_free_looks) theta = next_look(theta);
+    else aim_ = at_first;
     const double edge = std::min(0.5 * width, 0.5 * spacing);
     theta = std::clamp(theta, low_.theta + edge, high_.theta - edge);
     watch_at(integrator, dynamics, theta, middle_);

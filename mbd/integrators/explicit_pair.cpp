@@ -12,8 +12,6 @@ namespace {
 
 constexpr double k_shortest_retry = 0.1;
 constexpr double k_shorter = 0.2; // after a step that came to nothing
-// The control lets steps as they are where f(e, e) = 1: e = safety^(1/(1/order − 1.75 beta)), 0.15 to 0.4.
-constexpr double k_settled_error = 0.1;
 // A step with a stage nearer than this (a square, rad²) to a singular position is made by collocation.
 constexpr double k_crossed_pivot = 2e-2;
 // Unless it begins so near that it would have to be tiny.
@@ -33,10 +31,9 @@ ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& s
   control_.order = order;
 }
 
-// The step size survives an event: what limited it was the motion, which goes on much the same. The errors that steps had
-// before it say nothing of those behind: the control begins as if the last one had been what steps settle at.
+// The step size survives an event: what limited it was the motion, which goes on much the same.
 void ExplicitPair::on_restart(Dynamics&) {
-  control_.previous_error = k_settled_error;
+  control_.previous_error = 1e-4;
   start_pivot_ = highest_pivot_ = 1.0;
 }
 

@@ -40,7 +40,7 @@ public:
 
 private:
   static constexpr int k_most = 18;
-  static constexpr int k_block = 4; ///< slots whose ranges are found side by side
+  static constexpr int k_block = 4; ///< a place's values begin at multiples of so many
   int slots_, stride_, count_ = 0;
   std::array<double, k_most> theta_{};
   std::array<int, k_most> order_{}; ///< by theta
