@@ -134,8 +134,12 @@ void Linearization::reduce_rows() {
 }
 
 void Linearization::start_columns(int rows) {
-  by_pose_.setZero(rows, n_);
-  by_rate_.setZero(rows, n_);
+  if (by_pose_.cols() != n_ || by_pose_.rows() < rows) {
+    by_pose_.resize(std::max(rows, Mechanism::k_most), n_);
+    by_rate_.resize(by_pose_.rows(), n_);
+  }
+  by_pose_.setZero();
+  by_rate_.setZero();
   is_touched_.assign(n_, 0);
 }
 
