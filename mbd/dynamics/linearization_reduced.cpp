@@ -97,6 +97,11 @@ void Linearization::reduce() {
   }
   stiffness_.swap(kept_pose_);
   damping_.swap(kept_rate_);
+  // They take each other's places, the next time, too: with the same room none grows within a step.
+  std::size_t room = 0;
+  const auto all = {&stiffness_, &damping_, &gradient_, &bias_q_, &bias_v_, &response_, &kept_gradient_, &kept_pose_, &kept_rate_};
+  for (const auto* entries : all) room = std::max(room, entries->capacity());
+  for (auto* entries : all) entries->reserve(room);
 }
 
 // Gradients, and what the rows' slack changes by: the clusters' accelerations at constant s̈ change with the state.
