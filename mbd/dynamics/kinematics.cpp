@@ -55,10 +55,13 @@ void Kinematics::place(double t, const double* q, const double* v) {
       (lock.coordinate == 0 ? m.vx : lock.coordinate == 1 ? m.vy : m.omega) = target.rate;
     }
   }
-  if (layout.carriages) layout.carriages->place(q - 3 * layout.absolute_count, v - 3 * layout.absolute_count, motion);
-  for (const int i : layout.riding) place_member(i);
   const ActiveLink* link = layout.links.data();
-  const ActiveLink* const end = layout.carriages ? link + layout.carriages->plain_links : link + layout.links.size();
+  const ActiveLink* end = link + layout.links.size();
+  if (layout.carriages) {
+    layout.carriages->place(q - 3 * layout.absolute_count, v - 3 * layout.absolute_count, motion);
+    end = link + layout.carriages->plain_links;
+  }
+  for (const int i : layout.riding) place_member(i);
   for (; link != end; ++link) motion[link->slot] = seen_from(motion[link->a], motion[link->b]);
 }
 
