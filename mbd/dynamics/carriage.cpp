@@ -140,6 +140,7 @@ void Carriages::place(const double* q, const double* v, Motion<double>* motion) 
     seen.vy = k.rate * k.axis.y;
     seen.omega = 0.0;
   }
+  weigh();
 }
 
 bool Carriages::is_at(const double* q, const double* v) const {

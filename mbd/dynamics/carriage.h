@@ -90,13 +90,11 @@ public:
   // --- poses and rates: 3 numbers per cluster, packed coordinates -----------------------------------
   void pack(const double* cluster_q, const double* cluster_v, double* q, double* v) const;
   void unpack(const double* q, const double* v, double* cluster_q, double* cluster_v) const;
-  /// Carriers must be placed.
+  /// With M and W. Carriers must be placed.
   void place(const double* q, const double* v, Motion<double>* motion);
   [[nodiscard]] bool is_at(const double* q, const double* v) const;
 
   // --- at the pose last placed ----------------------------------------------------------------------
-  /// M and W.
-  void weigh();
   /// W Jᵀ of the rows, whose gradients are filled in, where they act on carriers; of one that is not the layout's.
   STEPLAP_INLINE void weigh_rows(SchurRow* rows) const {
     for (const Side& at : sides_) carriers[at.carrier].multiply(rows[at.row].j[at.side], rows[at.row].wj[at.side]);
@@ -117,6 +115,8 @@ public:
   [[nodiscard]] BodyForce held_by(const Carriage& carriage, const double* cluster_a, const BodyForce* force) const;
 
 private:
+  void weigh();
+
   struct Side {
     int row = 0, side = 0, carrier = 0;
   };

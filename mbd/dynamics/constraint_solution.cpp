@@ -158,7 +158,6 @@ STEPLAP_INLINE double ConstraintSolution::pull(std::size_t r) {
 void ConstraintSolution::prepare() {
   Layout& layout = *layout_;
   const auto count = static_cast<std::size_t>(layout.schur.size());
-  if (layout.carriages) layout.carriages->weigh();
   if (count == 0) return;
   for (std::size_t r = 0; r < count; ++r) multiplier_[r] = pull(r);
   if (layout.carriages) layout.carriages->weigh_rows(layout.schur_rows.data());
@@ -211,7 +210,6 @@ double ConstraintSolution::power_of_drives() const {
 // --- a projection -------------------------------------------------------------------------------------
 
 void ConstraintSolution::compare(double t) {
-  if (layout_->carriages) layout_->carriages->weigh();
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
     const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), t);
     const MeasureValue<double> m = load_active<false>(r);

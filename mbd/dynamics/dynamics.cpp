@@ -211,9 +211,13 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
     a[k] = kinematics_.lock_target(i).acceleration;
     dy[k] = kinematics_.lock_target(i).rate;
   }
-  if (layout.carriages) layout.carriages->accelerate(force_.data(), a);
-  rows_.solve(t, force_.data(), a);
-  if (layout.carriages) layout.carriages->follow(a);
+  if (layout.carriages) {
+    layout.carriages->accelerate(force_.data(), a);
+    rows_.solve(t, force_.data(), a);
+    layout.carriages->follow(a);
+  } else {
+    rows_.solve(t, force_.data(), a);
+  }
   finish_power(a);
   finish_watches();
   double* const power = dy + 2 * n + inner_count();

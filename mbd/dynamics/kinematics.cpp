@@ -33,8 +33,6 @@ void Kinematics::place(double t, const double* q, const double* v) {
   Motion<double>* const motion = motion_.data();
   for (Mechanism& m : layout_->mechanisms) m.place(q + m.first_coordinate, v + m.first_coordinate, motion);
   const int* const slots = layout.slots.data();
-  const double* const all_q = q;
-  const double* const all_v = v;
   for (int k = 0; k < layout.absolute_count; ++k) {
     Motion<double>& m = motion[slots[k]];
     m.x = q[0];
@@ -57,11 +55,14 @@ void Kinematics::place(double t, const double* q, const double* v) {
       (lock.coordinate == 0 ? m.vx : lock.coordinate == 1 ? m.vy : m.omega) = target.rate;
     }
   }
-  if (layout.carriages) layout.carriages->place(all_q, all_v, motion);
+  const ActiveLink* link = layout.links.data();
+  const ActiveLink* end = link + layout.links.size();
+  if (layout.carriages) {
+    layout.carriages->place(q - 3 * layout.absolute_count, v - 3 * layout.absolute_count, motion);
+    end = link + layout.carriages->plain_links;
+  }
   for (const int i : layout.riding) place_member(i);
-  const ActiveLink* const links = layout.links.data();
-  const std::size_t count = layout.carriages ? layout.carriages->plain_links : layout.links.size();
-  for (std::size_t i = 0; i < count; ++i) motion[links[i].slot] = seen_from(motion[links[i].a], motion[links[i].b]);
+  for (; link != end; ++link) motion[link->slot] = seen_from(motion[link->a], motion[link->b]);
 }
 
 bool Kinematics::is_placed(double t, const double* y) const {

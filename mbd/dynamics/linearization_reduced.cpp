@@ -97,6 +97,11 @@ void Linearization::reduce() {
   }
   stiffness_.swap(kept_pose_);
   damping_.swap(kept_rate_);
+  // They take each other's places, the next time, too: with the same room none grows within a step.
+  std::size_t room = 0;
+  const auto all = {&stiffness_, &damping_, &gradient_, &bias_q_, &bias_v_, &response_, &kept_gradient_, &kept_pose_, &kept_rate_};
+  for (const auto* entries : all) room = std::max(room, entries->capacity());
+  for (auto* entries : all) entries->reserve(room);
 }
 
 // Gradients, and what the rows' slack changes by: the clusters' accelerations at constant s̈ change with the state.
@@ -134,8 +139,12 @@ void Linearization::reduce_rows() {
 }
 
 void Linearization::start_columns(int rows) {
-  by_pose_.setZero(rows, n_);
-  by_rate_.setZero(rows, n_);
+  if (by_pose_.cols() != n_ || by_pose_.rows() < rows) {
+    by_pose_.resize(std::max(rows, Mechanism::k_most), n_);
+    by_rate_.resize(by_pose_.rows(), n_);
+  }
+  by_pose_.setZero();
+  by_rate_.setZero();
   is_touched_.assign(n_, 0);
 }
 

@@ -120,6 +120,7 @@ TEST_CASE("where kinds of rows are told apart") {
       {"mbd/dynamics/linearization.cpp", "second derivatives"},
       {"mbd/analysis/statics.cpp", "second derivatives"},
       {"mbd/dynamics/layout.cpp", "which have a shorter way, angles a constant gradient"},
+      {"mbd/dynamics/carriage_layout.cpp", "which joints are guides"},
       {"mbd/dynamics/mechanism_layout.cpp", "which joints a member of a mechanism may hang by"},
       {"mbd/dynamics/projection.cpp", "the unit of a message"},
       {"mbd/dynamics/load_sharing.cpp", "the unit of a residual"},

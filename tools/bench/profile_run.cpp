@@ -1,6 +1,6 @@
 // Runs models from start to end, nothing sampled and no extremes looked for, as often as asked: to be run under a
 // profiler (tools/profile_run). Reading and compiling lie outside profiled_run().
-//   profile_run METHOD TOLERANCE COUNT MODEL...
+//   profile_run METHOD COORDINATES TOLERANCE COUNT MODEL...
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
@@ -11,6 +11,7 @@
 #include <exception>
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 using namespace steplap;
@@ -30,7 +31,7 @@ struct Counts {
 
 namespace {
 
-void profile(const char* method, double tolerance, long count, char** models, int model_count) {
+void profile(const char* method, const std::string& coordinates, double tolerance, long count, char** models, int model_count) {
   double time = 0.0;
   Counts all;
   for (int m = 0; m < model_count; ++m) {
@@ -42,6 +43,7 @@ void profile(const char* method, double tolerance, long count, char** models, in
     options.settings.step = 0.0;
     options.output_step = 0.0;
     options.has_extremes = false;
+    if (coordinates != "automatic") options.coordinates = coordinates == "joint" ? Coordinates::joint : Coordinates::absolute;
     double best = std::numeric_limits<double>::infinity();
     Counts counts;
     for (long i = 0; i < count; ++i) {
@@ -62,12 +64,12 @@ void profile(const char* method, double tolerance, long count, char** models, in
 } // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 5) {
-    std::fprintf(stderr, "usage: profile_run METHOD TOLERANCE COUNT MODEL...\n");
+  if (argc < 6) {
+    std::fprintf(stderr, "usage: profile_run METHOD automatic|joint|absolute TOLERANCE COUNT MODEL...\n");
     return 2;
   }
   try {
-    profile(argv[1], std::atof(argv[2]), std::max(1L, std::atol(argv[3])), argv + 4, argc - 4);
+    profile(argv[1], argv[2], std::atof(argv[3]), std::max(1L, std::atol(argv[4])), argv + 5, argc - 5);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
