@@ -108,6 +108,15 @@ Pair beginning(const std::string& kind, const std::vector<double>& values) {
   return {mean, 0.5 * std::log(squares)};
 }
 
+// Probability of lying between the bounds, by the tails that are the smaller ones.
+double share_within(const Variable& v, const OT::Distribution& whole) {
+  if (!v.upper) return whole.computeComplementaryCDF(*v.lower);
+  if (!v.lower) return whole.computeCDF(*v.upper);
+  const double below = whole.computeCDF(*v.lower);
+  return below > 0.5 ? whole.computeComplementaryCDF(*v.lower) - whole.computeComplementaryCDF(*v.upper)
+                     : whole.computeCDF(*v.upper) - below;
+}
+
 // Of what is left between the bounds, all that was measured: the most likely whole.
 OT::Distribution fitted_within(const Variable& v, const std::vector<double>& values, const OT::Sample& sample) {
   if (v.distribution == "uniform" || v.distribution == "triangular" || v.distribution == "beta")
@@ -119,14 +128,19 @@ OT::Distribution fitted_within(const Variable& v, const std::vector<double>& val
                     v.measured + "' has others");
   if (std::all_of(values.begin(), values.end(), [&](double x) { return x == values.front(); }))
     complain(v, "all values of '" + v.measured + "' are the same: they have no distribution");
+  constexpr double k_least = 1e-6; // of the whole: tails fall off alike from there on, and its numbers say nothing
+  constexpr double k_impossible = std::numeric_limits<double>::infinity();
   const auto surprise = [&](const Pair& p) { // −ln of the likelihood
     try {
-      const OT::Sample logs = truncated(v, unbounded(v.distribution, p)).computeLogPDF(sample);
-      double sum = 0.0;
+      const OT::Distribution whole = unbounded(v.distribution, p);
+      const double part = share_within(v, whole);
+      if (!(part > k_least)) return k_impossible;
+      double sum = static_cast<double>(values.size()) * std::log(part);
+      const OT::Sample logs = whole.computeLogPDF(sample);
       for (OT::UnsignedInteger i = 0; i < logs.getSize(); ++i) sum -= logs(i, 0);
-      return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
-    } catch (const OT::Exception&) { // nothing of it lies between the bounds
-      return std::numeric_limits<double>::infinity();
+      return std::isfinite(sum) ? sum : k_impossible;
+    } catch (const OT::Exception&) { // numbers so far off that there is no such distribution
+      return k_impossible;
     }
   };
   Pair at = beginning(v.distribution, values);
