@@ -58,7 +58,7 @@ STUDIES = {
                   '[[limit_state]]\nname = "g"\nexpression = "a + b > 4.5 ? -1 : 1"\n',
     "branches": f'kind = "reliability"\n[reliability]\nmethods = ["form", "importance_sampling", "monte_carlo"]\nsamples = 110000\ncov = 0.01\nstarts = 2\n{variables(NORMAL)}{PRODUCT}{LIMIT}',
 }
-WITH_A_MODEL = ["critical_pressure", "needs"]
+WITH_A_MODEL = ["critical_pressure", "needs", "sliding_block_fit"]
 # Of the tornado that one whose store was tampered with.
 PAGES = [*[name for name in STUDIES if name != "tornado"], *WITH_A_MODEL, "hostile", "fit"]
 
@@ -337,6 +337,23 @@ class StudyReportTest(unittest.TestCase):
         self.assertIn("block.x [m]", self.text("#fit .ytitle"))
         self.assertEqual(self.run_js("return [...document.querySelectorAll('.chart')].find(c => c.dataset.chart === 'correlation').querySelector('.canvas').data[0].z"), [[1, 0.97], [0.97, 1]])
         self.assertIn("hardly told apart", self.find("#answer .doubt").text)
+
+    def test_the_page_of_a_fit_shows_what_the_fit_found(self):
+        self.open("sliding_block_fit")
+        _, text, _ = steplap("study", "export", "out/sliding_block_fit.sqlite", "--histories")
+        rows = list(csv.DictReader(io.StringIO(text)))
+        measured, fitted = self.traces("history way")
+        scale = float(rows[-1]["measured"]) / measured["y"][-1]  # the page writes it in a unit for people
+        for trace, column in ((measured, "measured"), (fitted, "fitted")):
+            self.assertEqual(len(trace["y"]), len(rows))
+            for shown, row in zip(trace["y"], rows):
+                self.assertAlmostEqual(shown * scale, float(row[column]), delta=2e-6 * float(rows[-1]["measured"]))
+        left_over = self.traces("residuals way")[0]["y"]
+        self.assertLess(max(abs(y * scale) for y in left_over), 5 * 0.2e-3)  # noise of 0.2 mm
+        correlations = self.run_js("return [...document.querySelectorAll('.chart')].find(c => c.dataset.chart === 'correlation').querySelector('.canvas').data[0].z")
+        self.assertEqual(len(correlations), 3)
+        for k in range(3):
+            self.assertEqual(correlations[k][k], 1)
 
     # --- samples -------------------------------------------------------------------------------------
 

@@ -1,4 +1,5 @@
-// The block: its centre of gravity lies in the plane of contact, so that nothing tips and the normal force is its weight.
+// The block: its centre of gravity lies in the plane of contact, so that nothing tips and the normal force is its
+// weight.
 #pragma once
 
 #include <string>
@@ -59,7 +60,8 @@ contacts = ["foot"]
 static_friction = 0.3
 )";
 
-inline const std::string k_slid = "[[response]]\nname = \"slid\"\nchannel = \"deck friction.slide\"\nwhat = \"largest\"\n";
+inline const std::string k_slid =
+    "[[response]]\nname = \"slid\"\nchannel = \"deck friction.slide\"\nwhat = \"largest\"\n";
 
 inline double slid_distance(double acceleration, double time, double mu) {
   if (acceleration <= mu * k_g) return 0.0;

@@ -69,9 +69,12 @@ TEST_CASE("the probability that it slides too far, friction lognormal") {
 
 TEST_CASE("responses of channels on request: friction's heat, and a formula of it") {
   StudyBench bench;
-  bench.write("block.toml", k_block + "[output]\nalso = [\"deck friction.dissipated\"]\n"
-                                      "[[channel]]\nname = \"way by heat\"\nexpression = \"{deck friction.dissipated} / '9810 N'\"\n");
-  const std::string text = "kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\nvalues = [0.1, 0.3]\n"
+  bench.write("block.toml",
+              k_block +
+                  "[output]\nalso = [\"deck friction.dissipated\"]\n"
+                  "[[channel]]\nname = \"way by heat\"\nexpression = \"{deck friction.dissipated} / '9810 N'\"\n");
+  const std::string text = "kind = \"sweep\"\nmodel = \"block.toml\"\n[[variable]]\nname = \"mu\"\npath = "
+                           "\"element.deck friction.static_friction\"\nvalues = [0.1, 0.3]\n"
                            "[[response]]\nname = \"heat\"\nchannel = \"deck friction.dissipated\"\nwhat = \"final\"\n"
                            "[[response]]\nname = \"way\"\nchannel = \"way by heat\"\nwhat = \"highest\"\n";
   const Outcome outcome = bench.run(text);
@@ -150,5 +153,29 @@ TEST_CASE("a sample's numbers are those of the whole model with its values") {
     CHECK(row.outcome.numbers[2] == range("block.x").final);
     CHECK(row.outcome.numbers[3] == way);
     CHECK(row.outcome.evaluations > 0.0);
+  }
+}
+
+// One variable in both, one in the second alone; each model slides as the closed form says.
+TEST_CASE("a study over two models") {
+  StudyBench bench;
+  bench.write("soft.toml", k_block);
+  bench.write("hard.toml", k_block);
+  const Outcome outcome = bench.run(
+      "kind = \"sample\"\nmodel = [\"soft.toml\", \"hard.toml\"]\n[sample]\ndesign = \"latin_hypercube\"\nsamples = "
+      "12\n"
+      "[[variable]]\nname = \"mu\"\npath = \"element.deck friction.static_friction\"\ndistribution = \"uniform\"\nlow "
+      "= 0.2\nhigh = 0.5\n"
+      "[[variable]]\nname = \"peak\"\npath = \"signal.push.peak\"\nmodel = \"hard\"\ndistribution = \"uniform\"\nlow = "
+      "6\nhigh = 8\n"
+      "[[response]]\nname = \"soft\"\nmodel = \"soft\"\nchannel = \"deck friction.slide\"\nwhat = \"largest\"\n"
+      "[[response]]\nname = \"hard\"\nmodel = \"hard\"\nchannel = \"deck friction.slide\"\nwhat = \"largest\"\n");
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  std::vector<study::StoredSample> rows;
+  study::Store(bench.at("study.sqlite")).read(1, 12, rows);
+  for (const study::StoredSample& row : rows) { // to the tolerance of the runs, 1e-10, over a few steps
+    CHECK(row.outcome.numbers[0] == doctest::Approx(slid_distance(5.886, 0.1, row.values[0])).epsilon(1e-8));
+    CHECK(row.outcome.numbers[1] == doctest::Approx(slid_distance(row.values[1], 0.1, row.values[0])).epsilon(1e-8));
   }
 }

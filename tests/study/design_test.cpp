@@ -17,17 +17,21 @@ std::vector<study::StoredSample> samples_of(const StudyBench& bench) {
 
 std::string uniform_study(const std::string& design, int samples) {
   return "kind = \"sample\"\n[sample]\ndesign = \"" + design + "\"\nsamples = " + std::to_string(samples) +
-         "\n[[variable]]\nname = \"a\"\nrange = [0, 1]\n[[variable]]\nname = \"b\"\nrange = [0, 1]\n[[response]]\nname = \"y\"\nexpression = \"a*a + b\"\n";
+         "\n[[variable]]\nname = \"a\"\nrange = [0, 1]\n[[variable]]\nname = \"b\"\nrange = [0, 1]\n[[response]]\nname "
+         "= \"y\"\nexpression = \"a*a + b\"\n";
 }
 
 } // namespace
 
 TEST_CASE("a grid, a list and one at a time") {
-  const std::string head = "kind = \"sweep\"\n[sweep]\n", tail = "[[variable]]\nname = \"a\"\nvalues = [1, 2, 3]\n[[variable]]\nname = \"b\"\nrange = [\"0\", \"1\"]\n"
-                                                                 "[[response]]\nname = \"y\"\nexpression = \"10*a + b\"\n";
+  const std::string
+      head = "kind = \"sweep\"\n[sweep]\n",
+      tail = "[[variable]]\nname = \"a\"\nvalues = [1, 2, 3]\n[[variable]]\nname = \"b\"\nrange = [\"0\", \"1\"]\n"
+             "[[response]]\nname = \"y\"\nexpression = \"10*a + b\"\n";
   const auto ys = [&](const std::string& design, int points) {
     StudyBench bench;
-    const Outcome outcome = bench.run(head + "design = \"" + design + "\"\npoints = " + std::to_string(points) + "\n" + tail);
+    const Outcome outcome =
+        bench.run(head + "design = \"" + design + "\"\npoints = " + std::to_string(points) + "\n" + tail);
     CAPTURE(outcome.err);
     REQUIRE(outcome.code == 0);
     std::vector<double> values;
@@ -57,7 +61,8 @@ TEST_CASE("all designs find the mean; those that fill space find it better") {
     const study::Finding mean = bench.find(design, "mean", "y");
     CAPTURE(design);
     const bool is_random = std::string(design) == "monte_carlo";
-    // Four standard deviations of the mean for random samples; for the others ln(N)/N, of the order of their discrepancy.
+    // Four standard deviations of the mean for random samples; for the others ln(N)/N, of the order of their
+    // discrepancy.
     CHECK(std::abs(mean.value - 5.0 / 6.0) < (is_random ? 4.0 * 0.415 / 32.0 : std::log(1024.0) / 1024.0));
     CHECK(std::isnan(mean.low) == !is_random);
   }

@@ -43,7 +43,8 @@ TEST_CASE("Philox gives the numbers that its authors publish") {
   CHECK(philox({0, 0, 0, 0}, {0, 0}) == PhiloxBlock{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8});
   CHECK(philox({0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff}, {0xffffffff, 0xffffffff}) ==
         PhiloxBlock{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd});
-  CHECK(philox({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}) == PhiloxBlock{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1});
+  CHECK(philox({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}) ==
+        PhiloxBlock{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1});
 }
 
 TEST_CASE("uniform numbers by counter are uniform, and independent of who asks first") {
@@ -52,7 +53,8 @@ TEST_CASE("uniform numbers by counter are uniform, and independent of who asks f
   double sum = 0.0, squares = 0.0, product = 0.0;
   constexpr int k_count = 100000;
   for (int i = 0; i < k_count; ++i) {
-    const double a = random.uniform(static_cast<std::uint64_t>(i), 0), b = random.uniform(static_cast<std::uint64_t>(i), 1);
+    const double a = random.uniform(static_cast<std::uint64_t>(i), 0),
+                 b = random.uniform(static_cast<std::uint64_t>(i), 1);
     sum += a;
     squares += a * a;
     product += (a - 0.5) * (b - 0.5);
@@ -78,8 +80,9 @@ TEST_CASE("quantiles are those of the closed forms, far into both tails") {
   uniform.high = 3.0;
   Variable exponential = variable("e", "exponential");
   exponential.mean = 2.0;
-  const JointLaw law = law_of({with_moments("a", "normal", mean, deviation), with_moments("b", "lognormal", mean, deviation),
-                               with_moments("c", "gumbel", mean, deviation), weibull, uniform, exponential});
+  const JointLaw law =
+      law_of({with_moments("a", "normal", mean, deviation), with_moments("b", "lognormal", mean, deviation),
+              with_moments("c", "gumbel", mean, deviation), weibull, uniform, exponential});
   for (const double p : probabilities) {
     CAPTURE(p);
     const double z = normal_quantile(p);
@@ -100,7 +103,8 @@ TEST_CASE("a truncated distribution has the quantiles of what is left") {
   v.upper = 4.0;
   const JointLaw law = law_of({v});
   const double low = normal_cdf(-0.5), high = normal_cdf(1.5);
-  for (const double p : {0.001, 0.3, 0.9}) CHECK(law.quantile(0, p) == doctest::Approx(1.0 + 2.0 * normal_quantile(low + p * (high - low))).epsilon(1e-9));
+  for (const double p : {0.001, 0.3, 0.9})
+    CHECK(law.quantile(0, p) == doctest::Approx(1.0 + 2.0 * normal_quantile(low + p * (high - low))).epsilon(1e-9));
 }
 
 TEST_CASE("a correlation of lognormal values becomes that of their logarithms") {
@@ -108,12 +112,16 @@ TEST_CASE("a correlation of lognormal values becomes that of their logarithms") 
   Correlation c;
   c.between = {"a", "b"};
   c.rho = 0.5;
-  const JointLaw law = law_of({with_moments("a", "lognormal", 1.0, 0.3), with_moments("b", "lognormal", 2.0, 1.2)}, {c});
-  const double zeta1 = std::sqrt(std::log1p(0.09)), zeta2 = std::sqrt(std::log1p(0.36)), rho0 = std::log1p(0.5 * 0.3 * 0.6) / (zeta1 * zeta2);
+  const JointLaw law =
+      law_of({with_moments("a", "lognormal", 1.0, 0.3), with_moments("b", "lognormal", 2.0, 1.2)}, {c});
+  const double zeta1 = std::sqrt(std::log1p(0.09)), zeta2 = std::sqrt(std::log1p(0.36)),
+               rho0 = std::log1p(0.5 * 0.3 * 0.6) / (zeta1 * zeta2);
   const double u[2] = {1.3, -0.4};
   double x[2];
   law.values_at(u, x);
-  CHECK(std::log(x[1]) == doctest::Approx(std::log(2.0) - 0.5 * zeta2 * zeta2 + zeta2 * (rho0 * u[0] + std::sqrt(1.0 - rho0 * rho0) * u[1])).epsilon(1e-9));
+  CHECK(std::log(x[1]) == doctest::Approx(std::log(2.0) - 0.5 * zeta2 * zeta2 +
+                                          zeta2 * (rho0 * u[0] + std::sqrt(1.0 - rho0 * rho0) * u[1]))
+                              .epsilon(1e-9));
 }
 
 TEST_CASE("intervals of proportions are those of Clopper and Pearson") {

@@ -13,7 +13,8 @@ TEST_CASE("an element that a table puts in again has not been left out") {
   REQUIRE(outcome.code == 0);
   bool is_told = false;
   for (const study::Finding& f : study::Store(bench.at("study.sqlite")).findings())
-    is_told = is_told || (f.subject == "without 'front joint'" && has(f.status, "puts it in again") && std::isnan(f.value));
+    is_told =
+        is_told || (f.subject == "without 'front joint'" && has(f.status, "puts it in again") && std::isnan(f.value));
   CHECK(is_told);
 }
 
@@ -40,6 +41,7 @@ stiffness = 1e-3
   // Nothing moves, or nothing slides: all of the response is gone.
   CHECK(bench.find("needs", "largest change", "without 'drive'").value == doctest::Approx(1.0).epsilon(1e-9));
   CHECK(bench.find("needs", "largest change", "'thread' rigid").value == doctest::Approx(1.0).epsilon(1e-9));
-  CHECK(has(bench.find("needs", "largest change", "without 'foot'").status, "cannot be: impossible")); // friction refers to it
+  CHECK(has(bench.find("needs", "largest change", "without 'foot'").status,
+            "cannot be: impossible")); // friction refers to it
   CHECK(has(bench.find("needs", "largest change", "without 'deck friction'").status, "'slid' has no value then"));
 }

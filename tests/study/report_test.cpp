@@ -1,5 +1,5 @@
-// The page of a study: bands and digits against what theory says of them, every kind's findings with their units, thinning
-// that is told, the same bytes for the same store.
+// The page of a study: bands and digits against what theory says of them, every kind's findings with their units,
+// thinning that is told, the same bytes for the same store.
 #include "tests/study/study_bench.h"
 #include "tools/study/counter_random.h"
 #include "tools/study/progress_line.h"
@@ -108,7 +108,8 @@ TEST_CASE("how a share of failures settled, with runs without result on both sid
   CHECK(r.samples.size() < 150);
   const study::Running mean = study::running_mean({1.0, 2.0, 3.0});
   CHECK(mean.value.back() == 2.0);
-  CHECK(mean.high.back() - 2.0 == doctest::Approx(4.302652729911275 / std::sqrt(3.0)).epsilon(1e-9)); // Student's, 2 degrees
+  CHECK(mean.high.back() - 2.0 ==
+        doctest::Approx(4.302652729911275 / std::sqrt(3.0)).epsilon(1e-9)); // Student's, 2 degrees
 }
 
 TEST_CASE("two digits of an interval's width are written, none that is not known") {
@@ -126,7 +127,8 @@ TEST_CASE("two digits of an interval's width are written, none that is not known
 }
 
 TEST_CASE("the quantity of a finding says its part and its unit") {
-  const std::vector<study::ReportColumn> columns{{"pressure", "Pa", "variable"}, {"mu", "", "variable"}, {"slide", "m", "response"}, {"record", "m", "history"}};
+  const std::vector<study::ReportColumn> columns{
+      {"pressure", "Pa", "variable"}, {"mu", "", "variable"}, {"slide", "m", "response"}, {"record", "m", "history"}};
   const auto view = [&](const study::Finding& f) { return study::view_of(f, columns); };
   const study::FindingView mean = view({"monte_carlo", "slide", "mean", 0.0123456, 0.0121, 0.0125});
   CHECK(mean.value == "12.35");
@@ -143,23 +145,33 @@ TEST_CASE("the quantity of a finding says its part and its unit") {
   CHECK(view({"fit", "pressure", "value", 29985.0, 29000.0, 31000.0}).value == "30.0");
   CHECK(view({"fit", "pressure, mu", "correlation", 0.91234}).value == "0.912");
   CHECK(view({"fit", "record", "residual, root mean square", 0.00123456}).value == "1.235"); // mm
-  CHECK(view({"fit", "pressure", "skewness", 2.0}).unit == "SI"); // of which nothing is known is not given the subject's
+  CHECK(view({"fit", "pressure", "skewness", 2.0}).unit ==
+        "SI"); // of which nothing is known is not given the subject's
 }
 
 TEST_CASE("findings of every kind have a part to play") {
-  const std::string variables = "[[variable]]\nname = \"a\"\nRANGE\n[[variable]]\nname = \"b\"\nRANGE\n[[response]]\nname = \"r\"\nexpression = \"a*b + a\"\n";
+  const std::string variables = "[[variable]]\nname = \"a\"\nRANGE\n[[variable]]\nname = "
+                                "\"b\"\nRANGE\n[[response]]\nname = \"r\"\nexpression = \"a*b + a\"\n";
   const auto text = [&](const std::string& head, const std::string& range) {
     std::string whole = head + variables;
     for (std::size_t at; (at = whole.find("RANGE")) != std::string::npos;) whole.replace(at, 5, range);
     return whole;
   };
-  const std::string normal = "distribution = \"normal\"\nmean = 1\nstandard_deviation = 0.3", range = "range = [0.5, 2]";
+  const std::string normal = "distribution = \"normal\"\nmean = 1\nstandard_deviation = 0.3",
+                    range = "range = [0.5, 2]";
   const std::string studies[] = {
-      text("kind = \"sweep\"\n[sweep]\npoints = 3\n", range), text("kind = \"sample\"\n[sample]\nsamples = 50\n", normal) + "[[limit_state]]\nname = \"g\"\nexpression = \"3 - r\"\n",
-      text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"elasticity\"\n", range), text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"morris\"\n", range),
-      text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"sobol\"\nsamples = 50\n", range), text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"tornado\"\n", range),
-      text("kind = \"critical\"\n[critical]\nvariable = \"a\"\nexpression = \"r - 2\"\n", range), text("kind = \"map\"\n[map]\nvariables = [\"a\", \"b\"]\nexpression = \"r - 2\"\nstep = 0.2\n", range),
-      text("kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"sorm\", \"importance_sampling\", \"directional\", \"subset\", \"monte_carlo\"]\nsamples = 2000\nsubset_samples = 500\n", normal) +
+      text("kind = \"sweep\"\n[sweep]\npoints = 3\n", range),
+      text("kind = \"sample\"\n[sample]\nsamples = 50\n", normal) +
+          "[[limit_state]]\nname = \"g\"\nexpression = \"3 - r\"\n",
+      text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"elasticity\"\n", range),
+      text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"morris\"\n", range),
+      text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"sobol\"\nsamples = 50\n", range),
+      text("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"tornado\"\n", range),
+      text("kind = \"critical\"\n[critical]\nvariable = \"a\"\nexpression = \"r - 2\"\n", range),
+      text("kind = \"map\"\n[map]\nvariables = [\"a\", \"b\"]\nexpression = \"r - 2\"\nstep = 0.2\n", range),
+      text("kind = \"reliability\"\n[reliability]\nmethods = [\"form\", \"sorm\", \"importance_sampling\", "
+           "\"directional\", \"subset\", \"monte_carlo\"]\nsamples = 2000\nsubset_samples = 500\n",
+           normal) +
           "[[limit_state]]\nname = \"g\"\nexpression = \"4 - r\"\n"};
   for (const std::string& one : studies) {
     CAPTURE(one);
@@ -203,12 +215,15 @@ TEST_CASE("the page of a study: all of it from the store, the same bytes, markup
     const Json data = data_of(bench.at("study.sqlite"));
     CHECK(data["samples"]["columns"][0]["unit"] == "kN");
     CHECK(data["samples"]["columns"][0]["factor"] == 1e-3);
-    const long bad = data["reasons"]["failed"], failures = data["samples"]["classes"][1]["all"], others = data["samples"]["classes"][0]["all"];
+    const long bad = data["reasons"]["failed"], failures = data["samples"]["classes"][1]["all"],
+               others = data["samples"]["classes"][0]["all"];
     CHECK(bad > 0);
     CHECK(data["samples"]["classes"][2]["all"] == bad);
     CHECK(failures + others + bad == 400);
-    CHECK(bench.find("monte_carlo", "share of failures, runs without result as unsafe").value == doctest::Approx(static_cast<double>(failures + bad) / 400.0).epsilon(1e-12));
-    CHECK(data["running"][0]["value"].back() == doctest::Approx(static_cast<double>(failures + bad) / 400.0).epsilon(1e-12));
+    CHECK(bench.find("monte_carlo", "share of failures, runs without result as unsafe").value ==
+          doctest::Approx(static_cast<double>(failures + bad) / 400.0).epsilon(1e-12));
+    CHECK(data["running"][0]["value"].back() ==
+          doctest::Approx(static_cast<double>(failures + bad) / 400.0).epsilon(1e-12));
     CHECK(data["distributions"]["of"].size() == 4);
     CHECK(data["distributions"]["of"][2]["missing"] == bad);
   }
@@ -249,7 +264,8 @@ TEST_CASE("of more samples than fit rare kinds are kept, all evenly") {
 TEST_CASE("a store of before units were kept makes a page that says so little, and goes on") {
   StudyBench bench;
   (void)bench.run(k_sample);
-  study::Store(bench.at("study.sqlite"), study::Store(bench.at("study.sqlite")).identity(), study::StoreMode::run).describe("");
+  study::Store(bench.at("study.sqlite"), study::Store(bench.at("study.sqlite")).identity(), study::StoreMode::run)
+      .describe("");
   const Json data = data_of(bench.at("study.sqlite"));
   CHECK(data["about"]["variables"].empty());
   CHECK(data["samples"]["columns"][0]["unit"] == "");
@@ -283,7 +299,8 @@ TEST_CASE("the unit of a variable without a path is one, or an error") {
 
 TEST_CASE("progress tells samples, rate, time left and the running estimate") {
   study::Pace pace{3200, 0, 8.0, 400.0, "monte_carlo: probability 0.002 [0.001, 0.004]", 12000, true};
-  CHECK(study::progress_text(pace) == "3200 of about 12000 samples, 400 a second, 8 s gone, about 22 s left of this method; monte_carlo: probability 0.002 [0.001, 0.004]");
+  CHECK(study::progress_text(pace) == "3200 of about 12000 samples, 400 a second, 8 s gone, about 22 s left of this "
+                                      "method; monte_carlo: probability 0.002 [0.001, 0.004]");
   pace = {100, 100, 1.0, 0.0, "", 0, false};
   CHECK(study::progress_text(pace) == "100 samples, 1 s gone, 100 from the store");
   pace = {10, 0, 1.0, 0.01, "", 1000, false};

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sqlite3.h>
 #include <sys/file.h>
 #include <sys/wait.h>
 
@@ -55,6 +56,28 @@ TEST_CASE("the export is the same bytes for every number of threads") {
     CHECK(bench.samples() == first);
   }
   CHECK(std::count(first.begin(), first.end(), '\n') > 20000);
+}
+
+// What a process leaves behind that is killed while its batch is half in the file: the file and the journal of a
+// transaction that is open, copied.
+TEST_CASE("a store whose last batch was cut off is shown and exported without it") {
+  StudyBench bench;
+  (void)bench.run(reliability_text("samples = 3000"));
+  const std::string whole = bench.samples(), cut = bench.at("cut.sqlite");
+  sqlite3* database = nullptr;
+  REQUIRE(sqlite3_open(bench.at("study.sqlite").c_str(), &database) == SQLITE_OK);
+  // A cache of a few pages, so that changed ones go into the file before the end.
+  const char* change = "PRAGMA cache_size = 4; BEGIN; UPDATE sample SET r_g = 17;";
+  REQUIRE(sqlite3_exec(database, change, nullptr, nullptr, nullptr) == SQLITE_OK);
+  fs::copy_file(bench.at("study.sqlite"), cut);
+  fs::copy_file(bench.at("study.sqlite-journal"), cut + "-journal");
+  sqlite3_close(database);
+  CHECK(text_of(cut) != text_of(bench.at("study.sqlite")));
+  const Outcome shown = study_does({"show", cut});
+  CAPTURE(shown.err);
+  CHECK(shown.code == 0);
+  CHECK(study_does({"export", cut}).out == whole);
+  CHECK_FALSE(fs::exists(cut + "-journal"));
 }
 
 TEST_CASE("a study that is killed at any instant goes on, and comes to the same bytes") {

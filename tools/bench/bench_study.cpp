@@ -1,5 +1,5 @@
-// What a study of the paper's transformer costs beside its runs: the same samples by a loop written by hand, in three steps from the
-// bare integration (dop853, events located) to what the study does with each sample.
+// What a study of the paper's transformer costs beside its runs: the same samples by a loop written by hand, in three
+// steps from the bare integration (dop853, events located) to what the study does with each sample.
 //
 //   steplap study export STORE > samples.csv      of models/studies/slip_probability.toml
 //   bench_study samples.csv
@@ -24,7 +24,8 @@ struct Samples {
   std::vector<std::vector<double>> values; ///< floor friction, joint friction, pressure, shock
 };
 
-// Columns number, status, reason, error, evaluations, then the four variables: words are no numbers, so that it is split by hand.
+// Columns number, status, reason, error, evaluations, then the four variables: words are no numbers, so that it is
+// split by hand.
 Samples read_samples(const char* file) {
   std::ifstream stream(file);
   std::string line;
@@ -57,7 +58,8 @@ template <class Work> void measure(const char* what, const Samples& samples, con
   double least = 1e300;
   for (const auto& values : samples.values) least = std::min(least, work(values));
   const double count = static_cast<double>(samples.values.size()), took = thread_cpu_seconds() - begin;
-  std::printf("%-55s %8.3f ms a run, %6.0f runs a second and core, least margin %.6g\n", what, 1e3 * took / count, count / took, least);
+  std::printf("%-55s %8.3f ms a run, %6.0f runs a second and core, least margin %.6g\n", what, 1e3 * took / count,
+              count / took, least);
 }
 
 } // namespace
@@ -66,7 +68,8 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "bench_study samples.csv\n"), 2;
   const Samples samples = read_samples(argv[1]);
   const Model given = read_given_model(STEPLAP_MODELS "/studies/transformer.toml", transformer_catalog());
-  const std::vector<std::string> paths{"element.tank bottom.static_friction", "core.core.static_friction", "core.core.pressure", "signal.braking.peak"};
+  const std::vector<std::string> paths{"element.tank bottom.static_friction", "core.core.static_friction",
+                                       "core.core.pressure", "signal.braking.peak"};
   const double peak = number_of(given, paths[3]);
   const auto scaled = [&](std::vector<double> v) {
     v[3] *= peak;
@@ -75,7 +78,8 @@ int main(int argc, char** argv) {
   const std::vector<std::string> none, margins{"front joint.margin", "back joint.margin"};
   Variants bare(given, paths, &none), looked_at(given, paths, &margins);
   const auto once = bare.make(scaled(samples.values.front()));
-  measure("one system, integration and events", samples, [&](const std::vector<double>&) { return run(bare.model(), *once, false); });
+  measure("one system, integration and events", samples,
+          [&](const std::vector<double>&) { return run(bare.model(), *once, false); });
   measure("a system each, integration and events", samples, [&](const std::vector<double>& v) {
     const auto system = bare.make(scaled(v));
     return run(bare.model(), *system, false);

@@ -85,15 +85,28 @@ private:
   bool has_jump_ = false;
 };
 
+struct Grid {
+  std::size_t n; ///< points a side
+  std::vector<Point> points;
+  std::vector<double> g;
+
+  [[nodiscard]] double width() const { return 1.0 / static_cast<double>(n - 1); }
+};
+
+Grid grid_of(Plane& plane, long points) {
+  Grid grid{static_cast<std::size_t>(points), {}, {}};
+  for (std::size_t i = 0; i < grid.n; ++i)
+    for (std::size_t j = 0; j < grid.n; ++j)
+      grid.points.push_back({static_cast<double>(i) * grid.width(), static_cast<double>(j) * grid.width()});
+  grid.g = plane.at(grid.points);
+  return grid;
+}
+
 // Where the lines of the grid cross the border.
-std::vector<Point> seeds_on_grid(Plane& plane, long points, double tolerance) {
-  const auto n = static_cast<std::size_t>(points);
-  std::vector<Point> grid;
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j)
-      grid.push_back(
-          {static_cast<double>(i) / static_cast<double>(n - 1), static_cast<double>(j) / static_cast<double>(n - 1)});
-  const std::vector<double> g = plane.at(grid);
+std::vector<Point> seeds_on_grid(Plane& plane, const Grid& grid_points, double tolerance) {
+  const std::size_t n = grid_points.n;
+  const std::vector<Point>& grid = grid_points.points;
+  const std::vector<double>& g = grid_points.g;
   std::vector<Crossing> crossings;
   std::vector<Point> from, direction;
   const auto look = [&](std::size_t a, std::size_t b) {
@@ -120,6 +133,69 @@ std::vector<Point> seeds_on_grid(Plane& plane, long points, double tolerance) {
   return seeds;
 }
 
+// Points of the grid at which the expression is nearer to zero than at all beside them, with one sign at all: an island
+// may lie there that no line of the grid meets. Of plateaus the first point; those that come nearest first.
+std::vector<std::size_t> hollows_of(const Grid& grid) {
+  constexpr std::size_t k_most = 20;
+  const auto n = static_cast<long>(grid.n);
+  std::vector<std::size_t> hollows;
+  for (long i = 0; i < n; ++i)
+    for (long j = 0; j < n; ++j) {
+      const auto here = static_cast<std::size_t>(i * n + j);
+      const double g = grid.g[here];
+      bool is_hollow = !std::isnan(g), is_steep = false;
+      for (long di = -1; di <= 1; ++di)
+        for (long dj = -1; dj <= 1; ++dj) {
+          const long k = i + di, l = j + dj;
+          if ((di == 0 && dj == 0) || k < 0 || l < 0 || k >= n || l >= n) continue;
+          const auto beside = static_cast<std::size_t>(k * n + l);
+          const double other = grid.g[beside];
+          if (std::isnan(other)) continue;
+          is_hollow = is_hollow && (other < 0.0) == (g < 0.0) &&
+                      (std::abs(g) < std::abs(other) || (std::abs(g) == std::abs(other) && here < beside));
+          is_steep = is_steep || std::abs(g) < std::abs(other);
+        }
+      if (is_hollow && is_steep) hollows.push_back(here);
+    }
+  std::stable_sort(hollows.begin(), hollows.end(),
+                   [&](std::size_t a, std::size_t b) { return std::abs(grid.g[a]) < std::abs(grid.g[b]); });
+  if (hollows.size() > k_most) hollows.resize(k_most);
+  return hollows;
+}
+
+// Downhill from a hollow, by looks in eight directions that come closer; a point of the border if there is one.
+std::optional<Point> island_at(Plane& plane, Point at, double g, double radius) {
+  constexpr int k_rounds = 24, k_ways = 8;
+  constexpr double k_least = 1e-3; // of where it began: what is smaller is not looked for
+  for (const double least = k_least * radius; radius > least;) {
+    for (int round = 0; round < k_rounds; ++round) {
+      std::vector<Point> around;
+      for (int k = 0; k < k_ways; ++k) {
+        const double angle = 2.0 * std::acos(-1.0) * k / k_ways;
+        Point q = along(at, {std::cos(angle), std::sin(angle)}, radius);
+        for (double& x : q) x = std::clamp(x, 0.0, 1.0);
+        around.push_back(q);
+      }
+      const std::vector<double> values = plane.at(around);
+      std::size_t best = around.size();
+      for (std::size_t k = 0; k < around.size(); ++k) {
+        if (std::isnan(values[k])) continue;
+        if ((values[k] < 0.0) != (g < 0.0)) {
+          const Point way{around[k][0] - at[0], around[k][1] - at[1]};
+          const std::optional<double> s = plane.crossing(at, way, 0.0, 1.0);
+          return s ? std::optional<Point>(along(at, way, *s)) : std::nullopt;
+        }
+        if (std::abs(values[k]) < std::abs(best == around.size() ? g : values[best])) best = k;
+      }
+      if (best == around.size()) break;
+      at = around[best];
+      g = values[best];
+    }
+    radius *= 0.5;
+  }
+  return {};
+}
+
 class Follower {
 public:
   Follower(Plane& plane, double step) : plane_(plane), step_(step) {}
@@ -141,27 +217,34 @@ public:
 private:
   static constexpr int k_halvings = 6;
 
-  // A second crossing near by, on a small circle, which is looked at in 16 places.
+  // A second crossing near by, on a small circle, which is looked at in 16 places. Places beyond the ranges' ends are
+  // drawn back to these, where two of them may enclose p itself: such a crossing is taken if there is no other.
   std::optional<Point> tangent_at(const Point& p) {
     constexpr int k_looks = 16;
     const double radius = 0.1 * step_;
     std::vector<Point> circle;
+    std::array<bool, k_looks> is_drawn_back{};
     for (int k = 0; k < k_looks; ++k) {
       const double angle = 2.0 * std::acos(-1.0) * (k + 0.5) / k_looks;
       Point q = along(p, {std::cos(angle), std::sin(angle)}, radius);
+      is_drawn_back[static_cast<std::size_t>(k)] = !is_inside(q);
       for (double& x : q) x = std::clamp(x, 0.0, 1.0);
       circle.push_back(q);
     }
     const std::vector<double> g = plane_.at(circle);
-    for (int k = 0; k < k_looks; ++k) {
-      const int next = (k + 1) % k_looks;
+    std::optional<Point> second_best;
+    for (std::size_t k = 0; k < circle.size(); ++k) {
+      const std::size_t next = (k + 1) % circle.size();
       if (std::isnan(g[k]) || std::isnan(g[next]) || (g[k] < 0.0) == (g[next] < 0.0)) continue;
       const double share = g[k] / (g[k] - g[next]);
       const Point q = along(circle[k], {circle[next][0] - circle[k][0], circle[next][1] - circle[k][1]}, share);
       const double length = distance(p, q);
-      if (length > 0.0) return Point{(q[0] - p[0]) / length, (q[1] - p[1]) / length};
+      if (!(length > 0.0)) continue;
+      const Point tangent{(q[0] - p[0]) / length, (q[1] - p[1]) / length};
+      if (!is_drawn_back[k] && !is_drawn_back[next]) return tangent;
+      if (!second_best) second_best = tangent;
     }
-    return {};
+    return second_best;
   }
 
   // One step; the new point, or nothing where the border is not found within a wedge of ±45 degrees.
@@ -292,7 +375,10 @@ void check_map(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
 Answer run_map(StudyRun& run) {
   const MapSettings& s = run.study().map;
   Plane plane(run);
-  const std::vector<Point> seeds = seeds_on_grid(plane, s.points, s.tolerance);
+  const Grid grid = grid_of(plane, s.points);
+  std::vector<Point> seeds = seeds_on_grid(plane, grid, s.tolerance);
+  for (const std::size_t k : hollows_of(grid))
+    if (const auto seed = island_at(plane, grid.points[k], grid.g[k], 0.5 * grid.width())) seeds.push_back(*seed);
   std::vector<Border> borders;
   for (const Point& seed : seeds) {
     const bool is_known =

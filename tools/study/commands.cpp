@@ -30,7 +30,9 @@ struct Options {
   bool is_reported = false, is_overwriting = false;
 };
 
-std::string default_store(const std::string& file) { return (std::filesystem::path("out") / (std::filesystem::path(file).stem().string() + ".sqlite")).string(); }
+std::string default_store(const std::string& file) {
+  return (std::filesystem::path("out") / (std::filesystem::path(file).stem().string() + ".sqlite")).string();
+}
 
 bool is_database(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -39,14 +41,25 @@ bool is_database(const std::string& file) {
 }
 
 // What is given is the study file or the store itself.
-std::string store_of(const Options& o) { return o.store ? *o.store : is_database(o.file) ? o.file : default_store(o.file); }
+std::string store_of(const Options& o) {
+  return o.store ? *o.store : is_database(o.file) ? o.file : default_store(o.file);
+}
 
 long whole_number(const std::string& text, const char* option, long least) {
   long value = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (status != std::errc() || end != text.data() + text.size() || value < least)
-    throw UsageError(std::string(option) + " takes a whole number from " + std::to_string(least) + ", not '" + text + "'");
+    throw UsageError(std::string(option) + " takes a whole number from " + std::to_string(least) + ", not '" + text +
+                     "'");
   return value;
+}
+
+// What hangs on a distribution that its measurements contradict is not to be trusted.
+void add_fits(const JointLaw& law, Answer& answer) {
+  for (const JointLaw::Fit& fit : law.fits()) {
+    answer.notes.push_back("Variable '" + fit.variable + "': " + fit.text + ".");
+    if (fit.is_misfit) answer.degrade(Standing::not_trusted);
+  }
 }
 
 Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, Console& console) {
@@ -60,12 +73,15 @@ Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, in
     if (kind.name != loaded.study.kind) continue;
     Answer answer = kind.run(run);
     store.forget_from(evaluator.asked() + 1);
+    add_fits(law, answer);
     return answer;
   }
   throw std::logic_error("a kind of study that the reader let pass is not there");
 }
 
-std::string page_of(const std::string& store) { return std::filesystem::path(store).replace_extension(".html").string(); }
+std::string page_of(const std::string& store) {
+  return std::filesystem::path(store).replace_extension(".html").string();
+}
 
 void write_page(const std::string& path, const std::string& page, IfExists if_exists) {
   Store store(path);
@@ -151,12 +167,13 @@ Command run_command(const Ranks& ranks) {
   mpirun -n 8 steplap study friction.toml
 A study that was interrupted goes on when it is run again.
 )";
-  command.options = {{"FILE", &o->file, "FILE", "study file (TOML)", true},
-                     store_option(o),
-                     {"--restart", &o->is_restarted, "", "drop what the store holds"},
-                     {"--changed", &o->is_changed, "", "the study asks for something else now: keep the samples that are the same"},
-                     {"--report", &o->is_reported, "", "write the page of the study beside the store (see steplap study report)"},
-                     {"--threads", &o->threads, "N", "threads (default: all processors)"}};
+  command.options = {
+      {"FILE", &o->file, "FILE", "study file (TOML)", true},
+      store_option(o),
+      {"--restart", &o->is_restarted, "", "drop what the store holds"},
+      {"--changed", &o->is_changed, "", "the study asks for something else now: keep the samples that are the same"},
+      {"--report", &o->is_reported, "", "write the page of the study beside the store (see steplap study report)"},
+      {"--threads", &o->threads, "N", "threads (default: all processors)"}};
   command.run = [o, &ranks](Console& console) { return run_study(*o, ranks, console); };
   return command;
 }
@@ -207,12 +224,14 @@ Command export_command() {
   Command command;
   command.name = "export";
   command.summary = "all samples as CSV, or all findings";
-  command.examples = "  steplap study export friction.toml > samples.csv\n  steplap study export friction.toml --findings\n";
-  command.options = {{"FILE", &o->file, "FILE", "study file or store", true},
-                     store_option(o),
-                     {"--findings", &o->is_findings, "", "what was found instead of the samples"},
-                     {"--growth", &o->is_growth, "", "estimates as they grew instead of the samples"},
-                     {"--histories", &o->is_histories, "", "of a fit: what was measured, and what was found to fit it"}};
+  command.examples =
+      "  steplap study export friction.toml > samples.csv\n  steplap study export friction.toml --findings\n";
+  command.options = {
+      {"FILE", &o->file, "FILE", "study file or store", true},
+      store_option(o),
+      {"--findings", &o->is_findings, "", "what was found instead of the samples"},
+      {"--growth", &o->is_growth, "", "estimates as they grew instead of the samples"},
+      {"--histories", &o->is_histories, "", "of a fit: what was measured, and what was found to fit it"}};
   command.run = [o](Console& console) {
     return guarded([&] {
       Store store(store_of(*o));
@@ -232,16 +251,20 @@ ExitCode replay(const Options& o, Console& console) {
   const LoadedStudy loaded = read_study(o.file);
   Store store(store_of(o));
   const long number = whole_number(*o.sample, "--sample", 1);
-  if (number > store.size()) throw UsageError("the store has " + std::to_string(store.size()) + " samples: there is no sample " + *o.sample);
+  if (number > store.size())
+    throw UsageError("the store has " + std::to_string(store.size()) + " samples: there is no sample " + *o.sample);
   if (store.identity().scene != identity_of(loaded).scene)
-    throw StoreError("the models, variables or responses of '" + o.file + "' are not those of the store any more: its samples cannot be replayed");
-  if (!loaded.variants.empty()) throw UsageError("a sample of the kind 'needs' is another model, not other values of one: it cannot be replayed");
+    throw StoreError("the models, variables or responses of '" + o.file +
+                     "' are not those of the store any more: its samples cannot be replayed");
+  if (!loaded.variants.empty())
+    throw UsageError("a sample of the kind 'needs' is another model, not other values of one: it cannot be replayed");
   if (loaded.models.empty()) throw UsageError("the study has no model: its samples are numbers only");
   std::vector<StoredSample> rows;
   store.read(number, 1, rows);
   int worst = 0;
   for (const auto& model : loaded.models) {
-    std::vector<std::string> arguments{"simulate", model->path, "-o", o.output.value_or("out/replay"), "--force", "--report"};
+    std::vector<std::string> arguments{"simulate", model->path, "-o", o.output.value_or("out/replay"),
+                                       "--force",  "--report"};
     for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
       const Variable& v = loaded.study.variables[i];
       if (!is_set_in(v, *model)) continue;
@@ -251,7 +274,8 @@ ExitCode replay(const Options& o, Console& console) {
       }
     }
     std::string line = "steplap";
-    for (const std::string& argument : arguments) line += argument.find(' ') == std::string::npos ? " " + argument : " \"" + argument + "\"";
+    for (const std::string& argument : arguments)
+      line += argument.find(' ') == std::string::npos ? " " + argument : " \"" + argument + "\"";
     console.out << line << "\n";
     worst = std::max(worst, run_command_line(arguments, console.out, console.err, console.is_terminal));
   }

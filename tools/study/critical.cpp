@@ -48,29 +48,64 @@ struct Look {
   std::vector<double> x, g;
 };
 
-// Between two looks at which the expression comes nearer to zero than beside them it may touch it: looked at more
-// closely.
-void look_closer(Line& line, Look& look) {
-  constexpr int k_parts = 8;
-  std::vector<double> more;
-  for (std::size_t i = 1; i + 1 < look.x.size(); ++i) {
-    const double before = look.g[i - 1], here = look.g[i], after = look.g[i + 1];
-    const bool is_one_side = (before < 0.0) == (here < 0.0) && (after < 0.0) == (here < 0.0);
-    if (!is_one_side || !(std::abs(here) < std::abs(before) && std::abs(here) < std::abs(after))) continue;
-    for (int k = 1; k < k_parts; ++k)
-      for (const std::size_t from : {i - 1, i})
-        more.push_back(look.x[from] + (look.x[from + 1] - look.x[from]) * k / k_parts);
-  }
-  if (more.empty()) return;
+void look_at(Line& line, std::vector<double> more, Look& look) {
   std::sort(more.begin(), more.end());
   more.erase(std::unique(more.begin(), more.end()), more.end());
   const std::vector<double> values = line.at(more);
   std::vector<std::pair<double, double>> all;
   for (std::size_t i = 0; i < look.x.size(); ++i) all.emplace_back(look.x[i], look.g[i]);
   for (std::size_t i = 0; i < more.size(); ++i) all.emplace_back(more[i], values[i]);
-  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
   look = {};
   for (const auto& [x, g] : all) look.x.push_back(x), look.g.push_back(g);
+}
+
+// Where the expression has the same sign on both sides and is nearer to zero than there: it may touch zero, or cross it
+// twice. Those that come nearest first.
+std::vector<std::size_t> turns_of(const Look& look) {
+  constexpr std::size_t k_most = 6;
+  std::vector<std::size_t> turns;
+  for (std::size_t i = 1; i + 1 < look.x.size(); ++i) {
+    const double before = look.g[i - 1], here = look.g[i], after = look.g[i + 1];
+    const bool is_one_side = before * after > 0.0 && here * before >= 0.0;
+    if (is_one_side && std::abs(here) < std::abs(before) && std::abs(here) < std::abs(after)) turns.push_back(i);
+  }
+  std::stable_sort(turns.begin(), turns.end(),
+                   [&](std::size_t l, std::size_t r) { return std::abs(look.g[l]) < std::abs(look.g[r]); });
+  if (turns.size() > k_most) turns.resize(k_most);
+  return turns;
+}
+
+void look_closer(Line& line, Look& look) {
+  constexpr int k_rounds = 4, k_parts = 8;
+  for (int round = 0; round < k_rounds; ++round) {
+    std::vector<double> more;
+    for (const std::size_t i : turns_of(look))
+      for (int k = 1; k < k_parts; ++k)
+        for (const std::size_t from : {i - 1, i})
+          more.push_back(look.x[from] + (look.x[from + 1] - look.x[from]) * k / k_parts);
+    if (more.empty()) return;
+    look_at(line, std::move(more), look);
+  }
+}
+
+// Zero at two neighbouring looks: all over between them, or two zeros that happen to lie there?
+void look_into_flats(Line& line, Look& look) {
+  constexpr int k_parts = 4;
+  std::vector<double> more;
+  for (std::size_t i = 1; i < look.x.size(); ++i)
+    for (int k = 1; k < k_parts && look.g[i - 1] == 0.0 && look.g[i] == 0.0; ++k)
+      more.push_back(look.x[i - 1] + (look.x[i] - look.x[i - 1]) * k / k_parts);
+  if (!more.empty()) look_at(line, std::move(more), look);
+}
+
+std::string where_nearest(const Look& look) {
+  std::size_t best = look.g.size();
+  for (std::size_t i = 0; i < look.g.size(); ++i)
+    if (!std::isnan(look.g[i]) && (best == look.g.size() || std::abs(look.g[i]) < std::abs(look.g[best]))) best = i;
+  char text[80];
+  std::snprintf(text, sizeof text, "; nearest to zero at %.6g, where it is %.3g", look.x[best], look.g[best]);
+  return text;
 }
 
 std::string monotonic_text(const Look& look) {
@@ -97,6 +132,31 @@ void add_flat(double low, double high, const std::string& variable, long samples
   answer.findings.push_back(f);
 }
 
+// Intervals at whose ends the signs differ, and looks that have hit a zero.
+std::vector<Crossing> crossings_of(const Look& look, const std::string& variable, long samples, Answer& answer) {
+  std::vector<Crossing> crossings;
+  const auto is_zero = [&](std::size_t i) { return i < look.g.size() && look.g[i] == 0.0; };
+  for (std::size_t i = 0; i < look.x.size(); ++i) {
+    const double here = look.g[i];
+    if (here == 0.0 && !is_zero(i + 1) && !(i > 0 && is_zero(i - 1)))
+      crossings.push_back({look.x[i], look.x[i], here, here});
+    if (i + 1 == look.x.size()) break;
+    const double next = look.g[i + 1];
+    if (here == 0.0 && next == 0.0) add_flat(look.x[i], look.x[i + 1], variable, samples, answer);
+    if (here * next < 0.0) crossings.push_back({look.x[i], look.x[i + 1], here, next});
+  }
+  return crossings;
+}
+
+// Between looks that lie hardly closer than the crossings do there may be pairs of them that none of the looks tells.
+void say_if_dense(std::size_t crossings, long points, Answer& answer) {
+  constexpr long k_looks = 3; // for each crossing
+  if (crossings < 3 || k_looks * static_cast<long>(crossings) < points) return;
+  answer.notes.push_back(std::to_string(crossings) + " crossings among " + std::to_string(points) +
+                         " looks: there may be more between them; look in more places (points)");
+  answer.degrade(Standing::not_met);
+}
+
 } // namespace
 
 void check_critical(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
@@ -120,20 +180,12 @@ Answer run_critical(StudyRun& run) {
     look.x.push_back(k + 1 == s.points ? v.range[1]
                                        : low + width * static_cast<double>(k) / static_cast<double>(s.points - 1));
   look.g = line.at(look.x);
+  look_into_flats(line, look);
   look_closer(line, look);
 
-  std::vector<Crossing> crossings;
   Answer answer;
-  for (std::size_t i = 1; i < look.x.size(); ++i) {
-    const double a = look.g[i - 1], b = look.g[i];
-    if (std::isnan(a) || std::isnan(b)) continue;
-    if (a == 0.0 && b == 0.0) {
-      add_flat(look.x[i - 1], look.x[i], s.variable, run.evaluator.asked(), answer);
-      continue;
-    }
-    if (a == 0.0 && i > 1) continue; // the end of the interval before
-    if ((a < 0.0) != (b < 0.0) || a == 0.0 || b == 0.0) crossings.push_back({look.x[i - 1], look.x[i], a, b});
-  }
+  std::vector<Crossing> crossings = crossings_of(look, s.variable, run.evaluator.asked(), answer);
+  say_if_dense(crossings.size(), s.points, answer);
   close_crossings(crossings, s.tolerance * width,
                   [&](const std::vector<std::size_t>&, const std::vector<double>& at) { return line.at(at); });
 
@@ -150,7 +202,8 @@ Answer run_critical(StudyRun& run) {
     const auto known = std::find_if(look.g.begin(), look.g.end(), [](double g) { return !std::isnan(g); });
     f.status = known == look.g.end() ? "no run gave a value"
                                      : std::string("none in the range: the expression is ") +
-                                           (*known < 0.0 ? "negative" : "positive") + " wherever it was looked at";
+                                           (*known < 0.0 ? "negative" : "positive") + " wherever it was looked at" +
+                                           where_nearest(look);
     answer.findings.push_back(f);
     answer.degrade(Standing::not_met);
   }

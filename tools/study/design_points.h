@@ -1,5 +1,5 @@
-// Design points: the places of the limit state's surface that are nearest to the origin of standard normal space, and what
-// first and second order theory (FORM, SORM) make of them. By OpenTURNS, from several starts.
+// Design points: the places of the limit state's surface that are nearest to the origin of standard normal space, and
+// what first and second order theory (FORM, SORM) make of them. By OpenTURNS, from several starts.
 #pragma once
 
 #include "tools/study/limit_function.h"
@@ -13,7 +13,8 @@ struct DesignPoint {
   double off_surface = 0.0; ///< |g| / |∇g|: how far from the surface that is, in standard deviations
   double misalignment = 0.0; ///< 1 − cosine between u and the gradient's line: zero where it is nearest
   std::vector<double> alpha; ///< −u/beta: squares are the importance factors
-  double breitung = 0.0, hohenbichler = 0.0, tvedt = 0.0; ///< probabilities of second order; not-a-number if not asked or unfit
+  double breitung = 0.0, hohenbichler = 0.0,
+         tvedt = 0.0;        ///< probabilities of second order; not-a-number if not asked or unfit
   bool is_found = false;     ///< on the surface, and nearest there
 };
 

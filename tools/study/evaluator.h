@@ -1,8 +1,8 @@
-// Samples in the order in which a study asks for them: those in the store are taken from there, the others are run on all
-// threads of all ranks, and stored.
+// Samples in the order in which a study asks for them: those in the store are taken from there, the others are run on
+// all threads of all ranks, and stored.
 //
-// A study that is interrupted asks for the same samples again, in the same order, when it is run once more: nothing of what
-// it asks for hangs on threads, ranks or time. So the store alone tells where to go on.
+// A study that is interrupted asks for the same samples again, in the same order, when it is run once more: nothing of
+// what it asks for hangs on threads, ranks or time. So the store alone tells where to go on.
 #pragma once
 
 #include "tools/study/ranks.h"
@@ -33,7 +33,8 @@ class Team;
 
 class Evaluator {
 public:
-  Evaluator(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, std::function<void(const Pace&)> progress);
+  Evaluator(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads,
+            std::function<void(const Pace&)> progress);
   ~Evaluator();
 
   /// The outcomes of `points` (of all variables, one after the other), in their order; good until the next call.
@@ -42,7 +43,8 @@ public:
   [[nodiscard]] long asked() const { return next_ - 1; }
   /// Keeps an estimate as it grew, and shows it.
   void note(const Finding& finding);
-  /// For the time left: so many samples are still to come, by a guess from how an estimate grew, or for sure; 0: not known.
+  /// For the time left: so many samples are still to come, by a guess from how an estimate grew, or for sure; 0: not
+  /// known.
   void expect(long more, bool is_guess = false);
   /// Seconds since the study began, of this call of the program.
   [[nodiscard]] double seconds() const;

@@ -1,23 +1,20 @@
 #include "tools/study/law.h"
 
 #include "mbd/base/number_text.h"
-#include "mbd/io/csv.h"
+#include "tools/study/measured_law.h"
 
-#include <openturns/BetaFactory.hxx>
+#include <openturns/Beta.hxx>
 #include <openturns/BetaMuSigma.hxx>
 #include <openturns/Distribution.hxx>
 #include <openturns/DistFunc.hxx>
 #include <openturns/Exponential.hxx>
-#include <openturns/ExponentialFactory.hxx>
-#include <openturns/FittingTest.hxx>
 #include <openturns/GaussLegendre.hxx>
-#include <openturns/GumbelFactory.hxx>
-#include <openturns/LogNormalFactory.hxx>
-#include <openturns/NormalFactory.hxx>
-#include <openturns/TriangularFactory.hxx>
-#include <openturns/TruncatedDistribution.hxx>
-#include <openturns/UniformFactory.hxx>
-#include <openturns/WeibullMinFactory.hxx>
+#include <openturns/Gumbel.hxx>
+#include <openturns/LogNormal.hxx>
+#include <openturns/Normal.hxx>
+#include <openturns/Triangular.hxx>
+#include <openturns/Uniform.hxx>
+#include <openturns/WeibullMin.hxx>
 #include <openturns/WeibullMinMuSigma.hxx>
 
 #include <cmath>
@@ -146,46 +143,18 @@ OT::Distribution by_parameters(const Variable& v) {
   return OT::Exponential(1.0 / scale, location);
 }
 
-OT::Distribution fitted(const Variable& v, const OT::Sample& sample) {
-  const std::string& kind = v.distribution;
-  if (kind == "normal") return OT::NormalFactory().build(sample);
-  if (kind == "lognormal") return OT::LogNormalFactory().build(sample);
-  if (kind == "uniform") return OT::UniformFactory().build(sample);
-  if (kind == "triangular") return OT::TriangularFactory().build(sample);
-  if (kind == "weibull") return OT::WeibullMinFactory().build(sample);
-  if (kind == "gumbel") return OT::GumbelFactory().build(sample);
-  if (kind == "beta") return OT::BetaFactory().build(sample);
-  return OT::ExponentialFactory().build(sample);
-}
+struct Described {
+  OT::Distribution distribution;
+  std::string fit; ///< of a measured one
+  bool is_misfit = false;
+};
 
-OT::Distribution by_measurements(const Variable& v, std::string& text) {
-  const bool has_more = v.mean || v.standard_deviation || v.cov || v.low || v.high || v.mode || v.shape || v.shape2 ||
-                        v.scale || v.location;
-  if (has_more) complain(v, "a distribution fitted to 'measured' takes no parameters");
-  const CsvTable table = read_csv(v.measured, v.where);
-  const std::size_t column = table.columns.size() == 1 && v.column.empty() ? 0 : table.column(v.column, v.where);
-  const std::vector<double>& values = table.columns[column];
-  constexpr std::size_t k_fewest = 5;
-  if (values.size() < k_fewest)
-    complain(v, "'" + v.measured + "' has " + std::to_string(values.size()) + " values: too few for a distribution");
-  OT::Sample sample(values.size(), 1);
-  for (std::size_t i = 0; i < values.size(); ++i) sample(i, 0) = values[i];
-  const OT::Distribution distribution = fitted(v, sample);
-  const double p = OT::FittingTest::Kolmogorov(sample, distribution, 0.05).getPValue();
-  text = ", fitted to " + std::to_string(values.size()) + " values (Kolmogorov's p " +
-         number_text(std::round(p * 1000.0) / 1000.0) + (p < 0.05 ? ": it does not fit" : "") + ")";
-  return distribution;
-}
-
-OT::Distribution distribution_of(const Variable& v, std::string& text) {
+Described distribution_of(const Variable& v) {
   try {
-    if (!v.has_distribution()) return OT::Uniform(v.range[0], v.range[1]);
-    OT::Distribution distribution = v.measured.empty() ? by_parameters(v) : by_measurements(v, text);
-    if (!v.lower && !v.upper) return distribution;
-    if (v.lower && v.upper && !(*v.lower < *v.upper)) complain(v, "'lower' must be below 'upper'");
-    if (v.lower && v.upper) return OT::TruncatedDistribution(distribution, *v.lower, *v.upper);
-    return v.lower ? OT::TruncatedDistribution(distribution, *v.lower, OT::TruncatedDistribution::LOWER)
-                   : OT::TruncatedDistribution(distribution, *v.upper, OT::TruncatedDistribution::UPPER);
+    if (!v.has_distribution()) return {OT::Uniform(v.range[0], v.range[1]), ""};
+    if (v.measured.empty()) return {truncated(v, by_parameters(v)), ""};
+    const MeasuredLaw law = measured_law(v);
+    return {law.distribution, law.text, law.is_misfit};
   } catch (const OT::Exception& error) {
     complain(v, error.what());
   }
@@ -218,8 +187,7 @@ Interval proportion_interval(double successes, double trials, double confidence)
 }
 
 double mean_of(const Variable& variable) {
-  std::string text;
-  return distribution_of(variable, text).getMean()[0];
+  return distribution_of(variable).distribution.getMean()[0];
 }
 
 JointLaw::JointLaw(const Study& study, std::vector<double> nominal, std::vector<Diagnostic>& problems)
@@ -228,16 +196,17 @@ JointLaw::JointLaw(const Study& study, std::vector<double> nominal, std::vector<
     const Variable& v = study.variables[i];
     if (!v.has_distribution() && v.range.size() != 2) continue;
     try {
-      std::string fit;
+      const Described described = distribution_of(v);
       Marginal m;
-      m.distribution = distribution_of(v, fit);
+      m.distribution = described.distribution;
       const OT::Point p = m.distribution.getParameter();
       const bool is_plain = !v.lower && !v.upper;
       if (is_plain && v.distribution == "normal") m.form = Marginal::Form::normal;
       if (is_plain && v.distribution == "lognormal") m.form = Marginal::Form::lognormal;
       if (m.form != Marginal::Form::general) m.a = p[0], m.b = p[1];
       if (m.form == Marginal::Form::lognormal) m.location = p[2];
-      texts_.push_back(words_of(v, m.distribution, fit));
+      texts_.push_back(words_of(v, m.distribution, described.fit));
+      if (!described.fit.empty()) fits_.push_back({v.name, texts_.back(), described.is_misfit});
       marginals_.push_back(std::move(m));
       random_.push_back(i);
     } catch (const ModelError& error) {

@@ -31,6 +31,12 @@ public:
   [[nodiscard]] double quantile(std::size_t place, double p) const;
   /// "lognormal, mean 0.25, standard deviation 0.05", with what a fit found.
   [[nodiscard]] const std::string& text(std::size_t place) const { return texts_[place]; }
+  /// What was fitted to measurements.
+  struct Fit {
+    std::string variable, text;
+    bool is_misfit = false; ///< the measurements contradict it
+  };
+  [[nodiscard]] const std::vector<Fit>& fits() const { return fits_; }
   [[nodiscard]] bool is_independent() const { return root_.empty(); }
 
 private:
@@ -40,6 +46,7 @@ private:
   std::vector<std::size_t> random_;
   std::vector<double> nominal_;
   std::vector<std::string> texts_;
+  std::vector<Fit> fits_;
   std::vector<double> root_; ///< lower triangle, row by row; empty: independent
 };
 

@@ -10,10 +10,11 @@ namespace steplap::study {
 
 namespace {
 
-// What a model says about looking at its runs names channels that a variant may not have; it changes no motion. Channels that
-// it asks for stay, for responses may be of them; those of the element that is gone go.
+// What a model says about looking at its runs names channels that a variant may not have; it changes no motion.
+// Channels that it asks for stay, for responses may be of them; those of the element that is gone go.
 void drop_presentation(Model& model, const std::string& gone = "") {
-  std::erase_if(model.tables, [](const TableEntry& e) { return e.kind->name == "plot" || e.kind->name == "acceptance"; });
+  std::erase_if(model.tables,
+                [](const TableEntry& e) { return e.kind->name == "plot" || e.kind->name == "acceptance"; });
   model.plots.clear();
   model.criteria.clear();
   if (gone.empty()) return;

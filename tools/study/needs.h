@@ -1,5 +1,5 @@
-// The kind "needs": what a scene needs. Every element in turn is taken out, or holds rigidly what it connects; every body
-// in turn is fixed. What changes in the responses by how much?
+// The kind "needs": what a scene needs. Every element in turn is taken out, or holds rigidly what it connects; every
+// body in turn is fixed. What changes in the responses by how much?
 #pragma once
 
 #include "tools/study/study_run.h"

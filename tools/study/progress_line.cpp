@@ -31,7 +31,9 @@ std::string progress_text(const Pace& pace) {
   text += " samples";
   if (pace.rate > 0.0) text += ", " + formatted("%.3g", pace.rate) + " a second";
   text += ", " + formatted("%.0f s", pace.seconds) + " gone";
-  if (has_end && pace.rate > 0.0) text += ", about " + span_text(static_cast<double>(pace.expected - pace.samples) / pace.rate) + " left" + (pace.is_guess ? " of this method" : "");
+  if (has_end && pace.rate > 0.0)
+    text += ", about " + span_text(static_cast<double>(pace.expected - pace.samples) / pace.rate) + " left" +
+            (pace.is_guess ? " of this method" : "");
   if (pace.stored > 0) text += ", " + std::to_string(pace.stored) + " from the store";
   return pace.estimate.empty() ? text : text + "; " + pace.estimate;
 }

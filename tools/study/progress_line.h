@@ -1,4 +1,5 @@
-// One line on a terminal that tells how far a study is: how many samples, how fast, how long still, the running estimate.
+// One line on a terminal that tells how far a study is: how many samples, how fast, how long still, the running
+// estimate.
 #pragma once
 
 #include "tools/steplap/console.h"

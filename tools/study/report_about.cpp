@@ -37,7 +37,11 @@ Json quantiles_of(const JointLaw& law, std::size_t place) {
 
 Json variable_json(const LoadedStudy& loaded, const JointLaw& law, std::size_t i) {
   const Variable& v = loaded.study.variables[i];
-  Json json{{"name", v.name}, {"unit", unit_or_none(v.unit)}, {"paths", v.paths}, {"factor", v.is_factor}, {"model", v.model}};
+  Json json{{"name", v.name},
+            {"unit", unit_or_none(v.unit)},
+            {"paths", v.paths},
+            {"factor", v.is_factor},
+            {"model", v.model}};
   json["varies"] = range_text(v);
   const auto place = std::find(law.random().begin(), law.random().end(), i);
   if (v.has_distribution() && place != law.random().end()) {
@@ -69,9 +73,13 @@ Json numbers_json(const LoadedStudy& loaded) {
   const std::vector<std::string> units = loaded.number_units();
   Json json = Json::array();
   for (const Response& r : study.responses)
-    json.push_back({{"name", r.name}, {"unit", unit_or_none(units[json.size()])}, {"role", "response"}, {"is", response_text(r)}});
+    json.push_back(
+        {{"name", r.name}, {"unit", unit_or_none(units[json.size()])}, {"role", "response"}, {"is", response_text(r)}});
   for (const LimitState& l : study.limit_states)
-    json.push_back({{"name", l.name}, {"unit", ""}, {"role", is_border(study, l) ? "border" : "limit state"}, {"is", l.expression}});
+    json.push_back({{"name", l.name},
+                    {"unit", ""},
+                    {"role", is_border(study, l) ? "border" : "limit state"},
+                    {"is", l.expression}});
   return json;
 }
 
@@ -79,20 +87,26 @@ Json numbers_json(const LoadedStudy& loaded) {
 template <class AnyStudy> Json histories_json(const AnyStudy& study) {
   Json json = Json::array();
   if constexpr (requires { study.histories; })
-    for (const auto& h : study.histories) json.push_back({{"name", h.name}, {"unit", unit_or_none(h.channel_unit)}, {"channel", h.channel}});
+    for (const auto& h : study.histories)
+      json.push_back({{"name", h.name}, {"unit", unit_or_none(h.channel_unit)}, {"channel", h.channel}});
   return json;
 }
 
 Json settings_of(const Study& study) {
   if (study.kind == "sweep") return {{"design", study.sweep.design}};
   if (study.kind == "sample") return {{"design", study.sample.design}};
-  if (study.kind == "sensitivity") return {{"method", study.sensitivity.method}, {"confidence", study.sensitivity.confidence}};
+  if (study.kind == "sensitivity")
+    return {{"method", study.sensitivity.method}, {"confidence", study.sensitivity.confidence}};
   if (study.kind == "critical") return {{"variable", study.critical.variable}};
   if (study.kind == "map") return {{"variables", study.map.variables}, {"logarithmic", study.map.is_logarithmic}};
   if (study.kind == "needs") return {{"accuracy", study.needs.accuracy}};
   if (study.kind != "reliability") return Json::object();
   const ReliabilitySettings& r = study.reliability;
-  return {{"methods", r.methods}, {"limit_states", r.limit_states}, {"combination", r.combination}, {"cov", r.cov}, {"confidence", r.confidence}};
+  return {{"methods", r.methods},
+          {"limit_states", r.limit_states},
+          {"combination", r.combination},
+          {"cov", r.cov},
+          {"confidence", r.confidence}};
 }
 
 } // namespace

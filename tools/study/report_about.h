@@ -1,5 +1,5 @@
-// What a store keeps of its study besides names, so that a page can be made of the store alone: units, what each variable
-// and number is, what was asked.
+// What a store keeps of its study besides names, so that a page can be made of the store alone: units, what each
+// variable and number is, what was asked.
 #pragma once
 
 #include "tools/study/law.h"

@@ -31,7 +31,8 @@ template <class T> std::string base64(const std::vector<T>& values) {
   std::string text;
   text.reserve((size + 2) / 3 * 4);
   for (std::size_t i = 0; i < size; i += 3) {
-    const unsigned three = bytes[i] << 16U | (i + 1 < size ? bytes[i + 1] << 8U : 0U) | (i + 2 < size ? bytes[i + 2] : 0U);
+    const unsigned three =
+        bytes[i] << 16U | (i + 1 < size ? bytes[i + 1] << 8U : 0U) | (i + 2 < size ? bytes[i + 2] : 0U);
     text += k_digits[three >> 18U];
     text += k_digits[three >> 12U & 63U];
     text += i + 1 < size ? k_digits[three >> 6U & 63U] : '=';
@@ -68,12 +69,15 @@ void add_column(Samples& samples, const std::string& name, const Json* about, co
 Samples read_samples(Store& store, const Json& about) {
   Samples samples;
   const StoreIdentity& identity = store.identity();
-  for (const std::string& name : identity.variables) add_column(samples, name, entry_of(about["variables"], name), "variable", "varies");
-  for (const std::string& name : identity.numbers) add_column(samples, name, entry_of(about["numbers"], name), "response", "is");
+  for (const std::string& name : identity.variables)
+    add_column(samples, name, entry_of(about["variables"], name), "variable", "varies");
+  for (const std::string& name : identity.numbers)
+    add_column(samples, name, entry_of(about["numbers"], name), "response", "is");
   const bool has_runs = about["models"].is_array() && !about["models"].empty();
   if (has_runs) {
     samples.columns.insert(samples.columns.end(), {{"energy error", "", "cost"}, {"evaluations", "", "cost"}});
-    samples.is.insert(samples.is.end(), {"energy that does not balance, of what was turned over", "of the equations of motion"});
+    samples.is.insert(samples.is.end(),
+                      {"energy that does not balance, of what was turned over", "of the equations of motion"});
   }
   samples.values.resize(samples.columns.size());
   std::map<std::string, std::uint32_t> places{{"", 0}};
@@ -90,7 +94,8 @@ Samples read_samples(Store& store, const Json& about) {
         samples.values[c++].push_back(row.outcome.evaluations);
       }
       samples.status.push_back(static_cast<std::uint8_t>(row.outcome.status));
-      const auto [place, is_new] = places.try_emplace(row.outcome.reason, static_cast<std::uint32_t>(samples.reasons.size()));
+      const auto [place, is_new] =
+          places.try_emplace(row.outcome.reason, static_cast<std::uint32_t>(samples.reasons.size()));
       if (is_new) samples.reasons.push_back(row.outcome.reason);
       samples.reason.push_back(place->second);
     }
@@ -111,7 +116,8 @@ std::vector<char> classes_of(const Samples& samples) {
   const std::vector<std::size_t> limits = columns_of(samples, "limit state");
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.status[i] != 0) classes[i] = 2;
-    else classes[i] = std::any_of(limits.begin(), limits.end(), [&](std::size_t c) { return samples.values[c][i] < 0.0; });
+    else
+      classes[i] = std::any_of(limits.begin(), limits.end(), [&](std::size_t c) { return samples.values[c][i] < 0.0; });
   }
   return classes;
 }
@@ -125,7 +131,8 @@ template <class T> std::vector<T> taken(const std::vector<T>& all, const std::ve
 
 Json samples_json(const Samples& samples, const std::vector<char>& classes, std::size_t budget) {
   const double row = (8.0 * static_cast<double>(samples.columns.size()) + 9.0) * 4.0 / 3.0;
-  const std::vector<std::size_t> chosen = chosen_samples(classes, static_cast<std::size_t>(static_cast<double>(budget) / row));
+  const std::vector<std::size_t> chosen =
+      chosen_samples(classes, static_cast<std::size_t>(static_cast<double>(budget) / row));
   Json json{{"total", samples.size()}};
   Json counts = Json::array();
   for (int kind = 0; kind < 3; ++kind) {
@@ -155,8 +162,12 @@ Json samples_json(const Samples& samples, const std::vector<char>& classes, std:
     for (const double x : samples.values[c])
       if (std::isfinite(x)) size = std::max(size, std::abs(x));
     const UnitPrefix prefix = prefix_for(size, column.unit);
-    json["columns"].push_back({{"name", column.name}, {"role", column.role}, {"unit", prefix.text + column.unit}, {"factor", std::pow(10.0, prefix.exponent)},
-                               {"is", samples.is[c]}, {"data", base64(taken(samples.values[c], chosen))}});
+    json["columns"].push_back({{"name", column.name},
+                               {"role", column.role},
+                               {"unit", prefix.text + column.unit},
+                               {"factor", std::pow(10.0, prefix.exponent)},
+                               {"is", samples.is[c]},
+                               {"data", base64(taken(samples.values[c], chosen))}});
   }
   return json;
 }
@@ -164,13 +175,22 @@ Json samples_json(const Samples& samples, const std::vector<char>& classes, std:
 Json curve_json(const Curve& c) { return {{"x", c.x}, {"p", c.p}, {"low", c.low}, {"high", c.high}}; }
 
 Json tally_json(const std::string& name, const Tally& t) {
-  return {{"name", name}, {"total", t.total}, {"missing", t.missing}, {"above", t.above}, {"below", t.below}, {"mean", t.mean},
+  return {{"name", name},
+          {"total", t.total},
+          {"missing", t.missing},
+          {"above", t.above},
+          {"below", t.below},
+          {"mean", t.mean},
           {"cumulative", curve_json(t.cumulative)},
-          {"histogram", {{"edges", t.histogram.edges}, {"counts", t.histogram.counts}, {"low", t.histogram.low}, {"high", t.histogram.high}}}};
+          {"histogram",
+           {{"edges", t.histogram.edges},
+            {"counts", t.histogram.counts},
+            {"low", t.histogram.low},
+            {"high", t.histogram.high}}}};
 }
 
-// Whether samples are distributed as the study's variables are: drawn one by one, in a design, or neither (searches, lines,
-// grids: of these no distribution can be shown).
+// Whether samples are distributed as the study's variables are: drawn one by one, in a design, or neither (searches,
+// lines, grids: of these no distribution can be shown).
 enum class Drawn { independently, by_design, otherwise };
 
 Drawn drawn_how(const std::string& kind, const Json& settings) {
@@ -184,13 +204,19 @@ Drawn drawn_how(const std::string& kind, const Json& settings) {
 }
 
 Json distributions_json(const Samples& samples, Drawn drawn) {
-  Json json{{"drawn", drawn == Drawn::independently ? "independently" : drawn == Drawn::by_design ? "by design" : "otherwise"}, {"of", Json::array()}};
+  Json json{{"drawn", drawn == Drawn::independently ? "independently"
+                      : drawn == Drawn::by_design   ? "by design"
+                                                    : "otherwise"},
+            {"of", Json::array()}};
   std::size_t left_out = 0;
   for (std::size_t c = 0; c < samples.columns.size() && drawn != Drawn::otherwise; ++c) {
     const std::vector<double>& values = samples.values[c];
     if (samples.columns[c].role == "cost") continue;
-    if (samples.columns[c].role == "variable" && std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end()) continue; // kept
-    if (json["of"].size() < k_most_columns) json["of"].push_back(tally_json(samples.columns[c].name, tally_of(values, drawn == Drawn::independently)));
+    if (samples.columns[c].role == "variable" &&
+        std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end())
+      continue; // kept
+    if (json["of"].size() < k_most_columns)
+      json["of"].push_back(tally_json(samples.columns[c].name, tally_of(values, drawn == Drawn::independently)));
     else ++left_out;
   }
   json["left_out"] = left_out;
@@ -198,7 +224,8 @@ Json distributions_json(const Samples& samples, Drawn drawn) {
 }
 
 Json running_json(const std::string& subject, const char* quantity, const std::string& unit, const Running& r) {
-  return {{"subject", subject}, {"quantity", quantity}, {"unit", unit}, {"samples", r.samples}, {"value", r.value}, {"low", r.low}, {"high", r.high}};
+  return {{"subject", subject}, {"quantity", quantity}, {"unit", unit},  {"samples", r.samples},
+          {"value", r.value},   {"low", r.low},         {"high", r.high}};
 }
 
 // Of samples drawn one by one: how shares of failures and means settled.
@@ -214,7 +241,8 @@ Json running_estimates(const Samples& samples, const std::string& failed) {
     json.push_back(running_json(samples.columns[c].name, "share of failures", "", running_share(sure, possible)));
   }
   for (const std::size_t c : columns_of(samples, "response"))
-    json.push_back(running_json(samples.columns[c].name, "mean", samples.columns[c].unit, running_mean(samples.values[c])));
+    json.push_back(
+        running_json(samples.columns[c].name, "mean", samples.columns[c].unit, running_mean(samples.values[c])));
   return json;
 }
 
@@ -222,9 +250,20 @@ Json findings_json(const std::vector<Finding>& findings, const std::vector<Repor
   Json json = Json::array();
   for (const Finding& f : findings) {
     const FindingView view = view_of(f, columns);
-    json.push_back({{"method", f.method}, {"subject", f.subject}, {"quantity", f.quantity}, {"value", f.value}, {"low", f.low}, {"high", f.high},
-                    {"samples", f.samples}, {"status", f.status}, {"role", view.role}, {"variable", view.variable}, {"place", view.place},
-                    {"text", view.value}, {"interval", view.interval}, {"unit", view.unit}});
+    json.push_back({{"method", f.method},
+                    {"subject", f.subject},
+                    {"quantity", f.quantity},
+                    {"value", f.value},
+                    {"low", f.low},
+                    {"high", f.high},
+                    {"samples", f.samples},
+                    {"status", f.status},
+                    {"role", view.role},
+                    {"variable", view.variable},
+                    {"place", view.place},
+                    {"text", view.value},
+                    {"interval", view.interval},
+                    {"unit", view.unit}});
   }
   return json;
 }
@@ -248,7 +287,10 @@ Json growth_json(const std::vector<Finding>& growth) {
   Json json = Json::array();
   for (const std::string& name : methods) {
     const std::vector<const Finding*>& all = of[name];
-    Json one{{"method", all.front()->method}, {"subject", all.front()->subject}, {"quantity", all.front()->quantity}, {"all", all.size()}};
+    Json one{{"method", all.front()->method},
+             {"subject", all.front()->subject},
+             {"quantity", all.front()->quantity},
+             {"all", all.size()}};
     const std::size_t shown = std::min(all.size(), k_most_growth);
     for (const char* key : {"samples", "value", "low", "high"}) one[key] = Json::array();
     for (std::size_t k = 0; k < shown; ++k) {
@@ -289,9 +331,17 @@ Json reasons_json(Store& store) {
   long more = 0;
   for (const Group& g : groups) {
     if (list.size() >= k_most_reasons) more += g.samples;
-    else list.push_back({{"status", g.first.status}, {"reason", g.first.reason}, {"alike", g.kinds - 1}, {"count", g.samples}, {"first", g.first.first}});
+    else
+      list.push_back({{"status", g.first.status},
+                      {"reason", g.first.reason},
+                      {"alike", g.kinds - 1},
+                      {"count", g.samples},
+                      {"first", g.first.first}});
   }
-  return {{"failed", failed}, {"list", std::move(list)}, {"more", groups.size() > k_most_reasons ? groups.size() - k_most_reasons : 0}, {"more_runs", more}};
+  return {{"failed", failed},
+          {"list", std::move(list)},
+          {"more", groups.size() > k_most_reasons ? groups.size() - k_most_reasons : 0},
+          {"more_runs", more}};
 }
 
 // Measured records and what was found to fit them, where stores have such.
@@ -307,7 +357,11 @@ template <class AnyStore> Json histories_json(AnyStore& store) {
     }
     for (const std::string& name : names) {
       const std::vector<std::size_t>& all = of[name];
-      Json one{{"name", name}, {"all", all.size()}, {"t", Json::array()}, {"measured", Json::array()}, {"fitted", Json::array()}};
+      Json one{{"name", name},
+               {"all", all.size()},
+               {"t", Json::array()},
+               {"measured", Json::array()},
+               {"fitted", Json::array()}};
       for (std::size_t k = 0, shown = std::min(all.size(), k_most_times); k < shown; ++k) {
         const auto& p = points[all[k * all.size() / shown]];
         one["t"].push_back(p.t);
@@ -345,7 +399,8 @@ Json about_in(Store& store) {
 
 Json status_names() {
   Json names = Json::array();
-  for (int i = 0; i <= static_cast<int>(SampleStatus::not_a_number); ++i) names.push_back(name_of(static_cast<SampleStatus>(i)));
+  for (int i = 0; i <= static_cast<int>(SampleStatus::not_a_number); ++i)
+    names.push_back(name_of(static_cast<SampleStatus>(i)));
   return names;
 }
 
@@ -379,8 +434,13 @@ std::string report_data(Store& store, const std::string& store_path, std::size_t
   const Samples samples = read_samples(store, about);
   const Drawn drawn = drawn_how(identity.kind, about["settings"]);
   const bool is_random_sample = identity.kind == "sample" && drawn == Drawn::independently;
-  Json json{{"program", std::string("steplap ") + k_version}, {"version", identity.version}, {"kind", identity.kind}, {"standing", store.setting("standing")},
-            {"store", store_path}, {"about", about}, {"statuses", status_names()}};
+  Json json{{"program", std::string("steplap ") + k_version},
+            {"version", identity.version},
+            {"kind", identity.kind},
+            {"standing", store.setting("standing")},
+            {"store", store_path},
+            {"about", about},
+            {"statuses", status_names()}};
   json["samples"] = samples_json(samples, classes_of(samples), budget);
   json["reasons"] = reasons_json(store);
   json["distributions"] = distributions_json(samples, drawn);

@@ -14,8 +14,8 @@ namespace steplap::study {
 /// are kept rather than others, each evenly, and how many of how many is told.
 [[nodiscard]] std::string report_data(Store& store, const std::string& store_path, std::size_t budget = 6000000);
 
-/// Which of so many samples a page holds, in their order; `classes`: per sample 2 for a run that failed, 1 for a failure,
-/// 0 for others.
+/// Which of so many samples a page holds, in their order; `classes`: per sample 2 for a run that failed, 1 for a
+/// failure, 0 for others.
 [[nodiscard]] std::vector<std::size_t> chosen_samples(const std::vector<char>& classes, std::size_t most);
 
 } // namespace steplap::study

@@ -58,18 +58,21 @@ constexpr Part k_parts[] = {
 // "design point 2", "border 1 point 17": the number behind the first word or words.
 long place_in(const std::string& subject, const std::string& noun) {
   long place = 0;
-  if (subject.starts_with(noun + " ")) std::from_chars(subject.data() + noun.size() + 1, subject.data() + subject.size(), place);
+  if (subject.starts_with(noun + " "))
+    std::from_chars(subject.data() + noun.size() + 1, subject.data() + subject.size(), place);
   return place;
 }
 
 std::string quotient(const std::string& above, const std::string& below) {
   if (below.empty()) return above;
-  return (above.empty() ? "1" : above) + "/" + (below.find(' ') == std::string::npos && below.find('/') == std::string::npos ? below : "(" + below + ")");
+  return (above.empty() ? "1" : above) + "/" +
+         (below.find(' ') == std::string::npos && below.find('/') == std::string::npos ? below : "(" + below + ")");
 }
 
 // The part, and the unit in SI.
 void find_part(const Finding& f, const std::vector<ReportColumn>& columns, FindingView& view) {
-  if (const ReportColumn* column = find_column(columns, f.quantity); column && (f.method == "map" || f.method == "form")) {
+  if (const ReportColumn* column = find_column(columns, f.quantity);
+      column && (f.method == "map" || f.method == "form")) {
     view.role = f.method == "map" ? "border" : "design point";
     view.variable = f.quantity;
     view.unit = column->unit;
@@ -87,7 +90,8 @@ void find_part(const Finding& f, const std::vector<ReportColumn>& columns, Findi
     view.role = part.role;
     if (begin.back() == ' ') view.variable = f.quantity.substr(begin.size());
     if (part.unit == UnitOf::subject) view.unit = unit_of(columns, f.subject);
-    if (part.unit == UnitOf::quotient) view.unit = quotient(unit_of(columns, f.subject), unit_of(columns, view.variable));
+    if (part.unit == UnitOf::quotient)
+      view.unit = quotient(unit_of(columns, f.subject), unit_of(columns, view.variable));
     return;
   }
   view.role = "estimate";
@@ -143,7 +147,10 @@ std::string rounded(double value, int last) {
 // Of an interval, or of what is known of one, the place of its width's second digit.
 bool last_place(double value, double low, double high, int& last) {
   const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
-  const double width = has_low && has_high ? high - low : has_low ? std::abs(value - low) : has_high ? std::abs(high - value) : 0.0;
+  const double width = has_low && has_high ? high - low
+                       : has_low           ? std::abs(value - low)
+                       : has_high          ? std::abs(high - value)
+                                           : 0.0;
   if (!(width > 0.0)) return false;
   last = static_cast<int>(std::floor(std::log10(width))) - 1;
   return true;
@@ -154,7 +161,9 @@ int digits_of(const Finding& f, const std::string& role) {
   if (role == "beta") return 5;
   if (role == "correlation" || role == "condition" || role == "not told" || role == "another fit") return 3;
   if (role == "residual") return k_estimated;
-  return role == "moment" || role == "quantile" || role == "probability" || role == "sigma" ? k_estimated : f.method == "needs" ? 3 : k_exact;
+  return role == "moment" || role == "quantile" || role == "probability" || role == "sigma" ? k_estimated
+         : f.method == "needs"                                                              ? 3
+                                                                                            : k_exact;
 }
 
 } // namespace
@@ -183,7 +192,9 @@ FindingView view_of(const Finding& f, const std::vector<ReportColumn>& columns) 
   int last = 0;
   if (std::isnan(f.low) && std::isnan(f.high)) return view;
   const bool is_known = last_place(factor * f.value, low, high, last);
-  const auto end = [&](double x) { return std::isnan(x) ? std::string("?") : is_known ? rounded(x, last) : tidied(plain(x, 6)); };
+  const auto end = [&](double x) {
+    return std::isnan(x) ? std::string("?") : is_known ? rounded(x, last) : tidied(plain(x, 6));
+  };
   view.interval = end(low) + " … " + end(high);
   return view;
 }

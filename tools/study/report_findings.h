@@ -24,8 +24,8 @@ struct FindingView {
 /// The quantity of a finding is what says which part it plays.
 [[nodiscard]] FindingView view_of(const Finding& finding, const std::vector<ReportColumn>& columns);
 
-/// "1.83e-4" for 1.8273e-4 with an interval of 1.5e-4 to 2.2e-4: two digits of the interval's width are written, of which
-/// the first is known to mean something. Without an interval `digits`.
+/// "1.83e-4" for 1.8273e-4 with an interval of 1.5e-4 to 2.2e-4: two digits of the interval's width are written, of
+/// which the first is known to mean something. Without an interval `digits`.
 [[nodiscard]] std::string estimate_text(double value, double low, double high, int digits);
 
 } // namespace steplap::study

@@ -42,8 +42,10 @@ void say_why_it_ended(Estimate& e, const SamplingTarget& target, bool is_late) {
 void note_growth(LimitFunction& limit, const Estimate& e, const SamplingTarget& target) {
   Finding f{e.method, limit.subject(), "probability", e.unsafe, e.safe_interval.low, e.unsafe_interval.high, e.samples};
   limit.run().evaluator.note(f);
-  const double wanted = static_cast<double>(e.samples) * std::pow(e.cov / target.cov, 2), most = static_cast<double>(target.samples);
-  limit.run().evaluator.expect(static_cast<long>(std::isfinite(wanted) ? std::min(wanted, most) : most) - e.samples, true);
+  const double wanted = static_cast<double>(e.samples) * std::pow(e.cov / target.cov, 2),
+               most = static_cast<double>(target.samples);
+  limit.run().evaluator.expect(static_cast<long>(std::isfinite(wanted) ? std::min(wanted, most) : most) - e.samples,
+                               true);
 }
 
 // Sums of weights, and the interval of their mean.
@@ -246,55 +248,69 @@ struct Bracket {
   int stuck = 0; ///< rounds in which the same end stood still
 };
 
-// Crossings of g along rays from the origin, all rays at a time: a look at even distances, then Illinois' rule.
+// Crossings of g along rays from the origin, all rays at a time: a look at even distances, then Illinois' rule. Where a
+// run has no result it counts as safe, or as a failure; what is closed in beside it is where there are results again.
 class Rays {
 public:
   Rays(LimitFunction& limit, std::vector<double> directions)
-      : limit_(limit), directions_(std::move(directions)), n_(limit.dimension()), count_(directions_.size() / n_) {}
-
-  /// Probability of failure on each ray, given its direction; `is_bad` where a run on it had no result.
-  void find(std::vector<double>& probability, std::vector<char>& is_bad, const LimitValue& origin) {
-    const double reach = reach_of(n_);
+      : limit_(limit), directions_(std::move(directions)), n_(limit.dimension()), count_(directions_.size() / n_) {
     std::vector<double> points;
     for (std::size_t i = 0; i < count_; ++i)
-      for (int k = 1; k <= k_looks; ++k) add(points, i, reach * k / k_looks);
-    const std::vector<LimitValue> looks = limit_.at(points);
+      for (int k = 1; k <= k_looks; ++k) add(points, i, reach_of(n_) * k / k_looks);
+    looks_ = limit_.at(points);
+  }
+
+  /// Rays on which a run had no result.
+  [[nodiscard]] std::vector<char> bad() const {
+    std::vector<char> is_bad(count_, 0);
+    for (std::size_t k = 0; k < looks_.size(); ++k)
+      if (looks_[k].is_bad) is_bad[k / k_looks] = 1;
+    return is_bad;
+  }
+
+  /// Probability of failure on each ray, given its direction, from `origin` on.
+  std::vector<double> probabilities(double origin, bool is_bad_unsafe) {
+    const double reach = reach_of(n_);
     std::vector<Bracket> open;
-    is_bad.assign(count_, 0);
     for (std::size_t i = 0; i < count_; ++i) {
-      double before = origin.g;
+      double before = origin;
       for (int k = 1; k <= k_looks; ++k) {
-        const LimitValue& here = looks[i * k_looks + static_cast<std::size_t>(k - 1)];
-        if (here.is_bad) is_bad[i] = 1;
-        else if ((here.g < 0.0) != (before < 0.0))
-          open.push_back({i, reach * (k - 1) / k_looks, reach * k / k_looks, before, here.g});
-        if (!here.is_bad) before = here.g;
+        const double here = value_of(looks_[i * k_looks + static_cast<std::size_t>(k - 1)], is_bad_unsafe);
+        if ((here < 0.0) != (before < 0.0))
+          open.push_back({i, reach * (k - 1) / k_looks, reach * k / k_looks, before, here});
+        before = here;
       }
     }
-    close(open);
-    probability.assign(count_, origin.g < 0.0 ? 1.0 : 0.0);
+    close(open, is_bad_unsafe);
+    std::vector<double> probability(count_, origin < 0.0 ? 1.0 : 0.0);
     for (const Bracket& b : open) { // ascending on each ray: in and out of failure
       const double tail = beyond(n_, 0.5 * (b.low + b.high));
       probability[b.ray] += b.g_high < 0.0 ? tail : -tail;
     }
+    return probability;
   }
 
 private:
   static constexpr int k_looks = 16;
   static constexpr double k_close = 1e-6;
+  static constexpr double k_hole = std::numeric_limits<double>::infinity();
+
+  static double value_of(const LimitValue& value, bool is_bad_unsafe) {
+    return !value.is_bad ? value.g : is_bad_unsafe ? -k_hole : k_hole;
+  }
 
   void add(std::vector<double>& points, std::size_t ray, double r) const {
     for (std::size_t d = 0; d < n_; ++d) points.push_back(r * directions_[ray * n_ + d]);
   }
 
-  void close(std::vector<Bracket>& brackets) {
+  void close(std::vector<Bracket>& brackets, bool is_bad_unsafe) {
     for (int round = 0; round < 60; ++round) {
       std::vector<double> points, at;
       std::vector<std::size_t> which;
       for (std::size_t k = 0; k < brackets.size(); ++k) {
         const Bracket& b = brackets[k];
         if (b.high - b.low < k_close) continue;
-        double r = b.high - b.g_high * (b.high - b.low) / (b.g_high - b.g_low);
+        double r = b.high - b.g_high * (b.high - b.low) / (b.g_high - b.g_low); // not a number beside a hole
         if (!(r > b.low && r < b.high) || round % 4 == 3) r = 0.5 * (b.low + b.high);
         which.push_back(k);
         at.push_back(r);
@@ -304,7 +320,7 @@ private:
       const std::vector<LimitValue>& values = limit_.at(points);
       for (std::size_t i = 0; i < which.size(); ++i) {
         Bracket& b = brackets[which[i]];
-        const double g = values[i].g;
+        const double g = value_of(values[i], is_bad_unsafe);
         if ((g < 0.0) == (b.g_low < 0.0)) {
           b.low = at[i], b.g_low = g;
           b.stuck = b.stuck > 0 ? b.stuck + 1 : 1;
@@ -321,6 +337,7 @@ private:
   LimitFunction& limit_;
   std::vector<double> directions_;
   std::size_t n_, count_;
+  std::vector<LimitValue> looks_;
 };
 
 } // namespace
@@ -352,14 +369,16 @@ Estimate directional(LimitFunction& limit, const SamplingTarget& target) {
       const double length = length_of(&directions[i * n], n);
       for (std::size_t d = 0; d < n; ++d) directions[i * n + d] /= length;
     }
-    std::vector<double> probability;
-    std::vector<char> is_bad;
-    Rays(limit, directions).find(probability, is_bad, origin);
+    Rays rays(limit, directions);
+    const std::vector<char> is_bad = rays.bad();
+    const auto holes = std::count(is_bad.begin(), is_bad.end(), 1);
+    const std::vector<double> least = rays.probabilities(origin.g, false);
+    const std::vector<double> most = holes > 0 ? rays.probabilities(origin.g, true) : least;
     for (std::size_t i = 0; i < k_rays; ++i) {
-      safe.add(is_bad[i] ? 0.0 : probability[i]); // of a ray with a hole nothing is known
-      unsafe.add(is_bad[i] ? 1.0 : probability[i]);
-      e.bad += is_bad[i];
+      safe.add(least[i]);
+      unsafe.add(most[i]);
     }
+    e.bad += holes;
     e.samples = limit.asked() - before;
     e.safe = safe.mean();
     e.unsafe = unsafe.mean();

@@ -19,7 +19,8 @@ struct Estimate {
 
   /// Both, as far as the study counts them.
   [[nodiscard]] Interval interval(const std::string& failed) const {
-    return {failed == "unsafe" ? unsafe_interval.low : safe_interval.low, failed == "safe" ? safe_interval.high : unsafe_interval.high};
+    return {failed == "unsafe" ? unsafe_interval.low : safe_interval.low,
+            failed == "safe" ? safe_interval.high : unsafe_interval.high};
   }
 };
 

@@ -48,7 +48,8 @@ void show_reasons(Store& store, std::ostream& out) {
   }
   for (std::size_t i = 0; i < std::min(groups.size(), k_most); ++i) {
     const Store::Reason& r = groups[i].first;
-    out << "  " << r.count << " " << r.status << ", first sample " << r.first << ": " << r.reason << (groups[i].is_alike ? "" : " (others alike, with other numbers)") << "\n";
+    out << "  " << r.count << " " << r.status << ", first sample " << r.first << ": " << r.reason
+        << (groups[i].is_alike ? "" : " (others alike, with other numbers)") << "\n";
   }
   if (groups.size() > k_most) out << "  and " << groups.size() - k_most << " more reasons\n";
 }
@@ -58,8 +59,8 @@ void show_reasons(Store& store, std::ostream& out) {
 void show(Store& store, const std::string& title, std::ostream& out) {
   if (!title.empty()) out << title << "\n";
   const std::string standing = store.setting("standing");
-  out << "Study of the kind '" << store.identity().kind << "', version " << store.identity().version << ": " << store.size() << " samples"
-      << (standing.empty() ? ", not finished" : "") << "\n";
+  out << "Study of the kind '" << store.identity().kind << "', version " << store.identity().version << ": "
+      << store.size() << " samples" << (standing.empty() ? ", not finished" : "") << "\n";
   show_reasons(store, out);
   std::vector<Finding> findings = store.findings();
   if (standing.empty()) {
@@ -70,7 +71,8 @@ void show(Store& store, const std::string& title, std::ostream& out) {
   TextTable table({Align::left, Align::left, Align::left, Align::right, Align::left, Align::right, Align::left});
   if (!findings.empty()) table.add_row({"method", "of", "quantity", "value", "interval", "samples", ""});
   for (const Finding& f : findings)
-    table.add_row({f.method, f.subject, f.quantity, digits(f.value), interval_text(f), std::to_string(f.samples), f.status});
+    table.add_row(
+        {f.method, f.subject, f.quantity, digits(f.value), interval_text(f), std::to_string(f.samples), f.status});
   out << table;
   for (const std::string& note : store.notes()) out << note << "\n";
   if (!standing.empty() && standing != "done") out << "Standing: " << standing << "\n";

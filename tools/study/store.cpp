@@ -1,8 +1,5 @@
 #include "tools/study/store.h"
 
-#include "mbd/base/number_text.h"
-#include "tools/steplap/version.h"
-
 #include <fcntl.h>
 #include <sqlite3.h>
 #include <sys/file.h>
@@ -39,13 +36,17 @@ struct Store::Statement {
 
   void bind(int i, double x) { std::isnan(x) ? sqlite3_bind_null(statement, i) : sqlite3_bind_double(statement, i, x); }
   void bind(int i, long n) { sqlite3_bind_int64(statement, i, n); }
-  void bind(int i, const std::string& text) { sqlite3_bind_text(statement, i, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT); }
+  void bind(int i, const std::string& text) {
+    sqlite3_bind_text(statement, i, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
+  }
   void bind(int i, const std::vector<double>& numbers) {
-    sqlite3_bind_blob(statement, i, numbers.data(), static_cast<int>(numbers.size() * sizeof(double)), SQLITE_TRANSIENT);
+    sqlite3_bind_blob(statement, i, numbers.data(), static_cast<int>(numbers.size() * sizeof(double)),
+                      SQLITE_TRANSIENT);
   }
   void take(int i, std::vector<double>& numbers) const {
     numbers.resize(static_cast<std::size_t>(sqlite3_column_bytes(statement, i)) / sizeof(double));
-    if (!numbers.empty()) std::memcpy(numbers.data(), sqlite3_column_blob(statement, i), numbers.size() * sizeof(double));
+    if (!numbers.empty())
+      std::memcpy(numbers.data(), sqlite3_column_blob(statement, i), numbers.size() * sizeof(double));
   }
   bool step() {
     const int code = sqlite3_step(statement);
@@ -62,48 +63,25 @@ struct Store::Statement {
   [[nodiscard]] long integer(int i) const { return sqlite3_column_int64(statement, i); }
   [[nodiscard]] std::string text(int i) const {
     const unsigned char* bytes = sqlite3_column_text(statement, i);
-    return bytes ? std::string(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(sqlite3_column_bytes(statement, i))) : "";
+    return bytes ? std::string(reinterpret_cast<const char*>(bytes),
+                               static_cast<std::size_t>(sqlite3_column_bytes(statement, i)))
+                 : "";
   }
 
   Store& store_;
   sqlite3_stmt* statement = nullptr;
 };
 
-StoreIdentity identity_of(const LoadedStudy& loaded) {
-  const Study& study = loaded.study;
-  StoreIdentity identity;
-  identity.version = k_version;
-  identity.study = study.text;
-  identity.kind = study.kind;
-  identity.variables = loaded.variable_names();
-  identity.numbers = loaded.number_names();
-  std::string& scene = identity.scene;
-  for (const auto& m : loaded.models) scene += "# model " + m->name + "\n" + m->text + "\n";
-  for (const Variable& v : study.variables) {
-    scene += "# variable " + v.name + (v.is_factor ? " factor" : "") + " " + v.model;
-    for (const std::string& path : v.paths) scene += " | " + path;
-    scene += "\n";
-  }
-  for (const ModelVariant& v : loaded.variants) scene += "# variant " + v.name + "\n";
-  for (const Response& r : study.responses) {
-    scene += "# response " + r.name + " | " + r.model + " | " + r.channel + " | " + r.what + " | " + r.event + " | " + r.element + " | " + r.expression;
-    if (r.otherwise) scene += " | " + number_text(*r.otherwise);
-    scene += "\n";
-  }
-  for (const LimitState& l : study.limit_states) scene += "# limit state " + l.name + " | " + l.expression + "\n";
-  identity.has_curves = !study.histories.empty();
-  for (const History& h : study.histories) {
-    scene += "# history " + h.name + " | " + h.model + " | " + h.channel + (h.noise ? " | " + number_text(*h.noise) : "") + "\n";
-    for (std::size_t i = 0; i < h.t.size(); ++i) scene += number_text(h.t[i]) + " " + number_text(h.measured[i]) + "\n";
-  }
-  return identity;
-}
-
 void Store::fail(const std::string& doing) {
   const int code = sqlite3_extended_errcode(database_), kind = code & 0xff;
   std::string why = database_ ? sqlite3_errmsg(database_) : "no memory";
-  if (kind == SQLITE_FULL || code == SQLITE_IOERR_WRITE) why = "the disk is full, or a quota used up; what was finished before is kept: make room and run the study again";
-  if (kind == SQLITE_READONLY || kind == SQLITE_CANTOPEN || kind == SQLITE_PERM) why = "it, or its folder, cannot be written (" + why + ")";
+  if (kind == SQLITE_FULL || code == SQLITE_IOERR_WRITE)
+    why = "the disk is full, or a quota used up; what was finished before is kept: make room and run the study again";
+  if (code == SQLITE_READONLY_ROLLBACK)
+    why = "its last batch was cut off, and where it lies it cannot be written to take that back: copy it, with the file "
+          "'" + path_ + "-journal', to where it can";
+  else if (kind == SQLITE_READONLY || kind == SQLITE_CANTOPEN || kind == SQLITE_PERM)
+    why = "it, or its folder, cannot be written (" + why + ")";
   if (kind == SQLITE_NOTADB) why = "it is no store of a study";
   if (kind == SQLITE_CORRUPT) why = "it is damaged (" + why + ")";
   if (kind == SQLITE_BUSY) why = "another process holds it";
@@ -134,9 +112,16 @@ void Store::commit_if_due() {
 // A lock of its own: SQLite's would keep readers out, too. The file stays open for as long as the database is.
 void Store::lock() {
   lock_file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock_file_ < 0) throw StoreError("the store '" + path_ + "' cannot be written: " + std::string(std::strerror(errno)));
+  if (lock_file_ < 0)
+    throw StoreError("the store '" + path_ + "' cannot be written: " + std::string(std::strerror(errno)));
   if (flock(lock_file_, LOCK_EX | LOCK_NB) != 0)
     throw StoreError("another process is writing to the store '" + path_ + "': wait for it, or choose another with -o");
+}
+
+// A process was killed, or the disk was full, while it wrote: what it wrote last is to be taken back, and that is writing.
+bool Store::is_cut_off() {
+  sqlite3_exec(database_, "SELECT 1 FROM sqlite_master LIMIT 1", nullptr, nullptr, nullptr);
+  return sqlite3_extended_errcode(database_) == SQLITE_READONLY_ROLLBACK;
 }
 
 void Store::open(const std::string& path, bool is_writing) {
@@ -145,6 +130,10 @@ void Store::open(const std::string& path, bool is_writing) {
   else if (!std::filesystem::exists(path)) throw StoreError("there is no store '" + path + "'");
   const int flags = is_writing ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   if (sqlite3_open_v2(path.c_str(), &database_, flags, nullptr) != SQLITE_OK) fail("opened");
+  if (!is_writing && is_cut_off()) { // puts it in order, which takes back the batch that was not finished
+    sqlite3_close(database_);
+    if (sqlite3_open_v2(path.c_str(), &database_, SQLITE_OPEN_READWRITE, nullptr) != SQLITE_OK) fail("opened");
+  }
   constexpr int k_patience = 10000; // ms, while another process reads or writes
   sqlite3_busy_timeout(database_, k_patience);
 }
@@ -155,12 +144,14 @@ Store::Store(const std::string& path) : Store() {
 }
 
 Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode mode) : Store() {
-  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) throw StoreError("'" + path + "' is no file: a store cannot be kept there");
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
+    throw StoreError("'" + path + "' is no file: a store cannot be kept there");
   const bool is_there = std::filesystem::exists(path) && std::filesystem::file_size(path) > 0;
   open(path, true);
   if (mode == StoreMode::restart && is_there) {
     read_identity(); // never overwrites what is no store
-    for (const char* table : {"sample", "finding", "growth", "note", "setting", "curve", "history"}) execute("DROP TABLE IF EXISTS " + quoted(table));
+    for (const char* table : {"sample", "finding", "growth", "note", "setting", "curve", "history"})
+      execute("DROP TABLE IF EXISTS " + quoted(table));
   }
   if (!is_there || mode == StoreMode::restart) {
     create(identity);
@@ -168,12 +159,15 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
   }
   read_identity();
   if (identity_.version != identity.version)
-    throw StoreError("the store '" + path + "' was made by version " + identity_.version + ", this is " + identity.version +
-                     ": --restart begins anew, or choose another store with -o");
-  if (identity_.scene != identity.scene || identity_.variables != identity.variables || identity_.numbers != identity.numbers)
+    throw StoreError("the store '" + path + "' was made by version " + identity_.version + ", this is " +
+                     identity.version + ": --restart begins anew, or choose another store with -o");
+  if (identity_.scene != identity.scene || identity_.variables != identity.variables ||
+      identity_.numbers != identity.numbers)
     throw StoreError("the store '" + path +
-                     "' is of another study: its models, variables, responses or limit states are not those of the study file any more. "
-                     "--restart begins anew and drops its " + std::to_string(size_) + " samples; -o names another store");
+                     "' is of another study: its models, variables, responses or limit states are not those of the "
+                     "study file any more. "
+                     "--restart begins anew and drops its " +
+                     std::to_string(size_) + " samples; -o names another store");
   if (identity_.study != identity.study || identity_.kind != identity.kind) {
     if (mode == StoreMode::run)
       throw StoreError("the study has changed since the store '" + path +
@@ -209,13 +203,15 @@ void Store::create(const StoreIdentity& identity) {
   execute("PRAGMA application_id = " + std::to_string(k_application));
   execute("PRAGMA user_version = " + std::to_string(k_layout));
   execute("CREATE TABLE setting (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID");
-  std::string sql = "CREATE TABLE sample (number INTEGER PRIMARY KEY, status INTEGER NOT NULL, reason TEXT, error REAL, evaluations REAL, cpu_seconds REAL";
+  std::string sql = "CREATE TABLE sample (number INTEGER PRIMARY KEY, status INTEGER NOT NULL, reason TEXT, error "
+                    "REAL, evaluations REAL, cpu_seconds REAL";
   for (const std::string& name : identity.variables) sql += ", " + quoted("v_" + name) + " REAL";
   for (const std::string& name : identity.numbers) sql += ", " + quoted("r_" + name) + " REAL";
   execute(sql + ")");
   for (const char* table : {"finding", "growth"})
     execute("CREATE TABLE " + quoted(table) +
-            " (place INTEGER PRIMARY KEY, method TEXT, subject TEXT, quantity TEXT, value REAL, low REAL, high REAL, samples INTEGER, status TEXT)");
+            " (place INTEGER PRIMARY KEY, method TEXT, subject TEXT, quantity TEXT, value REAL, low REAL, high REAL, "
+            "samples INTEGER, status TEXT)");
   if (identity.has_curves) {
     execute("CREATE TABLE curve (number INTEGER PRIMARY KEY, data BLOB NOT NULL)");
     execute("CREATE TABLE history (place INTEGER PRIMARY KEY, name TEXT, t REAL, measured REAL, fitted REAL)");
@@ -267,7 +263,8 @@ void Store::read_identity() {
   };
   if (number("application_id") != k_application) throw StoreError("'" + path_ + "' is no store of a study");
   if (const long layout = number("user_version"); layout != k_layout)
-    throw StoreError("the store '" + path_ + "' has the layout " + std::to_string(layout) + "; this program reads layout " + std::to_string(k_layout));
+    throw StoreError("the store '" + path_ + "' has the layout " + std::to_string(layout) +
+                     "; this program reads layout " + std::to_string(k_layout));
   const auto split = [](const std::string& text) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < text.size();) {
@@ -277,7 +274,8 @@ void Store::read_identity() {
     }
     return names;
   };
-  identity_ = {setting("version"), setting("study"), setting("kind"), setting("scene"), split(setting("variables")), split(setting("numbers"))};
+  identity_ = {setting("version"),          setting("study"),         setting("kind"), setting("scene"),
+               split(setting("variables")), split(setting("numbers"))};
   Statement curves(*this, "SELECT 1 FROM sqlite_master WHERE name = 'curve'");
   identity_.has_curves = curves.step();
   Statement s(*this, "SELECT count(*), max(number) FROM sample");
@@ -399,7 +397,8 @@ std::vector<Store::CurvePoint> Store::histories() {
   return points;
 }
 
-void Store::set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes, const std::string& standing) {
+void Store::set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes,
+                         const std::string& standing) {
   begin();
   execute("DELETE FROM finding");
   execute("DELETE FROM note");
@@ -415,9 +414,12 @@ void Store::set_findings(const std::vector<Finding>& findings, const std::vector
 }
 
 std::vector<Finding> Store::all_of(const std::string& table) {
-  Statement s(*this, "SELECT method, subject, quantity, value, low, high, samples, status FROM " + quoted(table) + " ORDER BY place");
+  Statement s(*this, "SELECT method, subject, quantity, value, low, high, samples, status FROM " + quoted(table) +
+                         " ORDER BY place");
   std::vector<Finding> findings;
-  while (s.step()) findings.push_back({s.text(0), s.text(1), s.text(2), s.number(3), s.number(4), s.number(5), s.integer(6), s.text(7)});
+  while (s.step())
+    findings.push_back(
+        {s.text(0), s.text(1), s.text(2), s.number(3), s.number(4), s.number(5), s.integer(6), s.text(7)});
   return findings;
 }
 
@@ -439,15 +441,18 @@ long Store::count_of(std::size_t i) {
 
 double Store::order_statistic(std::size_t i, long place) {
   const std::string column = quoted("r_" + identity_.numbers[i]);
-  Statement s(*this, "SELECT " + column + " FROM sample WHERE " + column + " IS NOT NULL ORDER BY " + column + " LIMIT 1 OFFSET ?");
+  Statement s(*this, "SELECT " + column + " FROM sample WHERE " + column + " IS NOT NULL ORDER BY " + column +
+                         " LIMIT 1 OFFSET ?");
   s.bind(1, place);
   return s.step() ? s.number(0) : std::nan("");
 }
 
 std::vector<Store::Reason> Store::reasons() {
-  Statement s(*this, "SELECT status, coalesce(reason, ''), count(*) AS n, min(number) FROM sample GROUP BY status, reason ORDER BY status, n DESC, min(number)");
+  Statement s(*this, "SELECT status, coalesce(reason, ''), count(*) AS n, min(number) FROM sample GROUP BY status, "
+                     "reason ORDER BY status, n DESC, min(number)");
   std::vector<Reason> reasons;
-  while (s.step()) reasons.push_back({name_of(static_cast<SampleStatus>(s.integer(0))), s.text(1), s.integer(2), s.integer(3)});
+  while (s.step())
+    reasons.push_back({name_of(static_cast<SampleStatus>(s.integer(0))), s.text(1), s.integer(2), s.integer(3)});
   return reasons;
 }
 

@@ -69,7 +69,8 @@ public:
   };
   void set_histories(const std::vector<CurvePoint>& points);
   [[nodiscard]] std::vector<CurvePoint> histories(); ///< empty if there are none
-  void set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes, const std::string& standing);
+  void set_findings(const std::vector<Finding>& findings, const std::vector<std::string>& notes,
+                    const std::string& standing);
   [[nodiscard]] std::vector<Finding> findings();
   [[nodiscard]] std::vector<Finding> growth();
   [[nodiscard]] std::vector<std::string> notes();
@@ -92,6 +93,7 @@ private:
   Store() = default; ///< the others begin with it: what they have opened is closed if they throw
   struct Statement;
   void open(const std::string& path, bool is_writing);
+  bool is_cut_off();
   void lock();
   void create(const StoreIdentity& identity);
   void execute(const std::string& sql);

@@ -201,7 +201,8 @@ private:
       add(model->where(), "there is no model '" + model->text() + "'" + did_you_mean(model->text(), model_names()));
     if (!paths || paths->type != Node::Type::array || paths->children.empty()) {
       if (const Node* unit = entry.find("unit"); unit && unit->type == Node::Type::text) {
-        if (!parse_quantity("1 " + unit->text(), unit->text()).problem.empty()) // a bare number is none where a unit is wanted
+        if (!parse_quantity("1 " + unit->text(), unit->text())
+                 .problem.empty()) // a bare number is none where a unit is wanted
           add(unit->where(), "'" + unit->text() + "' is not a unit");
         return unit->text();
       }
@@ -346,7 +347,8 @@ private:
     const Location where = entry.find("channel")->where();
     if (found.empty()) {
       if (is_on_request(r, model))
-        return add(where, "channel '" + r.channel + "' of model '" + model.name + "' is made on request only: write also = [\"" + r.channel +
+        return add(where, "channel '" + r.channel + "' of model '" + model.name +
+                              "' is made on request only: write also = [\"" + r.channel +
                               "\"] below the model's [output]");
       std::vector<std::string> names;
       for (const Channel& c : model.system->channels) names.push_back(c.name);
@@ -549,47 +551,6 @@ private:
 };
 
 } // namespace
-
-bool is_set_in(const Variable& v, const StudyModel& model) { return v.model.empty() || v.model == model.name; }
-
-std::vector<const Channel*> channels_of(const Response& response, const System& system) {
-  std::vector<const Channel*> found;
-  for (const Channel& c : system.channels)
-    if (!response.channel.empty() && matches_pattern(c.name, response.channel)) found.push_back(&c);
-  return found;
-}
-
-std::vector<std::string> LoadedStudy::variable_names() const {
-  std::vector<std::string> names;
-  for (const Variable& v : study.variables) names.push_back(v.name);
-  return names;
-}
-
-std::vector<std::string> LoadedStudy::number_names() const {
-  std::vector<std::string> names;
-  for (const Response& r : study.responses) names.push_back(r.name);
-  for (const LimitState& l : study.limit_states) names.push_back(l.name);
-  return names;
-}
-
-std::vector<std::string> LoadedStudy::number_units() const {
-  std::vector<std::string> units;
-  for (const Response& r : study.responses) units.push_back(r.unit);
-  units.resize(number_count());
-  return units;
-}
-
-std::size_t LoadedStudy::curve_size() const {
-  std::size_t size = 0;
-  for (const History& h : study.histories) size += h.t.size();
-  return size;
-}
-
-int LoadedStudy::index_of_number(const std::string& name) const {
-  const std::vector<std::string> names = number_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
-}
 
 LoadedStudy read_study(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);

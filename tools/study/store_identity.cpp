@@ -1,0 +1,41 @@
+// What makes two studies the same, as far as their samples are concerned.
+#include "tools/study/store.h"
+
+#include "mbd/base/number_text.h"
+#include "tools/steplap/version.h"
+
+namespace steplap::study {
+
+StoreIdentity identity_of(const LoadedStudy& loaded) {
+  const Study& study = loaded.study;
+  StoreIdentity identity;
+  identity.version = k_version;
+  identity.study = study.text;
+  identity.kind = study.kind;
+  identity.variables = loaded.variable_names();
+  identity.numbers = loaded.number_names();
+  std::string& scene = identity.scene;
+  for (const auto& m : loaded.models) scene += "# model " + m->name + "\n" + m->text + "\n";
+  for (const Variable& v : study.variables) {
+    scene += "# variable " + v.name + (v.is_factor ? " factor" : "") + " " + v.model;
+    for (const std::string& path : v.paths) scene += " | " + path;
+    scene += "\n";
+  }
+  for (const ModelVariant& v : loaded.variants) scene += "# variant " + v.name + "\n";
+  for (const Response& r : study.responses) {
+    scene += "# response " + r.name + " | " + r.model + " | " + r.channel + " | " + r.what + " | " + r.event + " | " +
+             r.element + " | " + r.expression;
+    if (r.otherwise) scene += " | " + number_text(*r.otherwise);
+    scene += "\n";
+  }
+  for (const LimitState& l : study.limit_states) scene += "# limit state " + l.name + " | " + l.expression + "\n";
+  identity.has_curves = !study.histories.empty();
+  for (const History& h : study.histories) {
+    scene += "# history " + h.name + " | " + h.model + " | " + h.channel +
+             (h.noise ? " | " + number_text(*h.noise) : "") + "\n";
+    for (std::size_t i = 0; i < h.t.size(); ++i) scene += number_text(h.t[i]) + " " + number_text(h.measured[i]) + "\n";
+  }
+  return identity;
+}
+
+} // namespace steplap::study
