@@ -222,9 +222,19 @@ std::string finer_text(const std::vector<SimulationOptions>& finer, const Simula
   return text;
 }
 
+// What moves and what is exchanged is rounding: it has no range by which an error could be measured.
+bool rests(const FinishedRun& f) {
+  const RunStatistics& s = f.run.result.statistics;
+  return s.energy_exchanged <= s.energy_rounding && f.run.loaded->system->kinetic_energy(f.run.result.final_state) <= s.energy_rounding;
+}
+
 void print_global_error(std::ostream& out, const FinishedRun& finished) {
   if (!finished.summary.global_error) return;
   const GlobalErrorEstimate& estimate = *finished.summary.global_error;
+  if (rests(finished)) {
+    out << "\nThe machine rests: nothing moves but by rounding, so that errors have no range to be measured by\n";
+    return;
+  }
   const SimulationOptions asked = options_of(finished.run.loaded->model);
   out << "\nGlobal error, estimated from " << (estimate.finer.size() > 1 ? "finer runs (" : "a finer run (")
       << finer_text(estimate.finer, asked) << "); of each channel's range\n";
@@ -267,7 +277,7 @@ const std::vector<Figure>& accuracy_and_cost() {
       {"energy dissipated",
        [](const FinishedRun& f) { return measured_text(statistics(f).dissipated, f.summary.dissipated_error(), "J"); }},
       {"energy residual, relative",
-       [](const FinishedRun& f) { return small_text(f.summary.relative_energy_residual); }},
+       [](const FinishedRun& f) { return rests(f) ? "nothing is exchanged" : small_text(f.summary.relative_energy_residual); }},
       {"constraint residual, m or rad",
        [](const FinishedRun& f) { return small_text(statistics(f).max_position_residual); }},
       {"constraint residual, per s",
