@@ -88,3 +88,20 @@ TEST_CASE("a joint that carries nothing has a margin beyond 1e9, not a number of
     CHECK_FALSE(has(outcome.out, "inf"));
   }
 }
+
+TEST_CASE("runs side by side tell of the channels that the model asks for, too") {
+  const Workbench bench;
+  const auto model = [&](const char* name, const char* speed) {
+    return bench.write(name, std::string("title = \"a\"\ngravity = [0.0, 0.0]\n[simulation]\nend = 0.1\n[output]\nstep = 0.01\nalso = [\"rail.displacement\"]\n"
+                                         "[[body]]\nname = \"sledge\"\nmass = 2\ninertia = 1\nvelocity = [") + speed + ", 0.0]\n"
+                             "[[element]]\nkind = \"prismatic\"\nname = \"rail\"\na = \"sledge\"\n");
+  };
+  const Outcome two = steplap_does({"simulate", model("slow.toml", "1.0"), model("fast.toml", "3.0"), "-o", bench.at("out")});
+  CAPTURE(two.out);
+  CAPTURE(two.err);
+  const std::size_t table = two.out.find("Channels on request, extremes of the whole run (their times: summary.json)");
+  REQUIRE(table != std::string::npos);
+  const std::string row = two.out.substr(two.out.find("rail.displacement", table), 120);
+  CHECK(has(row, "0.1000000 m")); // 1 m/s for 0.1 s
+  CHECK(has(row, "0.3000000 m"));
+}
