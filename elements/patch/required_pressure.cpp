@@ -8,6 +8,13 @@
 
 namespace steplap {
 
+namespace {
+
+// Of the capacity: squares of less vanish in double precision, and its direction with them.
+constexpr double k_nothing = 1e-150;
+
+} // namespace
+
 std::optional<Vec2> centre_of_rotation(const Vec2& reference, const Vec3& nu) {
   constexpr double infinite = 1e12; // [m]
   if (portable::hypot(nu[0], nu[1]) >= infinite * std::abs(nu[2])) return std::nullopt;
@@ -24,6 +31,7 @@ RequiredPressure required_pressure(const Patch& patch, const Vec3& wrench, const
   }
   const ScaledPatch scaled(patch);
   const Vec3 all = scaled.scaled_wrench(wrench);
+  if (all.cwiseAbs().maxCoeff() < k_nothing) return out; // as no wrench: what a motion that dies out leaves of its forces
   const double size = all.norm();
   const Vec3 w = all / size;
 

@@ -1,6 +1,7 @@
 #include "mbd/analysis/equilibrium.h"
 
 #include "mbd/analysis/admissible_rest.h"
+#include "mbd/analysis/indifference.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/events/blow.h"
 #include "mbd/system/element_failure.h"
@@ -418,8 +419,7 @@ std::vector<std::string> remarks_on(const System& system, const Equilibrium& fou
   for (const MotionPart& part : found.left)
     remarks.push_back("a pose on the way balances, but not stably: a nudge of " + part_text(system, part) +
                       " leaves it, and so did the search");
-  for (const MotionPart& part : found.indifferent)
-    remarks.push_back("indifferent: nothing holds " + part_text(system, part) + " or against it; it rests wherever it is");
+  for (std::string& text : indifference_texts(system, found.indifferent)) remarks.push_back(std::move(text));
   if (found.more_indifferent > 0)
     remarks.push_back("indifferent: so it is in " + std::to_string(found.more_indifferent) + " more directions");
   if (found.turned != 0.0)

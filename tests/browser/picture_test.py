@@ -36,6 +36,9 @@ class PictureTest(base.Page):
             base.steplap("report", "out/" + name, "-q", "-o", name + ".html")
         base.steplap("report", "out/watt_linkage", "out/gentle", "-q", "-o", "two.html")
         base.steplap("report", "out/crane_arm", "out/cradle", "-q", "-o", "unlike.html")
+        base.steplap("simulate", os.path.join(MODELS, "machines", "brick_wall.toml"), "-q", "-o", "out", "--set", "simulation.end=1.0",
+                     "--set", "output.step=0.5")
+        base.steplap("report", "out/brick_wall", "-q", "-o", "brick_wall.html")
         base.steplap("modes", models[5], "-q", "-o", "modes.csv", "--report", "modes.html")
         cls.browser = base.start_browser()
         cls.browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": cls.downloads})
@@ -114,6 +117,24 @@ class PictureTest(base.Page):
         lengths = self.run_js("""return ['foot', 'head'].map((name) => { const b = document.querySelector(`.force[data-element=${name}]`).getBBox();
             return Math.max(b.width, b.height); })""")
         self.assertAlmostEqual(lengths[1] / lengths[0], 0.268, delta=0.01)
+
+    def test_outlines_press_each_other_with_arrows(self):
+        self.open("brick_wall.html")
+        self.run_js("steplap.page.show(1)")
+        # From the middle of what touches upwards: 62.5 mm before the centre of brick 1.1, and of 2.1. What they give way by is drawn
+        # magnified: the arrow begins at the top of one or at the bottom of the other.
+        top, bottom = self.scene("""(() => { const pose = scene.look(1, scene.seenFrom, scene.magnification), at = (body, point) =>
+            scene.toScreen(scene.placed({ body, point }, pose)); return [at('brick 1.1', [-0.0625, 0.035]), at('brick 2.1', [0, -0.035])]; })()""")
+        found = self.run_js("""const d = document.querySelector('.force[data-element="brick 2.1 on 1.1"]').getAttribute('d');
+            return d.match(/-?[0-9.]+/g).slice(0, 4).map(Number)""")
+        self.assertAlmostEqual(found[0], top[0], delta=0.5)
+        self.assertAlmostEqual(min(abs(found[1] - top[1]), abs(found[1] - bottom[1])), 0.0, delta=0.5)
+        self.assertAlmostEqual(found[2], found[0], delta=0.1)
+        self.assertLess(found[3], found[1])
+        self.find("#values").click()
+        texts = {e.get_attribute("data-value-of"): e.text.replace("\u00a0", " ") for e in self.all(".value-text")}
+        self.assertEqual(texts["brick 1.1 on ground"], "1.03 kN")  # half of 210 kg
+        self.assertEqual({e.text for e in self.all(".state-text")}, {""})  # ten that stick would hide the wall
 
     def test_trails_show_the_way(self):
         self.open("watt_linkage.html")

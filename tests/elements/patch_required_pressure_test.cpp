@@ -127,6 +127,12 @@ TEST_CASE("required pressure: ordinary special cases") {
   CHECK(!none.centre);
   CHECK(std::isinf(none.margin()));
 
+  // What dies out exponentially comes to where its square is zero: there it is none; before, it is what it is.
+  const RequiredPressure faint = required_pressure(patch, {-3.41196e-202, 1.90031e-228, 0});
+  CHECK(faint.u == 0);
+  CHECK(faint.residual == 0);
+  CHECK(required_pressure(patch, {3e-140, 0, 0}).u == doctest::Approx(0.5e-140).epsilon(1e-12));
+
   const RequiredPressure push = required_pressure(patch, {3, 0, 0}); // through the centroid
   CHECK(std::abs(push.u - 0.5) < 1e-15);
   CHECK(!push.centre);

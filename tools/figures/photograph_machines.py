@@ -22,6 +22,9 @@ MACHINES = {
     "ladder": (1.0, True, []),
     "ball_on_incline": (0.9, True, ["ball"]),
     "watt_linkage": (0.2, True, ["link", "left arm", "right arm"]),
+    "brick_wall": (3600.0, True, []),
+    "pile": (3600.0, True, []),
+    "jamming_slide": (0.1, True, []),
 }
 
 

@@ -74,7 +74,8 @@ void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationMo
   }
   out << table;
   if (found.rigid_motions > 0)
-    out << "\n" << found.rigid_motions << " coordinates move freely: nothing holds the scene along them\n";
+    out << "\n" << (found.rigid_motions == 1 ? std::string("1 coordinate moves freely: nothing holds the scene along it")
+                                            : std::to_string(found.rigid_motions) + " coordinates move freely: nothing holds the scene along them") << "\n";
 }
 
 std::string modes_csv(const System& system, const VibrationModes& found) {

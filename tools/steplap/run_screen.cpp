@@ -113,13 +113,18 @@ void print_reactions(std::ostream& out, const RunSummary& summary) {
   if (is_any) out << "\nReactions and required pressures, extremes of the whole run\n" << table;
 }
 
+bool is_requested(const ChannelRange& range) {
+  return range.channel->is_on_request && !is_shown(range) && !std::isnan(range.low.value);
+}
+
+constexpr std::size_t k_most_requested = 24;
+
 // What the model asks for besides, in the order in which it is made: formulas come last, and are the last to be left out.
 void print_requested(std::ostream& out, const RunSummary& summary) {
-  constexpr std::size_t k_most = 24;
   std::vector<const ChannelRange*> asked;
   for (const ChannelRange& range : summary.ranges)
-    if (range.channel->is_on_request && !is_shown(range) && !std::isnan(range.low.value)) asked.push_back(&range);
-  const std::size_t left_out = asked.size() > k_most ? asked.size() - k_most : 0;
+    if (is_requested(range)) asked.push_back(&range);
+  const std::size_t left_out = asked.size() > k_most_requested ? asked.size() - k_most_requested : 0;
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
   table.add_row({"", "lowest", "at", "highest", "at"});
   for (std::size_t i = left_out; i < asked.size(); ++i) {
@@ -222,9 +227,19 @@ std::string finer_text(const std::vector<SimulationOptions>& finer, const Simula
   return text;
 }
 
+// What moves and what is exchanged is rounding: it has no range by which an error could be measured.
+bool rests(const FinishedRun& f) {
+  const RunStatistics& s = f.run.result.statistics;
+  return s.energy_exchanged <= s.energy_rounding && f.run.loaded->system->kinetic_energy(f.run.result.final_state) <= s.energy_rounding;
+}
+
 void print_global_error(std::ostream& out, const FinishedRun& finished) {
   if (!finished.summary.global_error) return;
   const GlobalErrorEstimate& estimate = *finished.summary.global_error;
+  if (rests(finished)) {
+    out << "\nThe machine rests: nothing moves but by rounding, so that errors have no range to be measured by\n";
+    return;
+  }
   const SimulationOptions asked = options_of(finished.run.loaded->model);
   out << "\nGlobal error, estimated from " << (estimate.finer.size() > 1 ? "finer runs (" : "a finer run (")
       << finer_text(estimate.finer, asked) << "); of each channel's range\n";
@@ -267,7 +282,7 @@ const std::vector<Figure>& accuracy_and_cost() {
       {"energy dissipated",
        [](const FinishedRun& f) { return measured_text(statistics(f).dissipated, f.summary.dissipated_error(), "J"); }},
       {"energy residual, relative",
-       [](const FinishedRun& f) { return small_text(f.summary.relative_energy_residual); }},
+       [](const FinishedRun& f) { return rests(f) ? "nothing is exchanged" : small_text(f.summary.relative_energy_residual); }},
       {"constraint residual, m or rad",
        [](const FinishedRun& f) { return small_text(statistics(f).max_position_residual); }},
       {"constraint residual, per s",
@@ -322,8 +337,7 @@ void add_range_row(TextTable& table, const std::vector<FinishedRun>& runs, const
   table.add_row(row);
 }
 
-void print_reactions_side_by_side(std::ostream& out, const std::vector<FinishedRun>& runs) {
-  const std::vector<std::string> names = channel_names(runs, is_shown);
+void print_side_by_side(std::ostream& out, const std::vector<FinishedRun>& runs, const std::vector<std::string>& names, const char* title) {
   if (names.empty()) return;
   std::vector<Align> columns(2 * runs.size() + 1, Align::right);
   columns.front() = Align::left;
@@ -337,7 +351,15 @@ void print_reactions_side_by_side(std::ostream& out, const std::vector<FinishedR
   table.add_row(heads);
   for (const std::string& name : names)
     add_range_row(table, runs, name);
-  out << "Reactions and required pressures, extremes of the whole run (their times: summary.json)\n" << table;
+  out << title << ", extremes of the whole run (their times: summary.json)\n" << table;
+}
+
+void print_requested_side_by_side(std::ostream& out, const std::vector<FinishedRun>& runs) {
+  std::vector<std::string> names = channel_names(runs, is_requested);
+  const std::size_t left_out = names.size() > k_most_requested ? names.size() - k_most_requested : 0;
+  names.erase(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(left_out));
+  print_side_by_side(out, runs, names, "\nChannels on request");
+  if (left_out > 0) out << "  and " << left_out << " more: see summary.json\n";
 }
 
 } // namespace
@@ -379,7 +401,8 @@ void print_comparison(std::ostream& out, const std::vector<FinishedRun>& runs) {
     }));
   for (const Figure& figure : accuracy_and_cost())
     table.add_row(cells(figure.name, runs, figure.text));
-  print_reactions_side_by_side(out, runs);
+  print_side_by_side(out, runs, channel_names(runs, is_shown), "Reactions and required pressures");
+  print_requested_side_by_side(out, runs);
   out << "\nSide by side\n" << table;
   out << "\n";
   for (const FinishedRun& run : runs)

@@ -4,6 +4,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/model/validate.h"
 #include "tools/steplap/edges.h"
+#include "tools/steplap/far_joints.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/progress.h"
@@ -116,6 +117,7 @@ void note_assembly(const LoadedModel& loaded) {
   auto moves = assembly_moves(system.initial_state(), loaded.assembled, k_noticeable);
   std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });
   if (moves.empty()) return;
+  for (const std::string& text : far_joints(loaded)) log_warning("'" + loaded.path + "': " + text);
   log_info("'" + loaded.path + "': assembling the joints moved " + counted(moves.size(), "body", "bodies") +
            ", most of all '" + system.bodies[moves.front().body].name + "' by " +
            quantity_text(moves.front().shift, "m", 1e-3) + " and " + quantity_text(moves.front().turn, "rad", 1e-3) +

@@ -2,6 +2,7 @@
 
 #include "mbd/analysis/statics.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/math/portable_math.h"
 #include "tools/steplap/summary.h"
 #include "tools/steplap/text_table.h"
 #include "tools/steplap/tipping_feet.h"
@@ -244,9 +245,10 @@ private:
       of_turned += system_.bodies[i].mass * quarter_turn(system_.gravity).dot(v);
       of_loads += load_[i].fx * v.x() + load_[i].fy * v.y() + load_[i].m * twist.z();
     }
-    const double size = std::hypot(of_gravity, of_turned);
+    const double size = portable::hypot(of_gravity, of_turned);
     if (!(size > std::abs(of_loads))) return std::nullopt; // no tilt changes it
-    const double now = of_gravity + of_loads, middle = std::atan2(of_turned, of_gravity), reach = std::acos(-of_loads / size);
+    const double now = of_gravity + of_loads, middle = portable::atan2(of_turned, of_gravity);
+    const double reach = portable::atan2(std::sqrt(size * size - of_loads * of_loads), -of_loads); // acos(-of_loads/size)
     double nearest = 2.0 * k_pi;
     for (const double root : {middle - reach, middle + reach}) {
       const double turned = std::remainder(root, 2.0 * k_pi);
@@ -271,7 +273,7 @@ private:
     for (const Foot& foot : feet_) {
       const Vec2 n = push_on(part, foot);
       if (n == Vec2::Zero()) continue;
-      const double own = std::atan2(up.x() * n.y() - up.y() * n.x(), up.dot(n));
+      const double own = portable::atan2(up.x() * n.y() - up.y() * n.x(), up.dot(n));
       if (slope && std::abs(own - *slope) > k_one_slope) return std::nullopt;
       slope = slope.value_or(own);
     }

@@ -1,5 +1,7 @@
 #include "tools/steplap/warnings.h"
 
+#include "tools/steplap/far_joints.h"
+
 #include "mbd/analysis/assembly.h"
 #include "mbd/events/event_handler.h"
 #include "mbd/analysis/freedom.h"
@@ -152,6 +154,7 @@ std::vector<std::string> warnings_about(const LoadedModel& loaded) {
   if (s.step && !s.tolerance && !has_fixed_step(s.integrator))
     warnings.push_back("'step' of [simulation] is not used: '" + s.integrator +
                        "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"");
+  for (std::string& message : far_joints(loaded)) warnings.push_back(std::move(message));
   for (std::string& message : implausible_cores(model)) warnings.push_back(std::move(message));
   warn_of_shared_reactions(*loaded.system, warnings);
   const Trajectory written(*loaded.system, model.output.channels);

@@ -14,7 +14,33 @@ steplap.geometry = (() => {
   const seenIn = (pose, p) => turn(minus(p, [pose[0], pose[1]]), -pose[2]);
   // Pose of b as the frame a sees it.
   const relative = (a, b) => [...turn([b[0] - a[0], b[1] - a[1]], -a[2]), b[2] - a[2]];
-  return { turn, add, minus, scaled, dot, length, unit, apply, seenIn, relative };
+  // What of `corners` is lowest over the line through `origin` with the normal n, and on it: the middle, on the line.
+  // `ends`: of the line, along [n_y, -n_x].
+  const lowest = (n, origin, corners, ends = [-Infinity, Infinity]) => {
+    if (!corners.length) return null;
+    const along = [n[1], -n[0]], height = (p) => dot(n, minus(p, origin));
+    const first = corners.reduce((least, p) => (height(p) < height(least) ? p : least));
+    const touching = corners.filter((p) => height(p) - height(first) <= 0.02 * Math.abs(dot(along, minus(p, first)))).map((p) => dot(along, p));
+    const low = Math.max(Math.min(...touching), ends[0]), high = Math.min(Math.max(...touching), ends[1]);
+    return { gap: height(first), n, at: add(scaled(n, dot(n, origin)), scaled(along, 0.5 * (low + high))) };
+  };
+  // Of two convex outlines that touch: where, and the direction in which the second presses the first.
+  const facing = (first, second) => {
+    let best = null;
+    for (const [own, other, sign] of [[second, first, 1], [first, second, -1]]) {
+      if (own.length < 3 || !other.length) return null;
+      const middle = scaled(own.reduce(add), 1 / own.length);
+      own.forEach((p, i) => {
+        const q = own[(i + 1) % own.length], d = unit(minus(q, p));
+        if (length(minus(q, p)) === 0) return;
+        const n = dot([d[1], -d[0]], minus(p, middle)) > 0 ? [d[1], -d[0]] : [-d[1], d[0]], along = [n[1], -n[0]];
+        const found = lowest(n, p, other, [dot(along, p), dot(along, q)].sort((x, y) => x - y));
+        if (!best || found.gap > best.gap) best = { ...found, n: scaled(n, sign) };
+      });
+    }
+    return best;
+  };
+  return { lowest, facing, turn, add, minus, scaled, dot, length, unit, apply, seenIn, relative };
 })();
 
 // Least box around points.

@@ -175,16 +175,18 @@ steplap.Symbols = (() => {
       });
       this.force(element, shape, (t, pose, channel) => { const { a, n } = places(pose); return { at: add(a, scaled(n, 0.85 * this.u)), d: n, force: channel.at(t) }; }, true);
     }
-    // Outlines on outlines: bodies show them; the size of the force between them on demand.
+    // Outlines on outlines: the force on a in the middle of what touches (its line of action is not recorded: on a face
+    // that is pressed more at one end it lies nearer to that end).
     faces(element, shape) {
-      const force = this.channel(element, shape), text = this.value(element);
-      this.update((t, pose) => {
-        if (!force) return;
-        // Between the two; of a half-plane where it is nearest to the other's middle.
-        const points = shape.at.slice(0, -1).map((a) => this.screen(a, pose)), a = scaled(points.reduce(add), 1 / points.length), b = this.screen(shape.at[shape.at.length - 1], pose);
-        const n = shape.direction ? this.direction(shape, pose) : null, place = n ? minus(a, scaled(n, dot(n, minus(a, b)))) : along(a, b, 0.5);
-        this.showValue(text, force.at(t) > 0 ? steplap.data.quantity(force.at(t), force.unit, 4) : '', place, n || [0, 1]);
-      });
+      const places = shape.at.slice(0, -1), frame = shape.at[shape.at.length - 1];
+      const corners = (own, pose) => own.map((place) => this.screen(place, pose));
+      const outline = (name) => { const body = this.scene.body(name); return (body.outline.length ? body.outline : body.polygons.flat()).map((point) => ({ body: name, point })); };
+      const of = { a: places.length > 2 ? places : outline(places[0].body), b: shape.direction ? [] : outline(frame.body) };
+      this.force(element, shape, (t, pose, channel) => {
+        const a = corners(of.a, pose), origin = this.screen(frame, pose);
+        const found = shape.direction ? steplap.geometry.lowest(this.direction(shape, pose), origin, a) : steplap.geometry.facing(a, corners(of.b, pose));
+        return found ? { at: found.at, d: found.n, force: channel.at(t) } : { at: origin, d: [0, -1], force: 0 };
+      }, true);
     }
     // Round on round, round on edge: a dot where they touch while they press, and the force on a.
     touching(element, shape, where) {
@@ -224,7 +226,9 @@ steplap.Symbols = (() => {
         const [x, y] = scene.toScreen(scaled(sum, 1 / places.length)), m = scene.run.modeAt(element.name, t);
         const state = m === 1 ? 'sticks' : m === 2 ? 'slips' : 'free';
         const arrow = m === 2 && rate ? (rate.at(t) >= 0 ? ' →' : ' ←') : '';
-        text.textContent = `${element.name}: ${state}${arrow}${scene.withValues && force ? `, ${steplap.data.quantity(force.at(t), force.unit, 4)}` : ''}`;
+        const isSaid = m === 2 || this.frictions <= 6; // of many, only those that slip
+        const isFelt = scene.withValues && force && Math.abs(force.at(t)) > 1e-6 * scene.largestForce; // as with arrows, less is rounding
+        text.textContent = !isSaid ? '' : `${element.name}: ${state}${arrow}${isFelt ? `, ${steplap.data.quantity(force.at(t), force.unit, 4)}` : ''}`;
         text.setAttribute('class', `state-text ${state}`);
         const width = 8.4 * text.textContent.length, ways = [14, 32, -16, 50, -34, 68, 86, 104];
         this.put(text, [x, y], [width, 18], [...ways.map((dy) => [0, dy]), ...ways.map((dy) => [0.6 * width, dy]), ...ways.map((dy) => [-0.6 * width, dy])]);
@@ -363,7 +367,7 @@ steplap.Symbols = (() => {
       let largest = 0;
       for (const e of this.elements)
         for (const shape of e.shapes)
-          if (['contact', 'touch', 'edge_touch'].includes(shape.type) || shape.style === 'load')
+          if (['contact', 'touch', 'edge_touch', 'faces'].includes(shape.type) || shape.style === 'load')
             for (const quantity of shape.style === 'load' ? ['force_x', 'force_y'] : [shape.quantity]) {
               const extreme = this.run.summary.extremes[`${e.name}.${quantity}`];
               if (extreme) largest = Math.max(largest, Math.abs(extreme.min), Math.abs(extreme.max));
