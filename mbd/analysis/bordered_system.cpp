@@ -35,14 +35,6 @@ void BorderedSystem::find_order(const Sparse& a, const std::vector<SparseRow>& r
     }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  std::vector<long> pattern = pairs;
-  pattern.push_back(-1);
-  for (const SparseRow& row : rows) {
-    pattern.push_back(row.count > 0 ? row.at[0] / 3 : -1);
-    pattern.push_back(row.count > 3 ? row.at[3] / 3 : -1);
-  }
-  if (pattern == pattern_ && !place_.empty()) return;
-  pattern_ = std::move(pattern);
   std::vector<Eigen::Triplet<double, int>> graph;
   for (const long pair : pairs) {
     const int i = static_cast<int>(pair / bodies), j = static_cast<int>(pair % bodies);
@@ -69,18 +61,12 @@ void BorderedSystem::find_order(const Sparse& a, const std::vector<SparseRow>& r
     if (place < 0) place = next++; // a row between the ground and itself
 }
 
-void BorderedSystem::set(const Sparse& a, const std::vector<SparseRow>& rows, const VecX& diagonal) {
-  const bool is_same_size = n_ == a.rows() && m_ == static_cast<Eigen::Index>(rows.size());
-  n_ = a.rows();
-  m_ = static_cast<Eigen::Index>(rows.size());
-  if (!is_same_size) place_.clear();
-  find_order(a, rows);
-  shift_by_ = diagonal;
-  std::vector<Eigen::Triplet<double, int>> entries;
-  entries.reserve(static_cast<std::size_t>(a.nonZeros() + n_ + m_) + rows.size() * 42);
+// f(place, place, value) of each entry of the upper triangle, in an order that hangs on the pattern alone.
+template <class F>
+void BorderedSystem::for_entries(const Sparse& a, const std::vector<SparseRow>& rows, const F& f) const {
   const auto put = [&](int i, int j, double value) {
     const int p = place_[i], q = place_[j];
-    if (p <= q) entries.emplace_back(p, q, value);
+    if (p <= q) f(p, q, value);
   };
   for (int c = 0; c < a.outerSize(); ++c)
     for (Sparse::InnerIterator it(a, c); it; ++it) put(static_cast<int>(it.row()), c, it.value());
@@ -89,30 +75,54 @@ void BorderedSystem::set(const Sparse& a, const std::vector<SparseRow>& rows, co
     const SparseRow& row = rows[static_cast<std::size_t>(r)];
     for (int k = 0; k < row.count; ++k) {
       const int p = place_[row.at[k]], q = place_[n_ + r];
-      entries.emplace_back(std::min(p, q), std::max(p, q), row.j[k]);
+      f(std::min(p, q), std::max(p, q), row.j[k]);
       for (int l = 0; l < row.count; ++l) put(row.at[k], row.at[l], k_rho * row.j[k] * row.j[l]);
     }
   }
+}
+
+void BorderedSystem::find_slots(const Sparse& a, const std::vector<SparseRow>& rows) {
+  std::vector<Eigen::Triplet<double, int>> entries;
+  for_entries(a, rows, [&](int p, int q, double value) { entries.emplace_back(p, q, value); });
   whole_.resize(static_cast<int>(n_ + m_), static_cast<int>(n_ + m_));
   whole_.setFromTriplets(entries.begin(), entries.end());
-  const std::vector<int> outer(whole_.outerIndexPtr(), whole_.outerIndexPtr() + whole_.outerSize() + 1);
-  const std::vector<int> inner(whole_.innerIndexPtr(), whole_.innerIndexPtr() + whole_.nonZeros());
-  if (outer != outer_ || inner != inner_) {
-    outer_ = outer;
-    inner_ = inner;
-    factors_.analyzePattern(whole_);
+  factors_.analyzePattern(whole_);
+  const int* const outer = whole_.outerIndexPtr();
+  const int* const inner = whole_.innerIndexPtr();
+  entry_slot_.clear();
+  for (const auto& entry : entries) {
+    const int* const column = inner + outer[entry.col()];
+    entry_slot_.push_back(static_cast<int>(std::lower_bound(column, inner + outer[entry.col() + 1], entry.row()) - inner));
   }
   // In an upper triangle by columns the diagonal is what a column ends with.
   slot_.resize(static_cast<std::size_t>(n_ + m_));
+  for (std::size_t i = 0; i < slot_.size(); ++i) slot_[i] = outer[place_[i] + 1] - 1;
   diagonal_.resize(slot_.size());
-  for (std::size_t i = 0; i < slot_.size(); ++i) {
-    slot_[i] = whole_.outerIndexPtr()[place_[i] + 1] - 1;
-    diagonal_[i] = whole_.valuePtr()[slot_[i]];
+}
+
+void BorderedSystem::set(const Sparse& a, const std::vector<SparseRow>& rows, const VecX& diagonal) {
+  n_ = a.rows();
+  m_ = static_cast<Eigen::Index>(rows.size());
+  shift_by_ = diagonal;
+  std::vector<int> pattern(a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize() + 1);
+  pattern.insert(pattern.end(), a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros());
+  for (const SparseRow& row : rows) {
+    pattern.push_back(row.count);
+    pattern.insert(pattern.end(), row.at, row.at + row.count);
   }
+  if (pattern != pattern_) {
+    pattern_ = std::move(pattern);
+    find_order(a, rows);
+    find_slots(a, rows);
+  }
+  std::fill_n(whole_.valuePtr(), whole_.nonZeros(), 0.0);
+  std::size_t next = 0;
+  for_entries(a, rows, [&](int, int, double value) { whole_.valuePtr()[entry_slot_[next++]] += value; });
+  for (std::size_t i = 0; i < slot_.size(); ++i) diagonal_[i] = whole_.valuePtr()[slot_[i]];
 }
 
 bool BorderedSystem::factor(double sigma) {
-  const double shift = n_ > 0 ? sigma * shift_by_.maxCoeff() : 0.0;
+  const double shift = n_ > 0 ? std::abs(sigma) * shift_by_.maxCoeff() : 0.0;
   delta_ = k_delta / (1.0 + shift);
   for (Eigen::Index i = 0; i < n_; ++i) whole_.valuePtr()[slot_[i]] = diagonal_[i] + sigma * shift_by_[i];
   for (Eigen::Index i = n_; i < n_ + m_; ++i) whole_.valuePtr()[slot_[i]] = diagonal_[i] - delta_;

@@ -27,6 +27,7 @@ constexpr std::size_t k_most_rope_changes = 8; // for each rope
 constexpr double k_short = 0.999;
 constexpr int k_most_slips = 12;            // of one friction element, on the way to where it holds
 constexpr double k_tipped = 0.75; // rad
+constexpr int k_most_shared = 150; // coordinates up to which it is asked for all ways in which friction could share a load
 // Of the scene's length: contacts that gave way so far, with nothing but friction to resist them, did not stand.
 constexpr double k_stands = 1e-2;
 
@@ -266,6 +267,12 @@ private:
   // Friction bears what it got when it got its load: another admissible set of forces may hold the machine.
   bool share_anew(const Descent& descent) {
     if (was_shared_anew_) return false;
+    // All ways to share a load are dense algebra: hours in large scenes. There friction slides to where it holds.
+    if (3 * (system_.body_count() - 1) > k_most_shared) {
+      is_too_large_ = true;
+      return false;
+    }
+    const OneThread alone;
     const auto rest = admissible_rest(system_, state_, descent.scale(), length_);
     if (!rest) return false;
     least_usage_ = rest->usage;
@@ -312,7 +319,8 @@ private:
   [[nodiscard]] std::string name_of(int f) const { return system_.element_names[system_.frictions[f].element]; }
   [[nodiscard]] std::string overload_text(const Slip& slip) const {
     if (!slip.is_least)
-      return "'" + name_of(slip.friction) + "' would have to hold " + rounded(slip.used) + " times what it can";
+      return "'" + name_of(slip.friction) + "' would have to hold " + rounded(slip.used) + " times what it can" +
+             (is_too_large_ ? " (as the load came to be shared; other ways are not looked for in scenes of this size)" : "");
     return "friction ('" + name_of(slip.friction) + "' and what shares its load) would have to hold " + rounded(slip.used) +
            " times what it can, whichever way the load is shared";
   }
@@ -399,6 +407,7 @@ private:
   int yielding_ = 0; ///< directions in which nothing resists at the last rest
   double least_usage_ = 0.0; ///< of friction over all ways to share the load, where that was asked
   bool was_shared_anew_ = false;
+  bool is_too_large_ = false; ///< for other ways to share a load
   std::vector<Slip> slips_;
   std::vector<Overload> overloads_;
   std::vector<Overload> pushing_;  ///< taut ropes that would have to push

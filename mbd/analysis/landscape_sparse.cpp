@@ -1,5 +1,6 @@
 #include "mbd/analysis/bordered_system.h"
 #include "mbd/analysis/landscape.h"
+#include "mbd/dynamics/schur.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -53,7 +54,9 @@ public:
   }
 
   void linearise(const State& state) override {
-    collect_rows();
+    measure_rows();
+    find_dependent();
+    drop_dependent();
     VecX reaction;
     const VecX whole = scaled_force();
     force_ = whole;
@@ -169,10 +172,13 @@ public:
   }
 
   double way_to_rows(const VecX& off, VecX& way) override {
-    collect_rows();
+    measure_rows();
+    drop_dependent();
     way = VecX::Zero(n_);
     if (rows_.empty()) return 0.0;
-    const VecX left = off.cwiseQuotient(row_size_);
+    VecX left = off.cwiseQuotient(row_size_);
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      if (is_dependent_[r] != 0) left[static_cast<Eigen::Index>(r)] = 0.0;
     if (!onto_rows_.solve(VecX::Zero(n_), way, nullptr, &left)) return std::numeric_limits<double>::quiet_NaN();
     return largest(way);
   }
@@ -211,8 +217,8 @@ private:
     if (whole > 0.0) step += (1.0 - size(step)) / whole * soft;
   }
 
-  // Of unit length, at the present evaluation; what they allow is then known, too.
-  void collect_rows() {
+  // Of unit length, at the present evaluation.
+  void measure_rows() {
     const Statics& statics = scene_.statics;
     std::vector<Entry> entries;
     statics.gradient(entries);
@@ -230,6 +236,41 @@ private:
       row_size_[static_cast<Eigen::Index>(r)] = size;
       for (int k = 0; k < rows_[r].count; ++k) rows_[r].j[k] /= size;
     }
+  }
+
+  // Rows that others imply, by the rule of the equations of motion (schur.h): what is next to nothing beyond the others
+  // would hold what nothing holds.
+  void find_dependent() {
+    is_dependent_.assign(rows_.size(), 0);
+    if (rows_.empty()) return;
+    std::vector<SchurRow> rows(rows_.size());
+    std::vector<int> bodies;
+    std::vector<char> is_friction(rows_.size(), 0);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const SparseRow& row = rows_[r];
+      is_friction[r] = scene_.statics.rows()[r].friction >= 0 ? 1 : 0;
+      for (int k = 0; k < row.count; ++k) {
+        const int side = k / 3, c = k % 3;
+        rows[r].body[side] = row.at[k] / 3;
+        rows[r].w[side][c] = 1.0;
+        rows[r].j[side][c] = rows[r].wj[side][c] = row.j[k];
+      }
+      bodies.insert(bodies.end(), rows[r].body, rows[r].body + 2);
+    }
+    if (bodies != row_bodies_) {
+      row_bodies_ = bodies;
+      rank_ = {};
+      rank_.analyze(rows);
+    }
+    rank_.decide_rank(is_friction);
+    rank_.factor(rows);
+    for (std::size_t r = 0; r < rows.size(); ++r) is_dependent_[r] = rank_.is_dependent(static_cast<int>(r)) ? 1 : 0;
+  }
+
+  // What the other rows allow is then known, too.
+  void drop_dependent() {
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      if (is_dependent_[r] != 0) rows_[r].count = 0;
     if (rows_.empty()) return;
     onto_rows_.set(identity_, rows_, VecX::Zero(n_));
     (void)onto_rows_.factor(0.0);
@@ -398,6 +439,9 @@ private:
   Sparse identity_;
   std::vector<SparseRow> rows_;
   VecX row_size_;
+  std::vector<char> is_dependent_; ///< rows that others imply, at the last linearisation
+  std::vector<int> row_bodies_;    ///< that rank_ was analysed for
+  SchurSolver rank_;
   BorderedSystem onto_rows_, steps_;
   Sparse hat_, whole_hat_; ///< −K over size_: its symmetric part without sliding, and the whole
   double size_ = 1.0, loose_ = 0.0; ///< eigenvalues below loose_ (1/s²) are none
