@@ -4,7 +4,7 @@
 //   stick   taut: the length is a constraint, the tension T = −λ its multiplier, admissible while T ≥ 0
 //   slip    slack: no force, admissible while the length is below the rope's
 // What a taut rope bears has no bound, so it never slips in the sense of friction. A slack rope that reaches its length
-// while that grows is caught: velocities jump (EventHandler::catch_ropes), and the memory notes the blow.
+// while that grows is caught: velocities jump (mbd/events/blow.h), and the memory notes the blow.
 #pragma once
 
 #include "mbd/system/system.h"
