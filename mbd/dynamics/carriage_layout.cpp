@@ -23,9 +23,8 @@ bool is_guide(const System& system, const RowBlock& block) {
 
 class Finder {
 public:
-  Finder(const System& system, const State& state, const Layout& layout, Coordinates choice)
-      : system_(system), state_(state), layout_(layout), choice_(choice), held_(layout.clusters.size(), 0),
-        is_driven_(layout.clusters.size(), 0), is_carrier_(layout.clusters.size(), 0) {}
+  Finder(const System& system, const State& state, const Layout& layout)
+      : system_(system), state_(state), layout_(layout), held_(layout.clusters.size(), 0), is_carrier_(layout.clusters.size(), 0) {}
 
   std::unique_ptr<Carriages> find(const std::vector<char>& is_block_merged, const std::vector<char>& is_friction_merged,
                                   JointCoordinates& found) {
@@ -58,9 +57,7 @@ private:
   void count_holds(const std::vector<char>& is_block_merged, const std::vector<char>& is_friction_merged) {
     for (std::size_t i = 0; i < system_.row_blocks.size(); ++i) {
       if (is_block_merged[i] != 0) continue;
-      const RowBlock& block = system_.row_blocks[i];
-      hold(system_.rows[block.first]);
-      if (const int a = cluster_of(system_.rows[block.first].a); block.coordinate >= 0 && a >= 0) is_driven_[a] = 1;
+      hold(system_.rows[system_.row_blocks[i].first]);
     }
     for (std::size_t f = 0; f < system_.frictions.size(); ++f)
       if (is_friction_merged[f] == 0 && state_.friction[f].phase == FrictionPhase::stick)
@@ -69,8 +66,7 @@ private:
 
   [[nodiscard]] bool is_fit(int k, int on, const JointCoordinates& found) const {
     if (k < 0 || held_[k] != 1 || is_carrier_[k] != 0 || found.mechanism_of[k] >= 0) return false;
-    if (on < 0) return true;
-    return found.mechanism_of[on] < 0 && (choice_ == Coordinates::joint || is_driven_[on] != 0);
+    return on < 0 || found.mechanism_of[on] < 0;
   }
 
   // With d the way from b's centre to a's in b's axes, φ the angle of a against b: n·(d + R_φ p_a − p_b) is held.
@@ -128,18 +124,17 @@ private:
   const System& system_;
   const State& state_;
   const Layout& layout_;
-  Coordinates choice_;
   std::vector<int> held_; // by how many joints, drives and sticking frictions
-  std::vector<char> is_driven_, is_carrier_;
+  std::vector<char> is_carrier_;
   std::vector<std::tuple<int, int, Carriage>> chosen_; // carrier, cluster
 };
 
 } // namespace
 
 std::unique_ptr<Carriages> find_carriages(const System& system, const State& state, const Layout& layout,
-                                          Coordinates choice, const std::vector<char>& is_block_merged,
+                                          const std::vector<char>& is_block_merged,
                                           const std::vector<char>& is_friction_merged, JointCoordinates& found) {
-  return Finder(system, state, layout, choice).find(is_block_merged, is_friction_merged, found);
+  return Finder(system, state, layout).find(is_block_merged, is_friction_merged, found);
 }
 
 } // namespace steplap

@@ -2,8 +2,7 @@
 //
 // A cluster that one guide and nothing else holds: no other joint, no drive, no friction that sticks (forces, contacts and
 // friction that slides may act on it), on the ground or on a cluster in absolute coordinates that is no carriage
-// itself. Where the choice is left to the program the carrier is the ground, or a drive prescribes one of its
-// coordinates: the momentum of bodies that are free of both is a sum of absolute rates, which methods keep to rounding.
+// itself.
 #pragma once
 
 #include "mbd/dynamics/carriage.h"
@@ -14,7 +13,7 @@ namespace steplap {
 /// By the clusters' present numbers, in their final order; null if there are none. Takes their clusters and guides out
 /// of what `found` leaves absolute: carriages have the number behind the last mechanism's.
 [[nodiscard]] std::unique_ptr<Carriages> find_carriages(const System& system, const State& state, const Layout& layout,
-                                                        Coordinates choice, const std::vector<char>& is_block_merged,
+                                                        const std::vector<char>& is_block_merged,
                                                         const std::vector<char>& is_friction_merged,
                                                         JointCoordinates& found);
 

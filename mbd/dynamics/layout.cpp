@@ -386,8 +386,9 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   if (coordinates != Coordinates::absolute && system.inner_count() == 0) {
     JointCoordinates found =
         find_joint_coordinates(system, state, layout, coordinates, is_block_merged, is_friction_merged);
-    std::unique_ptr<Carriages> carriages =
-        find_carriages(system, state, layout, coordinates, is_block_merged, is_friction_merged, found);
+    std::unique_ptr<Carriages> carriages;
+    if (coordinates == Coordinates::joint)
+      carriages = find_carriages(system, state, layout, is_block_merged, is_friction_merged, found);
     is_pin = found.is_pin;
     if (carriages || !found.mechanisms.empty()) take_joint_coordinates(std::move(found), std::move(carriages), layout);
   }

@@ -1,10 +1,9 @@
 // Bodies on guides, described by how far they have slid (mbd/dynamics/carriage.h), against the same bodies in absolute
 // coordinates with the guides' rows: two ways to the same accelerations, reactions and motions, which share the forces of
 // elements and nothing else of the way to accelerations. And against a closed form.
-#include "mbd/analysis/assembly.h"
 #include "mbd/dynamics/linearization.h"
+#include "tests/physics/descriptions.h"
 #include "tests/physics/model_text.h"
-#include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>
 
@@ -68,8 +67,6 @@ std::string guides() {
                  "a = 'sled'; b = 'table'; coordinate = 'distance'; holds = 9; drags = 6");
 }
 
-State start_of(const Model& model, const System& system) { return assembled_start(system, assemble(model, system)); }
-
 // With drives where they begin, as a run has it.
 State state_of(const Model& model, const System& system) {
   State state = start_of(model, system);
@@ -89,19 +86,6 @@ void stick(const System& system, State& state) {
   state.memory[row.memory] = evaluate_row<false>(row, dynamics.motion().data()).value;
   dynamics.project(0.0, y.data(), 0.0);
   dynamics.unpack(0.0, y.data(), state);
-}
-
-int count_coordinates(const System& system, const State& state, Coordinates coordinates = Coordinates::joint) {
-  Dynamics dynamics(system);
-  dynamics.use_coordinates(coordinates);
-  dynamics.set_state(state);
-  return dynamics.coordinate_count();
-}
-
-double largest(const std::vector<double>& values) {
-  double size = 0.0;
-  for (const double v : values) size = std::max(size, std::abs(v));
-  return size;
 }
 
 struct Outcome {
@@ -129,34 +113,6 @@ Outcome outcome_at(const System& system, const State& state, Coordinates coordin
   outcome.acceleration.assign(snapshot.acceleration, snapshot.acceleration + 3 * system.bodies.size());
   for (const Channel& channel : system.channels) outcome.channel.push_back(channel.value(snapshot));
   return outcome;
-}
-
-RunResult run_in(const Model& model, const System& system, Coordinates coordinates, double tolerance, double end) {
-  SimulationOptions options = options_of(model);
-  options.integrator = "dop853";
-  options.settings.tolerance = tolerance;
-  options.settings.step = 0.0;
-  options.end = end;
-  options.output_step = end / 20.0;
-  options.channels.clear();
-  options.coordinates = coordinates;
-  return simulate(system, start_of(model, system), options);
-}
-
-// Of the larger of a channel's largest value and a thousandth of its unit.
-double difference(const System& system, const RunResult& a, const RunResult& b, std::string& worst_channel) {
-  REQUIRE(a.trajectory->size() == b.trajectory->size());
-  double worst = 0.0;
-  for (const Channel& channel : system.channels) {
-    const std::vector<double> x = a.trajectory->series(channel.name), y = b.trajectory->series(channel.name);
-    const double size = std::max(largest(x), 1e-3);
-    for (std::size_t i = 0; i < x.size(); ++i)
-      if (const double d = std::abs(x[i] - y[i]) / size; d > worst) {
-        worst = d;
-        worst_channel = channel.name;
-      }
-  }
-  return worst;
 }
 
 void check_same_run(const Model& model, Coordinates coordinates, double tolerance, double end, double bound,
@@ -206,8 +162,8 @@ TEST_CASE("carriages: the same accelerations, reactions and answers to friction 
   CHECK(count_coordinates(*system, state) == 16);
   state.friction[0].phase = FrictionPhase::stick;
   CHECK(count_coordinates(*system, state) == 18);
-  // Left to the program: only what slides on the ground or on a driven body.
-  CHECK(count_coordinates(*system, state, Coordinates::automatic) == 20);
+  // Left to the program slides are none.
+  CHECK(count_coordinates(*system, state, Coordinates::automatic) == 24);
   CHECK(count_coordinates(*system, state, Coordinates::absolute) == 24);
 }
 
@@ -337,10 +293,10 @@ TEST_CASE("carriages: the paper's transformer, in all three conditions") {
     const Model model = read_model(std::string(STEPLAP_MODELS) + "/paper/" + name + ".toml", transformer_catalog());
     const auto system = compile(model);
     // Active part with its limbs, lower tank: 3 each; upper tank: 1.
-    CHECK(count_coordinates(*system, system->initial_state(), Coordinates::automatic) == 7);
+    CHECK(count_coordinates(*system, system->initial_state()) == 7);
     CHECK(count_coordinates(*system, system->initial_state(), Coordinates::absolute) == 9);
     // Contacts and frictions of 1e9 N/m: a reaction is known to 1e-11 of what the bodies weigh, over the slip's stiffness.
-    check_same_run(model, Coordinates::automatic, 1e-11, 0.3, 1e-6, 4);
+    check_same_run(model, Coordinates::joint, 1e-11, 0.3, 1e-6, 4);
   }
 }
 
@@ -358,8 +314,8 @@ TEST_CASE("carriages: a bead on a turning rod, by its closed form") {
       element("prismatic", "guide", "a = 'bead'; b = 'rod'; axis = [1.0, 0.0]");
   const Model model = scene(text);
   const auto system = compile(model);
-  CHECK(count_coordinates(*system, system->initial_state(), Coordinates::automatic) == 4);
-  const RunResult result = run_in(model, *system, Coordinates::automatic, 1e-12, k_end);
+  CHECK(count_coordinates(*system, system->initial_state()) == 4);
+  const RunResult result = run_in(model, *system, Coordinates::joint, 1e-12, k_end);
   const auto last = [&result](const char* name) { return result.trajectory->series(name).back(); };
   const double r = k_start * std::cosh(k_omega * k_end), speed = k_omega * k_start * std::sinh(k_omega * k_end);
   CHECK(std::hypot(last("bead.x"), last("bead.y")) == doctest::Approx(r).epsilon(1e-9));

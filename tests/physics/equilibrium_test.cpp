@@ -1,9 +1,6 @@
 // Rest found from far away: closed forms, all models that have a rest, friction's limits, and what is said where there
 // is none.
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/equilibrium.h"
-#include "tests/physics/model_text.h"
-#include "tests/physics/scene.h"
+#include "tests/physics/rest_scene.h"
 
 #include <cmath>
 #include <cstdio>
@@ -16,38 +13,6 @@ using namespace steplap::testing;
 
 namespace {
 
-constexpr double k_g = 9.81, k_pi = std::numbers::pi;
-const std::string k_head = "[simulation]\nstep = 1e-3\n";
-
-std::string number(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", x);
-  return text;
-}
-std::string point(double x, double y) { return "[" + number(x) + ", " + number(y) + "]"; }
-
-struct Found {
-  std::unique_ptr<System> system;
-  Equilibrium rest;
-};
-
-Found settle(const Model& model) {
-  Found found{compile(model), {}};
-  State start = assembled_start(*found.system, assemble(model, *found.system));
-  std::fill(start.v.begin(), start.v.end(), 0.0);
-  found.rest = find_equilibrium(*found.system, start);
-  return found;
-}
-Found settle(const std::string& text) { return settle(scene(k_head + text)); }
-
-std::string reason(const std::string& text) {
-  try {
-    (void)settle(text);
-  } catch (const NumericalFailure& failure) {
-    return failure.what();
-  }
-  return "";
-}
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 } // namespace

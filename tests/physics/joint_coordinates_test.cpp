@@ -1,10 +1,9 @@
 // Mechanisms in joint coordinates (mbd/dynamics/mechanism.h) against the same bodies in absolute ones: two ways to the
 // same accelerations, reactions and motions, which share the forces of elements and nothing else of the way to
 // accelerations.
-#include "mbd/analysis/assembly.h"
 #include "mbd/dynamics/linearization.h"
+#include "tests/physics/descriptions.h"
 #include "tests/physics/model_text.h"
-#include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>
 
@@ -58,8 +57,6 @@ std::string everything() {
                  "a = 'string'; b = 'kite'; coordinate = 'angle'; holds = 0.4; drags = 0.3");
 }
 
-State start_of(const Model& model, const System& system) { return assembled_start(system, assemble(model, system)); }
-
 struct Outcome {
   std::vector<double> acceleration, channel;
 };
@@ -78,47 +75,6 @@ Outcome outcome_at(const System& system, const State& state, Coordinates coordin
   outcome.acceleration.assign(snapshot.acceleration, snapshot.acceleration + 3 * system.bodies.size());
   for (const Channel& channel : system.channels) outcome.channel.push_back(channel.value(snapshot));
   return outcome;
-}
-
-double largest(const std::vector<double>& values) {
-  double size = 0.0;
-  for (const double v : values) size = std::max(size, std::abs(v));
-  return size;
-}
-
-int count_coordinates(const System& system, const State& state) {
-  Dynamics dynamics(system);
-  dynamics.use_coordinates(Coordinates::joint);
-  dynamics.set_state(state);
-  return dynamics.coordinate_count();
-}
-
-RunResult run_in(const Model& model, const System& system, Coordinates coordinates, double tolerance, double end) {
-  SimulationOptions options = options_of(model);
-  options.integrator = "dop853";
-  options.settings.tolerance = tolerance;
-  options.settings.step = 0.0;
-  options.end = end;
-  options.output_step = end / 20.0;
-  options.channels.clear();
-  options.coordinates = coordinates;
-  return simulate(system, start_of(model, system), options);
-}
-
-// Of the larger of a channel's range and a thousandth of its unit.
-double difference(const System& system, const RunResult& a, const RunResult& b, std::string& worst_channel) {
-  REQUIRE(a.trajectory->size() == b.trajectory->size());
-  double worst = 0.0;
-  for (const Channel& channel : system.channels) {
-    const std::vector<double> x = a.trajectory->series(channel.name), y = b.trajectory->series(channel.name);
-    const double size = std::max(largest(x), 1e-3);
-    for (std::size_t i = 0; i < x.size(); ++i)
-      if (const double d = std::abs(x[i] - y[i]) / size; d > worst) {
-        worst = d;
-        worst_channel = channel.name;
-      }
-  }
-  return worst;
 }
 
 } // namespace

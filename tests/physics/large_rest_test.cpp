@@ -1,10 +1,7 @@
 // Rest of scenes beyond some tens of bodies, which sparse algebra finds: closed forms from poses far off, the same rests as
 // by dense algebra, what has no rest.
-#include "mbd/analysis/assembly.h"
 #include "mbd/analysis/bordered_system.h"
-#include "mbd/analysis/equilibrium.h"
-#include "tests/physics/model_text.h"
-#include "tests/physics/scene.h"
+#include "tests/physics/rest_scene.h"
 
 #include <cmath>
 #include <cstdio>
@@ -17,42 +14,9 @@ using namespace steplap::testing;
 
 namespace {
 
-constexpr double k_g = 9.81, k_pi = std::numbers::pi;
-const std::string k_head = "[simulation]\nstep = 1e-3\n";
-
-std::string number(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", x);
-  return text;
-}
-std::string point(double x, double y) { return "[" + number(x) + ", " + number(y) + "]"; }
 std::string numbered(const std::string& name, int i) { return name + " " + std::to_string(i); }
 std::string quoted(const std::string& name) { return "\"" + name + "\""; }
 std::string at(const std::string& name, double x, double y) { return "{ body = " + quoted(name) + ", point = " + point(x, y) + " }"; }
-
-struct Found {
-  std::unique_ptr<System> system;
-  Equilibrium rest;
-
-  [[nodiscard]] double q(int body, int c) const { return rest.state.q[3 * static_cast<std::size_t>(body) + static_cast<std::size_t>(c)]; }
-};
-
-Found settle(const Model& model, RestAlgebra algebra = RestAlgebra::by_size) {
-  Found found{compile(model), {}};
-  State start = assembled_start(*found.system, assemble(model, *found.system));
-  std::fill(start.v.begin(), start.v.end(), 0.0);
-  found.rest = find_equilibrium(*found.system, start, algebra);
-  return found;
-}
-Found settle(const std::string& text) { return settle(scene(k_head + text)); }
-std::string reason(const std::string& text) {
-  try {
-    (void)settle(text);
-  } catch (const NumericalFailure& failure) {
-    return failure.what();
-  }
-  return "";
-}
 
 // A rod of 1 m on the end of the one before; the first on the ground's origin.
 std::string rod(int i, double x, double y, double angle, double mass) {

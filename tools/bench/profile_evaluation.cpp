@@ -1,6 +1,6 @@
 // Evaluates the equations of motion of one model many times and does nothing else: to be run under a
 // profiler (tools/profile). The state is that of the model's run at a given time.
-//   profile_evaluation MODEL TIME COUNT
+//   profile_evaluation MODEL TIME COUNT [COORDINATES]
 #include "transformer/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <exception>
 #include <limits>
+#include <string>
 #include <vector>
 
 using namespace steplap;
@@ -19,11 +20,12 @@ namespace {
 
 constexpr int k_batches = 20; // the least of them is the figure least disturbed by other processes
 
-void profile(const char* path, double time, long count) {
+void profile(const char* path, double time, long count, const std::string& coordinates) {
   const Model model = read_model(path, transformer_catalog());
   const auto system = compile(model);
   SimulationOptions options = options_of(model);
   options.end = time;
+  if (coordinates != "automatic") options.coordinates = coordinates == "joint" ? Coordinates::joint : Coordinates::absolute;
   const State state = simulate(*system, system->initial_state(), options).final_state;
   Dynamics dynamics(*system);
   dynamics.use_coordinates(options.coordinates);
@@ -44,12 +46,12 @@ void profile(const char* path, double time, long count) {
 } // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::fprintf(stderr, "usage: profile_evaluation MODEL TIME COUNT\n");
+  if (argc < 4 || argc > 5) {
+    std::fprintf(stderr, "usage: profile_evaluation MODEL TIME COUNT [COORDINATES]\n");
     return 2;
   }
   try {
-    profile(argv[1], std::atof(argv[2]), std::max(static_cast<long>(k_batches), std::atol(argv[3])));
+    profile(argv[1], std::atof(argv[2]), std::max(static_cast<long>(k_batches), std::atol(argv[3])), argc > 4 ? argv[4] : "automatic");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 3;
