@@ -20,8 +20,8 @@ struct KelvinVoigtContact {
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     return mode == k_contact_pressed ? raw(value, rate) : S(0);
   }
-  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
-    return mode == k_contact_open ? 0.0 : -k * (value - offset);
+  template <class S> [[nodiscard]] S elastic_force(const S& value, UnitMode mode) const {
+    return mode == k_contact_open ? S(0.0) : -k * (value - offset);
   }
   [[nodiscard]] double energy(double value) const {
     const double closed = std::min(0.0, value - offset);
@@ -31,8 +31,8 @@ struct KelvinVoigtContact {
     if (value - offset >= 0.0) return k_contact_open;
     return raw(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
   }
-  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
-    const double gap = value - offset;
+  template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
+    const S gap = value - offset;
     if (mode == k_contact_open) {
       watch[0] = gap;
       watch_rate[0] = rate;
@@ -68,8 +68,8 @@ struct LiteralContact {
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode mode) const {
     return mode == k_contact_pressed ? S(-k) * (value - S(offset)) - S(c) * rate : S(0);
   }
-  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
-    return mode == k_contact_open ? 0.0 : -k * (value - offset);
+  template <class S> [[nodiscard]] S elastic_force(const S& value, UnitMode mode) const {
+    return mode == k_contact_open ? S(0.0) : -k * (value - offset);
   }
   [[nodiscard]] double energy(double value) const {
     const double closed = std::min(0.0, value - offset);
@@ -78,7 +78,7 @@ struct LiteralContact {
   [[nodiscard]] UnitMode mode_at(double value, double) const {
     return value - offset < 0.0 ? k_contact_pressed : k_contact_open;
   }
-  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
+  template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
     const double sign = mode == k_contact_open ? 1.0 : -1.0;
     watch[0] = sign * (value - offset);
     watch_rate[0] = sign * rate;

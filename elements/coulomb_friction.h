@@ -33,10 +33,10 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override {
     is_used[feet[0].a] = is_used[feet[0].b] = 1;
   }
-  [[nodiscard]] double normal_force(const Evaluation& e) const {
-    double sum = 0.0;
+  template <class S> [[nodiscard]] S normal_force(const Evaluated<S>& e) const {
+    S sum{0.0};
     for (const ContactIndex& contact : contacts) sum += e.contact_force[contact.force];
-    return std::max(0.0, sum); // the paper's literal contact law may pull
+    return greatest_of(S(0.0), sum); // the paper's literal contact law may pull
   }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
     return std::any_of(contacts.begin(), contacts.end(), [&e](const ContactIndex& contact) {
@@ -45,24 +45,32 @@ public:
   }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double*,
                    double* wrench) const override {
-    wrench[0] = -mu_kinetic * normal_force(e) * state.sign;
+    wrench[0] = sliding_force(e, state);
   }
   [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
     return mu_static * normal_force(e) * std::abs(rate[0]);
   }
   void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench,
                    double* watch) const override {
-    const double bound = mu_static * normal_force(e) * (1.0 + k_bound_slack);
-    watch[0] = bound - wrench[0];
-    watch[1] = bound + wrench[0];
+    watch_bounds<double>(e, wrench, watch);
+  }
+  [[nodiscard]] bool trace_friction(const TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
+                                    Traced* watch) const override {
+    if (rate) {
+      wrench[0] = sliding_force(e, state);
+      watch[0] = state.sign * rate[0];
+      watch[1] = 1.0;
+    } else {
+      watch_bounds(e, wrench, watch);
+    }
+    watch[2] = turn_to_other_foot(e, state);
+    return true;
   }
   void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
     state.sign = wrench[0] > 0.0 ? -1 : 1;
   }
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
-    if (!has_two_feet) return 1.0;
-    const double turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
-    return k_foot_dead_band + (state.foot == 0 ? turn : -turn);
+    return turn_to_other_foot(e, state);
   }
   void change_place(const Evaluation&, FrictionState& state) const override {
     state.foot = state.foot == 0 ? 1 : 0;
@@ -87,6 +95,21 @@ public:
     block.wrench[0] = std::clamp(wanted, -bound, bound);
     block.direction[0] = wanted > 0.0 ? -1.0 : 1.0;
     return block;
+  }
+
+private:
+  template <class S> [[nodiscard]] S sliding_force(const Evaluated<S>& e, const FrictionState& state) const {
+    return -mu_kinetic * normal_force(e) * state.sign;
+  }
+  template <class S> void watch_bounds(const Evaluated<S>& e, const S* wrench, S* watch) const {
+    const S bound = mu_static * normal_force(e) * (1.0 + k_bound_slack);
+    watch[0] = bound - wrench[0];
+    watch[1] = bound + wrench[0];
+  }
+  template <class S> [[nodiscard]] S turn_to_other_foot(const Evaluated<S>& e, const FrictionState& state) const {
+    if (!has_two_feet) return 1.0;
+    const S turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
+    return k_foot_dead_band + (state.foot == 0 ? turn : -turn);
   }
 };
 

@@ -21,6 +21,9 @@ class SegmentFriction final : public CoulombFriction {
 public:
   SegmentMeasure segment;
 
+  [[nodiscard]] bool trace_friction(const TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
+    return false; // its place has branches of its own
+  }
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
     const Pair<double> p = segment.place(e.motion[feet[0].a], e.motion[feet[0].b]);
     const auto part = static_cast<SegmentPart>(state.foot);

@@ -199,6 +199,9 @@ public:
 
   void mark_bodies(std::vector<char>& is_used) const override { is_used[a] = is_used[b] = 1; }
 
+  [[nodiscard]] bool trace_friction(const TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
+    return false; // its place has branches of its own
+  }
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {
     const Placed<double, Motion<double>> placed(*outlines, e.motion[a], e.motion[b]);
     const HoldingPlace& place = places[state.foot];

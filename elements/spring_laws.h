@@ -18,7 +18,7 @@ struct LinearSpring {
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode) const {
     return S(-k) * (value - S(free)) - S(c) * rate;
   }
-  [[nodiscard]] double elastic_force(double value, UnitMode) const { return -k * (value - free); }
+  template <class S> [[nodiscard]] S elastic_force(const S& value, UnitMode) const { return -k * (value - free); }
   [[nodiscard]] double energy(double value) const {
     return 0.5 * k * (value - free) * (value - free);
   }
@@ -38,8 +38,9 @@ struct GapSpring {
     if (mode == 1) return S(0);
     return S(-k) * (value - S(edge(mode))) - S(c) * rate;
   }
-  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
-    return mode == 1 ? 0.0 : -k * (value - edge(mode));
+  template <class S> [[nodiscard]] S elastic_force(const S& value, UnitMode mode) const {
+    if (mode == 1) return S(0);
+    return -k * (value - edge(mode));
   }
   [[nodiscard]] double energy(double value) const {
     const double beyond = std::max(0.0, std::abs(value - free) - half_gap);
@@ -49,12 +50,12 @@ struct GapSpring {
     const double e = value - free;
     return e < -half_gap ? 0 : (e > half_gap ? 2 : 1);
   }
-  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
-    const double low = value - (free - half_gap), high = (free + half_gap) - value;
+  template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
+    const S low = value - (free - half_gap), high = (free + half_gap) - value;
     watch[0] = mode == 0 ? -low : (mode == 1 ? low : -high);
     watch_rate[0] = mode == 1 ? rate : (mode == 0 ? -rate : rate);
-    watch[1] = mode == 1 ? high : 1.0;
-    watch_rate[1] = mode == 1 ? -rate : 0.0;
+    watch[1] = mode == 1 ? high : S(1.0);
+    watch_rate[1] = mode == 1 ? -rate : S(0.0);
   }
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double, double) const {
     if (mode != 1) return 1;
@@ -139,16 +140,16 @@ struct TabulatedSpring {
     return S(-count) * (spring.value(value - S(free), spring_segment(mode)) +
                         damper.value(rate, damper_segment(mode)));
   }
-  [[nodiscard]] double elastic_force(double value, UnitMode mode) const {
-    return -count * spring.value(value - free, spring_segment(mode));
+  template <class S> [[nodiscard]] S elastic_force(const S& value, UnitMode mode) const {
+    return -count * spring.value(S(value - free), spring_segment(mode));
   }
   [[nodiscard]] double energy(double value) const { return count * spring.integral(value - free); }
   [[nodiscard]] UnitMode mode_at(double value, double rate) const {
     return mode_of(spring.segment_at(value - free), damper.segment_at(rate));
   }
-  void watch(double value, double rate, UnitMode mode, double* watch, double* watch_rate) const {
+  template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
     const int s = spring_segment(mode), d = damper_segment(mode);
-    const double e = value - free;
+    const S e = value - free;
     watch[0] = e - spring.low(s);
     watch[1] = spring.high(s) - e;
     watch[2] = rate - damper.low(d);

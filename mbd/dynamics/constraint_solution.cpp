@@ -16,27 +16,6 @@ MeasureValue<double> turned(MeasureValue<double> m, const Motion<double>& b) {
   return m;
 }
 
-// a += wj λ of one side.
-STEPLAP_INLINE void add_side(const SchurRow& row, int side, double lambda, double* a) {
-  double* const ak = a + 3 * row.body[side];
-  const double x = row.wj[side][0] * lambda, y = row.wj[side][1] * lambda, m = row.wj[side][2] * lambda;
-  ak[0] += x;
-  ak[1] += y;
-  ak[2] += m;
-}
-
-// The same of all rows: a constant row is zero but for θ.
-STEPLAP_INLINE void add_rows(const SchurRow* rows, std::size_t count, const double* lambda, double* a) {
-  for (std::size_t r = 0; r < count; ++r) {
-    const SchurRow& row = rows[r];
-    for (int side = 0; side < 2; ++side) {
-      if (row.body[side] < 0) continue;
-      if (row.is_constant) a[3 * row.body[side] + 2] += row.wj[side][2] * lambda[r];
-      else add_side(row, side, lambda[r], a);
-    }
-  }
-}
-
 } // namespace
 
 ConstraintSolution::ConstraintSolution(const Kinematics& kinematics) : motion_(kinematics.motion().data()) {}
@@ -144,15 +123,7 @@ STEPLAP_INLINE double ConstraintSolution::pull(std::size_t r) {
   const ActiveRow& active = layout_->active[r];
   if (active.pull == RowPullKind::angle) return 0.0;
   if (active.pull == RowPullKind::other) return -load_active<true>(r).bias;
-  SchurRow& row = layout_->schur_rows[r];
-  const Motion<double>& link = motion_[active.link];
-  const Motion<double>& b = motion_[active.spec->b];
-  const RowPull p = active.pull == RowPullKind::axis ? pull_along_axis(*active.spec, link)
-                                                     : pull_along_slide(*active.spec, link);
-  const double x = b.c * p.direction.x - b.s * p.direction.y, y = b.s * p.direction.x + b.c * p.direction.y;
-  set_gradient(row, 0, x, y, p.couple_a);
-  if (row.body[1] >= 0) set_gradient(row, 1, -x, -y, -p.couple_b);
-  return -(p.bias + dot(p.direction, frame_acceleration(link, b.omega)));
+  return pull_simple_row(active, layout_->schur_rows[r], motion_);
 }
 
 void ConstraintSolution::prepare() {
@@ -198,7 +169,7 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
   }
   if (count == 0) return;
   layout.schur.solve(layout.schur_rows, right);
-  add_rows(layout.schur_rows.data(), count, right, a);
+  add_responses(layout.schur_rows.data(), count, right, a);
 }
 
 double ConstraintSolution::power_of_drives() const {
@@ -248,7 +219,7 @@ void ConstraintSolution::take_away(const double* r, double* change) {
   if (layout.carriages) layout.carriages->hold_back(change);
   for (std::size_t i = 0; i < static_cast<std::size_t>(layout.schur.size()); ++i)
     for (int side = 0; side < 2; ++side)
-      if (layout.schur_rows[i].body[side] >= 0) add_side(layout.schur_rows[i], side, response[i], change);
+      if (layout.schur_rows[i].body[side] >= 0) add_response(layout.schur_rows[i], side, response[i], change);
   if (layout.carriages) layout.carriages->let_go(change);
   for (const Mechanism& m : layout.mechanisms) {
     if (m.row_count == 0) continue;

@@ -122,11 +122,7 @@ void Dynamics::apply_forces() {
   }
   for (const int i : layout.riding) {
     const int slot = layout.slots[layout.placements[i].cluster];
-    const BodyForce& f = force[i];
-    BodyForce& sum = force[slot];
-    sum.fx += f.fx;
-    sum.fy += f.fy;
-    sum.m += f.m + (motion[i].x - motion[slot].x) * f.fy - (motion[i].y - motion[slot].y) * f.fx;
+    add_member_force(force[i], motion[i], motion[slot], force[slot]);
   }
 }
 

@@ -34,13 +34,7 @@ void Kinematics::place(double t, const double* q, const double* v) {
   for (Mechanism& m : layout_->mechanisms) m.place(q + m.first_coordinate, v + m.first_coordinate, motion);
   const int* const slots = layout.slots.data();
   for (int k = 0; k < layout.absolute_count; ++k) {
-    Motion<double>& m = motion[slots[k]];
-    m.x = q[0];
-    m.y = q[1];
-    m.vx = v[0];
-    m.vy = v[1];
-    m.omega = v[2];
-    set_angle(m, q[2]);
+    place_cluster(q, v, motion[slots[k]]);
     q += 3;
     v += 3;
   }
@@ -49,10 +43,7 @@ void Kinematics::place(double t, const double* q, const double* v) {
     for (std::size_t i = 0; i < layout.locks.size(); ++i) {
       const Lock& lock = layout.locks[i];
       const SignalJet& target = lock_target_[i];
-      Motion<double>& m = motion[slots[lock.cluster]];
-      if (lock.coordinate == 2) set_angle(m, target.value);
-      else (lock.coordinate == 0 ? m.x : m.y) = target.value;
-      (lock.coordinate == 0 ? m.vx : lock.coordinate == 1 ? m.vy : m.omega) = target.rate;
+      place_locked(lock.coordinate, target.value, target.rate, motion[slots[lock.cluster]]);
     }
   }
   const ActiveLink* link = layout.links.data();
@@ -83,17 +74,7 @@ bool Kinematics::is_placed(double t, const double* y) const {
 // A body that moves with others: from its cluster's motion.
 void Kinematics::place_member(int i) {
   const Placement& place = layout_->placements[i];
-  const Motion<double>& k = motion_[layout_->clusters[place.cluster].motion];
-  Motion<double>& m = motion_[i];
-  const Pair<double> lever = to_ground(k, place.offset);
-  m.x = k.x + lever.x;
-  m.y = k.y + lever.y;
-  m.theta = k.theta + place.angle;
-  m.c = k.c * place.c - k.s * place.s;
-  m.s = k.s * place.c + k.c * place.s;
-  m.vx = k.vx - k.omega * lever.y;
-  m.vy = k.vy + k.omega * lever.x;
-  m.omega = k.omega;
+  place_in_cluster(place, motion_[layout_->clusters[place.cluster].motion], motion_[i]);
 }
 
 void Kinematics::place_rest() {

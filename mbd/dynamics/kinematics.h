@@ -13,6 +13,36 @@
 
 namespace steplap {
 
+/// A body that moves with its cluster k, at a place of it.
+template <class S> STEPLAP_INLINE void place_in_cluster(const Placement& place, const Motion<S>& k, Motion<S>& m) {
+  const Pair<S> lever = to_ground(k, place.offset);
+  m.x = k.x + lever.x;
+  m.y = k.y + lever.y;
+  m.theta = k.theta + place.angle;
+  m.c = k.c * place.c - k.s * place.s;
+  m.s = k.s * place.c + k.c * place.s;
+  m.vx = k.vx - k.omega * lever.y;
+  m.vy = k.vy + k.omega * lever.x;
+  m.omega = k.omega;
+}
+
+/// A cluster in absolute coordinates: 3 numbers of each.
+template <class S> STEPLAP_INLINE void place_cluster(const S* q, const S* v, Motion<S>& m) {
+  m.x = q[0];
+  m.y = q[1];
+  m.vx = v[0];
+  m.vy = v[1];
+  m.omega = v[2];
+  set_angle(m, q[2]);
+}
+
+/// A coordinate that a drive prescribes.
+template <class S> STEPLAP_INLINE void place_locked(int coordinate, const S& value, const S& rate, Motion<S>& m) {
+  if (coordinate == 2) set_angle(m, value);
+  else (coordinate == 0 ? m.x : m.y) = value;
+  (coordinate == 0 ? m.vx : coordinate == 1 ? m.vy : m.omega) = rate;
+}
+
 class Kinematics {
 public:
   explicit Kinematics(const System& system);

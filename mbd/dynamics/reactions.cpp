@@ -179,17 +179,10 @@ void Reactions::find_joints(const double* cluster_a, const double* lambda) {
 
 double Reactions::of_lock(const Lock& lock, const double* a, const double* lambda) const {
   const Layout& layout = *layout_;
-  const int k = 3 * lock.cluster + lock.coordinate;
   const int carrier = layout.carriages ? layout.carriages->carrier_of_lock[&lock - layout.locks.data()] : -1;
-  double force = 0.0;
-  if (carrier >= 0) {
-    force = Carriages::lack(layout.carriages->carriers[carrier], lock.coordinate, a + 3 * lock.cluster);
-  } else {
-    const Cluster& cluster = layout.clusters[lock.cluster];
-    const BodyForce& f = force_[cluster.motion];
-    force = (lock.coordinate < 2 ? cluster.mass : cluster.inertia) * a[k] - layout.weight[k] -
-            (lock.coordinate == 0 ? f.fx : lock.coordinate == 1 ? f.fy : f.m);
-  }
+  if (carrier < 0)
+    return missing_force(layout, lock, force_[layout.clusters[lock.cluster].motion], a, layout.schur_rows.data(), lambda);
+  double force = Carriages::lack(layout.carriages->carriers[carrier], lock.coordinate, a + 3 * lock.cluster);
   for (const LockedTerm& term : lock.terms)
     force -= layout.schur_rows[term.row].j[term.side][lock.coordinate] * lambda[term.row];
   return force;

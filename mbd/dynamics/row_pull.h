@@ -2,23 +2,23 @@
 // as evaluate_row gives, without the value and the rate, which no acceleration needs.
 #pragma once
 
+#include "mbd/dynamics/layout.h"
 #include "mbd/system/row.h"
-#include "mbd/dynamics/schur.h"
 
 namespace steplap {
 
-struct RowPull {
-  Pair<double> direction;
-  double couple_a, couple_b; // of the unit force on a, about a's and b's centre of gravity
-  double bias;
+template <class S> struct RowPull {
+  Pair<S> direction;
+  S couple_a, couple_b; // of the unit force on a, about a's and b's centre of gravity
+  S bias;
 };
 
-STEPLAP_INLINE RowPull pull_along_axis(const RowSpec& row, const Motion<double>& link) {
-  RowPull p;
-  const Pair<double> lever = to_ground(link, row.point_a);
+template <class S> STEPLAP_INLINE RowPull<S> pull_along_axis(const RowSpec& row, const Motion<S>& link) {
+  RowPull<S> p;
+  const Pair<S> lever = to_ground(link, row.point_a);
   p.direction = {row.direction.x(), row.direction.y()};
   p.couple_a = cross(lever, p.direction);
-  p.couple_b = p.couple_a + cross(Pair<double>{link.x, link.y}, p.direction);
+  p.couple_b = p.couple_a + cross(Pair<S>{link.x, link.y}, p.direction);
   p.bias = -(link.omega * link.omega) * dot(p.direction, lever);
   return p;
 }
@@ -26,26 +26,27 @@ STEPLAP_INLINE RowPull pull_along_axis(const RowSpec& row, const Motion<double>&
 // SlideMeasure. With the shaft s, a unit vector, α = n·s and the gap δ along it, the unit force on a is g = −ẑ×s/α at the tip,
 // r − δ s from a's centre if r is the contact's point; r·s and r×s are fixed in a:
 //   couple on a = (δ − r·s)/α,  rate = g·v + ω · couple,  bias = ω (2 (v·s − rate β) + ω r×s)/α,  β = s × n
-STEPLAP_INLINE RowPull pull_along_slide(const RowSpec& row, const Motion<double>& link) {
-  RowPull p;
-  const Pair<double> s = to_ground(link, row.contact_axis), r = to_ground(link, row.point_a);
-  const Pair<double> n{row.direction.x(), row.direction.y()}, v{link.vx, link.vy};
-  const double inverse = 1.0 / dot(n, s);
-  const double gap = inverse * (n.x * (link.x + r.x - row.point_b.x()) + n.y * (link.y + r.y - row.point_b.y()));
+template <class S> STEPLAP_INLINE RowPull<S> pull_along_slide(const RowSpec& row, const Motion<S>& link) {
+  RowPull<S> p;
+  const Pair<S> s = to_ground(link, row.contact_axis), r = to_ground(link, row.point_a);
+  const Pair<S> n{row.direction.x(), row.direction.y()}, v{link.vx, link.vy};
+  const S inverse = 1.0 / dot(n, s);
+  const S gap = inverse * (n.x * (link.x + r.x - row.point_b.x()) + n.y * (link.y + r.y - row.point_b.y()));
   p.direction = {inverse * s.y, -(inverse * s.x)};
   p.couple_a = inverse * (gap - dot(r, s));
-  p.couple_b = p.couple_a + cross(Pair<double>{link.x, link.y}, p.direction);
-  const double rate = dot(p.direction, v) + link.omega * p.couple_a;
+  p.couple_b = p.couple_a + cross(Pair<S>{link.x, link.y}, p.direction);
+  const S rate = dot(p.direction, v) + link.omega * p.couple_a;
   p.bias = inverse * link.omega * (2.0 * (dot(v, s) - rate * cross(s, n)) + link.omega * cross(r, s));
   return p;
 }
 
 /// Fills one side of a row in the clusters' coordinates.
-STEPLAP_INLINE void set_gradient(SchurRow& row, int side, double fx, double fy, double couple) {
+template <class S>
+STEPLAP_INLINE void set_gradient(SchurRowOf<S>& row, int side, const S& fx, const S& fy, const S& couple) {
   const double* const w = row.w[side];
-  double* const j = row.j[side];
-  double* const wj = row.wj[side];
-  const double wx = w[0] * fx, wy = w[1] * fy, wm = w[2] * couple;
+  S* const j = row.j[side];
+  S* const wj = row.wj[side];
+  const S wx = w[0] * fx, wy = w[1] * fy, wm = w[2] * couple;
   j[0] = fx;
   j[1] = fy;
   j[2] = couple;
@@ -55,14 +56,44 @@ STEPLAP_INLINE void set_gradient(SchurRow& row, int side, double fx, double fy, 
 }
 
 /// What is left of `right` where the accelerations of the clusters are `a`: right − J a.
-STEPLAP_INLINE double less_accelerations(const SchurRow& row, double right, const double* a) {
+template <class S> STEPLAP_INLINE S less_accelerations(const SchurRowOf<S>& row, S right, const S* a) {
   for (int side = 0; side < 2; ++side) {
     if (row.body[side] < 0) continue;
-    const double* const ak = a + 3 * row.body[side];
-    const double* const j = row.j[side];
+    const S* const ak = a + 3 * row.body[side];
+    const S* const j = row.j[side];
     right -= row.is_constant ? j[2] * ak[2] : j[0] * ak[0] + j[1] * ak[1] + j[2] * ak[2];
   }
   return right;
+}
+
+/// Fills in row r, which is between bodies that are clusters of their own or the ground, at the motion placed; returns γ.
+template <class S> STEPLAP_INLINE S pull_simple_row(const ActiveRow& active, SchurRowOf<S>& row, const Motion<S>* motion) {
+  const Motion<S>& link = motion[active.link];
+  const Motion<S>& b = motion[active.spec->b];
+  const RowPull<S> p = active.pull == RowPullKind::axis ? pull_along_axis(*active.spec, link) : pull_along_slide(*active.spec, link);
+  const S x = b.c * p.direction.x - b.s * p.direction.y, y = b.s * p.direction.x + b.c * p.direction.y;
+  set_gradient(row, 0, x, y, p.couple_a);
+  if (row.body[1] >= 0) set_gradient<S>(row, 1, -x, -y, -p.couple_b);
+  return -(p.bias + dot(p.direction, frame_acceleration(link, b.omega)));
+}
+
+/// a += W Jᵀ λ: a constant row is zero but for θ.
+template <class S> STEPLAP_INLINE void add_response(const SchurRowOf<S>& row, int side, const S& lambda, S* a) {
+  S* const ak = a + 3 * row.body[side];
+  const S x = row.wj[side][0] * lambda, y = row.wj[side][1] * lambda, m = row.wj[side][2] * lambda;
+  ak[0] += x;
+  ak[1] += y;
+  ak[2] += m;
+}
+template <class S> STEPLAP_INLINE void add_responses(const SchurRowOf<S>* rows, std::size_t count, const S* lambda, S* a) {
+  for (std::size_t r = 0; r < count; ++r) {
+    const SchurRowOf<S>& row = rows[r];
+    for (int side = 0; side < 2; ++side) {
+      if (row.body[side] < 0) continue;
+      if (row.is_constant) a[3 * row.body[side] + 2] += row.wj[side][2] * lambda[r];
+      else add_response(row, side, lambda[r], a);
+    }
+  }
 }
 
 } // namespace steplap

@@ -1,5 +1,6 @@
 #include "mbd/dynamics/schur.h"
 #include "mbd/base/types.h"
+#include "mbd/system/motion.h"
 #include "mbd/dynamics/dependent_rows.h"
 
 #include <Eigen/OrderingMethods>
@@ -196,6 +197,42 @@ void SchurSolver::factor(const std::vector<SchurRow>& rows, double shift) {
   if (is_rank_open_) [[unlikely]] keep_rank(rows, shift);
 }
 
+namespace {
+
+// L D Lᵀ of the matrix m, row by row: below the diagonal first L D, then L. `invert(i, d, diagonal)` gives 1/d, or 0 where
+// row i is left out. N: the number of rows if it is small enough to be unrolled, else 0.
+template <int N, class S, class Raise, class Invert>
+STEPLAP_INLINE void eliminate_rows(S* m, S* inverse_d, int count, const Raise& raise, const Invert& invert) {
+  const int n = N > 0 ? N : count;
+  for (int i = 0; i < n; ++i) {
+    S* const mi = m + i * n;
+    const S diagonal = raise(mi[i]);
+    S d = diagonal;
+    for (int j = 0; j < i; ++j) {
+      S sum = mi[j];
+      for (int k = 0; k < j; ++k) sum -= mi[k] * m[j * n + k];
+      mi[j] = sum;
+    }
+    for (int j = 0; j < i; ++j) {
+      const S l = mi[j] * inverse_d[j];
+      d -= l * mi[j];
+      mi[j] = l;
+    }
+    inverse_d[i] = invert(i, d, diagonal);
+  }
+}
+
+template <int N, class S> STEPLAP_INLINE void substitute(const S* m, const S* inverse_d, int count, S* x) {
+  const int n = N > 0 ? N : count;
+  for (int i = 1; i < n; ++i)
+    for (int j = 0; j < i; ++j) x[i] -= m[i * n + j] * x[j];
+  for (int i = 0; i < n; ++i) x[i] *= inverse_d[i];
+  for (int i = n - 1; i > 0; --i)
+    for (int j = 0; j < i; ++j) x[j] -= m[i * n + j] * x[i];
+}
+
+} // namespace
+
 // One row alone is never near to others.
 template <> void SchurSolver::factor_dense<1>(const std::vector<SchurRow>& rows) {
   const auto* const first = reinterpret_cast<const double*>(rows.data());
@@ -241,39 +278,46 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
     m[p.entry] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
   for (const DenseProduct& p : dense_turns_) m[p.entry] += first[p.wj + 2] * first[p.j + 2];
-  // Row by row: below the diagonal first L D, then L.
-  for (int i = 0; i < n; ++i) {
-    double* const mi = m + i * n;
-    const double diagonal = mi[i] * (1.0 + shift_);
-    double d = diagonal;
-    for (int j = 0; j < i; ++j) {
-      double sum = mi[j];
-      for (int k = 0; k < j; ++k) sum -= mi[k] * m[j * n + k];
-      mi[j] = sum;
-    }
-    for (int j = 0; j < i; ++j) {
-      const double l = mi[j] * inverse_d_[j];
-      d -= l * mi[j];
-      mi[j] = l;
-    }
+  const auto raise = [this](double diagonal) { return diagonal * (1.0 + shift_); };
+  eliminate_rows<N>(m, inverse_d_.data(), n_, raise, [this](int i, double d, double diagonal) {
     if (leaves_out(i, d, diagonal)) [[unlikely]] {
-      inverse_d_[i] = 0.0;
       ++dependent_count_;
-    } else {
-      inverse_d_[i] = 1.0 / d;
-      if (d < smallest_pivot_ * diagonal) smallest_pivot_ = d / diagonal;
+      return 0.0;
     }
+    if (d < smallest_pivot_ * diagonal) smallest_pivot_ = d / diagonal;
+    return 1.0 / d;
+  });
+}
+
+void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x) const {
+  // Places in the rows as doubles: of which row, which side.
+  constexpr std::size_t k_row = sizeof(SchurRow) / sizeof(double);
+  const auto side_of = [](std::size_t place, std::size_t member) {
+    return (place % k_row - member / sizeof(double)) / 3;
+  };
+  std::array<Traced, k_max_dense * k_max_dense> m;
+  std::array<Traced, k_max_dense> inverse_d;
+  for (int i = 0; i < n_ * n_; ++i) m[i] = dense_constant_[i];
+  for (const DenseProduct& p : dense_products_) {
+    const Traced* const a = rows[p.wj / k_row].wj[side_of(p.wj, offsetof(SchurRow, wj))];
+    const Traced* const b = rows[p.j / k_row].j[side_of(p.j, offsetof(SchurRow, j))];
+    m[p.entry] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
+  for (const DenseProduct& p : dense_turns_)
+    m[p.entry] += rows[p.wj / k_row].wj[side_of(p.wj, offsetof(SchurRow, wj))][2] *
+                  rows[p.j / k_row].j[side_of(p.j, offsetof(SchurRow, j))][2];
+  const double least = n_ > 1 ? least_pivot : k_pivot_tolerance; // one row alone is never near to others
+  eliminate_rows<0>(m.data(), inverse_d.data(), n_, [](const Traced& diagonal) { return diagonal; },
+                    [least](int, const Traced& d, const Traced& diagonal) {
+                      if (!(d > least * diagonal)) throw NotTraceable();
+                      return Traced(1.0) / d;
+                    });
+  if (n_ == 1) x[0] *= inverse_d[0];
+  else substitute<0>(m.data(), inverse_d.data(), n_, x);
 }
 
 template <int N> void SchurSolver::solve_dense(double* x) const {
-  const double* const m = dense_.data();
-  const int n = N > 0 ? N : n_;
-  for (int i = 1; i < n; ++i)
-    for (int j = 0; j < i; ++j) x[i] -= m[i * n + j] * x[j];
-  for (int i = 0; i < n; ++i) x[i] *= inverse_d_[i];
-  for (int i = n - 1; i > 0; --i)
-    for (int j = 0; j < i; ++j) x[j] -= m[i * n + j] * x[i];
+  substitute<N>(dense_.data(), inverse_d_.data(), n_, x);
 }
 
 void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {

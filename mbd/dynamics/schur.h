@@ -17,20 +17,23 @@
 // refined against J W Jᵀ itself, factor by factor, whose rounding is that of the rows.
 #pragma once
 
+#include "mbd/tape/traced.h"
+
 #include <array>
 #include <cstdint>
 #include <vector>
 
 namespace steplap {
 
-/// Row in the coordinates of the moving bodies ("clusters") of one layout.
-struct SchurRow {
+/// Row in the coordinates of the moving bodies ("clusters") of one layout; S is double, or written down (mbd/tape).
+template <class S> struct SchurRowOf {
   int body[2] = {-1, -1};     ///< cluster on either side, −1: the ground
   bool is_constant = false;   ///< j and wj are the same in every pose, and zero but for θ
   double w[2][3] = {};        ///< inverse masses of either side, 0 where locked
-  double j[2][3] = {};        ///< ∂measure/∂(x, y, θ) of either side
-  double wj[2][3] = {};       ///< W times that
+  S j[2][3] = {};             ///< ∂measure/∂(x, y, θ) of either side
+  S wj[2][3] = {};            ///< W times that
 };
+using SchurRow = SchurRowOf<double>;
 
 class SchurSolver {
 public:
@@ -43,6 +46,9 @@ public:
   /// of the later ones too, until asked again. Within a step a row would else come and go by the rounding of a pivot;
   /// asked again, a row that was out stays so up to twice the bound.
   void decide_rank(const std::vector<char>& is_friction);
+  /// What factor() and solve() do for few rows that are independent, on numbers that are written down: conditions are that they
+  /// stay as far from singular positions as `least_pivot`. x = A⁻¹ x.
+  void trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x) const;
   /// In place: x = A⁻¹ x. `rows`: those factored.
   void solve(const std::vector<SchurRow>& rows, double* x) const;
 

@@ -4,10 +4,11 @@
 //   static constexpr int k_watches           0: smooth for ever; n: a unit with n watch values
 //   static constexpr bool k_is_contact       true: its force counts as a normal force for friction
 //   S force(S value, S rate, mode)           force along the measure's gradient
-//   double elastic_force(value, mode)        −dU/dvalue of the stored energy, smooth within a mode
+//   S elastic_force(S value, mode)           −dU/dvalue of the stored energy, smooth within a mode
 //   double energy(value)                     U
 //   and, if k_watches > 0: mode_at, next_mode, watch, transition.
-// It dissipates (elastic_force − force)·rate.
+// It dissipates (elastic_force − force)·rate. A law that takes doubles only where S or watch() stands is not written down
+// (mbd/tape/traced.h).
 #pragma once
 
 #include "mbd/math/dual.h"
@@ -52,6 +53,13 @@ Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluatio
   return f;
 }
 
+/// Laws whose functions are templates can be written down.
+template <class Law>
+concept TraceableLaw = requires(const Law& law, const Traced& x, Traced* watch) {
+  law.elastic_force(x, UnitMode{});
+  requires Law::k_watches == 0 || requires { law.watch(x, x, UnitMode{}, watch, watch); };
+};
+
 template <class Measure, class Law> class LawGroup final : public ForceGroup {
 public:
   struct Entry {
@@ -65,20 +73,10 @@ public:
   };
   std::vector<Entry> entries;
 
-  void add_forces(Evaluation& e) const override {
-    double dissipation = 0.0; // in a register: a sum in memory would chain the elements to each other
-    for (const Entry& entry : entries) {
-      const auto m =
-          entry.measure.template at<false, double>(e.link_motion[entry.link], Origin{});
-      const double f = entry.law.force(m.value, m.rate, mode_of(entry, e));
-      if constexpr (Law::k_is_contact) e.contact_force[entry.contact] = f;
-      if constexpr (Law::k_watches > 0)
-        entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch,
-                        e.watch_rate + entry.watch);
-      if (f != 0.0) apply_force(e.link_force[entry.link], m, f);
-      dissipation += (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
-    }
-    e.dissipation += dissipation;
+  void add_forces(Evaluation& e) const override { add_forces_to(e); }
+  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
+    if constexpr (TraceableLaw<Law>) add_forces_to(e);
+    return TraceableLaw<Law>;
   }
 
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
@@ -140,7 +138,22 @@ public:
   }
 
 private:
-  static UnitMode mode_of(const Entry& entry, const Evaluation& e) {
+  template <class S> STEPLAP_INLINE void add_forces_to(Evaluated<S>& e) const {
+    S dissipation{0.0}; // in a register: a sum in memory would chain the elements to each other
+    for (const Entry& entry : entries) {
+      const auto m = entry.measure.template at<false, S>(e.link_motion[entry.link], Origin{});
+      const S f = entry.law.force(m.value, m.rate, mode_of(entry, e));
+      if constexpr (Law::k_is_contact) e.contact_force[entry.contact] = f;
+      if constexpr (Law::k_watches > 0)
+        entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch,
+                        e.watch_rate + entry.watch);
+      if (!is_surely_zero(f)) apply_force(e.link_force[entry.link], m, f);
+      dissipation += (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
+    }
+    e.dissipation += dissipation;
+  }
+
+  template <class S> static UnitMode mode_of(const Entry& entry, const Evaluated<S>& e) {
     if constexpr (Law::k_watches > 0) return e.mode[entry.unit];
     return 0;
   }

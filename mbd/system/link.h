@@ -42,9 +42,9 @@ private:
 };
 
 /// Motion of a in b's axes, about b's centre of gravity.
-STEPLAP_INLINE Motion<double> seen_from(const Motion<double>& a, const Motion<double>& b) {
-  Motion<double> m;
-  const double dx = a.x - b.x, dy = a.y - b.y, dvx = a.vx - b.vx, dvy = a.vy - b.vy;
+template <class S> STEPLAP_INLINE Motion<S> seen_from(const Motion<S>& a, const Motion<S>& b) {
+  Motion<S> m;
+  const S dx = a.x - b.x, dy = a.y - b.y, dvx = a.vx - b.vx, dvy = a.vy - b.vy;
   m.x = b.c * dx + b.s * dy;
   m.y = b.c * dy - b.s * dx;
   m.theta = a.theta - b.theta;
@@ -56,15 +56,24 @@ STEPLAP_INLINE Motion<double> seen_from(const Motion<double>& a, const Motion<do
   return m;
 }
 
+/// Adds the force on a member of a cluster, given at its centre, to the cluster's.
+template <class S>
+STEPLAP_INLINE void add_member_force(const BodyForceOf<S>& f, const Motion<S>& member, const Motion<S>& cluster, BodyForceOf<S>& sum) {
+  sum.fx += f.fx;
+  sum.fy += f.fy;
+  sum.m += f.m + (member.x - cluster.x) * f.fy - (member.y - cluster.y) * f.fx;
+}
+
 /// Second rate of (x, y) of that motion at zero accelerations of both bodies: centrifugal and Coriolis.
-STEPLAP_INLINE Pair<double> frame_acceleration(const Motion<double>& link, double omega_b) {
+template <class S> STEPLAP_INLINE Pair<S> frame_acceleration(const Motion<S>& link, const S& omega_b) {
   return {omega_b * (omega_b * link.x + 2.0 * link.vy), omega_b * (omega_b * link.y - 2.0 * link.vx)};
 }
 
 /// Adds the force on a, given at a's centre in b's axes, to both bodies.
-STEPLAP_INLINE void add_link_force(const BodyForce& f, const Motion<double>& link, const Motion<double>& b,
-                                   BodyForce& on_a, BodyForce& on_b) {
-  const double fx = b.c * f.fx - b.s * f.fy, fy = b.s * f.fx + b.c * f.fy;
+template <class S>
+STEPLAP_INLINE void add_link_force(const BodyForceOf<S>& f, const Motion<S>& link, const Motion<S>& b, BodyForceOf<S>& on_a,
+                                   BodyForceOf<S>& on_b) {
+  const S fx = b.c * f.fx - b.s * f.fy, fy = b.s * f.fx + b.c * f.fy;
   on_a.fx += fx;
   on_a.fy += fy;
   on_a.m += f.m;

@@ -49,9 +49,9 @@ struct AxisMeasure {
 };
 
 /// Value and rate of a coordinate in the link's frame: half of its gradient is zero.
-template <int K> struct CoordinateValue {
-  double value = 0.0, rate = 0.0;
-  Pair<double> lever_a;
+template <int K, class S> struct CoordinateValue {
+  S value{0}, rate{0};
+  Pair<S> lever_a;
 };
 
 /// The same along b's own x axis (K = 0) or y axis (K = 1), as most supports and blocks are: seen from b
@@ -64,9 +64,9 @@ template <int K> struct CoordinateMeasure {
     return along_axis().template at<WithBias, S>(a, b);
   }
   template <bool WithBias, class S>
-  STEPLAP_INLINE CoordinateValue<K> at(const Motion<double>& a, Origin) const {
+  STEPLAP_INLINE CoordinateValue<K, S> at(const Motion<S>& a, Origin) const {
     static_assert(!WithBias, "rows take AxisMeasure");
-    CoordinateValue<K> m;
+    CoordinateValue<K, S> m;
     m.lever_a = to_ground(a, point_a);
     m.value = K == 0 ? a.x + m.lever_a.x - point_b.x() : a.y + m.lever_a.y - point_b.y();
     m.rate = K == 0 ? a.vx - a.omega * m.lever_a.y : a.vy + a.omega * m.lever_a.x;

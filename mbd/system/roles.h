@@ -50,36 +50,43 @@ struct FrictionScratch {
   virtual ~FrictionScratch() = default;
 };
 
-/// Everything an evaluation reads and writes; one per thread, sized once.
-struct Evaluation {
-  double t = 0.0;
-  const Motion<double>* motion = nullptr; ///< per body
-  BodyForce* force = nullptr;             ///< per body, accumulated
-  const Motion<double>* link_motion = nullptr; ///< per slot of links (link.h): of a, seen from b
-  BodyForce* link_force = nullptr;        ///< per slot: on a, about its centre, in b's axes; accumulated
+/// What of an evaluation is on numbers of kind S, double or Traced.
+template <class S> struct Evaluated {
+  const Motion<S>* motion = nullptr;      ///< per body
+  BodyForceOf<S>* force = nullptr;        ///< per body, accumulated
+  const Motion<S>* link_motion = nullptr; ///< per slot of links (link.h): of a, seen from b
+  BodyForceOf<S>* link_force = nullptr;   ///< per slot: on a, about its centre, in b's axes; accumulated
+  S* contact_force = nullptr;             ///< per contact: normal force f ≥ 0 (N = Σ f)
+  S* watch = nullptr;                     ///< per watch slot: valid while ≥ 0
+  S* watch_rate = nullptr;                ///< its rate where the element knows it, else NaN
+  S dissipation{0.0};                     ///< W
+  S work{0.0};                            ///< W, of loads and drives
   const UnitMode* mode = nullptr;         ///< per unit
   const FrictionState* friction = nullptr;
+};
+
+/// An evaluation that is written down in one set of modes (mbd/tape).
+using TracedEvaluation = Evaluated<Traced>;
+
+/// Everything an evaluation reads and writes; one per thread, sized once.
+struct Evaluation : Evaluated<double> {
+  double t = 0.0;
   const double* memory = nullptr;         ///< of the state: anchors of rows
   const double* inner = nullptr;          ///< inner states of force elements
   double* inner_rate = nullptr;           ///< their rates: zero, unless an element says more
   FrictionScratch* const* scratch = nullptr; ///< per friction element; null where it wants none
-  double* contact_force = nullptr;        ///< per contact: normal force f ≥ 0 (N = Σ f)
-  double* watch = nullptr;                ///< per watch slot: valid while ≥ 0
-  double* watch_rate = nullptr;           ///< its rate where the element knows it, else NaN
-  double dissipation = 0.0;               ///< W
-  double work = 0.0;                      ///< W, of loads and drives
 };
 
 /// Adds f along the gradient of a measure taken in the link's frame (Origin).
-STEPLAP_INLINE void apply_force(BodyForce& link_force, const MeasureValue<double>& m, double f) {
-  const Pair<double> d = f * m.direction;
+template <class S> STEPLAP_INLINE void apply_force(BodyForceOf<S>& link_force, const MeasureValue<S>& m, const S& f) {
+  const Pair<S> d = f * m.direction;
   link_force.fx += d.x;
   link_force.fy += d.y;
   link_force.m += cross(m.lever_a, d) + f * m.couple;
 }
 
-template <int K>
-STEPLAP_INLINE void apply_force(BodyForce& link_force, const CoordinateValue<K>& m, double f) {
+template <class S, int K>
+STEPLAP_INLINE void apply_force(BodyForceOf<S>& link_force, const CoordinateValue<K, S>& m, const S& f) {
   (K == 0 ? link_force.fx : link_force.fy) += f;
   link_force.m += K == 0 ? -m.lever_a.y * f : m.lever_a.x * f;
 }
@@ -108,6 +115,9 @@ class ForceGroup {
 public:
   virtual ~ForceGroup() = default;
   virtual void add_forces(Evaluation& e) const = 0;
+  /// The same operations in the same order on numbers that are written down. False: it cannot, and nothing that it acts
+  /// in is; then evaluations go on as they are.
+  [[nodiscard]] virtual bool trace_forces(TracedEvaluation& /*e*/) const { return false; }
   [[nodiscard]] virtual double potential(const Motion<double>* motion) const = 0;
   virtual void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const = 0;
   virtual void mark_bodies(std::vector<char>& is_used) const = 0;
@@ -151,6 +161,12 @@ struct SlipScale {
 class FrictionElement {
 public:
   virtual ~FrictionElement() = default;
+  /// What slip_wrench(), watch_slip(), watch_stick() and watch_place() do, on numbers that are written down: with `rate` while
+  /// it slips, then `wrench` is found; else `wrench` is what it bears. False: it cannot.
+  [[nodiscard]] virtual bool trace_friction(const TracedEvaluation& /*e*/, const FrictionState& /*state*/, const Traced* /*rate*/,
+                                            Traced* /*wrench*/, Traced* /*watch*/) const {
+    return false;
+  }
   [[nodiscard]] virtual int dimension() const = 0; ///< 1 or 3
   /// The `dimension()` rows along which it sticks, at its present place.
   [[nodiscard]] virtual const RowSpec* rows(const FrictionState& state) const = 0;

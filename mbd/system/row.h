@@ -32,16 +32,16 @@ struct RowSpec {
 };
 
 /// Rolls are rare: out of line, so that the loops over the other rows stay short.
-template <bool WithBias, class B>
-[[gnu::noinline]] MeasureValue<double> evaluate_roll(const RowSpec& row, const Motion<double>& a, const B& b) {
+template <bool WithBias, class S, class B>
+[[gnu::noinline]] MeasureValue<S> evaluate_roll(const RowSpec& row, const Motion<S>& a, const B& b) {
   if (row.kind == MeasureKind::roll_line)
     return RollLineMeasure{row.point_a, row.point_b, row.direction, row.radius_a}.at<WithBias>(a, b);
   return RollRoundMeasure{row.point_a, row.point_b, row.direction, row.radius_a, row.radius_b}.at<WithBias>(a, b);
 }
 
 /// The row's measure of a against b: another body's motion, or Origin where a is seen from b.
-template <bool WithBias, class B>
-STEPLAP_INLINE MeasureValue<double> evaluate_row(const RowSpec& row, const Motion<double>& a, const B& b) {
+template <bool WithBias, class S, class B>
+STEPLAP_INLINE MeasureValue<S> evaluate_row(const RowSpec& row, const Motion<S>& a, const B& b) {
   switch (row.kind) {
   case MeasureKind::axis:
     return AxisMeasure{row.point_a, row.point_b, row.direction}.at<WithBias>(a, b);

@@ -1,0 +1,228 @@
+#include "mbd/dynamics/traced_evaluation.h"
+
+#include "mbd/dynamics/kinematics.h"
+#include "mbd/dynamics/reactions.h"
+#include "mbd/dynamics/row_pull.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+constexpr std::size_t k_of_lock = 3, k_of_driven_row = 2;
+
+// In the order of Dynamics::rates_at and of the parts that it calls.
+class Tracer {
+public:
+  Tracer(const System& system, const Layout& layout, const State& state)
+      : system_(system), layout_(layout), state_(state), motion_(system.bodies.size() + system.links.slot_count()),
+        force_(motion_.size()), contact_force_(system.contact_count, Traced(0.0)), watch_(system.watch_count, Traced(1.0)),
+        watch_rate_(system.watch_count, Traced(std::numeric_limits<double>::quiet_NaN())),
+        friction_force_(system.friction_row_count, Traced(0.0)) {
+    e_.motion = motion_.data();
+    e_.link_motion = motion_.data();
+    e_.force = force_.data();
+    e_.link_force = force_.data();
+    e_.contact_force = contact_force_.data();
+    e_.watch = watch_.data();
+    e_.watch_rate = watch_rate_.data();
+    e_.mode = state.mode.data();
+    e_.friction = state.friction.data();
+  }
+
+  // Throws NotTraceable.
+  void trace(const double* y, std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
+    require(is_plain());
+    take_inputs(y, time_inputs);
+    place();
+    load_rows();
+    apply_forces();
+    accelerate();
+    solve_rows(least_pivot);
+    find_power();
+    watch_friction();
+    put_out(traced);
+  }
+
+private:
+  static void require(bool holds) {
+    if (!holds) throw NotTraceable();
+  }
+
+  [[nodiscard]] bool is_plain() const {
+    return !layout_.has_joint_coordinates() && system_.inner_count() == 0 && layout_.schur.is_small() && !layout_.is_singular() &&
+           !layout_.sharing &&
+           std::all_of(layout_.active.begin(), layout_.active.end(),
+                       [](const ActiveRow& row) { return row.pull != RowPullKind::other; });
+  }
+
+  [[nodiscard]] std::size_t coordinate_count() const { return static_cast<std::size_t>(layout_.coordinate_count); }
+
+  void take_inputs(const double* y, std::span<const double> time_inputs) {
+    const std::size_t n = coordinate_count();
+    for (std::size_t i = 0; i < n; ++i) q_.push_back(Traced::input(y[i]));
+    for (std::size_t i = 0; i < n; ++i) v_.push_back(Traced::input(y[n + i]));
+    for (const double x : time_inputs) time_.push_back(Traced::input(x));
+  }
+  [[nodiscard]] const Traced* of_lock(std::size_t lock) const { return time_.data() + k_of_lock * lock; }
+  [[nodiscard]] const Traced* of_driven_row(std::size_t i) const {
+    return time_.data() + k_of_lock * layout_.locks.size() + k_of_driven_row * i;
+  }
+
+  void place() {
+    for (std::size_t k = 0; k < layout_.clusters.size(); ++k) place_cluster(&q_[3 * k], &v_[3 * k], motion_[layout_.slots[k]]);
+    for (std::size_t i = 0; i < layout_.locks.size(); ++i) {
+      const Lock& lock = layout_.locks[i];
+      place_locked(lock.coordinate, of_lock(i)[0], of_lock(i)[1], motion_[layout_.slots[lock.cluster]]);
+    }
+    for (const int i : layout_.riding)
+      place_in_cluster(layout_.placements[i], motion_[layout_.clusters[layout_.placements[i].cluster].motion], motion_[i]);
+    for (const ActiveLink& link : layout_.links) motion_[link.slot] = seen_from(motion_[link.a], motion_[link.b]);
+  }
+
+  void load_rows() {
+    for (std::size_t r = 0; r < layout_.active.size(); ++r) {
+      const SchurRow& known = layout_.schur_rows[r];
+      SchurRowOf<Traced>& row = rows_.emplace_back();
+      row.is_constant = known.is_constant;
+      for (int side = 0; side < 2; ++side) {
+        row.body[side] = known.body[side];
+        for (int c = 0; c < 3; ++c) {
+          row.w[side][c] = known.w[side][c];
+          if (!known.is_constant) continue;
+          row.j[side][c] = known.j[side][c];
+          row.wj[side][c] = known.wj[side][c];
+        }
+      }
+      const ActiveRow& active = layout_.active[r];
+      multiplier_.push_back(active.pull == RowPullKind::angle ? Traced(0.0) : pull_simple_row(active, row, motion_.data()));
+    }
+  }
+
+  void apply_forces() {
+    for (const auto& group : system_.groups) require(group->trace_forces(e_));
+    for (std::size_t i = 0; i < layout_.sliding.size(); ++i) slide(layout_.sliding[i], layout_.sliding_link[i]);
+    for (const ActiveLink& link : layout_.links) {
+      const BodyForceOf<Traced>& f = force_[link.slot];
+      if (is_surely_zero(f.fx) && is_surely_zero(f.fy) && is_surely_zero(f.m)) continue;
+      add_link_force(f, motion_[link.slot], motion_[link.b], force_[link.a], force_[link.b]);
+    }
+    for (const int i : layout_.riding) {
+      const int slot = layout_.slots[layout_.placements[i].cluster];
+      add_member_force(force_[i], motion_[i], motion_[slot], force_[slot]);
+    }
+  }
+
+  void slide(int f, int link) {
+    const FrictionUnit& unit = system_.frictions[f];
+    const RowSpec* const rows = unit.friction->rows(state_.friction[f]);
+    const int n = unit.friction->dimension();
+    MeasureValue<Traced> m[3];
+    Traced rate[3], wrench[3];
+    for (int r = 0; r < n; ++r) {
+      m[r] = evaluate_row<false>(rows[r], motion_[link], Origin{});
+      rate[r] = m[r].rate;
+    }
+    require(unit.friction->trace_friction(e_, state_.friction[f], rate, wrench, &watch_[unit.watch]));
+    for (int r = 0; r < n; ++r) {
+      apply_force(force_[link], m[r], wrench[r]);
+      e_.dissipation -= wrench[r] * rate[r];
+    }
+  }
+
+  void accelerate() {
+    for (std::size_t k = 0; k < layout_.clusters.size(); ++k) {
+      const BodyForceOf<Traced>& f = force_[layout_.slots[k]];
+      const double* const w = &layout_.inverse_mass[3 * k];
+      const double* const weight = &layout_.weight[3 * k];
+      a_.push_back(w[0] * (weight[0] + f.fx));
+      a_.push_back(w[1] * (weight[1] + f.fy));
+      a_.push_back(w[2] * (weight[2] + f.m));
+    }
+    for (std::size_t i = 0; i < layout_.locks.size(); ++i)
+      a_[static_cast<std::size_t>(3 * layout_.locks[i].cluster + layout_.locks[i].coordinate)] = of_lock(i)[2];
+  }
+
+  void solve_rows(double least_pivot) {
+    for (std::size_t r = 0; r < rows_.size(); ++r) multiplier_[r] = less_accelerations(rows_[r], multiplier_[r], a_.data());
+    for (std::size_t i = 0; i < layout_.driven_rows.size(); ++i) multiplier_[layout_.driven_rows[i]] += of_driven_row(i)[0];
+    if (rows_.empty()) return;
+    layout_.schur.trace(rows_, least_pivot, multiplier_.data());
+    add_responses(rows_.data(), rows_.size(), multiplier_.data(), a_.data());
+  }
+
+  void find_power() {
+    Traced of_drives(0.0);
+    for (std::size_t i = 0; i < layout_.driven_rows.size(); ++i) of_drives += multiplier_[layout_.driven_rows[i]] * of_driven_row(i)[1];
+    e_.work += of_drives;
+    for (std::size_t i = 0; i < layout_.locks.size(); ++i) {
+      const Lock& lock = layout_.locks[i];
+      e_.work += missing_force(layout_, lock, force_[layout_.clusters[lock.cluster].motion], a_.data(), rows_.data(),
+                               multiplier_.data()) * of_lock(i)[1];
+    }
+  }
+
+  void watch_friction() {
+    for (const HeldRow& held : layout_.held_rows) friction_force_[held.friction_row] = multiplier_[held.row];
+    for (const int f : layout_.holding) {
+      const FrictionUnit& unit = system_.frictions[f];
+      require(unit.friction->trace_friction(e_, state_.friction[f], nullptr, &friction_force_[unit.row], &watch_[unit.watch]));
+    }
+  }
+
+  void put_out(TracedRates& traced) {
+    for (const Traced& a : a_) Traced::output(a);
+    Traced::output(e_.dissipation);
+    Traced::output(e_.work);
+    traced.watches.clear();
+    for (std::size_t i = 0; i < watch_.size(); ++i) {
+      if (watch_[i].is_constant()) continue; // as the evaluation before has left it
+      traced.watches.push_back(static_cast<int>(i));
+      Traced::output(watch_[i]);
+    }
+    traced.outputs.clear();
+    for (const Traced& a : a_) traced.outputs.push_back(value_of(a));
+    traced.outputs.push_back(value_of(e_.dissipation));
+    traced.outputs.push_back(value_of(e_.work));
+    for (const int slot : traced.watches) traced.outputs.push_back(value_of(watch_[slot]));
+  }
+
+  const System& system_;
+  const Layout& layout_;
+  const State& state_;
+  std::vector<Motion<Traced>> motion_;
+  std::vector<BodyForceOf<Traced>> force_;
+  std::vector<Traced> contact_force_, watch_, watch_rate_, friction_force_;
+  std::vector<Traced> q_, v_, time_, a_, multiplier_;
+  std::vector<SchurRowOf<Traced>> rows_;
+  TracedEvaluation e_;
+};
+
+// Whatever ends it, nothing goes on being written down.
+struct Writing {
+  explicit Writing(Tape& tape) { Traced::start(tape); }
+  ~Writing() { Traced::finish(); }
+  Writing(const Writing&) = delete;
+  Writing& operator=(const Writing&) = delete;
+};
+
+} // namespace
+
+std::size_t time_input_count(const Layout& layout) {
+  return k_of_lock * layout.locks.size() + k_of_driven_row * layout.driven_rows.size();
+}
+
+bool trace_rates(const System& system, const Layout& layout, const State& state, const double* y,
+                 std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
+  const Writing writing(traced.tape);
+  try {
+    Tracer(system, layout, state).trace(y, time_inputs, least_pivot, traced);
+  } catch (const NotTraceable&) {
+    return false;
+  }
+  return true;
+}
+
+} // namespace steplap

@@ -1,0 +1,31 @@
+// An evaluation of one layout in one set of modes, written down (mbd/tape).
+//
+// The same templates that evaluate doubles run once on numbers that write down what is done with them: no second statement of
+// the equations. What hangs on time alone (drives) is an input, computed as ever. What it leaves out is what nobody asks of a
+// stage inside a step: reactions, and whether the constraints come near a singular position, where it refuses.
+#pragma once
+
+#include "mbd/dynamics/layout.h"
+#include "mbd/tape/tape.h"
+
+#include <span>
+#include <vector>
+
+namespace steplap {
+
+struct TracedRates {
+  Tape tape;                   ///< inputs: coordinates and rates, then the time's; outputs: accelerations, dissipation, work, watches
+  std::vector<int> watches;    ///< the slots of those
+  std::vector<double> outputs; ///< for the inputs traced
+};
+
+/// The numbers of a layout that follow from time: of each lock value, rate and acceleration, of each driven row acceleration and
+/// rate.
+[[nodiscard]] std::size_t time_input_count(const Layout& layout);
+
+/// At coordinates and rates y and the time's numbers. False if some part of the scene is not traced: elements with laws of
+/// their own, joint coordinates, more than a few rows, rows that depend on each other. `least_pivot`: the tape's condition.
+[[nodiscard]] bool trace_rates(const System& system, const Layout& layout, const State& state, const double* y,
+                               std::span<const double> time_inputs, double least_pivot, TracedRates& traced);
+
+} // namespace steplap

@@ -1,0 +1,85 @@
+// A number that writes down what is done with it (tape.h).
+//
+// Templates of the equations of motion that take doubles take these as well: beside the value, which is computed as a double
+// is, each carries the step of the tape that makes it. What is known when the tape is written (masses, places in the
+// file) is a constant; what constants alone make is one, too. A comparison that hangs on anything else decides for the
+// values at hand, and what it found becomes a condition of the tape: another branch is never taken in silence. There is no
+// way from a traced number back to a double but value_of(), which is for those who look at results.
+//
+// A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, §4 (evaluation traces).
+#pragma once
+
+#include "mbd/math/portable_math.h"
+#include "mbd/tape/tape.h"
+
+#include <cmath>
+
+namespace steplap {
+
+/// What is asked of the values at hand does not hold: no tape of them.
+struct NotTraceable {};
+
+class Traced {
+public:
+  Traced() = default;
+  Traced(double constant) : value_(constant) {} // NOLINT: a number of the file is a Traced
+
+  /// Written by one thread at a time, between start() and finish().
+  static void start(Tape& tape);
+  static void finish();
+  /// The next input; its value now.
+  [[nodiscard]] static Traced input(double value);
+  /// To be the next output.
+  static void output(const Traced& x);
+
+  /// Known whatever the inputs are?
+  [[nodiscard]] bool is_constant() const { return step_ < 0; }
+  friend double value_of(const Traced& x) { return x.value_; }
+
+  friend Traced operator+(const Traced& a, const Traced& b) { return made(TapeOperation::add, a, b, a.value_ + b.value_); }
+  friend Traced operator-(const Traced& a, const Traced& b) { return made(TapeOperation::subtract, a, b, a.value_ - b.value_); }
+  friend Traced operator*(const Traced& a, const Traced& b) { return made(TapeOperation::multiply, a, b, a.value_ * b.value_); }
+  friend Traced operator/(const Traced& a, const Traced& b) { return made(TapeOperation::divide, a, b, a.value_ / b.value_); }
+  friend Traced operator-(const Traced& a) { return made(TapeOperation::negate, a, a, -a.value_); }
+  Traced& operator+=(const Traced& o) { return *this = *this + o; }
+  Traced& operator-=(const Traced& o) { return *this = *this - o; }
+  Traced& operator*=(const Traced& o) { return *this = *this * o; }
+
+  friend bool operator<(const Traced& a, const Traced& b) { return decided(a, b); }
+  friend bool operator>(const Traced& a, const Traced& b) { return decided(b, a); }
+
+  friend Traced sqrt(const Traced& a) { return made(TapeOperation::square_root, a, a, std::sqrt(a.value_)); }
+  friend Traced abs(const Traced& a) { return made(TapeOperation::absolute, a, a, std::abs(a.value_)); }
+  /// As std::min and std::max do it where both are equal, or one is no number.
+  friend Traced least_of(const Traced& a, const Traced& b) { return made(TapeOperation::minimum, b, a, b.value_ < a.value_ ? b.value_ : a.value_); }
+  friend Traced greatest_of(const Traced& a, const Traced& b) { return made(TapeOperation::maximum, a, b, a.value_ < b.value_ ? b.value_ : a.value_); }
+  friend void find_sin_cos(const Traced& a, Traced& sine, Traced& cosine) {
+    const portable::SinCos turn = portable::sin_cos(a.value_);
+    sine = made(TapeOperation::sine, a, a, turn.sin);
+    cosine = made(TapeOperation::cosine, a, a, turn.cos);
+  }
+  /// No operation of a tape.
+  friend Traced atan2(const Traced& /*y*/, const Traced& /*x*/) { throw NotTraceable(); }
+
+private:
+  static Traced made(TapeOperation operation, const Traced& a, const Traced& b, double value);
+  static bool decided(const Traced& a, const Traced& b);
+  [[nodiscard]] std::int32_t step() const;
+
+  double value_ = 0.0;
+  std::int32_t step_ = -1; ///< −1: a constant
+};
+
+/// Zero whatever the inputs are; of a double: zero. What is skipped then adds nothing to a sum that began with +0.
+inline bool is_surely_zero(double x) { return x == 0.0; }
+inline bool is_surely_zero(const Traced& x) { return x.is_constant() && value_of(x) == 0.0; }
+
+inline double least_of(double a, double b) { return b < a ? b : a; }
+inline double greatest_of(double a, double b) { return a < b ? b : a; }
+inline void find_sin_cos(double a, double& sine, double& cosine) {
+  const portable::SinCos turn = portable::sin_cos(a);
+  sine = turn.sin;
+  cosine = turn.cos;
+}
+
+} // namespace steplap
