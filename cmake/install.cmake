@@ -9,7 +9,7 @@ add_library(steplap::steplap ALIAS steplap_library)
 target_link_libraries(steplap_library INTERFACE steplap_transformer)
 target_compile_features(steplap_library INTERFACE cxx_std_20)
 
-set(rooms math mbd io patch_exact patch elements transformer library)
+set(rooms math tape mbd io patch_exact patch elements transformer library)
 list(TRANSFORM rooms PREPEND steplap_ OUTPUT_VARIABLE libraries)
 foreach(room ${rooms})
   set_target_properties(steplap_${room} PROPERTIES EXPORT_NAME ${room})

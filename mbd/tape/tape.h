@@ -4,7 +4,8 @@
 // An evaluation of the equations of motion in one set of modes makes the same operations each time, on other numbers.
 // Written down once (traced.h) they can be done again by machine code made for them (machine_code.h), for one sample or for
 // several in the lanes of one register. Each operation rounds as IEEE 754 says, in the order in which it was written down:
-// the results have the same bits as those of the code that was traced.
+// the results have the same bits as those of the code that was traced. (Tapes: A. Griewank, A. Walther, Evaluating
+// Derivatives, 2nd ed., SIAM 2008, ch. 4.)
 #pragma once
 
 #include <cstdint>
@@ -30,6 +31,21 @@ enum class TapeOperation : std::uint8_t {
   if_not_less, ///< no value: where not a < b, as with NaN
 };
 
+[[nodiscard]] constexpr bool is_condition(TapeOperation o) {
+  return o == TapeOperation::if_less || o == TapeOperation::if_not_less;
+}
+[[nodiscard]] constexpr bool is_given(TapeOperation o) {
+  return o == TapeOperation::input || o == TapeOperation::constant;
+}
+/// a and b may change places: the same bits, but for which of two NaN it is.
+[[nodiscard]] constexpr bool is_commutative(TapeOperation o) {
+  return o == TapeOperation::add || o == TapeOperation::multiply;
+}
+[[nodiscard]] constexpr bool takes_two(TapeOperation o) {
+  using enum TapeOperation;
+  return is_commutative(o) || o == subtract || o == divide || o == minimum || o == maximum || is_condition(o);
+}
+
 struct TapeStep {
   TapeOperation operation = TapeOperation::constant;
   std::int32_t a = 0, b = 0;
@@ -44,8 +60,9 @@ struct Tape {
   std::vector<std::int32_t> outputs; ///< the steps whose values are wanted
 };
 
-/// Without what no output and no condition hangs on, and with steps that are equal made once: the same bits, and constants
-/// in the same places.
+/// Without what no output and no condition hangs on, with steps that are equal made once, and with signs turned where that
+/// costs nothing (x + (−y) is x − y): the same bits, but for the sign of a NaN, and constants in the same places. Values of
+/// constants are not looked at. Linear in the number of steps. Steps of the tape take values of steps before them only.
 [[nodiscard]] Tape simplified(const Tape& tape);
 
 /// Does the steps one after another; false, with outputs untouched, where a condition fails. Slow: what others are compared with.

@@ -16,12 +16,12 @@ namespace {
 
 // In the order of the data: a model is read, compiled, moved, asked.
 const std::vector<std::string> k_rooms = {
-    "mbd/math",   "mbd/base",       "mbd/model",    "mbd/system", "mbd/dynamics",   "mbd/friction", "mbd/integrators",
+    "mbd/math",   "mbd/base",       "mbd/tape",     "mbd/model",  "mbd/system", "mbd/dynamics",   "mbd/friction", "mbd/integrators",
     "mbd/events", "mbd/simulation", "mbd/analysis", "mbd/io",     "elements/patch", "elements",     "transformer",
     "tools"};
 
 // Headers of libraries, of which one file of the product knows.
-const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h"};
+const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/"};
 
 struct Source {
   std::string path;

@@ -1,0 +1,338 @@
+#include "mbd/tape/machine_code.h"
+
+#include "mbd/math/portable_math.h"
+#include "mbd/tape/register_plan.h"
+
+#include <asmjit/x86.h>
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+namespace x86 = asmjit::x86;
+using Kind = PlannedInstruction::Kind;
+
+constexpr int k_most_slots = 30000;
+constexpr int k_masks_size = 128; ///< bytes before the first instruction: −0 and the bits besides its sign, eight times each
+// What the frame begins with where functions are called: the arguments and the lanes that hold.
+constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_lanes = 24, k_saved_size = 64;
+
+InstructionSet find_best_instructions() {
+  const auto& features = asmjit::CpuInfo::host().features().x86();
+  if (!features.hasAVX()) return InstructionSet::sse2;
+  const bool has_512 = features.hasAVX512_F() && features.hasAVX512_VL() && features.hasAVX512_DQ();
+  return has_512 ? InstructionSet::avx512 : InstructionSet::avx;
+}
+
+template <int lanes>
+void sin_cos_lanes(const double* x, double* sines, double* cosines) {
+  for (int l = 0; l < lanes; ++l) {
+    const portable::SinCos of = portable::sin_cos(x[l]);
+    sines[l] = of.sin;
+    cosines[l] = of.cos;
+  }
+}
+
+std::uint64_t sin_cos_address(int lanes) {
+  const auto function = lanes == 1 ? sin_cos_lanes<1> : lanes == 2 ? sin_cos_lanes<2> : lanes == 4 ? sin_cos_lanes<4> : sin_cos_lanes<8>;
+  return reinterpret_cast<std::uint64_t>(function);
+}
+
+/// Instructions by what they work on.
+struct InstructionNames {
+  using Id = asmjit::InstId;
+  Id load, move, add, subtract, multiply, divide, square_root, minimum, maximum, exclusive_or, bit_and, compare;
+};
+
+InstructionNames names_for(bool is_packed, bool has_three_operands) {
+  namespace I = x86::Inst;
+  if (is_packed && has_three_operands)
+    return {I::kIdVmovupd, I::kIdVmovapd, I::kIdVaddpd, I::kIdVsubpd, I::kIdVmulpd, I::kIdVdivpd,
+            I::kIdVsqrtpd, I::kIdVminpd, I::kIdVmaxpd, I::kIdVxorpd, I::kIdVandpd, I::kIdVcmppd};
+  if (is_packed)
+    return {I::kIdMovupd, I::kIdMovapd, I::kIdAddpd, I::kIdSubpd, I::kIdMulpd, I::kIdDivpd,
+            I::kIdSqrtpd, I::kIdMinpd, I::kIdMaxpd, I::kIdXorpd, I::kIdAndpd, I::kIdCmppd};
+  if (has_three_operands)
+    return {I::kIdVmovsd, I::kIdVmovapd, I::kIdVaddsd, I::kIdVsubsd, I::kIdVmulsd, I::kIdVdivsd,
+            I::kIdVsqrtsd, I::kIdVminsd, I::kIdVmaxsd, I::kIdVxorpd, I::kIdVandpd, I::kIdVucomisd};
+  return {I::kIdMovsd, I::kIdMovapd, I::kIdAddsd, I::kIdSubsd, I::kIdMulsd, I::kIdDivsd,
+          I::kIdSqrtsd, I::kIdMinsd, I::kIdMaxsd, I::kIdXorpd, I::kIdAndpd, I::kIdUcomisd};
+}
+
+RegisterRules rules_for(int lanes, InstructionSet instructions) {
+  RegisterRules rules;
+  const bool has_avx = instructions != InstructionSet::sse2, has_512 = instructions == InstructionSet::avx512;
+  rules.registers = has_512 ? 32 : 16;
+  rules.has_three_operands = has_avx;
+  rules.takes_given_in_memory = lanes == 1 || has_avx; // packed SSE2 wants operands in memory aligned
+  rules.conditions_take_register = lanes > 1 && !has_512;
+  rules.swaps_conditions = lanes == 1; // a < b is b > a, whose jump is not taken with NaN
+  rules.stores_at_once = lanes > 1;
+  return rules;
+}
+
+/// An instruction that there is not would be a fault of this file.
+class Faults : public asmjit::ErrorHandler {
+public:
+  void handleError(asmjit::Error, const char* message, asmjit::BaseEmitter*) override {
+    throw std::logic_error(std::string("machine code: ") + message);
+  }
+};
+
+/// Writes the instructions of a plan.
+class Writer {
+public:
+  Writer(x86::Assembler& to, const RegisterPlan& plan, int lanes, InstructionSet instructions)
+      : a_(to), plan_(plan), lanes_(lanes), instructions_(instructions), has_avx_(instructions != InstructionSet::sse2),
+        names_(names_for(lanes > 1, has_avx_)), all_lanes_((1u << lanes) - 1) {}
+
+  void write() {
+    masks();
+    begin();
+    for (const PlannedInstruction& i : plan_.instructions) write(i);
+    end();
+  }
+
+private:
+  void masks() {
+    sign_bits_ = a_.newLabel();
+    value_bits_ = a_.newLabel();
+    failed_ = a_.newLabel();
+    a_.bind(sign_bits_);
+    a_.embedUInt64(0x8000000000000000u, 8);
+    a_.bind(value_bits_);
+    a_.embedUInt64(0x7fffffffffffffffu, 8);
+  }
+
+  bool has_frame() const { return plan_.slots > 0 || plan_.has_calls; }
+  bool counts_lanes() const { return lanes_ > 1 && plan_.conditions > 0; }
+  bool has_512() const { return instructions_ == InstructionSet::avx512; }
+  int slots_begin() const { return plan_.has_calls ? k_saved_size : 0; }
+
+  void begin() {
+    if (has_frame()) {
+      a_.push(x86::rbp);
+      a_.mov(x86::rbp, x86::rsp);
+      a_.sub(x86::rsp, slots_begin() + 8 * lanes_ * plan_.slots);
+      a_.and_(x86::rsp, -64);
+    }
+    if (plan_.has_calls) {
+      a_.mov(x86::ptr(x86::rsp, k_saved_inputs), x86::rdi);
+      a_.mov(x86::ptr(x86::rsp, k_saved_constants), x86::rsi);
+      a_.mov(x86::ptr(x86::rsp, k_saved_outputs), x86::rdx);
+    }
+    if (counts_lanes()) {
+      a_.mov(x86::eax, all_lanes_);
+      if (has_512()) a_.kmovw(x86::k1, x86::eax);
+    }
+  }
+
+  void end() {
+    if (!counts_lanes())
+      a_.mov(x86::eax, all_lanes_);
+    else if (has_512())
+      a_.kmovw(x86::eax, x86::k1);
+    leave();
+    if (lanes_ > 1 || plan_.conditions == 0) return;
+    a_.bind(failed_);
+    a_.xor_(x86::eax, x86::eax);
+    leave();
+  }
+
+  void leave() {
+    if (lanes_ > 1 && has_avx_) a_.vzeroupper();
+    if (has_frame()) {
+      a_.mov(x86::rsp, x86::rbp);
+      a_.pop(x86::rbp);
+    }
+    a_.ret();
+  }
+
+  asmjit::Operand reg(int index) const {
+    const auto id = static_cast<std::uint32_t>(index);
+    if (lanes_ <= 2) return x86::Xmm(id);
+    if (lanes_ == 4) return x86::Ymm(id);
+    return x86::Zmm(id);
+  }
+
+  x86::Mem memory(Place place) const {
+    const std::int32_t offset = 8 * lanes_ * place.index;
+    switch (place.kind) {
+    case Place::Kind::input: return x86::ptr(x86::rdi, offset);
+    case Place::Kind::constant: return x86::ptr(x86::rsi, offset);
+    case Place::Kind::output: return x86::ptr(x86::rdx, offset);
+    case Place::Kind::slot: return x86::ptr(x86::rsp, slots_begin() + offset);
+    case Place::Kind::sign_bits: return x86::ptr(sign_bits_);
+    default: return x86::ptr(value_bits_);
+    }
+  }
+
+  asmjit::Operand operand(Place place) const {
+    if (place.kind == Place::Kind::in_register) return reg(place.index);
+    return memory(place);
+  }
+
+  void write(const PlannedInstruction& i) {
+    switch (i.kind) {
+    case Kind::load: a_.emit(names_.load, reg(i.destination), memory(i.second)); break;
+    case Kind::move: a_.emit(names_.move, reg(i.destination), reg(i.second.index)); break;
+    case Kind::store: a_.emit(names_.load, memory(i.second), reg(i.first)); break;
+    case Kind::arithmetic: arithmetic(i); break;
+    case Kind::condition: lanes_ == 1 ? condition(i) : conditions(i); break;
+    case Kind::sin_cos: call(i); break;
+    }
+  }
+
+  asmjit::InstId name_of(TapeOperation operation) const {
+    switch (operation) {
+    case TapeOperation::add: return names_.add;
+    case TapeOperation::subtract: return names_.subtract;
+    case TapeOperation::multiply: return names_.multiply;
+    case TapeOperation::divide: return names_.divide;
+    case TapeOperation::minimum: return names_.minimum;
+    case TapeOperation::maximum: return names_.maximum;
+    case TapeOperation::negate: return names_.exclusive_or;
+    case TapeOperation::absolute: return names_.bit_and;
+    default: return names_.square_root;
+    }
+  }
+
+  // min a, b is a < b ? a : b, of the processor as of the tape; max a, b is a > b ? a : b, hence b and a change places.
+  void arithmetic(const PlannedInstruction& i) {
+    const asmjit::InstId name = name_of(i.operation);
+    if (i.operation == TapeOperation::square_root) {
+      if (has_avx_ && lanes_ == 1)
+        a_.emit(name, reg(i.destination), reg(i.first), reg(i.first));
+      else
+        a_.emit(name, reg(i.destination), reg(i.first));
+    } else if (has_avx_) {
+      a_.emit(name, reg(i.destination), reg(i.first), operand(i.second));
+    } else {
+      a_.emit(name, reg(i.destination), operand(i.second));
+    }
+  }
+
+  // first is b, second a: where a < b, b is above.
+  void condition(const PlannedInstruction& i) {
+    a_.emit(names_.compare, reg(i.first), operand(i.second));
+    if (i.operation == TapeOperation::if_less)
+      a_.jbe(failed_); // a NaN among them counts as below
+    else
+      a_.ja(failed_);
+  }
+
+  void conditions(const PlannedInstruction& i) {
+    const int predicate = i.operation == TapeOperation::if_less ? 1 : 5; // less; not less, or a NaN among them
+    if (has_512()) {
+      a_.k(x86::k1).emit(names_.compare, x86::k1, reg(i.first), operand(i.second), asmjit::imm(predicate));
+      return;
+    }
+    if (has_avx_) {
+      a_.emit(names_.compare, reg(i.destination), reg(i.first), operand(i.second), asmjit::imm(predicate));
+      a_.emit(x86::Inst::kIdVmovmskpd, x86::ecx, reg(i.destination));
+    } else {
+      a_.emit(names_.compare, reg(i.destination), operand(i.second), asmjit::imm(predicate));
+      a_.emit(x86::Inst::kIdMovmskpd, x86::ecx, reg(i.destination));
+    }
+    a_.and_(x86::eax, x86::ecx);
+  }
+
+  void call(const PlannedInstruction& i) {
+    if (counts_lanes()) {
+      if (has_512()) a_.kmovw(x86::eax, x86::k1);
+      a_.mov(x86::ptr(x86::rsp, k_saved_lanes), x86::eax);
+    }
+    a_.lea(x86::rdi, memory(i.second));
+    a_.lea(x86::rsi, memory({Place::Kind::slot, i.sine_slot}));
+    a_.lea(x86::rdx, memory({Place::Kind::slot, i.cosine_slot}));
+    a_.mov(x86::rax, sin_cos_address(lanes_));
+    if (lanes_ > 1 && has_avx_) a_.vzeroupper();
+    a_.call(x86::rax);
+    a_.mov(x86::rdi, x86::ptr(x86::rsp, k_saved_inputs));
+    a_.mov(x86::rsi, x86::ptr(x86::rsp, k_saved_constants));
+    a_.mov(x86::rdx, x86::ptr(x86::rsp, k_saved_outputs));
+    if (counts_lanes()) {
+      a_.mov(x86::eax, x86::ptr(x86::rsp, k_saved_lanes));
+      if (has_512()) a_.kmovw(x86::k1, x86::eax);
+    }
+  }
+
+  x86::Assembler& a_;
+  const RegisterPlan& plan_;
+  const int lanes_;
+  const InstructionSet instructions_;
+  const bool has_avx_;
+  const InstructionNames names_;
+  const std::uint32_t all_lanes_;
+  asmjit::Label sign_bits_, value_bits_, failed_;
+};
+
+} // namespace
+
+bool MachineCode::is_available() {
+  return true;
+}
+
+InstructionSet MachineCode::best_instructions() {
+  static const InstructionSet best = find_best_instructions();
+  return best;
+}
+
+int MachineCode::most_lanes(InstructionSet instructions) {
+  return instructions == InstructionSet::sse2 ? 2 : instructions == InstructionSet::avx ? 4 : 8;
+}
+
+MachineCode::MachineCode(const Tape& tape, int lanes, InstructionSet instructions) : lanes_(lanes) {
+  if (lanes < 1 || lanes > most_lanes(instructions) || !std::has_single_bit(static_cast<unsigned>(lanes)))
+    throw std::invalid_argument("machine code: 1, 2, 4 or 8 lanes, as many as a register has");
+  if (instructions > best_instructions()) throw std::invalid_argument("machine code: the processor has no such instructions");
+  const RegisterPlan plan = plan_registers(tape, order_of_steps(tape), rules_for(lanes, instructions));
+  if (plan.slots > k_most_slots) return;
+
+  Faults faults;
+  asmjit::CodeHolder code;
+  code.init(asmjit::Environment::host());
+  code.setErrorHandler(&faults);
+  x86::Assembler assembler(&code);
+  code.reserveBuffer(&code.textSection()->buffer(), 1024 + 12 * plan.instructions.size());
+  Writer(assembler, plan, lanes, instructions).write();
+  if (code.hasUnresolvedLinks()) throw std::logic_error("machine code: a jump leads nowhere");
+
+  // Pages are written first and executed then, never both.
+  const asmjit::CodeBuffer& bytes = code.textSection()->buffer();
+  namespace pages = asmjit::VirtMem;
+  if (pages::alloc(&memory_, bytes.size(), pages::MemoryFlags::kAccessRW) != asmjit::kErrorOk) return;
+  memory_size_ = bytes.size();
+  std::copy_n(bytes.data(), bytes.size(), static_cast<std::uint8_t*>(memory_));
+  if (pages::protect(memory_, memory_size_, pages::MemoryFlags::kAccessRX) != asmjit::kErrorOk) return;
+  pages::flushInstructionCache(memory_, memory_size_);
+  code_size_ = bytes.size() - k_masks_size;
+  instruction_count_ = plan.instructions.size();
+  run_ = reinterpret_cast<Run>(static_cast<std::uint8_t*>(memory_) + k_masks_size);
+}
+
+MachineCode::MachineCode(MachineCode&& other) noexcept {
+  *this = std::move(other);
+}
+
+MachineCode& MachineCode::operator=(MachineCode&& other) noexcept {
+  std::swap(run_, other.run_);
+  std::swap(memory_, other.memory_);
+  std::swap(memory_size_, other.memory_size_);
+  std::swap(code_size_, other.code_size_);
+  std::swap(instruction_count_, other.instruction_count_);
+  std::swap(lanes_, other.lanes_);
+  return *this;
+}
+
+MachineCode::~MachineCode() {
+  if (memory_size_ > 0) asmjit::VirtMem::release(memory_, memory_size_);
+}
+
+} // namespace steplap

@@ -1,0 +1,26 @@
+// What stands for machine_code.cpp where the program is built without machine code.
+#include "mbd/tape/machine_code.h"
+
+#include <utility>
+
+namespace steplap {
+
+bool MachineCode::is_available() {
+  return false;
+}
+InstructionSet MachineCode::best_instructions() {
+  return InstructionSet::sse2;
+}
+int MachineCode::most_lanes(InstructionSet) {
+  return 1;
+}
+
+MachineCode::MachineCode(const Tape&, int lanes, InstructionSet) : lanes_(lanes) {}
+MachineCode::MachineCode(MachineCode&& other) noexcept : lanes_(other.lanes_) {}
+MachineCode& MachineCode::operator=(MachineCode&& other) noexcept {
+  lanes_ = other.lanes_;
+  return *this;
+}
+MachineCode::~MachineCode() = default;
+
+} // namespace steplap

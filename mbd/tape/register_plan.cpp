@@ -1,0 +1,447 @@
+#include "mbd/tape/register_plan.h"
+
+#include <bit>
+#include <limits>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+using enum TapeOperation;
+using Kind = PlannedInstruction::Kind;
+
+constexpr std::int32_t k_never = std::numeric_limits<std::int32_t>::max();
+constexpr std::int32_t k_none = -1;
+constexpr std::int32_t k_store_outputs = -1; ///< in the order: outputs known so far are stored
+
+std::size_t at(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+class Planner {
+public:
+  Planner(const Tape& tape, const std::vector<std::int32_t>& order, const RegisterRules& rules)
+      : tape_(tape), rules_(rules), values_(tape.steps.size()), free_(rules.registers == 32 ? ~0u : (1u << rules.registers) - 1) {
+    arrange(order);
+    list_outputs();
+    pair_calls();
+    find_next_uses();
+  }
+
+  RegisterPlan plan() {
+    plan_.instructions.reserve(2 * order_.size());
+    for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
+      const TapeStep& s = tape_.steps[i];
+      if (s.operation == input) values_[i].home = {Place::Kind::input, s.a};
+      if (s.operation == constant) values_[i].home = {Place::Kind::constant, s.a};
+    }
+    for (std::size_t p = 0; p < order_.size(); ++p) {
+      busy_ = 0;
+      if (order_[p] == k_store_outputs)
+        store_outputs(p);
+      else
+        plan_step(p, tape_.steps[at(order_[p])]);
+    }
+    return std::move(plan_);
+  }
+
+private:
+  struct Value {
+    std::int32_t next = k_never; ///< position of the next use
+    std::int32_t position = -1;  ///< in the order
+    std::int8_t reg = -1;
+    Place home;                  ///< where it lies in memory
+    std::int32_t output = k_none; ///< first of its outputs
+    std::int32_t partner = k_none; ///< the cosine of a sine, the sine of a cosine, of the same argument
+  };
+  struct NextUses {
+    std::int32_t a = k_never, b = k_never, result = k_never;
+  };
+
+  void arrange(const std::vector<std::int32_t>& order) {
+    std::size_t last = 0; // behind the last condition
+    if (!rules_.stores_at_once)
+      for (std::size_t p = 0; p < order.size(); ++p)
+        if (is_condition(tape_.steps[at(order[p])].operation)) last = p + 1;
+    order_.reserve(order.size() + 1);
+    order_.insert(order_.end(), order.begin(), order.begin() + static_cast<std::ptrdiff_t>(last));
+    order_.push_back(k_store_outputs);
+    stores_ = last;
+    order_.insert(order_.end(), order.begin() + static_cast<std::ptrdiff_t>(last), order.end());
+    for (std::size_t p = 0; p < order_.size(); ++p)
+      if (order_[p] >= 0) values_[at(order_[p])].position = static_cast<std::int32_t>(p);
+  }
+
+  void list_outputs() {
+    next_output_.assign(tape_.outputs.size(), k_none);
+    for (std::size_t k = tape_.outputs.size(); k-- > 0;)
+      next_output_[k] = std::exchange(values_[at(tape_.outputs[k])].output, static_cast<std::int32_t>(k));
+  }
+
+  void pair_calls() {
+    for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
+      const TapeStep& s = tape_.steps[i];
+      if (s.operation != sine && s.operation != cosine) continue;
+      if (call_of_.empty()) call_of_.assign(tape_.steps.size(), k_none);
+      std::int32_t& other = call_of_[at(s.a)]; // one without a partner
+      if (other != k_none && tape_.steps[at(other)].operation != s.operation) {
+        values_[at(other)].partner = static_cast<std::int32_t>(i);
+        values_[i].partner = std::exchange(other, k_none);
+      } else {
+        other = static_cast<std::int32_t>(i);
+      }
+    }
+  }
+
+  bool is_before(std::int32_t step, std::size_t p) const { return values_[at(step)].position < static_cast<std::int32_t>(p); }
+
+  // From the end: where each value is used next. Of an operand that nobody wants there is no use.
+  void find_next_uses() {
+    next_.resize(order_.size());
+    output_next_.resize(tape_.outputs.size());
+    for (std::size_t p = order_.size(); p-- > 0;) {
+      const auto here = static_cast<std::int32_t>(p);
+      if (order_[p] == k_store_outputs) {
+        for (std::size_t k = tape_.outputs.size(); k-- > 0;)
+          if (is_before(tape_.outputs[k], p)) output_next_[k] = std::exchange(values_[at(tape_.outputs[k])].next, here);
+        continue;
+      }
+      const TapeStep& s = tape_.steps[at(order_[p])];
+      next_[p].result = values_[at(order_[p])].next;
+      if (is_idle(p)) continue;
+      if (takes_two(s.operation)) next_[p].b = std::exchange(values_[at(s.b)].next, here);
+      next_[p].a = std::exchange(values_[at(s.a)].next, here);
+    }
+  }
+
+  bool is_idle(std::size_t p) const {
+    const Value& v = values_[at(order_[p])];
+    return next_[p].result == k_never && v.output == k_none && !is_condition(tape_.steps[at(order_[p])].operation);
+  }
+
+  void plan_step(std::size_t p, const TapeStep& s) {
+    if (is_idle(p)) return;
+    Value& a = values_[at(s.a)];
+    if (s.operation == sine || s.operation == cosine) {
+      a.next = next_[p].a;
+      call(p, s);
+    } else if (takes_two(s.operation)) {
+      Value& b = values_[at(s.b)];
+      a.next = next_[p].a;
+      b.next = next_[p].b; // behind a's: they may be the same
+      if (is_condition(s.operation))
+        condition(s);
+      else
+        binary(p, s);
+    } else {
+      a.next = next_[p].a;
+      unary(p, s);
+    }
+  }
+
+  // --- registers and slots ---
+
+  // One that is nobody's, but not yet taken.
+  int free_register() {
+    if (free_ == 0) evict(farthest());
+    return std::countr_zero(free_);
+  }
+
+  int farthest() const {
+    int best = -1;
+    std::int64_t best_score = -1;
+    for (int r = 0; r < rules_.registers; ++r) {
+      if (busy_ >> r & 1) continue;
+      const Value& v = values_[at(owner_[r])];
+      const std::int64_t score = static_cast<std::int64_t>(v.next) + (v.home.kind == Place::Kind::nowhere ? 0 : std::int64_t{1} << 32);
+      if (score > best_score) best_score = score, best = r;
+    }
+    return best;
+  }
+
+  void evict(int r) {
+    Value& v = values_[at(owner_[r])];
+    if (v.home.kind == Place::Kind::nowhere) {
+      v.home = {Place::Kind::slot, free_slot()};
+      store(r, v.home);
+    }
+    v.reg = -1;
+    free_ |= 1u << r;
+  }
+
+  void take(int r, std::int32_t step) {
+    free_ &= ~(1u << r);
+    owner_[r] = step;
+    values_[at(step)].reg = static_cast<std::int8_t>(r);
+  }
+
+  void free_register_of(Value& v) {
+    if (v.next != k_never || v.reg < 0) return;
+    free_ |= 1u << v.reg;
+    v.reg = -1;
+  }
+
+  void free_slot_of(Value& v) {
+    if (v.next != k_never || v.home.kind != Place::Kind::slot) return;
+    free_slots_.push_back(v.home.index);
+    v.home = {};
+  }
+
+  std::int32_t free_slot() {
+    if (free_slots_.empty()) return plan_.slots++;
+    const std::int32_t slot = free_slots_.back();
+    free_slots_.pop_back();
+    return slot;
+  }
+
+  // --- instructions ---
+
+  PlannedInstruction& plan(Kind kind) {
+    PlannedInstruction& i = plan_.instructions.emplace_back();
+    i.kind = kind;
+    return i;
+  }
+
+  void load(int r, Place from) {
+    PlannedInstruction& i = plan(Kind::load);
+    i.destination = static_cast<std::int8_t>(r);
+    i.second = from;
+  }
+
+  void store(int r, Place to) {
+    PlannedInstruction& i = plan(Kind::store);
+    i.first = static_cast<std::int8_t>(r);
+    i.second = to;
+  }
+
+  void arithmetic(Kind kind, TapeOperation o, int destination, int first, Place second) {
+    PlannedInstruction& i = plan(kind);
+    i.operation = o;
+    i.destination = static_cast<std::int8_t>(destination);
+    i.first = static_cast<std::int8_t>(first);
+    i.second = second;
+  }
+
+  // A register that holds the value, for this step; whether it stays there is its own affair.
+  int in_register(std::int32_t step) {
+    Value& v = values_[at(step)];
+    if (v.reg < 0) {
+      const int r = free_register();
+      load(r, v.home);
+      // Kept where nothing has to leave for it.
+      if (rules_.has_three_operands && v.next != k_never && std::popcount(free_) > 2)
+        take(r, step);
+      else
+        free_ &= ~(1u << r), passing_ |= 1u << r;
+      busy_ |= 1u << r;
+      return r;
+    }
+    busy_ |= 1u << v.reg;
+    return v.reg;
+  }
+
+  Place in_register_or_memory(std::int32_t step) {
+    const Value& v = values_[at(step)];
+    if (v.reg >= 0) {
+      busy_ |= 1u << v.reg;
+      return {Place::Kind::in_register, v.reg};
+    }
+    if (v.home.kind == Place::Kind::slot || rules_.takes_given_in_memory) return v.home;
+    return {Place::Kind::in_register, in_register(step)};
+  }
+
+  // Free are, from here on, the registers of operands that are used no more.
+  void let_operands_go(const TapeStep& s) {
+    free_register_of(values_[at(s.a)]);
+    if (takes_two(s.operation)) free_register_of(values_[at(s.b)]);
+    free_ |= std::exchange(passing_, 0u);
+  }
+
+  void let_slots_go(const TapeStep& s) {
+    free_slot_of(values_[at(s.a)]);
+    if (takes_two(s.operation)) free_slot_of(values_[at(s.b)]);
+  }
+
+  bool stays(int r) const { return (passing_ >> r & 1) == 0 && values_[at(owner_[r])].next != k_never; }
+
+  // Where the result of `first` and others goes, first already copied there if it has to be.
+  int destination(const TapeStep& s, int first) {
+    if (rules_.has_three_operands) {
+      let_operands_go(s);
+      return free_register();
+    }
+    int r = first;
+    if (stays(first)) {
+      r = free_register();
+      PlannedInstruction& i = plan(Kind::move);
+      i.destination = static_cast<std::int8_t>(r);
+      i.second = {Place::Kind::in_register, first};
+    }
+    let_operands_go(s);
+    return r;
+  }
+
+  void binary(std::size_t p, const TapeStep& s) {
+    std::int32_t a = s.a, b = s.b;
+    if (s.operation == maximum) std::swap(a, b);
+    if (is_commutative(s.operation)) {
+      const Value &va = values_[at(a)], &vb = values_[at(b)];
+      const bool both = va.reg >= 0 && vb.reg >= 0;
+      if (both ? va.next != k_never && vb.next == k_never : vb.reg >= 0) std::swap(a, b);
+    }
+    if (values_[at(b)].reg >= 0) busy_ |= 1u << values_[at(b)].reg;
+    const int first = in_register(a);
+    const Place second = in_register_or_memory(b);
+    const int r = destination(s, first);
+    arithmetic(Kind::arithmetic, s.operation, r, rules_.has_three_operands ? first : r, second);
+    let_slots_go(s);
+    define(p, r);
+  }
+
+  void unary(std::size_t p, const TapeStep& s) {
+    const int first = in_register(s.a);
+    Place second{Place::Kind::nowhere};
+    if (s.operation == negate) second.kind = Place::Kind::sign_bits;
+    if (s.operation == absolute) second.kind = Place::Kind::value_bits;
+    const int r = destination(s, first);
+    arithmetic(Kind::arithmetic, s.operation, r, rules_.has_three_operands ? first : r, second);
+    let_slots_go(s);
+    define(p, r);
+  }
+
+  void condition(const TapeStep& s) {
+    ++plan_.conditions;
+    const std::int32_t a = rules_.swaps_conditions ? s.b : s.a, b = rules_.swaps_conditions ? s.a : s.b;
+    if (values_[at(b)].reg >= 0) busy_ |= 1u << values_[at(b)].reg;
+    const int first = in_register(a);
+    const Place second = in_register_or_memory(b);
+    int r = first;
+    if (rules_.conditions_take_register)
+      r = destination(s, first);
+    else
+      let_operands_go(s);
+    arithmetic(Kind::condition, s.operation, r, rules_.has_three_operands || !rules_.conditions_take_register ? first : r, second);
+    let_slots_go(s);
+  }
+
+  void call(std::size_t p, const TapeStep& s) {
+    Value& v = values_[at(order_[p])];
+    if (v.home.kind != Place::Kind::nowhere) { // found with its partner
+      v.next = next_[p].result;
+      store_known(order_[p]);
+      let_operands_go(s);
+      return let_slots_go(s);
+    }
+    plan_.has_calls = true;
+    for (int r = 0; r < rules_.registers; ++r)
+      if ((free_ >> r & 1) == 0) evict(r);
+    const std::int32_t slots[2] = {free_slot(), free_slot()};
+    PlannedInstruction& i = plan(Kind::sin_cos);
+    i.second = values_[at(s.a)].home;
+    i.sine_slot = slots[0];
+    i.cosine_slot = slots[1];
+    let_slots_go(s);
+    const bool is_sine = s.operation == sine;
+    v.next = next_[p].result;
+    v.home = {Place::Kind::slot, slots[is_sine ? 0 : 1]};
+    const Place other{Place::Kind::slot, slots[is_sine ? 1 : 0]};
+    if (v.partner != k_none && !is_idle(at(values_[at(v.partner)].position)))
+      values_[at(v.partner)].home = other;
+    else
+      free_slots_.push_back(other.index);
+    store_known(order_[p]);
+  }
+
+  // --- outputs ---
+
+  // The step's value is in register r.
+  void define(std::size_t p, int r) {
+    const std::int32_t step = order_[p];
+    Value& v = values_[at(step)];
+    take(r, step);
+    v.next = next_[p].result;
+    if (p > stores_)
+      for (std::int32_t k = v.output; k != k_none; k = next_output_[at(k)]) store_output(v, r, k);
+    free_register_of(v);
+  }
+
+  void store_output(Value& v, int r, std::int32_t k) {
+    const Place to{Place::Kind::output, k};
+    store(r, to);
+    if (v.home.kind == Place::Kind::nowhere) v.home = to;
+  }
+
+  // Outputs of a value that lies in memory.
+  void store_known(std::int32_t step) {
+    Value& v = values_[at(step)];
+    if (v.position > static_cast<std::int32_t>(stores_))
+      for (std::int32_t k = v.output; k != k_none; k = next_output_[at(k)]) copy_output(v, k);
+    free_slot_of(v);
+  }
+
+  void copy_output(Value& v, std::int32_t k) {
+    const int r = free_register();
+    load(r, v.home);
+    store(r, {Place::Kind::output, k});
+  }
+
+  void store_outputs(std::size_t p) {
+    for (std::size_t k = 0; k < tape_.outputs.size(); ++k) {
+      if (!is_before(tape_.outputs[k], p)) continue;
+      Value& v = values_[at(tape_.outputs[k])];
+      v.next = output_next_[k];
+      if (v.reg >= 0)
+        store_output(v, v.reg, static_cast<std::int32_t>(k));
+      else
+        copy_output(v, static_cast<std::int32_t>(k));
+      free_register_of(v);
+      free_slot_of(v);
+    }
+  }
+
+  const Tape& tape_;
+  const RegisterRules rules_;
+  std::vector<std::int32_t> order_;
+  std::size_t stores_ = 0; ///< where outputs known so far are stored; later ones as soon as they are known
+  std::vector<Value> values_;
+  std::vector<NextUses> next_;
+  std::vector<std::int32_t> next_output_; ///< of the same value
+  std::vector<std::int32_t> output_next_; ///< next use of the value of an output behind `stores_`
+  std::vector<std::int32_t> call_of_;     ///< of an argument: its sine or cosine that has no partner
+  std::uint32_t free_;                    ///< registers
+  std::uint32_t busy_ = 0;                ///< operands of this step: must not leave
+  std::uint32_t passing_ = 0;             ///< loaded for this step only
+  std::int32_t owner_[32] = {};
+  std::vector<std::int32_t> free_slots_;
+  RegisterPlan plan_;
+};
+
+} // namespace
+
+std::vector<std::int32_t> order_of_steps(const Tape& tape) {
+  const auto n = static_cast<std::int32_t>(tape.steps.size());
+  std::vector<char> is_first(tape.steps.size(), 0);
+  bool has_calls = false;
+  for (std::int32_t i = n; i-- > 0;) {
+    const TapeStep& s = tape.steps[at(i)];
+    if (s.operation == sine || s.operation == cosine) is_first[at(i)] = 1, has_calls = true;
+    if (is_first[at(i)] == 0 || is_given(s.operation)) continue;
+    is_first[at(s.a)] = 1;
+    if (takes_two(s.operation)) is_first[at(s.b)] = 1;
+  }
+  std::vector<std::int32_t> order;
+  order.reserve(tape.steps.size());
+  for (const bool is_turn : {true, false}) {
+    if (is_turn && !has_calls) continue;
+    for (std::int32_t i = 0; i < n; ++i)
+      if ((is_first[at(i)] != 0) == is_turn && !is_given(tape.steps[at(i)].operation)) order.push_back(i);
+  }
+  return order;
+}
+
+RegisterPlan plan_registers(const Tape& tape, const std::vector<std::int32_t>& order, const RegisterRules& rules) {
+  return Planner(tape, order, rules).plan();
+}
+
+} // namespace steplap

@@ -1,0 +1,73 @@
+// Which register holds which value of a tape at which step, and what is kept in memory meanwhile.
+//
+// The code of a tape runs straight on, so that for every value the place of its next use is known. Where registers do not
+// suffice the value leaves that is used again last (L. A. Belady, IBM Systems Journal 5 (1966) 78), preferably one that lies
+// in memory already: an input, a constant, or one that had to leave before. What lies in memory is taken from there by the
+// instruction that uses it, without a load of its own. Nothing of a processor's instructions is known here.
+#pragma once
+
+#include "mbd/tape/tape.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace steplap {
+
+/// Where a value lies.
+struct Place {
+  enum class Kind : std::uint8_t {
+    nowhere,
+    in_register,
+    input,
+    constant,
+    output,
+    slot,       ///< of the frame
+    sign_bits,  ///< the bit pattern of −0
+    value_bits, ///< all bits but the sign
+  };
+  Kind kind = Kind::nowhere;
+  std::int32_t index = 0;
+};
+
+struct PlannedInstruction {
+  enum class Kind : std::uint8_t {
+    load,      ///< destination = second
+    move,      ///< destination = second, another register
+    store,     ///< second = first
+    arithmetic, ///< destination = first operation second; maximum: first > second ? first : second, first being the tape's b;
+                ///< negate: first ^ second, sign_bits; absolute: first & second, value_bits; square_root: of first
+    condition, ///< first operation second, as the tape has them, or, with `swaps_conditions`, b first and a second
+    sin_cos,   ///< slots sine_slot and cosine_slot = of second, in memory; registers are lost
+  };
+  Kind kind = Kind::load;
+  TapeOperation operation = TapeOperation::constant;
+  std::int8_t destination = 0, first = 0; ///< registers
+  Place second;
+  std::int32_t sine_slot = 0, cosine_slot = 0;
+};
+
+/// What instructions can do.
+struct RegisterRules {
+  int registers = 16;
+  bool has_three_operands = false;    ///< else the destination is the first operand's register
+  bool takes_given_in_memory = true;  ///< inputs, constants and outputs as second operand; slots are taken always
+  bool conditions_take_register = false; ///< a destination, whose value is lost
+  bool swaps_conditions = false;
+  bool stores_at_once = false;        ///< else no output before all conditions have been looked at
+};
+
+struct RegisterPlan {
+  std::vector<PlannedInstruction> instructions;
+  int slots = 0;
+  int conditions = 0;
+  bool has_calls = false;
+};
+
+/// The steps of the tape without inputs and constants, in an order in which they can be done: what sines and cosines hang on
+/// first, so that little has to be kept while they are found, the rest as it stands.
+[[nodiscard]] std::vector<std::int32_t> order_of_steps(const Tape& tape);
+
+/// Steps that no output and no condition hangs on are left out of the plan.
+[[nodiscard]] RegisterPlan plan_registers(const Tape& tape, const std::vector<std::int32_t>& order, const RegisterRules& rules);
+
+} // namespace steplap

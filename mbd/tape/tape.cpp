@@ -1,0 +1,159 @@
+#include "mbd/tape/tape.h"
+
+#include "mbd/math/portable_math.h"
+
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+using enum TapeOperation;
+
+/// A value of the simplified tape, or that with its sign turned, for which no step need be made where what takes it can turn
+/// its own sign: x + (−y) = x − y, (−x) y = −(x y) to the bit.
+struct Signed {
+  std::int32_t step = -1;
+  bool is_negative = false;
+};
+
+/// Makes each step once. Steps made, at most one and its negative for each of the tape, are found again by a hash table with
+/// open addresses.
+class Simplifier {
+public:
+  explicit Simplifier(const Tape& tape) : tape_(tape), table_(std::bit_ceil(4 * tape.steps.size() + 4), -1), value_(tape.steps.size()) {
+    made_.reserve(tape.steps.size());
+  }
+
+  Tape simplified() {
+    for (std::size_t i = 0; i < tape_.steps.size(); ++i) value_[i] = value_of(tape_.steps[i]);
+    std::vector<std::int32_t> outputs(tape_.outputs.size());
+    for (std::size_t k = 0; k < outputs.size(); ++k) outputs[k] = plain(at(tape_.outputs[k]));
+    return with_what_counts(std::move(outputs));
+  }
+
+private:
+  Signed at(std::int32_t step) const { return value_[static_cast<std::size_t>(step)]; }
+
+  std::int32_t make(TapeOperation o, std::int32_t a, std::int32_t b = 0) {
+    if (is_commutative(o) && b < a) std::swap(a, b); // rounds the same
+    const std::size_t mask = table_.size() - 1;
+    std::uint64_t hash = (static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b)) * 0x9e3779b97f4a7c15u;
+    hash = (hash ^ hash >> 32 ^ static_cast<std::uint64_t>(o)) * 0xd6e8feb86659fd93u;
+    const TapeStep step{o, a, b};
+    for (std::size_t i = hash >> 32 & mask;; i = (i + 1) & mask) {
+      if (table_[i] < 0) {
+        table_[i] = static_cast<std::int32_t>(made_.size());
+        made_.push_back(step);
+        return table_[i];
+      }
+      if (made_[static_cast<std::size_t>(table_[i])] == step) return table_[i];
+    }
+  }
+
+  std::int32_t plain(Signed x) { return x.is_negative ? make(negate, x.step) : x.step; }
+
+  // Both terms negative: −a − b is not −(a + b), whose zero has the other sign.
+  Signed sum(Signed a, Signed b) {
+    if (b.is_negative) return {make(subtract, plain(a), b.step)};
+    if (a.is_negative) return {make(subtract, b.step, a.step)};
+    return {make(add, a.step, b.step)};
+  }
+
+  Signed value_of(const TapeStep& s) {
+    const TapeOperation o = s.operation;
+    if (is_given(o)) return {make(o, s.a)};
+    const Signed a = at(s.a), b = takes_two(o) ? at(s.b) : Signed{};
+    switch (o) {
+    case add: return sum(a, b);
+    case subtract: return sum(a, {b.step, !b.is_negative});
+    case multiply:
+    case divide: return {make(o, a.step, b.step), a.is_negative != b.is_negative};
+    case negate: return {a.step, !a.is_negative};
+    case absolute: return made_[static_cast<std::size_t>(a.step)].operation == absolute ? Signed{a.step} : Signed{make(o, a.step)};
+    case if_less:
+    case if_not_less:
+      if (a.is_negative && b.is_negative) return {make(o, b.step, a.step)};
+      return {make(o, plain(a), plain(b))};
+    case minimum:
+    case maximum: return {make(o, plain(a), plain(b))};
+    default: return {make(o, plain(a))};
+    }
+  }
+
+  // Steps that an output or a condition hangs on, numbered anew.
+  Tape with_what_counts(std::vector<std::int32_t> outputs) {
+    std::vector<std::int32_t> number(made_.size(), 0); // of those that count: 1, then the number
+    for (const std::int32_t output : outputs) number[static_cast<std::size_t>(output)] = 1;
+    for (std::size_t i = made_.size(); i-- > 0;) {
+      const TapeStep& s = made_[i];
+      if (is_condition(s.operation)) number[i] = 1;
+      if (number[i] == 0 || is_given(s.operation)) continue;
+      number[static_cast<std::size_t>(s.a)] = 1;
+      if (takes_two(s.operation)) number[static_cast<std::size_t>(s.b)] = 1;
+    }
+    Tape result{{}, tape_.constants, tape_.input_count, std::move(outputs)};
+    result.steps.reserve(made_.size());
+    for (std::size_t i = 0; i < made_.size(); ++i) {
+      if (number[i] == 0) continue;
+      TapeStep s = made_[i];
+      number[i] = static_cast<std::int32_t>(result.steps.size());
+      if (!is_given(s.operation)) s.a = number[static_cast<std::size_t>(s.a)];
+      if (takes_two(s.operation)) s.b = number[static_cast<std::size_t>(s.b)];
+      result.steps.push_back(s);
+    }
+    for (std::int32_t& output : result.outputs) output = number[static_cast<std::size_t>(output)];
+    return result;
+  }
+
+  const Tape& tape_;
+  std::vector<std::int32_t> table_; ///< steps made, −1: none; a power of two
+  std::vector<TapeStep> made_;
+  std::vector<Signed> value_; ///< of the steps of the tape
+};
+
+// Of a step that has a value.
+double value_of(const TapeStep& s, const double* inputs, const double* constants, const std::vector<double>& values) {
+  if (s.operation == input) return inputs[s.a];
+  if (s.operation == constant) return constants[s.a];
+  const double a = values[static_cast<std::size_t>(s.a)];
+  const double b = takes_two(s.operation) ? values[static_cast<std::size_t>(s.b)] : 0.0;
+  switch (s.operation) {
+  case add: return a + b;
+  case subtract: return a - b;
+  case multiply: return a * b;
+  case divide: return a / b;
+  case negate: return -a;
+  case square_root: return std::sqrt(a);
+  case absolute: return std::abs(a);
+  case minimum: return a < b ? a : b;
+  case maximum: return a < b ? b : a;
+  case sine: return portable::sin_cos(a).sin;
+  default: return portable::sin_cos(a).cos;
+  }
+}
+
+} // namespace
+
+Tape simplified(const Tape& tape) {
+  return Simplifier(tape).simplified();
+}
+
+bool replay(const Tape& tape, const double* inputs, const double* constants, double* outputs) {
+  std::vector<double> values(tape.steps.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const TapeStep& s = tape.steps[i];
+    if (is_condition(s.operation)) {
+      const bool is_less = values[static_cast<std::size_t>(s.a)] < values[static_cast<std::size_t>(s.b)];
+      if (is_less != (s.operation == if_less)) return false;
+    } else {
+      values[i] = value_of(s, inputs, constants, values);
+    }
+  }
+  for (std::size_t k = 0; k < tape.outputs.size(); ++k) outputs[k] = values[static_cast<std::size_t>(tape.outputs[k])];
+  return true;
+}
+
+} // namespace steplap

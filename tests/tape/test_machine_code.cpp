@@ -1,0 +1,304 @@
+// Machine code against replay, to the bit, for every set of instructions and number of lanes that the processor has.
+#include "mbd/tape/machine_code.h"
+#include "random_tape.h"
+#include "same_bits.h"
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <string>
+#include <utility>
+
+using namespace steplap;
+using namespace steplap::testing;
+using enum TapeOperation;
+
+namespace {
+
+constexpr double k_untouched = 1234.5;
+
+struct Target {
+  InstructionSet instructions;
+  int lanes;
+};
+
+std::vector<Target> all_targets() {
+  std::vector<Target> targets;
+  if (!MachineCode::is_available()) return targets;
+  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx, InstructionSet::avx512})
+    for (int lanes = 1; set <= MachineCode::best_instructions() && lanes <= MachineCode::most_lanes(set); lanes *= 2) targets.push_back({set, lanes});
+  return targets;
+}
+
+/// Numbers of several samples, and what replay makes of them.
+struct Samples {
+  std::vector<std::vector<double>> inputs, constants, outputs;
+  std::vector<bool> holds;
+
+  void add(const Tape& tape, std::vector<double> in, std::vector<double> con) {
+    outputs.emplace_back(tape.outputs.size(), k_untouched);
+    holds.push_back(replay(tape, in.data(), con.data(), outputs.back().data()));
+    inputs.push_back(std::move(in));
+    constants.push_back(std::move(con));
+  }
+};
+
+// [index][lane] of the samples that begin with `first`; behind the last comes the first again.
+std::vector<double> in_lanes(const std::vector<std::vector<double>>& of, std::size_t first, int lanes) {
+  std::vector<double> all(of.front().size() * static_cast<std::size_t>(lanes));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = of[(first + i % lanes) % of.size()][i / lanes];
+  return all;
+}
+
+// What differs, "" if nothing does.
+std::string difference(const MachineCode& code, const Samples& samples, std::size_t first) {
+  const int lanes = code.lanes();
+  const auto inputs = in_lanes(samples.inputs, first, lanes), constants = in_lanes(samples.constants, first, lanes);
+  std::vector<double> outputs(samples.outputs.front().size() * static_cast<std::size_t>(lanes), k_untouched);
+  const unsigned held = code.run(inputs.data(), constants.data(), outputs.data());
+  if (held >> lanes != 0) return "lanes that are not there";
+  for (std::size_t l = 0; l < static_cast<std::size_t>(lanes); ++l) {
+    const std::size_t sample = (first + l) % samples.holds.size();
+    if ((held >> l & 1) != samples.holds[sample]) return "lane " + std::to_string(l) + ": a condition";
+    if (lanes > 1 && !samples.holds[sample]) continue;
+    for (std::size_t k = 0; k < samples.outputs[sample].size(); ++k)
+      if (!are_same_bits(outputs[k * lanes + l], samples.outputs[sample][k])) return "lane " + std::to_string(l) + ": output " + std::to_string(k);
+  }
+  return "";
+}
+
+void check_everywhere(const Tape& tape, const Samples& samples) {
+  for (const Target& target : all_targets()) {
+    const MachineCode code(tape, target.lanes, target.instructions);
+    REQUIRE(code);
+    std::string found;
+    for (std::size_t first = 0; first < samples.holds.size() && found.empty(); first += static_cast<std::size_t>(target.lanes))
+      found = difference(code, samples, first);
+    CHECK_MESSAGE(found.empty(), found << ", " << target.lanes << " lanes, instructions " << static_cast<int>(target.instructions));
+  }
+}
+
+Samples random_samples(std::mt19937& random, const Tape& tape, int count, bool has_special) {
+  Samples samples;
+  for (int i = 0; i < count; ++i)
+    samples.add(tape, random_numbers(random, tape.input_count, has_special), random_numbers(random, static_cast<int>(tape.constants.size()), has_special));
+  return samples;
+}
+
+// Conditions turned so that they hold for the numbers.
+Tape holding(Tape tape, const std::vector<double>& inputs, const std::vector<double>& constants) {
+  std::vector<double> nothing;
+  Tape part{{}, tape.constants, tape.input_count, {}};
+  for (TapeStep& s : tape.steps) {
+    part.steps.push_back(s);
+    if (!is_condition(s.operation) || replay(part, inputs.data(), constants.data(), nothing.data())) continue;
+    s.operation = s.operation == if_less ? if_not_less : if_less;
+    part.steps.back() = s;
+  }
+  return tape;
+}
+
+// Pages of memory that may be executed and belong to no file.
+int executable_mappings() {
+  std::ifstream maps("/proc/self/maps");
+  int count = 0;
+  for (std::string line; std::getline(maps, line);) count += line.find('x') < line.find(' ', line.find(' ') + 1) && line.find('/') == std::string::npos;
+  return count;
+}
+
+} // namespace
+
+TEST_CASE("random tapes, as they are and simplified") {
+  std::mt19937 random(14);
+  int held = 0, failed = 0;
+  for (int i = 0; i < 600; ++i) {
+    TapeShape shape;
+    shape.steps = i < 200 ? 1 + i % 40 : 20 + i;
+    shape.inputs = i % 3 == 0 ? 3 : 25;
+    shape.constants = i % 5 == 0 ? 0 : 30;
+    shape.reach = i % 4 == 0 ? 4 : i % 4 == 1 ? 40 : i % 4 == 2 ? 300 : 12;
+    shape.outputs = 1 + i % 60;
+    shape.conditions = i % 2 == 0 ? 0.0 : 2.0 / shape.steps;
+    shape.calls = i % 7 == 0 ? 0.1 : 0.01;
+    const Tape tape = random_tape(random, shape);
+    const Samples samples = random_samples(random, tape, 9, i % 3 != 0);
+    for (const bool holds : samples.holds) (holds ? held : failed) += 1;
+    CAPTURE(i);
+    check_everywhere(tape, samples);
+    check_everywhere(simplified(tape), samples);
+  }
+  CHECK(held > 1000);
+  CHECK(failed > 500);
+}
+
+TEST_CASE("many more live values than registers") {
+  // sums of products of all pairs: x₀ x₁ + x₁ x₂ + …, then taken apart from the other end
+  const int n = 200;
+  std::mt19937 random(3);
+  Tape tape;
+  tape.input_count = n;
+  for (int i = 0; i < n; ++i) tape.steps.push_back({input, i});
+  for (int i = 0; i < n; ++i) tape.steps.push_back({i % 3 == 0 ? square_root : i % 3 == 1 ? negate : absolute, i});
+  for (int i = 0; i < n; ++i) tape.steps.push_back({i % 2 == 0 ? subtract : divide, n + i, 2 * n - 1 - i});
+  for (int i = 0; i < n; ++i) tape.outputs.push_back(2 * n + i);
+  check_everywhere(tape, random_samples(random, tape, 9, true));
+}
+
+TEST_CASE("a condition that fails first, in the middle, last leaves the outputs alone") {
+  std::mt19937 random(5);
+  for (int i = 0; i < 60; ++i) {
+    TapeShape shape;
+    shape.conditions = 0.05;
+    shape.reach = i % 2 == 0 ? 8 : 150;
+    shape.outputs = 40;
+    const Tape drawn = random_tape(random, shape);
+    const auto inputs = random_numbers(random, drawn.input_count, false), constants = random_numbers(random, static_cast<int>(drawn.constants.size()), false);
+    const Tape tape = holding(drawn, inputs, constants);
+    Samples samples;
+    samples.add(tape, inputs, constants);
+    CHECK(samples.holds.front());
+    check_everywhere(tape, samples);
+    std::vector<std::size_t> conditions;
+    for (std::size_t s = 0; s < tape.steps.size(); ++s)
+      if (is_condition(tape.steps[s].operation)) conditions.push_back(s);
+    if (conditions.empty()) continue;
+    for (const std::size_t which : {conditions.front(), conditions[conditions.size() / 2], conditions.back()}) {
+      Tape failing = tape;
+      TapeOperation& o = failing.steps[which].operation;
+      o = o == if_less ? if_not_less : if_less;
+      Samples once;
+      once.add(failing, inputs, constants);
+      CHECK(!once.holds.front());
+      check_everywhere(failing, once);
+    }
+  }
+}
+
+TEST_CASE("conditions with NaN, equal numbers, zeros of two signs: lane by lane") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const TapeOperation o : {if_less, if_not_less}) {
+    const Tape tape{{{input, 0}, {input, 1}, {add, 0, 0}, {o, 0, 1}, {o, 2, 2}}, {}, 2, {2}};
+    Samples samples;
+    for (const double a : {1.0, 2.0, nan, 0.0, -0.0})
+      for (const double b : {1.0, 2.0, nan, 0.0, -0.0}) samples.add(tape, {a, b}, {});
+    check_everywhere(tape, samples);
+    const Tape reversed{{{input, 0}, {input, 1}, {subtract, 1, 0}, {o, 1, 2}}, {}, 2, {1, 2}};
+    Samples others;
+    for (const double a : {1.0, 2.0, nan, 0.0, -0.0})
+      for (const double b : {1.0, 2.0, nan, 0.0, -0.0}) others.add(reversed, {a, b}, {});
+    check_everywhere(reversed, others);
+  }
+}
+
+TEST_CASE("sines and cosines in the midst of what is live") {
+  using Steps = std::vector<TapeStep>;
+  Steps steps;
+  const int n = 40;
+  for (int i = 0; i < n; ++i) steps.push_back({input, i});
+  for (int i = 0; i < n; ++i) steps.push_back({multiply, i, (i + 1) % n});
+  // each sine of a sum that hangs on the sine before it
+  std::int32_t last = n;
+  std::vector<std::int32_t> outputs;
+  for (int i = 0; i < 30; ++i) {
+    const auto next = static_cast<std::int32_t>(steps.size());
+    steps.push_back({add, last, n + i});
+    steps.push_back({i % 3 == 0 ? cosine : sine, next});
+    if (i % 3 != 1) steps.push_back({i % 3 == 0 ? sine : cosine, next});
+    last = static_cast<std::int32_t>(steps.size()) - 1;
+    if (i % 4 == 0) outputs.push_back(last - 1);
+    if (i % 5 == 0) steps.push_back({if_less, last, n + (i + 7) % n});
+  }
+  for (int i = 0; i < n; ++i) steps.push_back({add, last, n + i}), outputs.push_back(static_cast<std::int32_t>(steps.size()) - 1);
+  const Tape drawn{steps, {}, n, outputs};
+  std::mt19937 random(8);
+  const auto inputs = random_numbers(random, n, false);
+  const Tape tape = holding(drawn, inputs, {});
+  Samples samples = random_samples(random, tape, 9, true);
+  samples.add(tape, inputs, {});
+  for (int i = 0; i < 6; ++i) {
+    auto far = random_numbers(random, n, false);
+    for (double& x : far) x *= 1e8;
+    samples.add(tape, far, {});
+  }
+  check_everywhere(tape, samples);
+  check_everywhere(simplified(tape), samples);
+}
+
+TEST_CASE("sine and cosine of one argument, once, twice, one of them unwanted") {
+  const Tape tapes[] = {{{{input, 0}, {sine, 0}}, {}, 1, {1}},
+                        {{{input, 0}, {cosine, 0}}, {}, 1, {1, 1}},
+                        {{{input, 0}, {cosine, 0}, {sine, 0}}, {}, 1, {2, 1}},
+                        {{{input, 0}, {sine, 0}, {cosine, 0}, {cosine, 0}, {sine, 0}}, {}, 1, {1, 2, 3, 4}},
+                        {{{input, 0}, {sine, 0}, {cosine, 0}, {add, 1, 1}}, {}, 1, {3}},
+                        {{{input, 0}, {sine, 0}, {sine, 1}, {cosine, 1}, {cosine, 0}, {multiply, 4, 3}}, {}, 1, {5, 2, 1, 0}}};
+  for (const Tape& tape : tapes) {
+    Samples samples;
+    for (const double x : {0.3, -0.0, 2.0, 1e9, -1e-300, std::numeric_limits<double>::infinity()}) samples.add(tape, {x}, {});
+    check_everywhere(tape, samples);
+  }
+}
+
+TEST_CASE("nothing, given numbers as outputs, the same output twice") {
+  const Tape tapes[] = {{},
+                        {{{input, 0}, {constant, 0}}, {0.0}, 1, {0, 1, 0, 1, 1}},
+                        {{{input, 0}, {constant, 0}, {subtract, 1, 0}, {negate, 2}}, {0.0}, 1, {2, 2, 3, 0, 3, 2}},
+                        {{{input, 0}, {constant, 0}, {if_less, 0, 1}}, {0.0}, 1, {}},
+                        {{{input, 0}, {constant, 0}, {if_less, 0, 1}, {negate, 0}, {add, 3, 3}}, {0.0}, 1, {3, 4, 0, 3}}};
+  for (const Tape& tape : tapes) {
+    Samples samples;
+    for (const double x : {1.0, -2.0, 0.5})
+      samples.add(tape, std::vector<double>(static_cast<std::size_t>(tape.input_count), x), std::vector<double>(tape.constants.size(), 0.75));
+    check_everywhere(tape, samples);
+    check_everywhere(simplified(tape), samples);
+  }
+}
+
+TEST_CASE("compiled objects are freed and can be moved") {
+  if (!MachineCode::is_available()) return;
+  const Tape tape{{{input, 0}, {add, 0, 0}}, {}, 1, {1}};
+  const int before = executable_mappings();
+  double x = 21.0, y = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    MachineCode first(tape);
+    MachineCode second(std::move(first)), third;
+    CHECK(!first);
+    third = std::move(second);
+    CHECK(!second);
+    CHECK(third.run(&x, nullptr, &y) == 1);
+  }
+  CHECK(y == 42.0);
+  CHECK(executable_mappings() == before);
+  std::vector<MachineCode> kept;
+  for (int i = 0; i < 500; ++i) kept.emplace_back(tape);
+  y = 0.0;
+  for (const MachineCode& code : kept) CHECK(code.run(&x, nullptr, &y) == 1);
+  CHECK(executable_mappings() > before);
+  kept.clear();
+  CHECK(executable_mappings() == before);
+}
+
+TEST_CASE("lanes and instructions that there are not are refused") {
+  if (!MachineCode::is_available()) {
+    CHECK(!MachineCode(Tape{}));
+    CHECK(MachineCode::most_lanes() == 1);
+    return;
+  }
+  CHECK_THROWS_AS(MachineCode(Tape{}, 3), std::invalid_argument);
+  CHECK_THROWS_AS(MachineCode(Tape{}, 0), std::invalid_argument);
+  CHECK_THROWS_AS(MachineCode(Tape{}, 16), std::invalid_argument);
+  CHECK_THROWS_AS(MachineCode(Tape{}, 4, InstructionSet::sse2), std::invalid_argument);
+  CHECK(!MachineCode());
+}
+
+TEST_CASE("more values than the frame takes: no code, and no harm") {
+  if (!MachineCode::is_available()) return;
+  const int n = 40000;
+  Tape tape;
+  tape.input_count = 1;
+  tape.steps.push_back({input, 0});
+  for (int i = 0; i < n; ++i) tape.steps.push_back({add, i, 0});
+  std::int32_t sum = n;
+  for (int i = n - 1; i > 0; --i) tape.steps.push_back({add, sum, i}), sum = static_cast<std::int32_t>(tape.steps.size()) - 1;
+  tape.outputs = {sum};
+  CHECK(!MachineCode(tape));
+}

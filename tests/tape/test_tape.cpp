@@ -1,0 +1,144 @@
+// Tapes: replay against the same operations written out, and simplified tapes against those that they were made of.
+#include "mbd/math/portable_math.h"
+#include "mbd/tape/tape.h"
+#include "random_tape.h"
+#include "same_bits.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace steplap;
+using namespace steplap::testing;
+using enum TapeOperation;
+
+namespace {
+
+const double k_nan = std::numeric_limits<double>::quiet_NaN();
+
+int count(const Tape& tape, TapeOperation o) {
+  return static_cast<int>(std::count_if(tape.steps.begin(), tape.steps.end(), [o](const TapeStep& s) { return s.operation == o; }));
+}
+
+// One step on inputs a and b.
+double result_of(TapeOperation o, double a, double b) {
+  const Tape tape{{{input, 0}, {input, 1}, {o, 0, 1}}, {}, 2, {2}};
+  const double inputs[2] = {a, b};
+  double output = 0.0;
+  REQUIRE(replay(tape, inputs, nullptr, &output));
+  return output;
+}
+
+bool holds(TapeOperation o, double a, double b) {
+  const Tape tape{{{input, 0}, {input, 1}, {o, 0, 1}}, {}, 2, {0}};
+  const double inputs[2] = {a, b};
+  double output = 77.0;
+  const bool does = replay(tape, inputs, nullptr, &output);
+  CHECK(are_same_bits(output, does ? a : 77.0));// untouched where it fails
+  return does;
+}
+
+} // namespace
+
+TEST_CASE("operations are those of C++, on zeros of both signs and NaN too") {
+  for (const double a : {1.5, -2.25, 0.0, -0.0, k_nan, std::numeric_limits<double>::infinity(), 5e-324})
+    for (const double b : {0.1, -3.0, 0.0, -0.0, k_nan, 1e308}) {
+      CAPTURE(a);
+      CAPTURE(b);
+      CHECK(are_same_bits(result_of(add, a, b), a + b));
+      CHECK(are_same_bits(result_of(subtract, a, b), a - b));
+      CHECK(are_same_bits(result_of(multiply, a, b), a * b));
+      CHECK(are_same_bits(result_of(divide, a, b), a / b));
+      CHECK(are_same_bits(result_of(minimum, a, b), a < b ? a : b));
+      CHECK(are_same_bits(result_of(maximum, a, b), a < b ? b : a));
+      CHECK(are_same_bits(result_of(negate, a, 0), -a));
+      CHECK(are_same_bits(result_of(absolute, a, 0), std::abs(a)));
+      CHECK(are_same_bits(result_of(square_root, a, 0), std::sqrt(a)));
+      CHECK(are_same_bits(result_of(sine, a, 0), portable::sin(a)));
+      CHECK(are_same_bits(result_of(cosine, a, 0), portable::cos(a)));
+      CHECK(holds(if_less, a, b) == (a < b));
+      CHECK(holds(if_not_less, a, b) == !(a < b));
+    }
+}
+
+TEST_CASE("constants are those of the sample, not of the tape") {
+  const Tape tape{{{constant, 0}, {constant, 1}, {multiply, 0, 1}}, {2.0, 3.0}, 0, {2}};
+  const double others[2] = {5.0, 7.0};
+  double output = 0.0;
+  REQUIRE(replay(tape, nullptr, others, &output));
+  CHECK(output == 35.0);
+  REQUIRE(replay(simplified(tape), nullptr, others, &output));
+  CHECK(output == 35.0);
+}
+
+TEST_CASE("what nothing hangs on goes, what is equal is made once") {
+  // x y + y x, and a root that nobody wants
+  const Tape tape{{{input, 0}, {input, 1}, {multiply, 0, 1}, {input, 0}, {input, 1}, {multiply, 4, 3}, {add, 2, 5}, {square_root, 0}}, {}, 2, {6}};
+  const Tape simple = simplified(tape);
+  CHECK(simple.steps == std::vector<TapeStep>{{input, 0}, {input, 1}, {multiply, 0, 1}, {add, 2, 2}});
+  CHECK(simple.outputs == std::vector<std::int32_t>{3});
+  CHECK(simple.input_count == 2);
+  // a − b is not b − a, nor a / b b / a, nor the smaller of a, b that of b, a (zeros of two signs)
+  for (const TapeOperation o : {subtract, divide, minimum, maximum})
+    CHECK(count(simplified({{{input, 0}, {input, 1}, {o, 0, 1}, {o, 1, 0}}, {}, 2, {2, 3}}), o) == 2);
+}
+
+TEST_CASE("a condition is kept with what it hangs on, and once") {
+  const Tape tape{{{input, 0}, {input, 1}, {square_root, 0}, {if_less, 2, 1}, {square_root, 0}, {if_less, 4, 1}}, {}, 2, {0}};
+  CHECK(simplified(tape).steps == std::vector<TapeStep>{{input, 0}, {input, 1}, {square_root, 0}, {if_less, 2, 1}});
+}
+
+TEST_CASE("signs are turned by what takes the value") {
+  // c − (−a) b = c + a b; |−a| = |a|; −a < −b where b < a
+  const Tape tape{{{input, 0}, {input, 1}, {input, 2}, {negate, 0}, {multiply, 3, 1}, {subtract, 2, 4}, {absolute, 3}, {negate, 1}, {if_less, 3, 7}},
+                  {},
+                  3,
+                  {5, 6}};
+  const Tape simple = simplified(tape);
+  CHECK(count(simple, negate) == 0);
+  CHECK(simple.steps.back() == TapeStep{if_less, 1, 0});
+  // −a − b is not −(a + b): with a = −b the first is +0.
+  const Tape both{{{input, 0}, {input, 1}, {negate, 0}, {negate, 1}, {add, 2, 3}, {subtract, 2, 1}}, {}, 2, {4, 5}};
+  const double inputs[2] = {1.5, -1.5};
+  double outputs[2] = {};
+  REQUIRE(replay(simplified(both), inputs, nullptr, outputs));
+  CHECK(are_same_bits(outputs[0], 0.0));
+  CHECK(are_same_bits(outputs[1], 0.0));
+}
+
+TEST_CASE("a negative that is an output, a divisor, under a root") {
+  const Tape tape{{{input, 0}, {negate, 0}, {divide, 0, 1}, {square_root, 1}, {minimum, 1, 0}, {negate, 1}, {sine, 1}}, {}, 1, {1, 2, 3, 4, 5, 6}};
+  for (const double x : {2.0, -2.0, 0.0, -0.0, 5e-324}) {
+    double plain[6], simple[6];
+    REQUIRE(replay(tape, &x, nullptr, plain));
+    REQUIRE(replay(simplified(tape), &x, nullptr, simple));
+    for (int k = 0; k < 6; ++k) CHECK(are_same_bits(plain[k], simple[k]));
+  }
+}
+
+TEST_CASE("random tapes have the same bits when simplified, and nothing more goes when simplified again") {
+  std::mt19937 random(2026);
+  int fewer = 0, held = 0;
+  for (int i = 0; i < 400; ++i) {
+    TapeShape shape;
+    shape.steps = 1 + i;
+    shape.reach = 3 + i % 97;
+    shape.conditions = i % 2 == 0 ? 0.0 : 0.02;
+    const Tape tape = random_tape(random, shape), simple = simplified(tape);
+    fewer += simple.steps.size() < tape.steps.size();
+    CHECK(simplified(simple).steps.size() == simple.steps.size());
+    for (int sample = 0; sample < 3; ++sample) {
+      const auto inputs = random_numbers(random, tape.input_count, true), constants = random_numbers(random, static_cast<int>(tape.constants.size()), true);
+      std::vector<double> plain(tape.outputs.size(), 1.25), others = plain;
+      const bool holds_plain = replay(tape, inputs.data(), constants.data(), plain.data());
+      CHECK(replay(simple, inputs.data(), constants.data(), others.data()) == holds_plain);
+      CHECK(std::equal(plain.begin(), plain.end(), others.begin(), are_same_bits));
+      held += holds_plain;
+    }
+  }
+  CHECK(fewer > 350);
+  CHECK(held > 600);
+  CHECK(held < 1200);
+}

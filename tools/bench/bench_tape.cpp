@@ -1,0 +1,142 @@
+// Machine code of a tape: what a step of it takes to be compiled and to be run, in nanoseconds, for each set of instructions
+// and number of lanes that the processor has; beside it what replay takes.
+//
+// The tape is made up to be like an evaluation: sums of products along chains, of which a dozen go side by side, an operand in
+// three from inputs or constants, a value out of ten used again much later, two divisions in a hundred, a root, a condition.
+#include "mbd/tape/machine_code.h"
+#include "mbd/tape/register_plan.h"
+
+#include <benchmark/benchmark.h>
+
+#include <random>
+#include <string>
+
+namespace steplap {
+namespace {
+
+Tape evaluation_like(int steps) {
+  using enum TapeOperation;
+  std::mt19937 random(1);
+  const auto among = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  const int inputs = 20, constants = steps / 8;
+  Tape tape;
+  tape.input_count = inputs;
+  for (int i = 0; i < inputs; ++i) tape.steps.push_back({input, i});
+  for (int i = 0; i < constants; ++i) {
+    tape.steps.push_back({constant, i});
+    tape.constants.push_back(0.5 + 0.001 * i);
+  }
+  const int given = inputs + constants;
+  std::int32_t chains[12];
+  for (int i = 0; i < 12; ++i) chains[i] = i;
+  for (int i = 0; i < steps; ++i) {
+    std::int32_t& chain = chains[among(12)];
+    const auto made = static_cast<int>(tape.steps.size());
+    const int p = among(100);
+    const std::int32_t other = p < 30 ? among(given) : p < 40 ? among(made) : p < 70 ? std::max(0, made - 1 - among(12)) : chains[among(12)];
+    const int q = among(200);
+    const TapeOperation o = q < 4 ? divide : q < 100 ? multiply : q < 160 ? add : subtract;
+    tape.steps.push_back({o, chain, other});
+    chain = made;
+    if (q == 199) { // roots and conditions that always hold
+      tape.steps.push_back({absolute, chain, 0});
+      tape.steps.push_back({square_root, made + 1, 0});
+      chain = made + 2;
+    }
+    if (q == 198) tape.steps.push_back({if_not_less, 0, 0});
+  }
+  for (int i = 0; i < 12; ++i) tape.outputs.push_back(chains[i]);
+  for (int i = 0; i < 12; ++i) tape.outputs.push_back(static_cast<std::int32_t>(tape.steps.size()) - 1 - 7 * i);
+  for (std::int32_t& o : tape.outputs)
+    while (is_condition(tape.steps[static_cast<std::size_t>(o)].operation)) --o;
+  return simplified(tape);
+}
+
+// Steps that are done: all but those that stand for inputs and constants.
+int count_steps(const Tape& tape) {
+  int count = 0;
+  for (const TapeStep& s : tape.steps) count += !is_given(s.operation);
+  return count;
+}
+
+void print_per_step(benchmark::State& state, const Tape& tape, int lanes) {
+  const double done = static_cast<double>(state.iterations()) * count_steps(tape) * lanes;
+  state.counters["per_step"] = benchmark::Counter(done, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void simplify(benchmark::State& state) {
+  const Tape tape = evaluation_like(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(simplified(tape));
+  print_per_step(state, tape, 1);
+}
+
+void plan(benchmark::State& state) {
+  const Tape tape = evaluation_like(static_cast<int>(state.range(0)));
+  RegisterRules rules;
+  rules.has_three_operands = true;
+  for (auto _ : state) benchmark::DoNotOptimize(plan_registers(tape, order_of_steps(tape), rules));
+  print_per_step(state, tape, 1);
+}
+
+void compile(benchmark::State& state, int lanes, InstructionSet set) {
+  const Tape tape = evaluation_like(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(MachineCode(tape, lanes, set));
+  print_per_step(state, tape, 1);
+  const MachineCode code(tape, lanes, set);
+  state.counters["instructions"] = static_cast<double>(code.instruction_count()) / count_steps(tape);
+  state.counters["bytes"] = static_cast<double>(code.code_size()) / count_steps(tape);
+}
+
+std::vector<double> spread(const std::vector<double>& of, int lanes) {
+  std::vector<double> all;
+  for (const double x : of) all.insert(all.end(), static_cast<std::size_t>(lanes), x);
+  return all;
+}
+
+void run(benchmark::State& state, int lanes, InstructionSet set) {
+  const Tape tape = evaluation_like(static_cast<int>(state.range(0)));
+  const MachineCode code(tape, lanes, set);
+  const auto constants = spread(tape.constants, lanes);
+  auto inputs = spread(std::vector<double>(static_cast<std::size_t>(tape.input_count), 0.75), lanes);
+  std::vector<double> outputs(tape.outputs.size() * static_cast<std::size_t>(lanes));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(code.run(inputs.data(), constants.data(), outputs.data()));
+    inputs[0] = 0.5 + 1e-3 * (outputs[0] > 0.0); // the next hangs on this one, as stages do
+    benchmark::ClobberMemory();
+  }
+  print_per_step(state, tape, lanes);
+}
+
+void interpret(benchmark::State& state) {
+  const Tape tape = evaluation_like(static_cast<int>(state.range(0)));
+  const std::vector<double> inputs(static_cast<std::size_t>(tape.input_count), 0.75);
+  std::vector<double> outputs(tape.outputs.size());
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(replay(tape, inputs.data(), tape.constants.data(), outputs.data()));
+    benchmark::ClobberMemory();
+  }
+  print_per_step(state, tape, 1);
+}
+
+void add_all() {
+  benchmark::RegisterBenchmark("simplify", simplify)->Arg(1000);
+  benchmark::RegisterBenchmark("plan", plan)->Arg(1000);
+  benchmark::RegisterBenchmark("replay", interpret)->Arg(1000);
+  const char* const names[] = {"sse2", "avx", "avx512"};
+  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx, InstructionSet::avx512})
+    for (int lanes = 1; MachineCode::is_available() && set <= MachineCode::best_instructions() && lanes <= MachineCode::most_lanes(set); lanes *= 2) {
+      const std::string name = std::string(names[static_cast<int>(set)]) + "/lanes:" + std::to_string(lanes);
+      benchmark::RegisterBenchmark(("compile/" + name).c_str(), compile, lanes, set)->Arg(1000);
+      benchmark::RegisterBenchmark(("run/" + name).c_str(), run, lanes, set)->Arg(1000);
+    }
+}
+
+} // namespace
+} // namespace steplap
+
+int main(int argc, char** argv) {
+  steplap::add_all();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
