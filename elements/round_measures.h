@@ -35,7 +35,8 @@ struct SegmentMeasure {
   [[nodiscard]] Vec2 to() const { return from + length * tangent; }
   /// p's coordinate along the segment; and across, positive on the left.
   template <class S, class B> STEPLAP_INLINE Pair<S> place(const Motion<S>& a, const B& b) const {
-    const Pair<S> d = offset(a, b) + to_ground(a, point_a) - to_ground(b, from), t = to_ground(b, tangent);
+    const Pair<S> start = to_ground(b, from), t = to_ground(b, tangent);
+    const Pair<S> d = offset(a, b) + to_ground(a, point_a) - start;
     return {dot(t, d), cross(t, d)};
   }
   template <class S, class B> STEPLAP_INLINE SegmentPart part(const Motion<S>& a, const B& b) const {

@@ -44,6 +44,7 @@ void Dynamics::set_state(const State& state) {
   evaluation_.friction = state.friction.data();
   evaluation_.memory = state.memory.data();
   is_merged_near_ = was_merged_near_ = false;
+  stage_programs_.leave();
   std::fill(watch_.begin(), watch_.end(), 1.0);
   std::fill(force_.begin(), force_.end(), BodyForce{}); // of bodies that none acts on in the new layout
   layout_key(state, choice_, key_);
@@ -222,6 +223,42 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   power[1] = evaluation_.work;
 }
 
+void Dynamics::take_time_inputs(double t, double* into) {
+  kinematics_.aim_locks(t);
+  for (std::size_t i = 0; i < layout_->locks.size(); ++i) {
+    const SignalJet& target = kinematics_.lock_target(i);
+    *into++ = target.value;
+    *into++ = target.rate;
+    *into++ = target.acceleration;
+  }
+  for (const int r : layout_->driven_rows) {
+    const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), t);
+    *into++ = target.acceleration;
+    *into++ = target.rate;
+  }
+}
+
+void Dynamics::stage_rates(double t, const double* y, double* dy) {
+  StageProgram* const program = stage_programs_.now();
+  const double now = std::min(t, time_cap_);
+  if (program && program->is_ready() && layout_->smallest_pivot() >= k_traced_pivot) {
+    take_time_inputs(now, program->time_inputs());
+    if (program->run(y, dy + coordinate_count(), watch_.data())) {
+      ++evaluations_;
+      std::copy_n(y + coordinate_count(), coordinate_count(), dy);
+      for (std::size_t i = 0; i < layout_->locks.size(); ++i)
+        dy[3 * layout_->locks[i].cluster + layout_->locks[i].coordinate] = kinematics_.lock_target(i).rate;
+      return;
+    }
+  }
+  rates(t, y, dy);
+  if (!program) return;
+  program->note_stage();
+  if (!program->wants_stage()) return;
+  take_time_inputs(now, program->time_inputs());
+  program->take_down(system_, *state_, y, dy + coordinate_count(), watch_.data());
+}
+
 double Dynamics::mechanical_energy(double t, const double* y) {
   t = std::min(t, time_cap_);
   if (!kinematics_.is_placed(t, y)) kinematics_.place(t, y, y + coordinate_count());
@@ -246,9 +283,10 @@ void Dynamics::watch_merged(const double* dy) {
 }
 
 void Dynamics::watch_merged_if_near(const double* dy, bool always) {
-  const bool has_groups = sharing() && !sharing()->groups().empty();
-  if (is_merged_near_ || was_merged_near_ || has_groups || (always && layout_->is_merged_watched)) (void)watch_joints(dy);
+  if (looks_at_merged(always)) (void)watch_joints(dy);
 }
+
+bool Dynamics::has_groups() const { return !sharing()->groups().empty(); }
 
 // Is any near its limit?
 bool Dynamics::watch_joints(const double* dy) {

@@ -13,6 +13,7 @@
 
 #include "mbd/dynamics/constraint_solution.h"
 #include "mbd/dynamics/reactions.h"
+#include "mbd/dynamics/stage_program.h"
 
 #include <limits>
 #include <memory>
@@ -42,7 +43,10 @@ public:
   /// set anew; poses are read only where a new layout has to be made.
   void set_state(const State& state);
   /// Forgets layouts whose merged bodies may have moved against each other.
-  void forget_layouts() { layouts_.clear(); }
+  void forget_layouts() {
+    stage_programs_.clear();
+    layouts_.clear();
+  }
   /// Relative rates along the rows of friction element f, and what they change by in a second, at the last rates().
   void slip_motion(int f, const double* dy, double* rate, double* acceleration, double* rounding);
 
@@ -65,6 +69,12 @@ public:
 
   /// dy/dt. Also leaves watch values, multipliers and forces for the functions below.
   void rates(double t, const double* y, double* dy);
+  /// The same for a stage inside a step, whose rates, watch() and count of evaluations are all that is asked for: other
+  /// by-products may be those of the evaluation before. Wherever rates() says how near to a singular position it came and that
+  /// is near, this does, too.
+  void stage_rates(double t, const double* y, double* dy);
+  /// From here on stages are made in the modes that state() has now.
+  void begin_stages() { stage_programs_.enter(*layout_, *state_); }
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
   /// residuals found before. Stops at `tolerance`, 0: where rounding sets an end to it; throws ConstraintFailure
   /// if that cannot be reached.
@@ -113,6 +123,10 @@ public:
   /// Adds the watch values of joints that are merged, and of groups of sticking elements that share a load: costs
   /// a pass over the merged bodies.
   void watch_merged(const double* dy);
+  /// Will watch_merged_if_near() look at them?
+  [[nodiscard]] bool looks_at_merged(bool always) const {
+    return is_merged_near_ || was_merged_near_ || (always && layout_->is_merged_watched) || (sharing() && has_groups());
+  }
   /// The same at a stage inside a step, where only values near their limit are worth the pass, unless `always`.
   void watch_merged_if_near(const double* dy, bool always = false);
   /// Integrals that snapshots show; null: none.
@@ -157,9 +171,11 @@ private:
   void decide_rank();
   void find_sharing();
   [[nodiscard]] bool is_shared(int friction) const;
+  [[nodiscard]] bool has_groups() const;
   void take_solved_friction();
   [[nodiscard]] bool watch_groups();
   [[nodiscard]] bool watch_joints(const double* dy);
+  void take_time_inputs(double t, double* into);
   void settle_loads();
 
   /// A merged joint with more of its capacity left than this at a step's ends is not looked at in between: what
@@ -187,6 +203,7 @@ private:
   Kinematics kinematics_;
   ConstraintSolution rows_;
   Reactions reactions_;
+  StagePrograms stage_programs_;
   const Motion<double>* motion_;   ///< of kinematics_
   double* friction_force_;         ///< of reactions_
   double lowest_pivot_ = 1.0;

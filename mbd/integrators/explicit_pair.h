@@ -37,8 +37,7 @@ protected:
   template <const auto& Rows, std::size_t Row>
   void stage(Dynamics& dynamics, double c) {
     combine<Rows, Row, Row>(y0_.data(), h_, k_.data(), stride_, n_, scratch_.data());
-    dynamics.rates(t0_ + c * h_, scratch_.data(), k(Row));
-    note_stage_watches(dynamics, k(Row), c);
+    evaluate_stage(dynamics, t0_ + c * h_, scratch_.data(), k(Row), c);
   }
   /// h ‖k_i − k_j‖/‖y_i − y_j‖ of two stages at the step's end: the fastest rate in the steps' direction
   /// (Hairer, Wanner, Solving ODEs II, IV.2). `difference`: y_i − y_j.

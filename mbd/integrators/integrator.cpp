@@ -38,6 +38,7 @@ Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& setti
 
 void Integrator::begin_at(Dynamics& dynamics, double t, const double* y) {
   n_ = dynamics.dimension();
+  dynamics.begin_stages();
   t0_ = t1_ = t;
   std::copy(y, y + n_, y0_.begin());
   on_restart(dynamics);
@@ -112,8 +113,18 @@ bool Integrator::try_finish_step(Dynamics& dynamics) {
   }
 }
 
+bool Integrator::is_merged_look_due(double theta) const {
+  return theta > last_merged_look_ + k_merged_look && theta < 1.0 - 0.5 * k_merged_look;
+}
+
+void Integrator::evaluate_stage(Dynamics& dynamics, double t, const double* y, double* dy, double theta) {
+  if (dynamics.looks_at_merged(is_merged_look_due(theta))) dynamics.rates(t, y, dy);
+  else dynamics.stage_rates(t, y, dy);
+  note_stage_watches(dynamics, dy, theta);
+}
+
 void Integrator::note_stage_watches(Dynamics& dynamics, const double* dy, double theta) {
-  const bool is_due = theta > last_merged_look_ + k_merged_look && theta < 1.0 - 0.5 * k_merged_look;
+  const bool is_due = is_merged_look_due(theta);
   if (is_due) last_merged_look_ = theta;
   dynamics.watch_merged_if_near(dy, is_due);
   nodes_.add(theta, dynamics.watch().data());

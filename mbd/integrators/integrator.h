@@ -108,6 +108,9 @@ protected:
     nodes_.clear();
     last_merged_look_ = 0.0;
   }
+  /// Rates of a stage at t0 + theta·h, and its watch values.
+  void evaluate_stage(Dynamics& dynamics, double t, const double* y, double* dy, double theta);
+  [[nodiscard]] bool is_merged_look_due(double theta) const;
   /// After the rates dy of a stage at t0 + theta·h.
   void note_stage_watches(Dynamics& dynamics, const double* dy, double theta);
   /// `h` within the limits set.

@@ -96,8 +96,7 @@ private:
   void stage(Dynamics& dynamics, int index, double c, const double* previous) {
     double* y = scratch_.data();
     for (int i = 0; i < n_; ++i) y[i] = y0_[i] + c * h_ * previous[i];
-    dynamics.rates(t0_ + c * h_, y, k(index));
-    note_stage_watches(dynamics, k(index), c);
+    evaluate_stage(dynamics, t0_ + c * h_, y, k(index), c);
   }
   std::vector<double> k_, kept_; ///< kept_: end of a step that is tried anew
   int stride_;

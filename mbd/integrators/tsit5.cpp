@@ -47,7 +47,7 @@ protected:
     stage<a, 5>(dynamics, c[5]);
     combine<a, 6, 6>(y0_.data(), h_, k_.data(), stride_, n_, y1_.data());
     // The estimate counts the rates at the end: taken before projection, which moves far less.
-    dynamics.rates(t0_ + h_, y1_.data(), k(6));
+    dynamics.stage_rates(t0_ + h_, y1_.data(), k(6));
     std::copy(y1_.begin(), y1_.begin() + n_, raw_.begin());
     weighted_sum<e, 7>(k_.data(), stride_, n_, scratch_.data());
     return h_ * projected_error_norm(dynamics, scratch_.data());

@@ -1,0 +1,73 @@
+#include "mbd/dynamics/stage_program.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace steplap {
+
+StageProgram::StageProgram(const Layout& layout, const State& state)
+    : layout_(&layout), modes_(state.mode.begin(), state.mode.end()),
+      inputs_(2 * static_cast<std::size_t>(layout.coordinate_count) + time_input_count(layout)),
+      coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), is_hopeless_(!MachineCode::is_available()) {
+  for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
+}
+
+bool StageProgram::is_of(const Layout& layout, const State& state) const {
+  return layout_ == &layout && std::equal(modes_.begin(), modes_.end(), state.mode.begin(), state.mode.end()) &&
+         std::equal(frictions_.begin(), frictions_.end(), state.friction.begin(), state.friction.end(),
+                    [](const Friction& a, const FrictionState& b) { return a == Friction{b.phase, b.sign, b.foot}; });
+}
+
+bool StageProgram::run(const double* y, double* dy, double* watch) {
+  const std::size_t n = coordinate_count_;
+  std::copy_n(y, 2 * n, inputs_.data());
+  if (code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data()) == 0) {
+    if (++failures_ > k_most_failures) {
+      code_ = nullptr;
+      stored_.reset();
+      is_hopeless_ = true;
+    }
+    return false;
+  }
+  const double* const out = outputs_.data();
+  std::copy_n(out, n + 2, dy);
+  for (std::size_t i = 0; i < traced_.watches.size(); ++i) watch[traced_.watches[i]] = out[n + 2 + i];
+  return true;
+}
+
+void StageProgram::note_stage() {
+  ++stages_;
+  if (!stored_) return;
+  stored_->note_use(1);
+  look_for_code();
+}
+
+void StageProgram::take_down(const System& system, const State& state, const double* y, const double* dy, const double* watch) {
+  is_hopeless_ = true; // unless it is found to be the same to the bit
+  const std::size_t n = coordinate_count_;
+  if (!trace_rates(system, *layout_, state, y, {time_inputs(), inputs_.size() - 2 * n}, k_traced_pivot, traced_)) return;
+  const auto is_same = [](double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+  for (std::size_t i = 0; i < n + 2; ++i)
+    if (!is_same(traced_.outputs[i], dy[i])) return;
+  for (std::size_t i = 0; i < traced_.watches.size(); ++i)
+    if (!is_same(traced_.outputs[n + 2 + i], watch[traced_.watches[i]])) return;
+  is_hopeless_ = false;
+  outputs_.resize(traced_.outputs.size());
+  stored_ = stored_code(traced_.tape);
+  look_for_code();
+}
+
+void StagePrograms::enter(const Layout& layout, const State& state) {
+  const auto known = std::find_if(programs_.begin(), programs_.end(),
+                                  [&](const auto& program) { return program->is_of(layout, state); });
+  if (known != programs_.end()) {
+    now_ = known->get();
+    now_->look_for_code();
+    return;
+  }
+  now_ = nullptr;
+  if (programs_.size() >= k_most_programs) return;
+  now_ = programs_.emplace_back(std::make_unique<StageProgram>(layout, state)).get();
+}
+
+} // namespace steplap

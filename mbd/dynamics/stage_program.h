@@ -1,0 +1,89 @@
+// Rates at the stages inside steps by machine code.
+//
+// Stages are most of a run's evaluations, and nobody asks them for anything but rates and switching values. So where a set of
+// modes lasts, one of its evaluations is written down (traced_evaluation.h), and the stages after it are made by the machine code
+// of that tape (mbd/tape): the same bits without the loops, indices and branches. Whatever is not as it was when the tape was
+// written (a branch, a singular position that comes near) is told by the tape's conditions, and the stage is evaluated as ever.
+#pragma once
+
+#include "mbd/dynamics/traced_evaluation.h"
+#include "mbd/tape/code_store.h"
+
+#include <memory>
+#include <vector>
+
+namespace steplap {
+
+/// Nearer to a singular position than this, pivot against diagonal, stages are evaluated as ever: the integrators ask how
+/// near they came (Dynamics::lowest_pivot), and below 2e-2 it matters.
+inline constexpr double k_traced_pivot = 2.5e-2;
+
+/// Of one layout in one set of modes.
+class StageProgram {
+public:
+  StageProgram(const Layout& layout, const State& state);
+  [[nodiscard]] bool is_of(const Layout& layout, const State& state) const;
+
+  /// Code may have been made since.
+  void look_for_code() { code_ = stored_ ? stored_->code() : nullptr; }
+  [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
+  /// For accelerations, power and switching values at coordinates and rates y; false: evaluate as ever, nothing was changed.
+  [[nodiscard]] bool run(const double* y, double* dy, double* watch);
+  /// Where run() takes what hangs on time alone, in the order of traced_evaluation.h.
+  [[nodiscard]] double* time_inputs() { return inputs_.data() + 2 * coordinate_count_; }
+
+  /// Have the modes lasted, so that the stage that follows is to be written down?
+  [[nodiscard]] bool wants_stage() const { return !is_hopeless_ && !stored_ && stages_ >= k_settled; }
+  /// After a stage that was evaluated as ever: counts it.
+  void note_stage();
+  /// Writes down the stage evaluated last, at y and these time_inputs(). `dy`, `watch`: what was found, against which the tape
+  /// is held.
+  void take_down(const System& system, const State& state, const double* y, const double* dy, const double* watch);
+
+private:
+  /// A tape whose conditions fail so often is of no use.
+  static constexpr int k_most_failures = 40;
+  /// Writing a stage down takes as long as code saves in some thirty stages: two steps or so.
+  static constexpr int k_settled = 22;
+
+  struct Friction {
+    FrictionPhase phase;
+    std::int8_t sign;
+    std::uint32_t foot;
+    friend bool operator==(const Friction&, const Friction&) = default;
+  };
+
+  const Layout* layout_;
+  std::vector<UnitMode> modes_;
+  std::vector<Friction> frictions_;
+  TracedRates traced_;
+  std::shared_ptr<StoredCode> stored_; ///< null until it is written down
+  const MachineCode* code_ = nullptr;
+  std::vector<double> inputs_, outputs_;
+  std::size_t coordinate_count_ = 0;
+  int stages_ = 0, failures_ = 0;
+  bool is_hopeless_ = false;
+};
+
+/// Those of a run, by layout and modes: these come back.
+class StagePrograms {
+public:
+  /// Layouts are given up, or what they were made of has changed.
+  void clear() {
+    programs_.clear();
+    now_ = nullptr;
+  }
+  void leave() { now_ = nullptr; }
+  void enter(const Layout& layout, const State& state);
+  /// Of the modes entered; null: none.
+  [[nodiscard]] StageProgram* now() const { return now_; }
+
+private:
+  /// Scenes with many contacts have more sets of modes than it pays to keep.
+  static constexpr std::size_t k_most_programs = 64;
+
+  std::vector<std::unique_ptr<StageProgram>> programs_;
+  StageProgram* now_ = nullptr;
+};
+
+} // namespace steplap

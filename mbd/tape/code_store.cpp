@@ -1,0 +1,54 @@
+#include "mbd/tape/code_store.h"
+
+#include <unordered_map>
+
+namespace steplap {
+
+namespace {
+
+constexpr std::size_t k_most_tapes = 500;
+
+std::uint64_t hash_of(const Tape& tape) { // FNV-1a
+  std::uint64_t hash = 14695981039346656037ULL;
+  const auto add = [&hash](std::uint64_t x) { hash = (hash ^ x) * 1099511628211ULL; };
+  for (const TapeStep& s : tape.steps) add(static_cast<std::uint64_t>(s.operation) | static_cast<std::uint64_t>(s.a) << 8U | static_cast<std::uint64_t>(s.b) << 36U);
+  for (const std::int32_t o : tape.outputs) add(static_cast<std::uint64_t>(o));
+  return hash;
+}
+
+struct Store {
+  std::mutex mutex;
+  std::unordered_multimap<std::uint64_t, std::shared_ptr<StoredCode>> codes;
+};
+
+Store& store() {
+  static Store all;
+  return all;
+}
+
+} // namespace
+
+void StoredCode::note_use(long evaluations) {
+  if (evaluations_.fetch_add(evaluations) + evaluations < k_enough) return;
+  std::call_once(is_made_, [this] {
+    Tape tape;
+    tape.steps = steps_;
+    tape.outputs = outputs_;
+    tape.input_count = input_count_;
+    made_ = MachineCode(simplified(tape));
+    if (made_) code_.store(&made_, std::memory_order_release);
+  });
+}
+
+std::shared_ptr<StoredCode> stored_code(const Tape& tape) {
+  const std::uint64_t hash = hash_of(tape);
+  Store& all = store();
+  const std::scoped_lock lock(all.mutex);
+  const auto [begin, end] = all.codes.equal_range(hash);
+  for (auto at = begin; at != end; ++at)
+    if (at->second->is_of(tape)) return at->second;
+  if (all.codes.size() >= k_most_tapes) all.codes.clear();
+  return all.codes.emplace(hash, std::make_shared<StoredCode>(tape))->second;
+}
+
+} // namespace steplap

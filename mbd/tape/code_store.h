@@ -1,0 +1,42 @@
+// Machine code made in this process, by the tape that it was made of: runs of one scene with other numbers have the same tapes.
+#pragma once
+
+#include "mbd/tape/machine_code.h"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+
+namespace steplap {
+
+/// One tape and its code, once that is worth making. Thread-safe.
+class StoredCode {
+public:
+  /// `tape`: its constants are not looked at.
+  explicit StoredCode(const Tape& tape) : steps_(tape.steps), outputs_(tape.outputs), input_count_(tape.input_count) {}
+  [[nodiscard]] bool is_of(const Tape& tape) const {
+    return steps_ == tape.steps && outputs_ == tape.outputs && input_count_ == tape.input_count;
+  }
+  /// Null where it is not made yet.
+  [[nodiscard]] const MachineCode* code() const { return code_.load(std::memory_order_acquire); }
+  /// So many evaluations were made that it could have made: it is made as soon as they are as many as would have paid for it.
+  void note_use(long evaluations);
+
+private:
+  /// Making code takes as long as some of these save.
+  static constexpr long k_enough = 600;
+
+  std::vector<TapeStep> steps_;
+  std::vector<std::int32_t> outputs_;
+  int input_count_;
+  std::atomic<long> evaluations_{0};
+  std::once_flag is_made_;
+  MachineCode made_;
+  std::atomic<const MachineCode*> code_{nullptr};
+};
+
+/// That of an equal tape, whichever thread has asked first. Of some hundred tapes: the store is emptied when it is full, and who
+/// has one keeps it. Thread-safe.
+[[nodiscard]] std::shared_ptr<StoredCode> stored_code(const Tape& tape);
+
+} // namespace steplap
