@@ -245,6 +245,7 @@ void Dynamics::stage_rates(double t, const double* y, double* dy) {
     take_time_inputs(now, program->time_inputs());
     if (program->run(y, dy + coordinate_count(), watch_.data())) {
       ++evaluations_;
+      rows_.forget_factors();
       std::copy_n(y + coordinate_count(), coordinate_count(), dy);
       for (std::size_t i = 0; i < layout_->locks.size(); ++i)
         dy[3 * layout_->locks[i].cluster + layout_->locks[i].coordinate] = kinematics_.lock_target(i).rate;
@@ -252,6 +253,8 @@ void Dynamics::stage_rates(double t, const double* y, double* dy) {
     }
   }
   rates(t, y, dy);
+  // A projection begins with the factors of the evaluation before it: results must not hang on which way that was made.
+  if (layout_->smallest_pivot() >= k_traced_pivot) rows_.forget_factors();
   if (!program) return;
   program->note_stage();
   if (!program->wants_stage()) return;

@@ -70,8 +70,8 @@ public:
   /// dy/dt. Also leaves watch values, multipliers and forces for the functions below.
   void rates(double t, const double* y, double* dy);
   /// The same for a stage inside a step, whose rates, watch() and count of evaluations are all that is asked for: other
-  /// by-products may be those of the evaluation before. Wherever rates() says how near to a singular position it came and that
-  /// is near, this does, too.
+  /// by-products may be those of the evaluation before, and factors are forgotten. Near a singular position (k_traced_pivot) it
+  /// is rates().
   void stage_rates(double t, const double* y, double* dy);
   /// From here on stages are made in the modes that state() has now.
   void begin_stages() { stage_programs_.enter(*layout_, *state_); }

@@ -200,14 +200,6 @@ private:
   TracedEvaluation e_;
 };
 
-// Whatever ends it, nothing goes on being written down.
-struct Writing {
-  explicit Writing(Tape& tape) { Traced::start(tape); }
-  ~Writing() { Traced::finish(); }
-  Writing(const Writing&) = delete;
-  Writing& operator=(const Writing&) = delete;
-};
-
 } // namespace
 
 std::size_t time_input_count(const Layout& layout) {
@@ -216,12 +208,14 @@ std::size_t time_input_count(const Layout& layout) {
 
 bool trace_rates(const System& system, const Layout& layout, const State& state, const double* y,
                  std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
-  const Writing writing(traced.tape);
+  Traced::start();
   try {
     Tracer(system, layout, state).trace(y, time_inputs, least_pivot, traced);
   } catch (const NotTraceable&) {
+    Traced::finish(nullptr);
     return false;
   }
+  Traced::finish(&traced.tape);
   return true;
 }
 

@@ -8,11 +8,13 @@ namespace {
 
 constexpr std::size_t k_most_tapes = 500;
 
-std::uint64_t hash_of(const Tape& tape) { // FNV-1a
+// FNV-1a, a step at a time.
+std::uint64_t hash_of(const Tape& tape) {
   std::uint64_t hash = 14695981039346656037ULL;
-  const auto add = [&hash](std::uint64_t x) { hash = (hash ^ x) * 1099511628211ULL; };
-  for (const TapeStep& s : tape.steps) add(static_cast<std::uint64_t>(s.operation) | static_cast<std::uint64_t>(s.a) << 8U | static_cast<std::uint64_t>(s.b) << 36U);
-  for (const std::int32_t o : tape.outputs) add(static_cast<std::uint64_t>(o));
+  for (const TapeStep& s : tape.steps) {
+    const auto a = static_cast<std::uint64_t>(s.a), b = static_cast<std::uint64_t>(s.b);
+    hash = (hash ^ (static_cast<std::uint64_t>(s.operation) | a << 8U | b << 36U)) * 1099511628211ULL;
+  }
   return hash;
 }
 

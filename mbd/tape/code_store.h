@@ -4,8 +4,10 @@
 #include "mbd/tape/machine_code.h"
 
 #include <atomic>
+#include <cstring>
 #include <memory>
 #include <mutex>
+#include <type_traits>
 
 namespace steplap {
 
@@ -15,7 +17,9 @@ public:
   /// `tape`: its constants are not looked at.
   explicit StoredCode(const Tape& tape) : steps_(tape.steps), outputs_(tape.outputs), input_count_(tape.input_count) {}
   [[nodiscard]] bool is_of(const Tape& tape) const {
-    return steps_ == tape.steps && outputs_ == tape.outputs && input_count_ == tape.input_count;
+    static_assert(std::has_unique_object_representations_v<TapeStep>);
+    return steps_.size() == tape.steps.size() && outputs_ == tape.outputs && input_count_ == tape.input_count &&
+           std::memcmp(steps_.data(), tape.steps.data(), steps_.size() * sizeof(TapeStep)) == 0;
   }
   /// Null where it is not made yet.
   [[nodiscard]] const MachineCode* code() const { return code_.load(std::memory_order_acquire); }

@@ -13,7 +13,7 @@
 
 namespace steplap {
 
-enum class TapeOperation : std::uint8_t {
+enum class TapeOperation : std::uint32_t {
   input,       ///< a: which input
   constant,    ///< a: which constant
   add,         ///< a + b; a, b here and below: the steps whose values are taken

@@ -19,14 +19,37 @@ namespace steplap {
 /// What is asked of the values at hand does not hold: no tape of them.
 struct NotTraceable {};
 
+/// Where a thread writes at present. Steps and constants are kept in memory that has grown to what tapes take.
+struct TapeWriter {
+  TapeStep *step = nullptr, *first_step = nullptr, *last_step = nullptr;
+  double *constant = nullptr, *first_constant = nullptr, *last_constant = nullptr;
+  std::vector<TapeStep> steps;
+  std::vector<double> constants;
+  std::vector<std::int32_t> outputs;
+  std::int32_t input_count = 0;
+
+  std::int32_t put(TapeOperation operation, std::int32_t a, std::int32_t b) {
+    if (step == last_step) [[unlikely]] grow();
+    *step = {operation, a, b};
+    return static_cast<std::int32_t>(step++ - first_step);
+  }
+  std::int32_t put_constant(double value) {
+    if (constant == last_constant) [[unlikely]] grow();
+    *constant = value;
+    return put(TapeOperation::constant, static_cast<std::int32_t>(constant++ - first_constant), 0);
+  }
+  void grow();
+  static inline constinit thread_local TapeWriter* now = nullptr;
+};
+
 class Traced {
 public:
   Traced() = default;
   Traced(double constant) : value_(constant) {} // NOLINT: a number of the file is a Traced
 
-  /// Written by one thread at a time, between start() and finish().
-  static void start(Tape& tape);
-  static void finish();
+  /// What this thread does from start() on is written down, until finish() has put it into `tape` or gives it up (null).
+  static void start();
+  static void finish(Tape* tape);
   /// The next input; its value now.
   [[nodiscard]] static Traced input(double value);
   /// To be the next output.
@@ -62,9 +85,15 @@ public:
   friend Traced atan2(const Traced& /*y*/, const Traced& /*x*/) { throw NotTraceable(); }
 
 private:
-  static Traced made(TapeOperation operation, const Traced& a, const Traced& b, double value);
+  static Traced made(TapeOperation operation, const Traced& a, const Traced& b, double value) {
+    Traced x(value);
+    if (a.is_constant() && b.is_constant()) return x;
+    const std::int32_t first = a.step();
+    x.step_ = TapeWriter::now->put(operation, first, &a == &b ? first : b.step());
+    return x;
+  }
   static bool decided(const Traced& a, const Traced& b);
-  [[nodiscard]] std::int32_t step() const;
+  [[nodiscard]] std::int32_t step() const { return step_ >= 0 ? step_ : TapeWriter::now->put_constant(value_); }
 
   double value_ = 0.0;
   std::int32_t step_ = -1; ///< −1: a constant
