@@ -105,21 +105,7 @@ void Mechanism::place(const double* q, const double* v, Motion<double>* motion) 
     w.placed_q[i] = q[i];
     w.placed_v[i] = v[i];
   }
-  Link* const links = w.links.data();
-  Link* const end = links + w.links.size();
-  for (Link* now = links; now != end; ++now) {
-    MechanismWork::turn(*now, links, q, v);
-    if (now->slot < 0) continue;
-    Motion<double>& out = motion[now->slot];
-    out.x = now->o.x + now->lever.x;
-    out.y = now->o.y + now->lever.y;
-    out.theta = q[now->coordinate];
-    out.c = now->c;
-    out.s = now->s;
-    out.vx = now->v.x - now->omega * now->lever.y;
-    out.vy = now->v.y + now->omega * now->lever.x;
-    out.omega = now->omega;
-  }
+  w.place(q, v, motion);
 }
 
 bool Mechanism::is_at(const double* q, const double* v) const {
@@ -197,99 +183,23 @@ void Mechanism::factor_mass() {
   MechanismWork& w = *work_;
   if (w.is_constant && w.is_factored) return;
   w.is_factored = true;
-  double* const h = w.mass.data();
-  constexpr int k = k_most;
-  Link* const links = w.links.data();
-  for (std::size_t i = 0; i < w.links.size(); ++i) {
-    Link& m = links[i];
-    const Pair<double> moment = m.turned_moment = turned(m.c, m.s, m.moment);
-    double* const row = h + m.coordinate * k;
-    row[m.coordinate] = m.turning;
-    const Link* at = &m;
-    for (; at->parent >= 0; at = links + at->parent) row[links[at->parent].coordinate] = dot(at->arm, moment);
-    if (!at->is_free) continue;
-    const int x = at->coordinate - 2, y = x + 1;
-    row[x] = -moment.y;
-    row[y] = moment.x;
-    h[x * k + x] = h[y * k + y] = at->mass_below;
-    h[y * k + x] = 0.0;
-  }
-  if (w.is_chain) return factor_chain(w);
-  for (int r = n_ - 1; r >= 0; --r) {
-    double* const row = h + r * k;
-    const double inverse = w.inverse_d[r] = 1.0 / row[r];
-    for (int i = w.up[r]; i >= 0; i = w.up[i]) {
-      const double a = row[i] * inverse;
-      double* const other = h + i * k;
-      for (int j = i; j >= 0; j = w.up[j]) other[j] -= a * row[j];
-      row[i] = a;
-    }
-  }
+  w.fill_mass();
+  if (w.is_chain) factor_chain(w);
+  else w.factor_tree();
 }
 
 void Mechanism::solve_mass(double* x) const {
   const MechanismWork& w = *work_;
-  if (w.is_chain) return solve_chain(w, x);
-  w.whiten(x, w.all.data(), n_);
-  for (int i = 0; i < n_; ++i) {
-    const double* const row = w.mass.data() + i * k_most;
-    double sum = x[i] * w.inverse_d[i];
-    for (int j = w.up[i]; j >= 0; j = w.up[j]) sum -= row[j] * x[j];
-    x[i] = sum;
-  }
+  if (w.is_chain) solve_chain(w, x);
+  else w.solve_tree(x);
 }
 
 void Mechanism::accelerate(const BodyForce* force, double* s) const {
-  MechanismWork& w = *work_;
-  Link* const links = w.links.data();
-  Link* const end = links + w.links.size();
-  for (Link* now = links; now != end; ++now) {
-    now->force = {};
-    now->couple = 0.0;
-    if (now->slot < 0) continue;
-    const BodyForce& f = force[now->slot];
-    const double w2 = now->omega * now->omega;
-    now->force = {f.fx + now->mass * (w.gravity.x - now->bias.x + w2 * now->lever.x),
-                  f.fy + now->mass * (w.gravity.y - now->bias.y + w2 * now->lever.y)};
-    now->couple = f.m + cross(now->lever, now->force);
-  }
-  for (Link* now = end; now-- != links;) {
-    s[now->coordinate] = now->couple;
-    if (now->is_free) {
-      s[now->coordinate - 2] = now->force.x;
-      s[now->coordinate - 1] = now->force.y;
-    } else if (now->parent >= 0) {
-      Link& above = links[now->parent];
-      add(above.force, now->force);
-      above.couple += cross(now->arm, now->force);
-    }
-  }
+  work_->load(force, s);
   solve_mass(s);
 }
 
-void Mechanism::expand(const double* s, double* cluster_a) const {
-  MechanismWork& w = *work_;
-  Link* const links = w.links.data();
-  Link* const end = links + w.links.size();
-  for (Link* now = links; now != end; ++now) { // `force`: the acceleration of its pin
-    if (now->parent >= 0) {
-      const Link& above = links[now->parent];
-      const double alpha = s[above.coordinate], w2 = above.omega * above.omega;
-      now->force = {above.force.x - alpha * now->arm.y - w2 * now->arm.x,
-                    above.force.y + alpha * now->arm.x - w2 * now->arm.y};
-    } else if (now->is_free) {
-      now->force = {s[now->coordinate - 2], s[now->coordinate - 1]};
-    } else {
-      now->force = {};
-    }
-    if (now->cluster < 0) continue;
-    const double alpha = s[now->coordinate], w2 = now->omega * now->omega;
-    double* const a = cluster_a + 3 * members[now - links].cluster;
-    a[0] = now->force.x - alpha * now->lever.y - w2 * now->lever.x;
-    a[1] = now->force.y + alpha * now->lever.x - w2 * now->lever.y;
-    a[2] = alpha;
-  }
-}
+void Mechanism::expand(const double* s, double* cluster_a) const { work_->expand(s, cluster_a); }
 
 void Mechanism::pin_forces(const double* cluster_a, const BodyForce* force, const SchurRow* rows, const double* lambda,
                            std::vector<Pair<double>>& on_member) const {

@@ -115,6 +115,8 @@ public:
   [[nodiscard]] bool is_left_out(int row) const { return !out_.empty() && out_[row] != 0; }
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
   [[nodiscard]] const double* gradient(int row) const;
+  /// Its constants, for who writes an evaluation down (traced_mechanism.h).
+  [[nodiscard]] const MechanismWork& work() const { return *work_; }
 
 private:
   void find_patterns(const SchurRow* rows);

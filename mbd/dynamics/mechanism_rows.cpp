@@ -13,60 +13,24 @@ namespace {
 constexpr int k_max_refinements = 4;
 constexpr double k_doubtful_pivot = 1e-8; // as in schur.cpp
 
-double own_compliance(const SchurRow& row) {
-  double sum = 0.0;
-  for (int side = 0; side < 2; ++side)
-    if (row.body[side] >= 0)
-      for (int c = 0; c < 3; ++c) sum += row.wj[side][c] * row.j[side][c];
-  return sum;
-}
-
 struct Pivots {
   int dependent_count = 0;
   double smallest = 1.0;
 };
 
-// A = J M⁻¹ Jᵀ row by row: below the diagonal first L D, then L. N: the number of rows if it is small, else 0.
 template <int N> Pivots factor_dense(MechanismWork& w, int count, const std::vector<char>& out) {
-  constexpr int k_most = MechanismWork::k_most;
   Pivots found;
   double least = 1.0;
-  const int m = N > 0 ? N : count;
-  const MechanismWork::Shared* pair = w.shared.data();
-  double* const a = w.factor.data();
-  double* const inverse = w.inverse_pivot.data();
-  for (int r = 0; r < m; ++r) {
-    const double* const scaled = w.scaled.data() + r * k_most;
-    double* const row = a + r * m;
-    for (int t = 0; t <= r; ++t, ++pair) {
-      const double* const other = w.white.data() + t * k_most;
-      double sum = 0.0;
-      for (const std::uint8_t *at = w.shared_at.data() + pair->begin, *const end = at + pair->count; at != end; ++at)
-        sum += scaled[*at] * other[*at];
-      row[t] = sum;
-    }
-    const double own = w.own[r];
-    double d = row[r] + w.shift * own;
-    for (int j = 0; j < r; ++j) {
-      const double* const before = a + j * m;
-      double sum = row[j];
-      for (int k = 0; k < j; ++k) sum -= row[k] * before[k];
-      row[j] = sum;
-    }
-    for (int j = 0; j < r; ++j) {
-      const double l = row[j] * inverse[j];
-      d -= l * row[j];
-      row[j] = l;
-    }
+  const auto raise = [&w](double d, double own) { return d + w.shift * own; };
+  w.factor_rows<N>(count, raise, [&](int r, double d, double own) {
     const bool is_out = !out.empty() && out[r] != 0;
     if (is_out || !(d > SchurSolver::k_pivot_tolerance * own)) [[unlikely]] {
-      inverse[r] = 0.0;
       ++found.dependent_count;
-    } else {
-      inverse[r] = 1.0 / d;
-      if (d < least * own) least = d / own;
+      return 0.0;
     }
-  }
+    if (d < least * own) least = d / own;
+    return 1.0 / d;
+  });
   found.smallest = least;
   return found;
 }
@@ -82,25 +46,12 @@ Pivots factor(MechanismWork& w, int count, const std::vector<char>& out) {
   }
 }
 
-template <int N> STEPLAP_INLINE void eliminate_dense(const MechanismWork& w, int count, double* x) {
-  const double* const l = w.factor.data();
-  const int m = N > 0 ? N : count;
-  for (int i = 1; i < m; ++i) {
-    double sum = x[i];
-    for (int j = 0; j < i; ++j) sum -= l[i * m + j] * x[j];
-    x[i] = sum;
-  }
-  for (int i = 0; i < m; ++i) x[i] *= w.inverse_pivot[i];
-  for (int i = m - 1; i > 0; --i)
-    for (int j = 0; j < i; ++j) x[j] -= l[i * m + j] * x[i];
-}
-
 void eliminate(const MechanismWork& w, int m, double* x) {
   switch (m) {
-  case 2: return eliminate_dense<2>(w, m, x);
-  case 4: return eliminate_dense<4>(w, m, x);
-  case 6: return eliminate_dense<6>(w, m, x);
-  default: return eliminate_dense<0>(w, m, x);
+  case 2: return w.eliminate<2>(m, x);
+  case 4: return w.eliminate<4>(m, x);
+  case 6: return w.eliminate<6>(m, x);
+  default: return w.eliminate<0>(m, x);
   }
 }
 
@@ -171,27 +122,17 @@ void Mechanism::find_patterns(const SchurRow* rows) {
 }
 
 void Mechanism::reduce(const SchurRow& row, double* gradient) const {
-  const MechanismWork::Link* const links = work_->links.data();
-  for (int side = 0; side < 2; ++side) {
-    if (row.body[side] < 0) continue;
-    const double* const j = row.j[side];
-    const Pair<double> force{j[0], j[1]};
-    const MechanismWork::Link* at = links + member_of(row.body[side]);
-    gradient[at->coordinate] += j[2] + cross(at->lever, force);
-    for (; at->parent >= 0; at = links + at->parent) gradient[links[at->parent].coordinate] += cross(at->arm, force);
-    if (!at->is_free) continue;
-    gradient[at->coordinate - 2] += force.x;
-    gradient[at->coordinate - 1] += force.y;
-  }
+  int member[2] = {-1, -1};
+  for (int side = 0; side < 2; ++side)
+    if (row.body[side] >= 0) member[side] = member_of(row.body[side]);
+  work_->reduce(row, member, gradient);
 }
 
 void Mechanism::reduce_rows(const SchurRow* rows) {
   MechanismWork& w = *work_;
   for (int r = 0; r < row_count; ++r) {
-    double* const gradient = w.gradient.data() + static_cast<std::ptrdiff_t>(r) * k_most;
-    const MechanismWork::RowPattern& pattern = w.patterns[r];
-    for (int p = 0; p < pattern.count; ++p) gradient[pattern.at[p]] = 0.0;
-    reduce(rows[r], gradient);
+    w.clear_gradient(static_cast<std::size_t>(r));
+    reduce(rows[r], w.gradient.data() + static_cast<std::ptrdiff_t>(r) * k_most);
   }
 }
 
@@ -205,29 +146,13 @@ double Mechanism::along(int row, const double* change) const {
 
 void Mechanism::add_response(const double* lambda, double* change) const {
   std::array<double, k_most> pull;
-  for (int i = 0; i < n_; ++i) pull[i] = 0.0;
-  for (int r = 0; r < row_count; ++r) {
-    const double* const j = gradient(r);
-    const MechanismWork::RowPattern& pattern = work_->patterns[r];
-    for (int p = 0; p < pattern.count; ++p) pull[pattern.at[p]] += j[pattern.at[p]] * lambda[r];
-  }
+  work_->pull_rows(row_count, lambda, pull.data());
   solve_mass(pull.data());
   for (int i = 0; i < n_; ++i) change[i] += pull[i];
 }
 
 void Mechanism::factor_rows(const SchurRow* rows, double shift) {
-  MechanismWork& w = *work_;
-  for (int r = 0; r < row_count; ++r) {
-    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(r) * k_most;
-    const double* const gradient = w.gradient.data() + first;
-    double* const white = w.white.data() + first;
-    double* const scaled = w.scaled.data() + first;
-    const MechanismWork::RowPattern& pattern = w.patterns[r];
-    for (int p = 0; p < pattern.count; ++p) white[pattern.at[p]] = gradient[pattern.at[p]];
-    w.whiten(white, pattern.at.data(), pattern.count);
-    for (int p = 0; p < pattern.count; ++p) scaled[pattern.at[p]] = white[pattern.at[p]] * w.inverse_d[pattern.at[p]];
-    w.own[r] = own_compliance(rows[r]);
-  }
+  for (int r = 0; r < row_count; ++r) work_->whiten_row(static_cast<std::size_t>(r), rows[r]);
   factor_as_is(shift);
   if (is_rank_open_) [[unlikely]] keep_rank(shift);
 }

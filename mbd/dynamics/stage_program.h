@@ -43,8 +43,8 @@ public:
 private:
   /// A tape whose conditions fail so often is of no use.
   static constexpr int k_most_failures = 40;
-  /// Writing a stage down takes as long as code saves in some twenty stages: a step of the longest method.
-  static constexpr int k_settled = 11;
+  /// Writing a stage down takes as long as code saves in so many.
+  static constexpr int k_settled = 120;
 
   struct Friction {
     FrictionPhase phase;

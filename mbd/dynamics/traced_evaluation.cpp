@@ -3,6 +3,7 @@
 #include "mbd/dynamics/kinematics.h"
 #include "mbd/dynamics/reactions.h"
 #include "mbd/dynamics/row_pull.h"
+#include "mbd/dynamics/traced_mechanism.h"
 
 #include <algorithm>
 #include <limits>
@@ -52,13 +53,15 @@ private:
   }
 
   [[nodiscard]] bool is_plain() const {
-    return !layout_.has_joint_coordinates() && system_.inner_count() == 0 && layout_.schur.is_small() && !layout_.is_singular() &&
+    return !layout_.carriages && system_.inner_count() == 0 && layout_.schur.is_small() && !layout_.is_singular() &&
            !layout_.sharing &&
            std::all_of(layout_.active.begin(), layout_.active.end(),
                        [](const ActiveRow& row) { return row.pull != RowPullKind::other; });
   }
 
   [[nodiscard]] std::size_t coordinate_count() const { return static_cast<std::size_t>(layout_.coordinate_count); }
+
+  [[nodiscard]] std::size_t absolute_count() const { return static_cast<std::size_t>(layout_.absolute_count); }
 
   void take_inputs(const double* y, std::span<const double> time_inputs) {
     const std::size_t n = coordinate_count();
@@ -72,7 +75,11 @@ private:
   }
 
   void place() {
-    for (std::size_t k = 0; k < layout_.clusters.size(); ++k) place_cluster(&q_[3 * k], &v_[3 * k], motion_[layout_.slots[k]]);
+    for (const Mechanism& m : layout_.mechanisms) {
+      const auto first = static_cast<std::size_t>(m.first_coordinate);
+      mechanisms_.emplace_back(m).place(&q_[first], &v_[first], motion_.data());
+    }
+    for (std::size_t k = 0; k < absolute_count(); ++k) place_cluster(&q_[3 * k], &v_[3 * k], motion_[layout_.slots[k]]);
     for (std::size_t i = 0; i < layout_.locks.size(); ++i) {
       const Lock& lock = layout_.locks[i];
       place_locked(lock.coordinate, of_lock(i)[0], of_lock(i)[1], motion_[layout_.slots[lock.cluster]]);
@@ -133,7 +140,7 @@ private:
   }
 
   void accelerate() {
-    for (std::size_t k = 0; k < layout_.clusters.size(); ++k) {
+    for (std::size_t k = 0; k < absolute_count(); ++k) {
       const BodyForceOf<Traced>& f = force_[layout_.slots[k]];
       const double* const w = &layout_.inverse_mass[3 * k];
       const double* const weight = &layout_.weight[3 * k];
@@ -141,16 +148,38 @@ private:
       a_.push_back(w[1] * (weight[1] + f.fy));
       a_.push_back(w[2] * (weight[2] + f.m));
     }
+    a_.resize(coordinate_count());
     for (std::size_t i = 0; i < layout_.locks.size(); ++i)
       a_[static_cast<std::size_t>(3 * layout_.locks[i].cluster + layout_.locks[i].coordinate)] = of_lock(i)[2];
   }
 
   void solve_rows(double least_pivot) {
-    for (std::size_t r = 0; r < rows_.size(); ++r) multiplier_[r] = less_accelerations(rows_[r], multiplier_[r], a_.data());
+    const auto of_absolute = static_cast<std::size_t>(layout_.schur.size());
+    for (std::size_t r = 0; r < of_absolute; ++r) multiplier_[r] = less_accelerations(rows_[r], multiplier_[r], a_.data());
+    for (TracedMechanism& m : mechanisms_) accelerate(m);
     for (std::size_t i = 0; i < layout_.driven_rows.size(); ++i) multiplier_[layout_.driven_rows[i]] += of_driven_row(i)[0];
     if (rows_.empty()) return;
+    for (TracedMechanism& m : mechanisms_) {
+      const Mechanism& of = m.constants();
+      if (of.row_count > 0)
+        m.solve_rows(&rows_[static_cast<std::size_t>(of.first_row)], least_pivot, &multiplier_[static_cast<std::size_t>(of.first_row)],
+                     &a_[static_cast<std::size_t>(of.first_coordinate)]);
+    }
+    if (of_absolute == 0) return;
     layout_.schur.trace(rows_, least_pivot, multiplier_.data());
-    add_responses(rows_.data(), rows_.size(), multiplier_.data(), a_.data());
+    add_responses(rows_.data(), of_absolute, multiplier_.data(), a_.data());
+  }
+
+  // Without its rows, and what these lack then.
+  void accelerate(TracedMechanism& m) {
+    const Mechanism& of = m.constants();
+    Traced* const s = &a_[static_cast<std::size_t>(of.first_coordinate)];
+    m.accelerate(force_.data(), s);
+    if (of.row_count == 0) return;
+    cluster_a_.resize(3 * layout_.clusters.size());
+    m.expand(s, cluster_a_.data());
+    for (auto r = static_cast<std::size_t>(of.first_row), end = r + static_cast<std::size_t>(of.row_count); r < end; ++r)
+      multiplier_[r] = less_accelerations(rows_[r], multiplier_[r], cluster_a_.data());
   }
 
   void find_power() {
@@ -195,7 +224,8 @@ private:
   std::vector<Motion<Traced>> motion_;
   std::vector<BodyForceOf<Traced>> force_;
   std::vector<Traced> contact_force_, watch_, watch_rate_, friction_force_;
-  std::vector<Traced> q_, v_, time_, a_, multiplier_;
+  std::vector<Traced> q_, v_, time_, a_, multiplier_, cluster_a_;
+  std::vector<TracedMechanism> mechanisms_;
   std::vector<SchurRowOf<Traced>> rows_;
   TracedEvaluation e_;
 };
