@@ -14,20 +14,30 @@ struct LoadEntry {
   bool is_in_body = false;
 };
 
-struct AppliedLoad {
-  Pair<double> force, lever;
-  double couple = 0.0;
+template <class S> struct AppliedLoad {
+  Pair<S> force, lever;
+  S couple{0.0};
 };
 
-AppliedLoad load_at(const LoadEntry& entry, const Motion<double>& body, double t) {
-  AppliedLoad load;
-  const Vec2 local(entry.force.x() + (entry.x ? entry.x->value(t) : 0.0),
-                   entry.force.y() + (entry.y ? entry.y->value(t) : 0.0));
-  load.force = entry.is_in_body ? to_ground(body, rotated(local, entry.angle))
-                                : Pair<double>{local.x(), local.y()};
+// `value`: of a signal, at the time.
+template <class S, class Value>
+AppliedLoad<S> load_by(const LoadEntry& entry, const Motion<S>& body, const Value& value) {
+  const auto sum = [&value](double constant, const Signal* signal) { return constant + (signal ? value(signal) : S(0.0)); };
+  AppliedLoad<S> load;
+  const Pair<S> local{sum(entry.force.x(), entry.x), sum(entry.force.y(), entry.y)};
+  load.force = local;
+  if (entry.is_in_body) {
+    const auto [s, c] = portable::sin_cos(entry.angle);
+    const Pair<S> turned{c * local.x - s * local.y, s * local.x + c * local.y};
+    load.force = {body.c * turned.x - body.s * turned.y, body.s * turned.x + body.c * turned.y};
+  }
   load.lever = to_ground(body, entry.point);
-  load.couple = entry.couple + (entry.torque ? entry.torque->value(t) : 0.0);
+  load.couple = sum(entry.couple, entry.torque);
   return load;
+}
+
+AppliedLoad<double> load_at(const LoadEntry& entry, const Motion<double>& body, double t) {
+  return load_by(entry, body, [t](const Signal* signal) { return signal->value(t); });
 }
 
 class LoadGroup final : public ForceGroup {
@@ -36,22 +46,18 @@ public:
   std::vector<LoadEntry> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const LoadEntry& entry : entries) {
-      const Motion<double>& body = e.motion[entry.body];
-      const AppliedLoad load = load_at(entry, body, e.t);
-      BodyForce& sum = e.force[entry.body];
-      const double moment = cross(load.lever, load.force) + load.couple;
-      sum.fx += load.force.x;
-      sum.fy += load.force.y;
-      sum.m += moment;
-      e.work += load.force.x * body.vx + load.force.y * body.vy + moment * body.omega;
-    }
+    for (const LoadEntry& entry : entries) add(entry, load_at(entry, e.motion[entry.body], e.t), e);
+  }
+  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
+    for (const LoadEntry& entry : entries)
+      add<Traced>(entry, load_by(entry, e.motion[entry.body], [&e](const Signal* signal) { return e.of_time({signal}); }), e);
+    return true;
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
 
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const LoadEntry& entry : entries) {
-      const AppliedLoad load = load_at(entry, e.motion[entry.body], e.t);
+      const AppliedLoad<double> load = load_at(entry, e.motion[entry.body], e.t);
       PairJacobian& j = out.emplace_back();
       j.a = entry.body;
       j.b = k_ground;
@@ -69,6 +75,17 @@ public:
   }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const LoadEntry& entry : entries) is_used[entry.body] = 1;
+  }
+
+private:
+  template <class S> static void add(const LoadEntry& entry, const AppliedLoad<S>& load, Evaluated<S>& e) {
+    const Motion<S>& body = e.motion[entry.body];
+    BodyForceOf<S>& sum = e.force[entry.body];
+    const S moment = cross(load.lever, load.force) + load.couple;
+    sum.fx += load.force.x;
+    sum.fy += load.force.y;
+    sum.m += moment;
+    e.work += load.force.x * body.vx + load.force.y * body.vy + moment * body.omega;
   }
 };
 

@@ -13,15 +13,15 @@ struct MotorLaw {
   double proportional = 0.0, derivative = 0.0, start = 0.0;
 
   template <class S> [[nodiscard]] S force(const S& value, const S& rate, double t) const {
-    const double stall = constant_effort + (effort ? effort->value(t) : 0.0);
+    return force_by(value, rate, [t](const TimeInput& input) { return input.at(t); });
+  }
+  // `at_time`: what a signal is at the time.
+  template <class S, class AtTime> [[nodiscard]] S force_by(const S& value, const S& rate, const AtTime& at_time) const {
+    const auto stall = constant_effort + (effort ? at_time(TimeInput{effort}) : 0.0);
     S f = S(stall) * (S(1) - S(droop) * rate);
     if (proportional == 0.0 && derivative == 0.0) return f;
-    SignalJet wanted;
-    if (target) {
-      wanted = target->drive(t, DriveLevel::position);
-      wanted.value = target->value(t);
-    }
-    f += S(proportional) * (S(wanted.value + start) - value) + S(derivative) * (S(wanted.rate) - rate);
+    const auto wanted = target ? at_time(TimeInput{target}) : 0.0, wanted_rate = target ? at_time(TimeInput{target, true}) : 0.0;
+    f += S(proportional) * (S(wanted + start) - value) + S(derivative) * (S(wanted_rate) - rate);
     return f;
   }
 };
@@ -38,12 +38,11 @@ public:
   static constexpr bool k_does_work = true;
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) {
-      const auto m = entry.measure.template at<false, double>(e.link_motion[entry.link], Origin{});
-      const double f = entry.law.force(m.value, m.rate, e.t);
-      apply_force(e.link_force[entry.link], m, f);
-      e.work += f * m.rate;
-    }
+    add_forces_to(e, [&e](const TimeInput& input) { return input.at(e.t); });
+  }
+  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
+    add_forces_to<Traced>(e, [&e](const TimeInput& input) { return e.of_time(input); });
+    return true;
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
@@ -60,6 +59,16 @@ public:
   [[nodiscard]] MeasureValue<double> measured(int i, const Evaluation& e) const {
     const Entry& entry = entries[i];
     return entry.measure.template at<false, double>(e.motion[entry.a], e.motion[entry.b]);
+  }
+
+private:
+  template <class S, class AtTime> void add_forces_to(Evaluated<S>& e, const AtTime& at_time) const {
+    for (const Entry& entry : entries) {
+      const auto m = entry.measure.template at<false, S>(e.link_motion[entry.link], Origin{});
+      const S f = entry.law.force_by(m.value, m.rate, at_time);
+      apply_force(e.link_force[entry.link], m, f);
+      e.work += f * m.rate;
+    }
   }
 };
 

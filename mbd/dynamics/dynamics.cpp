@@ -243,7 +243,7 @@ void Dynamics::stage_rates(double t, const double* y, double* dy) {
   const double now = std::min(t, time_cap_);
   if (program && program->is_ready() && layout_->smallest_pivot() >= k_traced_pivot) {
     take_time_inputs(now, program->time_inputs());
-    if (program->run(y, dy + coordinate_count(), watch_.data())) {
+    if (program->run(now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data())) {
       ++evaluations_;
       rows_.forget_factors();
       std::copy_n(y + coordinate_count(), coordinate_count(), dy);
@@ -259,7 +259,7 @@ void Dynamics::stage_rates(double t, const double* y, double* dy) {
   program->note_stage();
   if (!program->wants_stage()) return;
   take_time_inputs(now, program->time_inputs());
-  program->take_down(system_, *state_, y, dy + coordinate_count(), watch_.data());
+  program->take_down(system_, *state_, now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data());
 }
 
 double Dynamics::mechanical_energy(double t, const double* y) {

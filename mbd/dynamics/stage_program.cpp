@@ -18,9 +18,10 @@ bool StageProgram::is_of(const Layout& layout, const State& state) const {
                     [](const Friction& a, const FrictionState& b) { return a == Friction{b.phase, b.sign, b.foot}; });
 }
 
-bool StageProgram::run(const double* y, double* dy, double* watch) {
-  const std::size_t n = coordinate_count_;
+bool StageProgram::run(double t, const double* y, double* dy, double* watch, double* watch_rate) {
+  const std::size_t n = coordinate_count_, signals = traced_.signals.size();
   std::copy_n(y, 2 * n, inputs_.data());
+  for (std::size_t i = 0; i < signals; ++i) inputs_[inputs_.size() - signals + i] = traced_.signals[i].at(t);
   if (code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data()) == 0) {
     if (++failures_ > k_most_failures) {
       code_ = nullptr;
@@ -29,9 +30,11 @@ bool StageProgram::run(const double* y, double* dy, double* watch) {
     }
     return false;
   }
-  const double* const out = outputs_.data();
+  const double* out = outputs_.data();
   std::copy_n(out, n + 2, dy);
-  for (std::size_t i = 0; i < traced_.watches.size(); ++i) watch[traced_.watches[i]] = out[n + 2 + i];
+  out += n + 2;
+  for (const int slot : traced_.watches) watch[slot] = *out++;
+  for (const int slot : traced_.watch_rates) watch_rate[slot] = *out++;
   return true;
 }
 
@@ -42,16 +45,21 @@ void StageProgram::note_stage() {
   look_for_code();
 }
 
-void StageProgram::take_down(const System& system, const State& state, const double* y, const double* dy, const double* watch) {
+void StageProgram::take_down(const System& system, const State& state, double t, const double* y, const double* dy,
+                             const double* watch, const double* watch_rate) {
   is_hopeless_ = true; // unless it is found to be the same to the bit
   const std::size_t n = coordinate_count_;
-  if (!trace_rates(system, *layout_, state, y, {time_inputs(), inputs_.size() - 2 * n}, k_traced_pivot, traced_)) return;
-  const auto is_same = [](double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+  if (!trace_rates(system, *layout_, state, t, y, {time_inputs(), inputs_.size() - 2 * n}, k_traced_pivot, traced_)) return;
+  const double* out = traced_.outputs.data();
+  const auto is_same = [&out](double x) { return std::memcmp(out++, &x, sizeof x) == 0; };
   for (std::size_t i = 0; i < n + 2; ++i)
-    if (!is_same(traced_.outputs[i], dy[i])) return;
-  for (std::size_t i = 0; i < traced_.watches.size(); ++i)
-    if (!is_same(traced_.outputs[n + 2 + i], watch[traced_.watches[i]])) return;
+    if (!is_same(dy[i])) return;
+  for (const int slot : traced_.watches)
+    if (!is_same(watch[slot])) return;
+  for (const int slot : traced_.watch_rates)
+    if (!is_same(watch_rate[slot])) return;
   is_hopeless_ = false;
+  inputs_.resize(inputs_.size() + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());
   stored_ = stored_code(traced_.tape);
   look_for_code();

@@ -28,17 +28,18 @@ public:
   void look_for_code() { code_ = stored_ ? stored_->code() : nullptr; }
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
   /// For accelerations, power and switching values at coordinates and rates y; false: evaluate as ever, nothing was changed.
-  [[nodiscard]] bool run(const double* y, double* dy, double* watch);
-  /// Where run() takes what hangs on time alone, in the order of traced_evaluation.h.
+  [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate);
+  /// Where run() takes the layout's numbers of time, in the order of traced_evaluation.h.
   [[nodiscard]] double* time_inputs() { return inputs_.data() + 2 * coordinate_count_; }
 
   /// Have the modes lasted, so that the stage that follows is to be written down?
   [[nodiscard]] bool wants_stage() const { return !is_hopeless_ && !stored_ && stages_ >= k_settled; }
   /// After a stage that was evaluated as ever: counts it.
   void note_stage();
-  /// Writes down the stage evaluated last, at y and these time_inputs(). `dy`, `watch`: what was found, against which the tape
-  /// is held.
-  void take_down(const System& system, const State& state, const double* y, const double* dy, const double* watch);
+  /// Writes down the stage evaluated last, at t, y and these time_inputs(). `dy`, `watch`, `watch_rate`: what was found, against
+  /// which the tape is held.
+  void take_down(const System& system, const State& state, double t, const double* y, const double* dy, const double* watch,
+                 const double* watch_rate);
 
 private:
   /// A tape whose conditions fail so often is of no use.

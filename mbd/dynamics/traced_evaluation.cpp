@@ -34,8 +34,9 @@ public:
   }
 
   // Throws NotTraceable.
-  void trace(const double* y, std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
+  void trace(double t, const double* y, std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
     require(is_plain());
+    e_.t = t;
     take_inputs(y, time_inputs);
     place();
     load_rows();
@@ -211,11 +212,19 @@ private:
       traced.watches.push_back(static_cast<int>(i));
       Traced::output(watch_[i]);
     }
+    traced.watch_rates.clear();
+    for (std::size_t i = 0; i < watch_rate_.size(); ++i) {
+      if (watch_rate_[i].is_constant()) continue;
+      traced.watch_rates.push_back(static_cast<int>(i));
+      Traced::output(watch_rate_[i]);
+    }
+    traced.signals = e_.time_inputs;
     traced.outputs.clear();
     for (const Traced& a : a_) traced.outputs.push_back(value_of(a));
     traced.outputs.push_back(value_of(e_.dissipation));
     traced.outputs.push_back(value_of(e_.work));
     for (const int slot : traced.watches) traced.outputs.push_back(value_of(watch_[slot]));
+    for (const int slot : traced.watch_rates) traced.outputs.push_back(value_of(watch_rate_[slot]));
   }
 
   const System& system_;
@@ -236,11 +245,11 @@ std::size_t time_input_count(const Layout& layout) {
   return k_of_lock * layout.locks.size() + k_of_driven_row * layout.driven_rows.size();
 }
 
-bool trace_rates(const System& system, const Layout& layout, const State& state, const double* y,
+bool trace_rates(const System& system, const Layout& layout, const State& state, double t, const double* y,
                  std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
   Traced::start();
   try {
-    Tracer(system, layout, state).trace(y, time_inputs, least_pivot, traced);
+    Tracer(system, layout, state).trace(t, y, time_inputs, least_pivot, traced);
   } catch (const NotTraceable&) {
     Traced::finish(nullptr);
     return false;

@@ -14,8 +14,12 @@
 namespace steplap {
 
 struct TracedRates {
-  Tape tape;                   ///< inputs: coordinates and rates, then the time's; outputs: accelerations, dissipation, work, watches
-  std::vector<int> watches;    ///< the slots of those
+  /// Inputs: coordinates and rates, then the numbers of the layout that follow from time, then those of signals; outputs:
+  /// accelerations, dissipation, work, watch values, rates of watch values.
+  Tape tape;
+  std::vector<TimeInput> signals;
+  std::vector<int> watches;      ///< the slots of watch values
+  std::vector<int> watch_rates;  ///< those whose rate is no constant
   std::vector<double> outputs; ///< for the inputs traced
 };
 
@@ -23,9 +27,9 @@ struct TracedRates {
 /// rate.
 [[nodiscard]] std::size_t time_input_count(const Layout& layout);
 
-/// At coordinates and rates y and the time's numbers. False if some part of the scene is not traced: elements with laws of
+/// At time t, coordinates and rates y and the layout's numbers of time. False if some part of the scene is not traced: elements with laws of
 /// their own, joint coordinates, more than a few rows, rows that depend on each other. `least_pivot`: the tape's condition.
-[[nodiscard]] bool trace_rates(const System& system, const Layout& layout, const State& state, const double* y,
+[[nodiscard]] bool trace_rates(const System& system, const Layout& layout, const State& state, double t, const double* y,
                                std::span<const double> time_inputs, double least_pivot, TracedRates& traced);
 
 } // namespace steplap

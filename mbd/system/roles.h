@@ -65,8 +65,24 @@ template <class S> struct Evaluated {
   const FrictionState* friction = nullptr;
 };
 
+/// What a signal is asked for: its value, or the rate at which a drive by it moves (DriveLevel::position).
+struct TimeInput {
+  const Signal* signal = nullptr;
+  bool is_rate = false;
+
+  [[nodiscard]] double at(double t) const { return is_rate ? signal->drive(t, DriveLevel::position).rate : signal->value(t); }
+};
+
 /// An evaluation that is written down in one set of modes (mbd/tape).
-using TracedEvaluation = Evaluated<Traced>;
+struct TracedEvaluation : Evaluated<Traced> {
+  double t = 0.0;
+  std::vector<TimeInput> time_inputs; ///< in the order of their inputs; others may stand between those
+
+  [[nodiscard]] Traced of_time(const TimeInput& input) {
+    time_inputs.push_back(input);
+    return Traced::input(input.at(t));
+  }
+};
 
 /// Everything an evaluation reads and writes; one per thread, sized once.
 struct Evaluation : Evaluated<double> {
