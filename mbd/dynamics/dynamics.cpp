@@ -245,6 +245,7 @@ void Dynamics::stage_rates(double t, const double* y, double* dy) {
     take_time_inputs(now, program->time_inputs());
     if (program->run(now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data())) {
       ++evaluations_;
+      ++coded_stages_;
       rows_.forget_factors();
       std::copy_n(y + coordinate_count(), coordinate_count(), dy);
       for (std::size_t i = 0; i < layout_->locks.size(); ++i)

@@ -39,6 +39,9 @@ public:
   /// What describes islands for which there is a choice; counts from the next set_state() on. Absolute unless asked.
   void use_coordinates(Coordinates coordinates) { choice_ = coordinates; }
   [[nodiscard]] Coordinates coordinates() const { return choice_; }
+  void use_stage_code(StageCode choice) { stage_programs_.choose(choice); }
+  /// Stages made by machine code, of all evaluations().
+  [[nodiscard]] long coded_stages() const { return coded_stages_; }
   /// Takes over modes, friction phases and anchors. `state` must outlive the use of this object or be
   /// set anew; poses are read only where a new layout has to be made.
   void set_state(const State& state);
@@ -193,7 +196,7 @@ private:
   bool is_merged_near_ = false; ///< some merged joint or group was near its limit when last watched
   bool was_merged_near_ = false; ///< or the time before: the other end of a step
   double time_cap_ = std::numeric_limits<double>::infinity();
-  long evaluations_ = 0;
+  long evaluations_ = 0, coded_stages_ = 0;
 
   Evaluation evaluation_;
   std::vector<std::unique_ptr<FrictionScratch>> scratch_;

@@ -5,10 +5,10 @@
 
 namespace steplap {
 
-StageProgram::StageProgram(const Layout& layout, const State& state)
+StageProgram::StageProgram(const Layout& layout, const State& state, StageCode choice)
     : layout_(&layout), modes_(state.mode.begin(), state.mode.end()),
       inputs_(2 * static_cast<std::size_t>(layout.coordinate_count) + time_input_count(layout)),
-      coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), is_hopeless_(!MachineCode::is_available()) {
+      coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), choice_(choice), is_hopeless_(!MachineCode::is_available()) {
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
 }
 
@@ -62,6 +62,7 @@ void StageProgram::take_down(const System& system, const State& state, double t,
   inputs_.resize(inputs_.size() + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());
   stored_ = stored_code(traced_.tape);
+  if (choice_ == StageCode::at_once) stored_->make();
   look_for_code();
 }
 
@@ -74,8 +75,8 @@ void StagePrograms::enter(const Layout& layout, const State& state) {
     return;
   }
   now_ = nullptr;
-  if (programs_.size() >= k_most_programs) return;
-  now_ = programs_.emplace_back(std::make_unique<StageProgram>(layout, state)).get();
+  if (choice_ == StageCode::never || programs_.size() >= k_most_programs) return;
+  now_ = programs_.emplace_back(std::make_unique<StageProgram>(layout, state, choice_)).get();
 }
 
 } // namespace steplap

@@ -9,6 +9,7 @@
 #include "mbd/dynamics/traced_evaluation.h"
 #include "mbd/tape/code_store.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -18,10 +19,17 @@ namespace steplap {
 /// near they came (Dynamics::lowest_pivot), and below 2e-2 it matters.
 inline constexpr double k_traced_pivot = 2.5e-2;
 
+/// Whether stages are made by machine code. Results do not hang on it, to the bit.
+enum class StageCode : std::uint8_t {
+  never,
+  when_it_pays, ///< once a set of modes has lasted, and code for its tape would have paid
+  at_once,      ///< from the second stage on
+};
+
 /// Of one layout in one set of modes.
 class StageProgram {
 public:
-  StageProgram(const Layout& layout, const State& state);
+  StageProgram(const Layout& layout, const State& state, StageCode choice);
   [[nodiscard]] bool is_of(const Layout& layout, const State& state) const;
 
   /// Code may have been made since.
@@ -33,7 +41,9 @@ public:
   [[nodiscard]] double* time_inputs() { return inputs_.data() + 2 * coordinate_count_; }
 
   /// Have the modes lasted, so that the stage that follows is to be written down?
-  [[nodiscard]] bool wants_stage() const { return !is_hopeless_ && !stored_ && stages_ >= k_settled; }
+  [[nodiscard]] bool wants_stage() const {
+    return !is_hopeless_ && !stored_ && (stages_ >= k_settled || choice_ == StageCode::at_once);
+  }
   /// After a stage that was evaluated as ever: counts it.
   void note_stage();
   /// Writes down the stage evaluated last, at t, y and these time_inputs(). `dy`, `watch`, `watch_rate`: what was found, against
@@ -63,12 +73,17 @@ private:
   std::vector<double> inputs_, outputs_;
   std::size_t coordinate_count_ = 0;
   int stages_ = 0, failures_ = 0;
+  StageCode choice_;
   bool is_hopeless_ = false;
 };
 
 /// Those of a run, by layout and modes: these come back.
 class StagePrograms {
 public:
+  void choose(StageCode choice) {
+    choice_ = choice;
+    clear();
+  }
   /// Layouts are given up, or what they were made of has changed.
   void clear() {
     programs_.clear();
@@ -85,6 +100,7 @@ private:
 
   std::vector<std::unique_ptr<StageProgram>> programs_;
   StageProgram* now_ = nullptr;
+  StageCode choice_ = StageCode::when_it_pays;
 };
 
 } // namespace steplap

@@ -72,6 +72,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
   dynamics_.unpack(state_.t, y_.data(), state_);
   dynamics_.use_coordinates(chosen_coordinates());
+  dynamics_.use_stage_code(options_.stage_code);
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const FrictionElement& friction = *system.frictions[f].friction;
     if (friction.dimension() > 1 && !friction.never_slips()) joints_.push_back(static_cast<int>(f));
@@ -427,6 +428,7 @@ RunStatistics Simulation::statistics() const {
   s.steps += integrator_->steps();
   s.rejections = integrator_->rejections();
   s.evaluations = dynamics_.evaluations();
+  s.coded_stages = dynamics_.coded_stages();
   s.max_position_residual = integrator_->max_position_residual();
   s.max_velocity_residual = integrator_->max_velocity_residual();
   s.energy_residual = energy_.residual();

@@ -24,6 +24,7 @@ struct SimulationOptions {
   std::string integrator = "rk4";
   IntegratorSettings settings;
   Coordinates coordinates = Coordinates::automatic; ///< moreau: always absolute
+  StageCode stage_code = StageCode::when_it_pays;   ///< of explicit methods
   double output_step = 0.0;                ///< s; 0: no samples
   std::vector<std::string> channels;       ///< patterns of those sampled; empty: all
   bool has_extremes = false;               ///< look for the extremes of all channels, sampled or not
@@ -38,6 +39,7 @@ struct SimulationOptions {
 
 struct RunStatistics {
   long steps = 0, rejections = 0, evaluations = 0, events = 0;
+  long coded_stages = 0;               ///< evaluations made by machine code
   long storms = 0;                     ///< stretches that time stepping went over
   double max_position_residual = 0.0;  ///< before projection, m or rad
   double max_velocity_residual = 0.0;

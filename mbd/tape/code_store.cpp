@@ -31,7 +31,10 @@ Store& store() {
 } // namespace
 
 void StoredCode::note_use(long evaluations) {
-  if (evaluations_.fetch_add(evaluations) + evaluations < k_enough) return;
+  if (evaluations_.fetch_add(evaluations) + evaluations >= k_enough) make();
+}
+
+void StoredCode::make() {
   std::call_once(is_made_, [this] {
     Tape tape;
     tape.steps = steps_;

@@ -25,6 +25,7 @@ public:
   [[nodiscard]] const MachineCode* code() const { return code_.load(std::memory_order_acquire); }
   /// So many evaluations were made that it could have made: it is made as soon as they are as many as would have paid for it.
   void note_use(long evaluations);
+  void make();
 
 private:
   /// Making code takes as long as some of these save.

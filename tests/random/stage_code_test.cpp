@@ -1,0 +1,118 @@
+// Stages made by machine code (mbd/dynamics/stage_program.h) against the same runs without: all bytes of the rows written, of
+// the final state, of the events and counts. Random scenes, scenes on rails, and every model of models/, with each explicit method:
+// whatever an element's template does in another order, a branch that is no condition of the tape, a by-product that somebody
+// reads behind a stage shows in the last bits, which steps and events then amplify.
+#include "mbd/analysis/assembly.h"
+#include "mbd/io/reader.h"
+#include "mbd/tape/machine_code.h"
+#include "tests/random/random_scene.h"
+#include "tests/sanitized.h"
+#include "transformer/catalog.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+using namespace steplap;
+using namespace steplap::random;
+
+namespace {
+
+#ifdef STEPLAP_TESTS_SANITIZED
+constexpr std::uint64_t k_scenes = 8; // ten times as slow
+#else
+constexpr std::uint64_t k_scenes = 300;
+#endif
+constexpr double k_longest = 0.1; // s, of models
+constexpr long k_most_evaluations = 40'000;
+
+struct Outcome {
+  std::vector<std::uint64_t> bits;
+  std::vector<std::pair<std::uint64_t, EventKind>> events;
+  std::string failure;
+  long evaluations = 0, coded = 0;
+};
+
+Outcome outcome(const System& system, const State& start, SimulationOptions options, StageCode code) {
+  options.stage_code = code;
+  options.channels.clear();
+  Outcome found;
+  const auto keep = [&found](double x) { found.bits.push_back(std::bit_cast<std::uint64_t>(x)); };
+  try {
+    Simulation simulation(system, start, options);
+    while (simulation.statistics().evaluations < k_most_evaluations && simulation.advance()) {
+    }
+    const RunResult run = std::move(simulation).result();
+    for (const Channel& channel : system.channels)
+      for (const double x : run.trajectory->series(channel.name)) keep(x);
+    for (const double x : run.final_state.q) keep(x);
+    for (const double x : run.final_state.v) keep(x);
+    for (const Event& event : run.events) found.events.emplace_back(std::bit_cast<std::uint64_t>(event.t), event.kind);
+    found.evaluations = run.statistics.evaluations;
+    found.coded = run.statistics.coded_stages;
+  } catch (const std::exception& error) {
+    found.failure = error.what();
+  }
+  return found;
+}
+
+// How many stages were made by code.
+long compare(const Model& model, const std::string& method, double end) {
+  const auto system = compile(model);
+  const State start = assembled_start(*system, assemble(model, *system));
+  SimulationOptions options = options_of(model);
+  options.integrator = method;
+  options.end = end;
+  options.output_step = end / 50.0;
+  if (method == "rk4" && options.settings.step <= 0.0) options.settings.step = end / 500.0;
+  const Outcome plain = outcome(*system, start, options, StageCode::never), coded = outcome(*system, start, options, StageCode::at_once);
+  CHECK(plain.coded == 0);
+  CHECK(coded.bits == plain.bits);
+  CHECK(coded.events == plain.events);
+  CHECK(coded.failure == plain.failure);
+  CHECK(coded.evaluations == plain.evaluations);
+  return coded.coded;
+}
+
+} // namespace
+
+TEST_CASE("random scenes run to the same bytes with and without machine code") {
+  if (!MachineCode::is_available()) return;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("steplap_code_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const char* const methods[] = {"dop853", "tsit5", "rk4"};
+  long scenes_coded = 0;
+  for (std::uint64_t seed = 1; seed <= k_scenes; ++seed) {
+    const Scene scene = seed % 4 == 0 ? random_friction_scene(seed) : random_scene(seed);
+    const std::string method = methods[seed % 3];
+    CAPTURE(seed);
+    CAPTURE(method);
+    try {
+      if (compare(model_of(scene, folder.string()), method, scene.end) > 0) ++scenes_coded;
+    } catch (const ModelError&) { // a drive that does not begin where the body is
+    }
+  }
+  std::filesystem::remove_all(folder);
+  CHECK(scenes_coded > static_cast<long>(k_scenes / 8)); // else next to nothing was compared
+}
+
+TEST_CASE("every model runs to the same bytes with and without machine code") {
+  if (!MachineCode::is_available()) return;
+  long models = 0, coded = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(STEPLAP_MODELS)) {
+    const std::string file = entry.path().string();
+    if (entry.path().extension() != ".toml" || entry.path().parent_path().filename() == "studies") continue;
+    if (file.ends_with("brick_wall.toml") || file.ends_with("pile.toml")) continue; // stiff: half a minute
+    CAPTURE(file);
+    const Model model = read_model(file, transformer_catalog());
+    ++models;
+    if (compare(model, "dop853", std::min(model.simulation.end, k_longest)) > 0) ++coded;
+  }
+  CHECK(models > 50);
+  CHECK(coded > models / 3);
+}
