@@ -2,6 +2,7 @@
 
 #include "mbd/math/portable_math.h"
 #include "mbd/tape/register_plan.h"
+#include "mbd/tape/sine_lanes.h"
 
 #include <asmjit/x86.h>
 
@@ -25,22 +26,19 @@ constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k
 
 InstructionSet find_best_instructions() {
   const auto& features = asmjit::CpuInfo::host().features().x86();
-  if (!features.hasAVX()) return InstructionSet::sse2;
+  if (!features.hasAVX() || !features.hasAVX2()) return InstructionSet::sse2;
   const bool has_512 = features.hasAVX512_F() && features.hasAVX512_VL() && features.hasAVX512_DQ();
-  return has_512 ? InstructionSet::avx512 : InstructionSet::avx;
+  return has_512 ? InstructionSet::avx512 : InstructionSet::avx2;
 }
 
-template <int lanes>
-void sin_cos_lanes(const double* x, double* sines, double* cosines) {
-  for (int l = 0; l < lanes; ++l) {
-    const portable::SinCos of = portable::sin_cos(x[l]);
-    sines[l] = of.sin;
-    cosines[l] = of.cos;
-  }
+void sin_cos_of_one(const double* x, double* sine, double* cosine) {
+  const portable::SinCos of = portable::sin_cos(*x);
+  *sine = of.sin;
+  *cosine = of.cos;
 }
 
 std::uint64_t sin_cos_address(int lanes) {
-  const auto function = lanes == 1 ? sin_cos_lanes<1> : lanes == 2 ? sin_cos_lanes<2> : lanes == 4 ? sin_cos_lanes<4> : sin_cos_lanes<8>;
+  const auto function = lanes == 1 ? sin_cos_of_one : lanes == 2 ? sin_cos_of_two : lanes == 4 ? sin_cos_of_four : sin_cos_of_eight;
   return reinterpret_cast<std::uint64_t>(function);
 }
 
@@ -285,7 +283,7 @@ InstructionSet MachineCode::best_instructions() {
 }
 
 int MachineCode::most_lanes(InstructionSet instructions) {
-  return instructions == InstructionSet::sse2 ? 2 : instructions == InstructionSet::avx ? 4 : 8;
+  return instructions == InstructionSet::sse2 ? 2 : instructions == InstructionSet::avx2 ? 4 : 8;
 }
 
 MachineCode::MachineCode(const Tape& tape, int lanes, InstructionSet instructions) : lanes_(lanes) {

@@ -1,6 +1,6 @@
 // A tape as machine code of the processor that the program runs on, for one sample or for several side by side.
 //
-// One sample takes one double of a register; 2, 4 or 8 samples take the lanes of one register (of SSE2, AVX, AVX-512): the
+// One sample takes one double of a register; 2, 4 or 8 samples take the lanes of one register (of SSE2, AVX2, AVX-512): the
 // same instructions, on as many numbers. Both give the bits of `replay`, but for the sign and payload of a NaN: each operation
 // is one instruction that IEEE 754 defines, nothing is contracted, reordered by algebra, or flushed to zero. Sines and cosines
 // are calls of portable::sin_cos.
@@ -17,7 +17,7 @@
 namespace steplap {
 
 /// What the code may use: that and what stands before it.
-enum class InstructionSet : std::uint8_t { sse2, avx, avx512 };
+enum class InstructionSet : std::uint8_t { sse2, avx2, avx512 };
 
 class MachineCode {
 public:

@@ -25,7 +25,7 @@ struct Target {
 std::vector<Target> all_targets() {
   std::vector<Target> targets;
   if (!MachineCode::is_available()) return targets;
-  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx, InstructionSet::avx512})
+  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512})
     for (int lanes = 1; set <= MachineCode::best_instructions() && lanes <= MachineCode::most_lanes(set); lanes *= 2) targets.push_back({set, lanes});
   return targets;
 }
@@ -236,6 +236,26 @@ TEST_CASE("sine and cosine of one argument, once, twice, one of them unwanted") 
     for (const double x : {0.3, -0.0, 2.0, 1e9, -1e-300, std::numeric_limits<double>::infinity()}) samples.add(tape, {x}, {});
     check_everywhere(tape, samples);
   }
+}
+
+// Lanes find theirs by code of their own.
+TEST_CASE("sines of all sizes side by side have the bits of portable::sin_cos") {
+  const Tape tape{{{input, 0}, {sine, 0}, {cosine, 0}}, {}, 1, {1, 2}};
+  std::mt19937 random(9);
+  const auto in = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  Samples samples;
+  for (int i = 0; i < 4000; ++i) {
+    double x = in(-0.9, 0.9);
+    if (i % 4 == 1) x = in(-20.0, 20.0);
+    if (i % 4 == 2) x = std::round(in(-6e5, 6e5)) * 1.5707963267948966; // where most digits cancel
+    if (i % 4 == 3) x = std::ldexp(in(-1.0, 1.0), static_cast<int>(in(-1060.0, 19.9)));
+    if (i >= 2000 && i % 4 != 1) x = in(-0.78, 0.78) * (i % 3); // groups that are small throughout
+    if (i >= 3800 && i % 5 == 0) x = in(-1e9, 1e9);
+    samples.add(tape, {x}, {});
+  }
+  for (const double edge : {0.78539816339744828, 0x1p-28, 1e6, 0.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+    for (const double x : {edge, -edge, std::nextafter(edge, 0.0), std::nextafter(edge, 1e7)}) samples.add(tape, {x}, {});
+  check_everywhere(tape, samples);
 }
 
 TEST_CASE("nothing, given numbers as outputs, the same output twice") {
