@@ -44,7 +44,7 @@ public:
   }
 
 private:
-  struct Value {
+  struct alignas(32) Value { // so that its place is found by a shift
     std::int32_t next = k_never; ///< position of the next use
     std::int32_t position = -1;  ///< in the order
     std::int8_t reg = -1;
