@@ -19,7 +19,8 @@ namespace {
 namespace x86 = asmjit::x86;
 using Kind = PlannedInstruction::Kind;
 
-constexpr int k_most_slots = 30000;
+constexpr int k_most_frame = 1 << 18; ///< bytes of the stack
+constexpr int k_page = 4096;
 constexpr int k_masks_size = 128; ///< bytes before the first instruction: −0 and the bits besides its sign, eight times each
 // What the frame begins with where functions are called: the arguments and the lanes that hold.
 constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_lanes = 24, k_saved_size = 64;
@@ -117,8 +118,11 @@ private:
     if (has_frame()) {
       a_.push(x86::rbp);
       a_.mov(x86::rbp, x86::rsp);
-      a_.sub(x86::rsp, slots_begin() + 8 * lanes_ * plan_.slots);
+      const int size = slots_begin() + 8 * lanes_ * plan_.slots;
+      a_.sub(x86::rsp, size);
       a_.and_(x86::rsp, -64);
+      // A page after the other, so that a stack that ends is met where it ends.
+      for (int offset = size - k_page; offset > 0; offset -= k_page) a_.test(x86::ptr(x86::rsp, offset), x86::eax);
     }
     if (plan_.has_calls) {
       a_.mov(x86::ptr(x86::rsp, k_saved_inputs), x86::rdi);
@@ -291,7 +295,7 @@ MachineCode::MachineCode(const Tape& tape, int lanes, InstructionSet instruction
     throw std::invalid_argument("machine code: 1, 2, 4 or 8 lanes, as many as a register has");
   if (instructions > best_instructions()) throw std::invalid_argument("machine code: the processor has no such instructions");
   const RegisterPlan plan = plan_registers(tape, order_of_steps(tape), rules_for(lanes, instructions));
-  if (plan.slots > k_most_slots) return;
+  if (8 * lanes * plan.slots > k_most_frame) return;
 
   Faults faults;
   asmjit::CodeHolder code;

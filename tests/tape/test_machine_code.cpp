@@ -310,9 +310,8 @@ TEST_CASE("lanes and instructions that there are not are refused") {
   CHECK(!MachineCode());
 }
 
-TEST_CASE("more values than the frame takes: no code, and no harm") {
-  if (!MachineCode::is_available()) return;
-  const int n = 40000;
+// All of n + 1 values are wanted again once they are all known, in the other order.
+static Tape tape_with_many_live(int n) {
   Tape tape;
   tape.input_count = 1;
   tape.steps.push_back({input, 0});
@@ -320,5 +319,32 @@ TEST_CASE("more values than the frame takes: no code, and no harm") {
   std::int32_t sum = n;
   for (int i = n - 1; i > 0; --i) tape.steps.push_back({add, sum, i}), sum = static_cast<std::int32_t>(tape.steps.size()) - 1;
   tape.outputs = {sum};
-  CHECK(!MachineCode(tape));
+  return tape;
+}
+
+TEST_CASE("a frame of many pages; more values than it takes: no code, and no harm") {
+  if (!MachineCode::is_available()) return;
+  const Tape large = tape_with_many_live(3000);
+  Samples samples;
+  for (const double x : {1.0, 0.1, -3.0}) samples.add(large, {x}, {});
+  check_everywhere(large, samples);
+  const MachineCode none(tape_with_many_live(40000));
+  CHECK(!none);
+}
+
+TEST_CASE("code that is not the tape's does not agree with it") {
+  if (!MachineCode::is_available()) return;
+  const Tape tape{{{input, 0}, {constant, 0}, {add, 0, 1}, {if_less, 1, 0}}, {0.5}, 1, {2}};
+  Tape other = tape, turned = tape;
+  other.steps[2].operation = subtract;
+  turned.steps[3] = {if_less, 0, 1};
+  for (const Target& target : all_targets()) {
+    const MachineCode code(tape, target.lanes, target.instructions);
+    for (const double x : {2.0, 0.25}) {
+      CHECK(agrees_with_replay(code, tape, &x));
+      CHECK(!agrees_with_replay(code, turned, &x));
+    }
+    const double x = 2.0;
+    CHECK(!agrees_with_replay(code, other, &x));
+  }
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -141,4 +142,17 @@ TEST_CASE("random tapes have the same bits when simplified, and nothing more goe
   CHECK(fewer > 350);
   CHECK(held > 600);
   CHECK(held < 1200);
+}
+
+TEST_CASE("a tape that takes what there is not is refused") {
+  const Tape wrong[] = {{{{input, 1}}, {}, 1, {}},
+                        {{{input, -1}}, {}, 1, {}},
+                        {{{constant, 0}}, {}, 1, {}},
+                        {{{input, 0}, {add, 0, 1}}, {}, 1, {}},
+                        {{{input, 0}, {negate, 2}, {negate, 0}}, {}, 1, {}},
+                        {{{input, 0}, {if_less, 0, 0}, {add, 0, 1}}, {}, 1, {}},
+                        {{{input, 0}, {if_less, 0, 0}}, {}, 1, {1}},
+                        {{{input, 0}}, {}, 1, {1}},
+                        {{{input, 0}}, {}, 1, {-1}}};
+  for (const Tape& tape : wrong) CHECK_THROWS_AS(static_cast<void>(simplified(tape)), std::logic_error);
 }
