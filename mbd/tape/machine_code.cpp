@@ -275,6 +275,25 @@ private:
   asmjit::Label sign_bits_, value_bits_, failed_;
 };
 
+// Pages are written first and executed then, never both at a time. Where the system lets no page be executed that could once be
+// written (Linux' MDWE, SELinux), a file in memory is mapped twice. Null: it lets neither.
+void* executable_copy(const std::uint8_t* bytes, std::size_t size) {
+  namespace pages = asmjit::VirtMem;
+  void* memory = nullptr;
+  if (pages::alloc(&memory, size, pages::MemoryFlags::kAccessRW) != asmjit::kErrorOk) return nullptr;
+  std::copy_n(bytes, size, static_cast<std::uint8_t*>(memory));
+  if (pages::protect(memory, size, pages::MemoryFlags::kAccessRX) != asmjit::kErrorOk) {
+    pages::release(memory, size);
+    pages::DualMapping views{};
+    if (pages::allocDualMapping(&views, size, pages::MemoryFlags::kAccessRWX) != asmjit::kErrorOk) return nullptr;
+    std::copy_n(bytes, size, static_cast<std::uint8_t*>(views.rw));
+    pages::release(views.rw, size);
+    memory = views.rx;
+  }
+  pages::flushInstructionCache(memory, size);
+  return memory;
+}
+
 } // namespace
 
 bool MachineCode::is_available() {
@@ -306,14 +325,10 @@ MachineCode::MachineCode(const Tape& tape, int lanes, InstructionSet instruction
   Writer(assembler, plan, lanes, instructions).write();
   if (code.hasUnresolvedLinks()) throw std::logic_error("machine code: a jump leads nowhere");
 
-  // Pages are written first and executed then, never both.
   const asmjit::CodeBuffer& bytes = code.textSection()->buffer();
-  namespace pages = asmjit::VirtMem;
-  if (pages::alloc(&memory_, bytes.size(), pages::MemoryFlags::kAccessRW) != asmjit::kErrorOk) return;
+  memory_ = executable_copy(bytes.data(), bytes.size());
+  if (memory_ == nullptr) return;
   memory_size_ = bytes.size();
-  std::copy_n(bytes.data(), bytes.size(), static_cast<std::uint8_t*>(memory_));
-  if (pages::protect(memory_, memory_size_, pages::MemoryFlags::kAccessRX) != asmjit::kErrorOk) return;
-  pages::flushInstructionCache(memory_, memory_size_);
   code_size_ = bytes.size() - k_masks_size;
   instruction_count_ = plan.instructions.size();
   run_ = reinterpret_cast<Run>(static_cast<std::uint8_t*>(memory_) + k_masks_size);

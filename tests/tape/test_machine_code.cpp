@@ -5,6 +5,12 @@
 
 #include <doctest/doctest.h>
 
+#ifdef __linux__
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
+
 #include <fstream>
 #include <string>
 #include <utility>
@@ -296,6 +302,30 @@ TEST_CASE("compiled objects are freed and can be moved") {
   kept.clear();
   CHECK(executable_mappings() == before);
 }
+
+#ifdef __linux__
+// What a system of its own (systemd's MemoryDenyWriteExecute=) does to a service, done to a child: pages that could be written
+// may never be executed.
+TEST_CASE("where written pages may not be executed there is code all the same") {
+  if (!MachineCode::is_available()) return;
+  constexpr int k_deny_write_execute = 65, k_denies = 77; // PR_SET_MDWE since Linux 6.3
+  const Tape tape{{{input, 0}, {add, 0, 0}}, {}, 1, {1}};
+  const pid_t child = fork();
+  if (child == 0) {
+    if (prctl(k_deny_write_execute, 1, 0, 0, 0) != 0) _exit(k_denies);
+    const MachineCode code(tape);
+    double x = 21.0, y = 0.0;
+    _exit(code && code.run(&x, nullptr, &y) == 1 && y == 42.0 ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  REQUIRE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == k_denies)
+    MESSAGE("skipped: this system cannot be told to deny it");
+  else
+    CHECK(WEXITSTATUS(status) == 0);
+}
+#endif
 
 TEST_CASE("lanes and instructions that there are not are refused") {
   if (!MachineCode::is_available()) {
