@@ -22,7 +22,7 @@ public:
   void step(std::size_t i) const {
     const TapeStep& s = tape_.steps[i];
     if (s.operation == input) return need(s.a >= 0 && s.a < tape_.input_count, i);
-    if (s.operation == constant) return need(s.a >= 0 && static_cast<std::size_t>(s.a) < tape_.constants.size(), i);
+    if (s.operation == constant) return need(s.a >= 0 && (tape_.constants.empty() || static_cast<std::size_t>(s.a) < tape_.constants.size()), i);
     need(is_value_before(s.a, i) && (!takes_two(s.operation) || is_value_before(s.b, i)), i);
   }
 

@@ -62,7 +62,7 @@ struct Tape {
 
 /// Without what no output and no condition hangs on, with steps that are equal made once, and with signs turned where that
 /// costs nothing (x + (−y) is x − y): the same bits, but for the sign of a NaN, and constants in the same places. Values of
-/// constants are not looked at. Linear in the number of steps. A step that takes what is no value before it, or no input or
+/// constants are not looked at, and may be left out. Linear in the number of steps. A step that takes what is no value before it, or no input or
 /// constant of the tape, is a fault of the program: std::logic_error.
 [[nodiscard]] Tape simplified(const Tape& tape);
 
