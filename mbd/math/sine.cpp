@@ -1,6 +1,7 @@
 #include "mbd/math/portable_math.h"
 
 #include "mbd/math/double_double.h"
+#include "mbd/math/sine_series.h"
 
 #include <bit>
 #include <cmath>
@@ -20,23 +21,11 @@ struct Remainder {
 };
 
 constexpr double k_quarter_pi = 0.78539816339744828;
-constexpr double k_far = 1e6; // multiples of π/2 below it fit into 20 bits
-
-// π/2 in parts of 33 bits, so that each times a multiple is exact, and the rest.
-constexpr double k_half_pi[4] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69,
-                                 0x1.b839a252049c1p-104};
 constexpr DoubleDouble k_half_pi_sum{0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
-constexpr double k_two_over_pi = 0x1.45f306dc9c883p-1;
 
-// x − k π/2 by Cody and Waite. The first difference is exact (x and k times the first part are
-// within a factor of two), the next are kept with their errors: where x is near a multiple of π/2
-// they cancel, at most 60 bits.
 Remainder reduce(double x) {
-  constexpr double round = 0x1.8p52; // added and taken away leaves the nearest integer
-  const double k = (x * k_two_over_pi + round) - round;
-  const DoubleDouble first = two_sum(x - k * k_half_pi[0], -k * k_half_pi[1]);
-  const DoubleDouble second = two_sum(first.hi, -k * k_half_pi[2]);
-  const DoubleDouble rest = two_sum(second.hi, (first.lo + second.lo) - k * k_half_pi[3]);
+  const double k = (x * k_two_over_pi + k_nearest_integer) - k_nearest_integer;
+  const TwoParts<double> rest = beyond_multiple(x, k);
   return {rest.hi, rest.lo, static_cast<unsigned>(static_cast<int>(k))};
 }
 
@@ -89,19 +78,9 @@ Remainder reduce_far(double x) {
   return {is_negative ? -r.hi : r.hi, is_negative ? -r.lo : r.lo, x < 0.0 ? 0u - quarter : quarter};
 }
 
-// sin and cos of hi + lo, |hi| ≤ π/4, to x¹⁷ and x¹⁶ (the first terms left out are below 3e-18).
-// Two summands each: the one that carries the digits is exact (hi; 1 − hi²/2 with its error), the
-// other an eighth of it and rounded. In pairs (Estrin), so that the chains stay short.
 SinCos series(double hi, double lo) {
-  const double z = hi * hi, z2 = z * z, z4 = z2 * z2;
-  const double s = ((-1.0 / 6 + z * (1.0 / 120)) + z2 * (-1.0 / 5040 + z * (1.0 / 362880))) +
-                   z4 * ((-1.0 / 39916800 + z * (1.0 / 6227020800.0)) +
-                         z2 * (-1.0 / 1307674368000.0 + z * (1.0 / 355687428096000.0)));
-  const double c =
-      ((1.0 / 24 - z * (1.0 / 720)) + z2 * (1.0 / 40320 - z * (1.0 / 3628800))) +
-      z4 * ((1.0 / 479001600 - z * (1.0 / 87178291200.0)) + z2 * (1.0 / 20922789888000.0));
-  const double half = 0.5 * z, most = 1.0 - half;
-  return {hi + (hi * z * s + lo * most), most + (((1.0 - most) - half) + (z2 * c - hi * lo))};
+  const SineAndCosine<double> of = sine_series(hi, lo);
+  return {of.sin, of.cos};
 }
 
 Remainder remainder_of(double x) {

@@ -2,6 +2,7 @@
 
 #include "mbd/math/portable_math.h"
 #include "mbd/tape/register_plan.h"
+#include "mbd/tape/sine_lanes.h"
 
 #include <asmjit/x86.h>
 
@@ -18,29 +19,27 @@ namespace {
 namespace x86 = asmjit::x86;
 using Kind = PlannedInstruction::Kind;
 
-constexpr int k_most_slots = 30000;
+constexpr int k_most_frame = 1 << 18; ///< bytes of the stack
+constexpr int k_page = 4096;
 constexpr int k_masks_size = 128; ///< bytes before the first instruction: −0 and the bits besides its sign, eight times each
 // What the frame begins with where functions are called: the arguments and the lanes that hold.
 constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_lanes = 24, k_saved_size = 64;
 
 InstructionSet find_best_instructions() {
   const auto& features = asmjit::CpuInfo::host().features().x86();
-  if (!features.hasAVX()) return InstructionSet::sse2;
+  if (!features.hasAVX() || !features.hasAVX2()) return InstructionSet::sse2;
   const bool has_512 = features.hasAVX512_F() && features.hasAVX512_VL() && features.hasAVX512_DQ();
-  return has_512 ? InstructionSet::avx512 : InstructionSet::avx;
+  return has_512 ? InstructionSet::avx512 : InstructionSet::avx2;
 }
 
-template <int lanes>
-void sin_cos_lanes(const double* x, double* sines, double* cosines) {
-  for (int l = 0; l < lanes; ++l) {
-    const portable::SinCos of = portable::sin_cos(x[l]);
-    sines[l] = of.sin;
-    cosines[l] = of.cos;
-  }
+void sin_cos_of_one(const double* x, double* sine, double* cosine) {
+  const portable::SinCos of = portable::sin_cos(*x);
+  *sine = of.sin;
+  *cosine = of.cos;
 }
 
 std::uint64_t sin_cos_address(int lanes) {
-  const auto function = lanes == 1 ? sin_cos_lanes<1> : lanes == 2 ? sin_cos_lanes<2> : lanes == 4 ? sin_cos_lanes<4> : sin_cos_lanes<8>;
+  const auto function = lanes == 1 ? sin_cos_of_one : lanes == 2 ? sin_cos_of_two : lanes == 4 ? sin_cos_of_four : sin_cos_of_eight;
   return reinterpret_cast<std::uint64_t>(function);
 }
 
@@ -119,8 +118,11 @@ private:
     if (has_frame()) {
       a_.push(x86::rbp);
       a_.mov(x86::rbp, x86::rsp);
-      a_.sub(x86::rsp, slots_begin() + 8 * lanes_ * plan_.slots);
+      const int size = slots_begin() + 8 * lanes_ * plan_.slots;
+      a_.sub(x86::rsp, size);
       a_.and_(x86::rsp, -64);
+      // A page after the other, so that a stack that ends is met where it ends.
+      for (int offset = size - k_page; offset > 0; offset -= k_page) a_.test(x86::ptr(x86::rsp, offset), x86::eax);
     }
     if (plan_.has_calls) {
       a_.mov(x86::ptr(x86::rsp, k_saved_inputs), x86::rdi);
@@ -273,6 +275,25 @@ private:
   asmjit::Label sign_bits_, value_bits_, failed_;
 };
 
+// Pages are written first and executed then, never both at a time. Where the system lets no page be executed that could once be
+// written (Linux' MDWE, SELinux), a file in memory is mapped twice. Null: it lets neither.
+void* executable_copy(const std::uint8_t* bytes, std::size_t size) {
+  namespace pages = asmjit::VirtMem;
+  void* memory = nullptr;
+  if (pages::alloc(&memory, size, pages::MemoryFlags::kAccessRW) != asmjit::kErrorOk) return nullptr;
+  std::copy_n(bytes, size, static_cast<std::uint8_t*>(memory));
+  if (pages::protect(memory, size, pages::MemoryFlags::kAccessRX) != asmjit::kErrorOk) {
+    pages::release(memory, size);
+    pages::DualMapping views{};
+    if (pages::allocDualMapping(&views, size, pages::MemoryFlags::kAccessRWX) != asmjit::kErrorOk) return nullptr;
+    std::copy_n(bytes, size, static_cast<std::uint8_t*>(views.rw));
+    pages::release(views.rw, size);
+    memory = views.rx;
+  }
+  pages::flushInstructionCache(memory, size);
+  return memory;
+}
+
 } // namespace
 
 bool MachineCode::is_available() {
@@ -285,7 +306,7 @@ InstructionSet MachineCode::best_instructions() {
 }
 
 int MachineCode::most_lanes(InstructionSet instructions) {
-  return instructions == InstructionSet::sse2 ? 2 : instructions == InstructionSet::avx ? 4 : 8;
+  return instructions == InstructionSet::sse2 ? 2 : instructions == InstructionSet::avx2 ? 4 : 8;
 }
 
 MachineCode::MachineCode(const Tape& tape, int lanes, InstructionSet instructions) : lanes_(lanes) {
@@ -293,7 +314,7 @@ MachineCode::MachineCode(const Tape& tape, int lanes, InstructionSet instruction
     throw std::invalid_argument("machine code: 1, 2, 4 or 8 lanes, as many as a register has");
   if (instructions > best_instructions()) throw std::invalid_argument("machine code: the processor has no such instructions");
   const RegisterPlan plan = plan_registers(tape, order_of_steps(tape), rules_for(lanes, instructions));
-  if (plan.slots > k_most_slots) return;
+  if (8 * lanes * plan.slots > k_most_frame) return;
 
   Faults faults;
   asmjit::CodeHolder code;
@@ -304,14 +325,10 @@ MachineCode::MachineCode(const Tape& tape, int lanes, InstructionSet instruction
   Writer(assembler, plan, lanes, instructions).write();
   if (code.hasUnresolvedLinks()) throw std::logic_error("machine code: a jump leads nowhere");
 
-  // Pages are written first and executed then, never both.
   const asmjit::CodeBuffer& bytes = code.textSection()->buffer();
-  namespace pages = asmjit::VirtMem;
-  if (pages::alloc(&memory_, bytes.size(), pages::MemoryFlags::kAccessRW) != asmjit::kErrorOk) return;
+  memory_ = executable_copy(bytes.data(), bytes.size());
+  if (memory_ == nullptr) return;
   memory_size_ = bytes.size();
-  std::copy_n(bytes.data(), bytes.size(), static_cast<std::uint8_t*>(memory_));
-  if (pages::protect(memory_, memory_size_, pages::MemoryFlags::kAccessRX) != asmjit::kErrorOk) return;
-  pages::flushInstructionCache(memory_, memory_size_);
   code_size_ = bytes.size() - k_masks_size;
   instruction_count_ = plan.instructions.size();
   run_ = reinterpret_cast<Run>(static_cast<std::uint8_t*>(memory_) + k_masks_size);

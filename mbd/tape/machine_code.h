@@ -1,6 +1,6 @@
 // A tape as machine code of the processor that the program runs on, for one sample or for several side by side.
 //
-// One sample takes one double of a register; 2, 4 or 8 samples take the lanes of one register (of SSE2, AVX, AVX-512): the
+// One sample takes one double of a register; 2, 4 or 8 samples take the lanes of one register (of SSE2, AVX2, AVX-512): the
 // same instructions, on as many numbers. Both give the bits of `replay`, but for the sign and payload of a NaN: each operation
 // is one instruction that IEEE 754 defines, nothing is contracted, reordered by algebra, or flushed to zero. Sines and cosines
 // are calls of portable::sin_cos.
@@ -17,7 +17,7 @@
 namespace steplap {
 
 /// What the code may use: that and what stands before it.
-enum class InstructionSet : std::uint8_t { sse2, avx, avx512 };
+enum class InstructionSet : std::uint8_t { sse2, avx2, avx512 };
 
 class MachineCode {
 public:
@@ -29,9 +29,10 @@ public:
   [[nodiscard]] static int most_lanes(InstructionSet instructions = best_instructions());
 
   MachineCode() = default;
-  /// The tape need not be simplified, but should be: 20 to 40 ns a step. `lanes`: 1, 2, 4 or 8, at most `most_lanes`; none more
-  /// than best_instructions() may be asked for. Empty, where nothing is available, where the system grants no memory for code,
-  /// or where more than 30 000 values would have to be kept in the frame: whoever makes it has to ask by `operator bool`.
+  /// The tape need not be simplified, but should be: some 60 ns a step. `lanes`: 1, 2, 4 or 8, at most `most_lanes`, and no
+  /// instructions beyond best_instructions(): std::invalid_argument. Empty, where nothing is available, where the system grants
+  /// no memory for code, or where what has to be kept beside the registers takes more than 256 kB of the stack: whoever makes
+  /// it has to ask by `operator bool`. Precondition: a tape that `simplified` takes.
   explicit MachineCode(const Tape& tape, int lanes = 1, InstructionSet instructions = best_instructions());
   MachineCode(MachineCode&& other) noexcept;
   MachineCode& operator=(MachineCode&& other) noexcept;
@@ -60,5 +61,9 @@ private:
   std::size_t code_size_ = 0, instruction_count_ = 0;
   int lanes_ = 1;
 };
+
+/// Whether the code gives the bits that replay gives with these inputs and the tape's constants, in every lane, the verdict on
+/// conditions included; NaN are equal. What a caller asks once of code that it has made, before it trusts it.
+[[nodiscard]] bool agrees_with_replay(const MachineCode& code, const Tape& tape, const double* inputs);
 
 } // namespace steplap

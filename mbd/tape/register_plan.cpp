@@ -1,5 +1,6 @@
 #include "mbd/tape/register_plan.h"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <utility>
@@ -13,6 +14,7 @@ using Kind = PlannedInstruction::Kind;
 
 constexpr std::int32_t k_never = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t k_none = -1;
+constexpr std::int64_t k_worth_of_store = 100; ///< steps that a value which needs no store may be used sooner and leaves all the same
 constexpr std::int32_t k_store_outputs = -1; ///< in the order: outputs known so far are stored
 
 std::size_t at(std::int32_t i) {
@@ -25,17 +27,12 @@ public:
       : tape_(tape), rules_(rules), values_(tape.steps.size()), free_(rules.registers == 32 ? ~0u : (1u << rules.registers) - 1) {
     arrange(order);
     list_outputs();
-    pair_calls();
+    look_at_steps();
     find_next_uses();
   }
 
   RegisterPlan plan() {
     plan_.instructions.reserve(2 * order_.size());
-    for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
-      const TapeStep& s = tape_.steps[i];
-      if (s.operation == input) values_[i].home = {Place::Kind::input, s.a};
-      if (s.operation == constant) values_[i].home = {Place::Kind::constant, s.a};
-    }
     for (std::size_t p = 0; p < order_.size(); ++p) {
       busy_ = 0;
       if (order_[p] == k_store_outputs)
@@ -47,7 +44,7 @@ public:
   }
 
 private:
-  struct Value {
+  struct alignas(32) Value { // so that its place is found by a shift
     std::int32_t next = k_never; ///< position of the next use
     std::int32_t position = -1;  ///< in the order
     std::int8_t reg = -1;
@@ -79,9 +76,11 @@ private:
       next_output_[k] = std::exchange(values_[at(tape_.outputs[k])].output, static_cast<std::int32_t>(k));
   }
 
-  void pair_calls() {
+  // Inputs and constants lie in memory; a sine and a cosine of the same are found together.
+  void look_at_steps() {
     for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
       const TapeStep& s = tape_.steps[i];
+      if (is_given(s.operation)) values_[i].home = {s.operation == input ? Place::Kind::input : Place::Kind::constant, s.a};
       if (s.operation != sine && s.operation != cosine) continue;
       if (call_of_.empty()) call_of_.assign(tape_.steps.size(), k_none);
       std::int32_t& other = call_of_[at(s.a)]; // one without a partner
@@ -154,7 +153,7 @@ private:
     for (int r = 0; r < rules_.registers; ++r) {
       if (busy_ >> r & 1) continue;
       const Value& v = values_[at(owner_[r])];
-      const std::int64_t score = static_cast<std::int64_t>(v.next) + (v.home.kind == Place::Kind::nowhere ? 0 : std::int64_t{1} << 32);
+      const std::int64_t score = std::int64_t{v.next} + (v.home.kind == Place::Kind::nowhere ? 0 : k_worth_of_store);
       if (score > best_score) best_score = score, best = r;
     }
     return best;
@@ -177,9 +176,9 @@ private:
   }
 
   void free_register_of(Value& v) {
-    if (v.next != k_never || v.reg < 0) return;
-    free_ |= 1u << v.reg;
-    v.reg = -1;
+    const bool goes = v.next == k_never && v.reg >= 0; // either is as likely: no branches
+    free_ |= std::uint32_t{goes} << (v.reg & 31);
+    v.reg = static_cast<std::int8_t>(goes ? -1 : v.reg);
   }
 
   void free_slot_of(Value& v) {
@@ -221,6 +220,12 @@ private:
     i.destination = static_cast<std::int8_t>(destination);
     i.first = static_cast<std::int8_t>(first);
     i.second = second;
+  }
+
+  // While this step is made.
+  void keep(std::int32_t step) {
+    const int r = values_[at(step)].reg;
+    busy_ |= std::uint32_t{r >= 0} << (r & 31);
   }
 
   // A register that holds the value, for this step; whether it stays there is its own affair.
@@ -287,10 +292,11 @@ private:
     if (s.operation == maximum) std::swap(a, b);
     if (is_commutative(s.operation)) {
       const Value &va = values_[at(a)], &vb = values_[at(b)];
-      const bool both = va.reg >= 0 && vb.reg >= 0;
-      if (both ? va.next != k_never && vb.next == k_never : vb.reg >= 0) std::swap(a, b);
+      const bool swaps = (vb.reg >= 0) & ((va.reg < 0) | ((va.next != k_never) & (vb.next == k_never)));
+      a = swaps ? s.b : s.a;
+      b = swaps ? s.a : s.b;
     }
-    if (values_[at(b)].reg >= 0) busy_ |= 1u << values_[at(b)].reg;
+    keep(b);
     const int first = in_register(a);
     const Place second = in_register_or_memory(b);
     const int r = destination(s, first);
@@ -313,7 +319,7 @@ private:
   void condition(const TapeStep& s) {
     ++plan_.conditions;
     const std::int32_t a = rules_.swaps_conditions ? s.b : s.a, b = rules_.swaps_conditions ? s.a : s.b;
-    if (values_[at(b)].reg >= 0) busy_ |= 1u << values_[at(b)].reg;
+    keep(b);
     const int first = in_register(a);
     const Place second = in_register_or_memory(b);
     int r = first;
@@ -421,22 +427,25 @@ private:
 
 std::vector<std::int32_t> order_of_steps(const Tape& tape) {
   const auto n = static_cast<std::int32_t>(tape.steps.size());
+  std::vector<std::int32_t> order;
+  order.reserve(tape.steps.size());
+  const auto is_call = [](const TapeStep& s) { return s.operation == sine || s.operation == cosine; };
+  if (std::none_of(tape.steps.begin(), tape.steps.end(), is_call)) {
+    for (std::int32_t i = 0; i < n; ++i)
+      if (!is_given(tape.steps[at(i)].operation)) order.push_back(i);
+    return order;
+  }
   std::vector<char> is_first(tape.steps.size(), 0);
-  bool has_calls = false;
   for (std::int32_t i = n; i-- > 0;) {
     const TapeStep& s = tape.steps[at(i)];
-    if (s.operation == sine || s.operation == cosine) is_first[at(i)] = 1, has_calls = true;
+    if (is_call(s)) is_first[at(i)] = 1;
     if (is_first[at(i)] == 0 || is_given(s.operation)) continue;
     is_first[at(s.a)] = 1;
     if (takes_two(s.operation)) is_first[at(s.b)] = 1;
   }
-  std::vector<std::int32_t> order;
-  order.reserve(tape.steps.size());
-  for (const bool is_turn : {true, false}) {
-    if (is_turn && !has_calls) continue;
+  for (const bool is_turn : {true, false})
     for (std::int32_t i = 0; i < n; ++i)
       if ((is_first[at(i)] != 0) == is_turn && !is_given(tape.steps[at(i)].operation)) order.push_back(i);
-  }
   return order;
 }
 

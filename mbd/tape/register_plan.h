@@ -39,8 +39,8 @@ struct PlannedInstruction {
     condition, ///< first operation second, as the tape has them, or, with `swaps_conditions`, b first and a second
     sin_cos,   ///< slots sine_slot and cosine_slot = of second, in memory; registers are lost
   };
-  Kind kind = Kind::load;
   TapeOperation operation = TapeOperation::constant;
+  Kind kind = Kind::load;
   std::int8_t destination = 0, first = 0; ///< registers
   Place second;
   std::int32_t sine_slot = 0, cosine_slot = 0;

@@ -4,6 +4,8 @@
 
 #include <bit>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace steplap {
@@ -11,6 +13,33 @@ namespace steplap {
 namespace {
 
 using enum TapeOperation;
+
+// A tape that takes what there is not, or not yet, is a fault of what wrote it: better said than computed with.
+class TapeCheck {
+public:
+  explicit TapeCheck(const Tape& tape) : tape_(tape) {}
+
+  void step(std::size_t i) const {
+    const TapeStep& s = tape_.steps[i];
+    if (s.operation == input) return need(s.a >= 0 && s.a < tape_.input_count, i);
+    if (s.operation == constant) return need(s.a >= 0 && (tape_.constants.empty() || static_cast<std::size_t>(s.a) < tape_.constants.size()), i);
+    need(is_value_before(s.a, i) && (!takes_two(s.operation) || is_value_before(s.b, i)), i);
+  }
+
+  void output(std::size_t k) const {
+    if (!is_value_before(tape_.outputs[k], tape_.steps.size())) throw std::logic_error("tape: output " + std::to_string(k) + " is no value");
+  }
+
+private:
+  bool is_value_before(std::int32_t step, std::size_t i) const {
+    return step >= 0 && static_cast<std::size_t>(step) < i && !is_condition(tape_.steps[static_cast<std::size_t>(step)].operation);
+  }
+  static void need(bool holds, std::size_t i) {
+    if (!holds) throw std::logic_error("tape: step " + std::to_string(i) + " takes what is no value before it");
+  }
+
+  const Tape& tape_;
+};
 
 /// A value of the simplified tape, or that with its sign turned, for which no step need be made where what takes it can turn
 /// its own sign: x + (−y) = x − y, (−x) y = −(x y) to the bit.
@@ -28,9 +57,16 @@ public:
   }
 
   Tape simplified() {
-    for (std::size_t i = 0; i < tape_.steps.size(); ++i) value_[i] = value_of(tape_.steps[i]);
+    const TapeCheck check(tape_);
+    for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
+      check.step(i);
+      value_[i] = value_of(tape_.steps[i]);
+    }
     std::vector<std::int32_t> outputs(tape_.outputs.size());
-    for (std::size_t k = 0; k < outputs.size(); ++k) outputs[k] = plain(at(tape_.outputs[k]));
+    for (std::size_t k = 0; k < outputs.size(); ++k) {
+      check.output(k);
+      outputs[k] = plain(at(tape_.outputs[k]));
+    }
     return with_what_counts(std::move(outputs));
   }
 

@@ -62,10 +62,12 @@ struct Tape {
 
 /// Without what no output and no condition hangs on, with steps that are equal made once, and with signs turned where that
 /// costs nothing (x + (−y) is x − y): the same bits, but for the sign of a NaN, and constants in the same places. Values of
-/// constants are not looked at. Linear in the number of steps. Steps of the tape take values of steps before them only.
+/// constants are not looked at, and may be left out. Linear in the number of steps. A step that takes what is no value before it, or no input or
+/// constant of the tape, is a fault of the program: std::logic_error.
 [[nodiscard]] Tape simplified(const Tape& tape);
 
-/// Does the steps one after another; false, with outputs untouched, where a condition fails. Slow: what others are compared with.
+/// Does the steps one after another; false, with outputs untouched, where a condition fails. Slow: what others are compared
+/// with. Arrays are as long as the tape says. Precondition: a tape that `simplified` takes.
 [[nodiscard]] bool replay(const Tape& tape, const double* inputs, const double* constants, double* outputs);
 
 } // namespace steplap

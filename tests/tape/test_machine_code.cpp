@@ -5,6 +5,12 @@
 
 #include <doctest/doctest.h>
 
+#ifdef __linux__
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
+
 #include <fstream>
 #include <string>
 #include <utility>
@@ -25,7 +31,7 @@ struct Target {
 std::vector<Target> all_targets() {
   std::vector<Target> targets;
   if (!MachineCode::is_available()) return targets;
-  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx, InstructionSet::avx512})
+  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512})
     for (int lanes = 1; set <= MachineCode::best_instructions() && lanes <= MachineCode::most_lanes(set); lanes *= 2) targets.push_back({set, lanes});
   return targets;
 }
@@ -238,6 +244,26 @@ TEST_CASE("sine and cosine of one argument, once, twice, one of them unwanted") 
   }
 }
 
+// Lanes find theirs by code of their own.
+TEST_CASE("sines of all sizes side by side have the bits of portable::sin_cos") {
+  const Tape tape{{{input, 0}, {sine, 0}, {cosine, 0}}, {}, 1, {1, 2}};
+  std::mt19937 random(9);
+  const auto in = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  Samples samples;
+  for (int i = 0; i < 4000; ++i) {
+    double x = in(-0.9, 0.9);
+    if (i % 4 == 1) x = in(-20.0, 20.0);
+    if (i % 4 == 2) x = std::round(in(-6e5, 6e5)) * 1.5707963267948966; // where most digits cancel
+    if (i % 4 == 3) x = std::ldexp(in(-1.0, 1.0), static_cast<int>(in(-1060.0, 19.9)));
+    if (i >= 2000 && i % 4 != 1) x = in(-0.78, 0.78) * (i % 3); // groups that are small throughout
+    if (i >= 3800 && i % 5 == 0) x = in(-1e9, 1e9);
+    samples.add(tape, {x}, {});
+  }
+  for (const double edge : {0.78539816339744828, 0x1p-28, 1e6, 0.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+    for (const double x : {edge, -edge, std::nextafter(edge, 0.0), std::nextafter(edge, 1e7)}) samples.add(tape, {x}, {});
+  check_everywhere(tape, samples);
+}
+
 TEST_CASE("nothing, given numbers as outputs, the same output twice") {
   const Tape tapes[] = {{},
                         {{{input, 0}, {constant, 0}}, {0.0}, 1, {0, 1, 0, 1, 1}},
@@ -277,6 +303,30 @@ TEST_CASE("compiled objects are freed and can be moved") {
   CHECK(executable_mappings() == before);
 }
 
+#ifdef __linux__
+// What a system of its own (systemd's MemoryDenyWriteExecute=) does to a service, done to a child: pages that could be written
+// may never be executed.
+TEST_CASE("where written pages may not be executed there is code all the same") {
+  if (!MachineCode::is_available()) return;
+  constexpr int k_deny_write_execute = 65, k_denies = 77; // PR_SET_MDWE since Linux 6.3
+  const Tape tape{{{input, 0}, {add, 0, 0}}, {}, 1, {1}};
+  const pid_t child = fork();
+  if (child == 0) {
+    if (prctl(k_deny_write_execute, 1, 0, 0, 0) != 0) _exit(k_denies);
+    const MachineCode code(tape);
+    double x = 21.0, y = 0.0;
+    _exit(code && code.run(&x, nullptr, &y) == 1 && y == 42.0 ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  REQUIRE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == k_denies)
+    MESSAGE("skipped: this system cannot be told to deny it");
+  else
+    CHECK(WEXITSTATUS(status) == 0);
+}
+#endif
+
 TEST_CASE("lanes and instructions that there are not are refused") {
   if (!MachineCode::is_available()) {
     CHECK(!MachineCode(Tape{}));
@@ -290,9 +340,8 @@ TEST_CASE("lanes and instructions that there are not are refused") {
   CHECK(!MachineCode());
 }
 
-TEST_CASE("more values than the frame takes: no code, and no harm") {
-  if (!MachineCode::is_available()) return;
-  const int n = 40000;
+// All of n + 1 values are wanted again once they are all known, in the other order.
+static Tape tape_with_many_live(int n) {
   Tape tape;
   tape.input_count = 1;
   tape.steps.push_back({input, 0});
@@ -300,5 +349,32 @@ TEST_CASE("more values than the frame takes: no code, and no harm") {
   std::int32_t sum = n;
   for (int i = n - 1; i > 0; --i) tape.steps.push_back({add, sum, i}), sum = static_cast<std::int32_t>(tape.steps.size()) - 1;
   tape.outputs = {sum};
-  CHECK(!MachineCode(tape));
+  return tape;
+}
+
+TEST_CASE("a frame of many pages; more values than it takes: no code, and no harm") {
+  if (!MachineCode::is_available()) return;
+  const Tape large = tape_with_many_live(3000);
+  Samples samples;
+  for (const double x : {1.0, 0.1, -3.0}) samples.add(large, {x}, {});
+  check_everywhere(large, samples);
+  const MachineCode none(tape_with_many_live(40000));
+  CHECK(!none);
+}
+
+TEST_CASE("code that is not the tape's does not agree with it") {
+  if (!MachineCode::is_available()) return;
+  const Tape tape{{{input, 0}, {constant, 0}, {add, 0, 1}, {if_less, 1, 0}}, {0.5}, 1, {2}};
+  Tape other = tape, turned = tape;
+  other.steps[2].operation = subtract;
+  turned.steps[3] = {if_less, 0, 1};
+  for (const Target& target : all_targets()) {
+    const MachineCode code(tape, target.lanes, target.instructions);
+    for (const double x : {2.0, 0.25}) {
+      CHECK(agrees_with_replay(code, tape, &x));
+      CHECK(!agrees_with_replay(code, turned, &x));
+    }
+    const double x = 2.0;
+    CHECK(!agrees_with_replay(code, other, &x));
+  }
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 using namespace steplap;
 using namespace steplap::testing;
@@ -71,6 +72,8 @@ TEST_CASE("constants are those of the sample, not of the tape") {
   CHECK(output == 35.0);
   REQUIRE(replay(simplified(tape), nullptr, others, &output));
   CHECK(output == 35.0);
+  const Tape without{tape.steps, {}, 0, tape.outputs}; // no sample's
+  CHECK(simplified(without).steps == simplified(tape).steps);
 }
 
 TEST_CASE("what nothing hangs on goes, what is equal is made once") {
@@ -141,4 +144,18 @@ TEST_CASE("random tapes have the same bits when simplified, and nothing more goe
   CHECK(fewer > 350);
   CHECK(held > 600);
   CHECK(held < 1200);
+}
+
+TEST_CASE("a tape that takes what there is not is refused") {
+  const Tape wrong[] = {{{{input, 1}}, {}, 1, {}},
+                        {{{input, -1}}, {}, 1, {}},
+                        {{{constant, 1}}, {0.5}, 1, {}},
+                        {{{constant, -1}}, {}, 1, {}},
+                        {{{input, 0}, {add, 0, 1}}, {}, 1, {}},
+                        {{{input, 0}, {negate, 2}, {negate, 0}}, {}, 1, {}},
+                        {{{input, 0}, {if_less, 0, 0}, {add, 0, 1}}, {}, 1, {}},
+                        {{{input, 0}, {if_less, 0, 0}}, {}, 1, {1}},
+                        {{{input, 0}}, {}, 1, {1}},
+                        {{{input, 0}}, {}, 1, {-1}}};
+  for (const Tape& tape : wrong) CHECK_THROWS_AS(static_cast<void>(simplified(tape)), std::logic_error);
 }

@@ -122,8 +122,8 @@ void add_all() {
   benchmark::RegisterBenchmark("simplify", simplify)->Arg(1000);
   benchmark::RegisterBenchmark("plan", plan)->Arg(1000);
   benchmark::RegisterBenchmark("replay", interpret)->Arg(1000);
-  const char* const names[] = {"sse2", "avx", "avx512"};
-  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx, InstructionSet::avx512})
+  const char* const names[] = {"sse2", "avx2", "avx512"};
+  for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512})
     for (int lanes = 1; MachineCode::is_available() && set <= MachineCode::best_instructions() && lanes <= MachineCode::most_lanes(set); lanes *= 2) {
       const std::string name = std::string(names[static_cast<int>(set)]) + "/lanes:" + std::to_string(lanes);
       benchmark::RegisterBenchmark(("compile/" + name).c_str(), compile, lanes, set)->Arg(1000);
