@@ -184,37 +184,45 @@ void refuse_time_stepping(SystemBuilder& builder) {
                     "'integrator', auto for one, or give the rope a 'stiffness'");
 }
 
-double lighter_mass(int a, int b, const SystemBuilder& builder) {
+double lightest_mass(const std::vector<RopePart>& parts, const SystemBuilder& builder) {
   double mass = std::numeric_limits<double>::infinity();
-  for (const Body& body : builder.model().bodies)
-    if (const int index = builder.body(body.name); (index == a || index == b) && !body.fixed) mass = std::min(mass, body.mass);
+  for (const Body& body : builder.model().bodies) {
+    const int index = builder.body(body.name);
+    const bool is_held = std::any_of(parts.begin(), parts.end(), [index](const RopePart& part) { return part.a == index || part.b == index; });
+    if (is_held && !body.fixed) mass = std::min(mass, body.mass);
+  }
   return std::isfinite(mass) ? mass : 0.0;
+}
+
+std::vector<RowSpec> rows_of(const std::vector<RopePart>& parts, SystemBuilder& builder) {
+  std::vector<RowSpec> rows;
+  for (const RopePart& part : parts) {
+    RowSpec& row = rows.emplace_back();
+    row.kind = MeasureKind::distance;
+    row.a = part.a;
+    row.b = part.b;
+    row.point_a = part.measure.point_a;
+    row.point_b = part.measure.point_b;
+    row.quantity = "length";
+    row.element = builder.element_index();
+  }
+  return rows;
 }
 
 // `entry`: as of an elastic rope, `now` its way in the reference pose.
 void add_inextensible(const RopeGroup::Entry& entry, double now, double length, SystemBuilder& builder) {
-  constexpr double k_least_acceleration = 1e-11; // m/s²: a tension that gives less to the lighter body is rounding
+  constexpr double k_least_acceleration = 1e-11; // m/s²: a tension that gives less to the lightest body is rounding
   constexpr double k_dead_band = 1e-11, k_least_band = 4e-12; // of the length; m, above what projection leaves
   refuse_time_stepping(builder);
-  if (entry.parts.size() > 1)
-    return builder.error("with inextensible = true just one of its straight parts may be between two different bodies, here " +
-                         std::to_string(entry.parts.size()) + " are: give it a 'stiffness' instead");
   if (now > length * (1.0 + OneSidedRow::k_too_long))
     return builder.error("its 'length' of " + rounded_text(length) + " m is less than the way over its points, " + rounded_text(now) +
                          " m: it does not stretch");
-  const RopePart& part = entry.parts.front();
   auto rope = std::make_unique<OneSidedRow>();
   rope->length = length - entry.fixed_length;
-  if (!(rope->length > 0.0)) return builder.error("its 'length' leaves nothing for the part between its two bodies");
+  if (!(rope->length > 0.0)) return builder.error("its 'length' leaves nothing for what of it is between bodies");
   rope->dead_band = k_dead_band * rope->length + k_least_band;
-  rope->rest_tension = k_least_acceleration * lighter_mass(part.a, part.b, builder);
-  rope->row.kind = MeasureKind::distance;
-  rope->row.a = part.a;
-  rope->row.b = part.b;
-  rope->row.point_a = part.measure.point_a;
-  rope->row.point_b = part.measure.point_b;
-  rope->row.quantity = "length";
-  rope->row.element = builder.element_index();
+  rope->rest_tension = k_least_acceleration * lightest_mass(entry.parts, builder);
+  rope->set_parts(rows_of(entry.parts, builder));
   rope->row.memory = builder.add_memory(rope->length);
   rope->blow = builder.add_memory();
   const int force = builder.next_friction_row(), f = builder.next_friction(), blow = rope->blow;
@@ -285,7 +293,7 @@ const ElementKind& rope_kind() {
     f.add("b", &T::b).as(FieldType::marker).doc("marker at its end");
     f.add("over", &T::over).doc("names of the markers that it runs over, in order from a to b");
     f.add("stiffness", &T::stiffness).in("N/m").positive().doc("of the whole rope; required unless it is inextensible");
-    f.add("inextensible", &T::inextensible).doc("true: it does not stretch, and becomes taut by a blow without rebound; just one of its straight parts is between two bodies");
+    f.add("inextensible", &T::inextensible).doc("true: it does not stretch, and becomes taut by a blow without rebound");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("while it is taut; never pushes");
     f.add("length", &T::length).in("m").positive().doc("without load; default: the way over its points in the reference pose");
     f.add("pretension", &T::pretension).in("N").not_negative().doc("in the reference pose");

@@ -7,8 +7,8 @@
 // T L̇ less the change of that. Points keep their order, whether or not the rope would leave a pulley.
 //
 // An inextensible rope is a row that comes and goes (mbd/system/one_sided_row.h): L ≤ L₀, T ≥ 0, T (L₀ − L) = 0. It becomes
-// taut by a blow without restitution (mbd/events/blow.h). Rows are between two bodies: exactly one of its straight parts
-// may be between different ones, the others only add to its length.
+// taut by a blow without restitution (mbd/events/blow.h). Straight parts within one body only add to its length; those between
+// different ones are the row's parts (RowSpec::next), all with the same tension.
 #pragma once
 
 #include "mbd/model/model.h"

@@ -29,10 +29,11 @@ void BorderedSystem::find_order(const Sparse& a, const std::vector<SparseRow>& r
     for (Sparse::InnerIterator it(a, c); it; ++it)
       if (it.row() / 3 < c / 3) pairs.push_back(static_cast<long>(it.row() / 3) * bodies + c / 3);
   for (const SparseRow& row : rows)
-    if (row.count > 3) {
-      const auto [low, high] = std::minmax({row.at[0] / 3, row.at[3] / 3});
-      pairs.push_back(static_cast<long>(low) * bodies + high);
-    }
+    for (int k = 3; k < row.count; k += 3)
+      for (int l = 0; l < k; l += 3) {
+        const auto [low, high] = std::minmax({row.at[k] / 3, row.at[l] / 3});
+        pairs.push_back(static_cast<long>(low) * bodies + high);
+      }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   std::vector<Eigen::Triplet<double, int>> graph;
@@ -108,7 +109,7 @@ void BorderedSystem::set(const Sparse& a, const std::vector<SparseRow>& rows, co
   pattern.insert(pattern.end(), a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros());
   for (const SparseRow& row : rows) {
     pattern.push_back(row.count);
-    pattern.insert(pattern.end(), row.at, row.at + row.count);
+    pattern.insert(pattern.end(), row.at.begin(), row.at.begin() + row.count);
   }
   if (pattern != pattern_) {
     pattern_ = std::move(pattern);

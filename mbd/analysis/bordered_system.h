@@ -16,15 +16,31 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <vector>
 
 namespace steplap {
 
-/// A constraint row over the coordinates of its bodies, three each.
+/// A constraint row over the coordinates of its bodies, three each and in their order. Room for two bodies, as most have.
 struct SparseRow {
   int count = 0;
-  int at[6] = {0, 0, 0, 0, 0, 0};
-  double j[6] = {0, 0, 0, 0, 0, 0};
+  std::vector<int> at = std::vector<int>(6, 0);
+  std::vector<double> j = std::vector<double>(6, 0.0);
+
+  void add(int coordinate, double value) {
+    if (count == static_cast<int>(at.size())) {
+      at.resize(2 * at.size());
+      j.resize(at.size());
+    }
+    at[count] = coordinate;
+    j[count++] = value;
+  }
+  /// Of a body that several parts of the row act on: to what is there of it.
+  void merge(int coordinate, double value) {
+    const auto end = at.begin() + count, known = std::find(at.begin(), end, coordinate);
+    if (known == end) add(coordinate, value);
+    else j[known - at.begin()] += value;
+  }
 
   [[nodiscard]] double dot(const VecX& x) const {
     double sum = 0.0;

@@ -58,7 +58,13 @@ std::vector<int> mechanisms_of(const System& system) {
   const State start = system.initial_state();
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const RowSpec& row = system.frictions[f].friction->rows(start.friction[f])[0];
-    join(row.a, row.b);
+    int before = k_ground; // parts of one row act on each other, whatever is between them
+    for (const RowSpec* part = &row; part; part = part->next) {
+      join(part->a, part->b);
+      const int moving = part->a == k_ground ? part->b : part->a;
+      join(before, moving);
+      before = moving;
+    }
   }
   return number;
 }

@@ -2,8 +2,10 @@
 
 #include "mbd/dynamics/schur.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace steplap {
 
@@ -20,9 +22,27 @@ public:
   }
 
   void add(const RowSpec& spec) {
-    const MeasureValue<double> m = evaluate_row<false>(spec, motion_.data());
+    for (const RowSpec* part = spec.next; part; part = part->next) further_.push_back({part, size()});
+    rows_.push_back(sides_of(spec));
+  }
+
+  void factor() {
+    if (rows_.empty()) return;
+    whole_ = rows_;
+    parts_.clear();
+    for (const auto& [part, of] : further_) {
+      parts_.push_back({static_cast<int>(whole_.size()), of});
+      whole_.push_back(sides_of(*part));
+    }
+    solver_ = {};
+    solver_.analyze(whole_, size(), parts_);
+    solver_.factor(whole_);
+  }
+
+  [[nodiscard]] SchurRow sides_of(const RowSpec& spec) const {
+    const MeasureValue<double> m = evaluate_row<false>(spec, motion_[spec.a], motion_[spec.b]);
     const Pair<double>& d = m.direction;
-    SchurRow& row = rows_.emplace_back();
+    SchurRow row;
     const double gradient[2][3] = {{d.x, d.y, cross(m.lever_a, d) + m.couple}, {-d.x, -d.y, -cross(m.lever_b, d) - m.couple}};
     const int body[2] = {spec.a, spec.b};
     for (int side = 0; side < 2; ++side) {
@@ -35,13 +55,7 @@ public:
         row.wj[side][c] = row.w[side][c] * gradient[side][c];
       }
     }
-  }
-
-  void factor() {
-    if (rows_.empty()) return;
-    solver_ = {};
-    solver_.analyze(rows_);
-    solver_.factor(rows_);
+    return row;
   }
 
   [[nodiscard]] int size() const { return static_cast<int>(rows_.size()); }
@@ -67,7 +81,7 @@ public:
       }
       std::vector<double> part = gram(factor);
       for (const int d : dependent) part[d] = 0.0;
-      solver_.solve(rows_, part.data());
+      solver_.solve(whole_, part.data());
       for (std::size_t r = 0; r < rows_.size(); ++r)
         if (std::abs(part[r]) * length(static_cast<int>(r)) > k_part) is_shared[r] = 1;
     }
@@ -79,24 +93,33 @@ private:
     double sum = 0.0;
     for (int side = 0; side < 2; ++side)
       for (int c = 0; c < 3; ++c) sum += rows_[r].wj[side][c] * rows_[r].j[side][c];
-    return std::sqrt(sum);
+    const bool is_long = std::any_of(parts_.begin(), parts_.end(), [r](const SchurPart& part) { return part.of == r; });
+    if (!is_long) return std::sqrt(sum);
+    std::vector<double> one(rows_.size(), 0.0);
+    one[r] = 1.0;
+    return std::sqrt(gram(one)[r]);
   }
 
   // J W Jᵀ x
   [[nodiscard]] std::vector<double> gram(const std::vector<double>& x) const {
     std::vector<double> response(3 * system_.bodies.size(), 0.0), result(rows_.size(), 0.0);
-    for (std::size_t r = 0; r < rows_.size(); ++r)
-      for (int side = 0; side < 2; ++side)
-        for (int c = 0; c < 3 && rows_[r].body[side] >= 0; ++c) response[3 * rows_[r].body[side] + c] += rows_[r].wj[side][c] * x[r];
-    for (std::size_t r = 0; r < rows_.size(); ++r)
-      for (int side = 0; side < 2; ++side)
-        for (int c = 0; c < 3 && rows_[r].body[side] >= 0; ++c) result[r] += rows_[r].j[side][c] * response[3 * rows_[r].body[side] + c];
+    const auto for_entries = [this](const auto& f) {
+      for (std::size_t i = 0; i < whole_.size(); ++i)
+        for (int side = 0; side < 2; ++side)
+          for (int c = 0; c < 3 && whole_[i].body[side] >= 0; ++c)
+            f(i < rows_.size() ? i : static_cast<std::size_t>(parts_[i - rows_.size()].of), whole_[i], side, c);
+    };
+    for_entries([&](std::size_t r, const SchurRow& row, int side, int c) { response[3 * row.body[side] + c] += row.wj[side][c] * x[r]; });
+    for_entries([&](std::size_t r, const SchurRow& row, int side, int c) { result[r] += row.j[side][c] * response[3 * row.body[side] + c]; });
     return result;
   }
 
   const System& system_;
   std::vector<Motion<double>> motion_;
   std::vector<SchurRow> rows_;
+  std::vector<std::pair<const RowSpec*, int>> further_; // parts of rows beyond the first, and of which row
+  std::vector<SchurRow> whole_;                         // rows, then those
+  std::vector<SchurPart> parts_;
   SchurSolver solver_;
 };
 

@@ -225,8 +225,9 @@ private:
     rows_.assign(statics.rows().size(), {});
     for (const Entry& entry : entries) {
       SparseRow& row = rows_[static_cast<std::size_t>(entry.row())];
-      row.at[row.count] = entry.col();
-      row.j[row.count++] = entry.value() * scene_.scale[entry.col()];
+      const double value = entry.value() * scene_.scale[entry.col()];
+      if (statics.rows()[static_cast<std::size_t>(entry.row())].spec->next) row.merge(entry.col(), value);
+      else row.add(entry.col(), value);
     }
     row_size_.resize(static_cast<Eigen::Index>(rows_.size()));
     for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -244,27 +245,35 @@ private:
     is_dependent_.assign(rows_.size(), 0);
     if (rows_.empty()) return;
     std::vector<SchurRow> rows(rows_.size());
+    std::vector<SchurPart> parts;
     std::vector<int> bodies;
     std::vector<char> is_friction(rows_.size(), 0);
-    for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
       const SparseRow& row = rows_[r];
       is_friction[r] = scene_.statics.rows()[r].friction >= 0 ? 1 : 0;
+      std::size_t at = r; // beyond two bodies a part of the row
       for (int k = 0; k < row.count; ++k) {
-        const int side = k / 3, c = k % 3;
-        rows[r].body[side] = row.at[k] / 3;
-        rows[r].w[side][c] = 1.0;
-        rows[r].j[side][c] = rows[r].wj[side][c] = row.j[k];
+        const int side = k / 3 % 2, c = k % 3;
+        if (k > 0 && k % 6 == 0) {
+          at = rows.size();
+          parts.push_back({static_cast<int>(at), static_cast<int>(r)});
+          rows.emplace_back();
+        }
+        rows[at].body[side] = row.at[k] / 3;
+        rows[at].w[side][c] = 1.0;
+        rows[at].j[side][c] = rows[at].wj[side][c] = row.j[k];
       }
-      bodies.insert(bodies.end(), rows[r].body, rows[r].body + 2);
     }
+    for (const SchurRow& row : rows) bodies.insert(bodies.end(), row.body, row.body + 2);
+    for (const SchurPart& part : parts) bodies.push_back(part.of);
     if (bodies != row_bodies_) {
       row_bodies_ = bodies;
       rank_ = {};
-      rank_.analyze(rows);
+      rank_.analyze(rows, static_cast<int>(rows_.size()), parts);
     }
     rank_.decide_rank(is_friction);
     rank_.factor(rows);
-    for (std::size_t r = 0; r < rows.size(); ++r) is_dependent_[r] = rank_.is_dependent(static_cast<int>(r)) ? 1 : 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) is_dependent_[r] = rank_.is_dependent(static_cast<int>(r)) ? 1 : 0;
   }
 
   // What the other rows allow is then known, too.

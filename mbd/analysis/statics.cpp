@@ -49,7 +49,7 @@ int place_of(const RowSpec& row, int k) {
   return body == k_ground ? -1 : 3 * (body - 1) + k % 3;
 }
 
-// k += w ∂²(measure)/∂q².
+// k += w ∂²(measure)/∂q², of one part.
 void add_curvature(const RowSpec& row, const std::vector<Motion<double>>& motion, double w, std::vector<Statics::Entry>& k) {
   D12 j[6];
   put_gradient(measured(row, seeded(motion[row.a], 0), seeded(motion[row.b], 3)), j);
@@ -186,11 +186,12 @@ MatX Statics::gradient() const {
 
 void Statics::gradient(std::vector<Entry>& entries) const {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
-    const RowSpec& row = *rows_[r].spec;
-    double j[6];
-    put_gradient(measured(row, motion_[row.a], motion_[row.b]), j);
-    for (int k = 0; k < 6; ++k)
-      if (const int at = place_of(row, k); at >= 0) entries.emplace_back(static_cast<int>(r), at, j[k]);
+    for (const RowSpec* part = rows_[r].spec; part; part = part->next) {
+      double j[6];
+      put_gradient(measured(*part, motion_[part->a], motion_[part->b]), j);
+      for (int k = 0; k < 6; ++k)
+        if (const int at = place_of(*part, k); at >= 0) entries.emplace_back(static_cast<int>(r), at, j[k]);
+    }
   }
 }
 
@@ -198,8 +199,9 @@ VecX Statics::off() const {
   VecX off(static_cast<Eigen::Index>(rows_.size()));
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const RowSpec& row = *rows_[r].spec;
-    off[static_cast<Eigen::Index>(r)] =
-        off_target(row, measured(row, motion_[row.a], motion_[row.b]).value, static_target(row, *state_));
+    double& own = off[static_cast<Eigen::Index>(r)];
+    own = off_target(row, measured(row, motion_[row.a], motion_[row.b]).value, static_target(row, *state_));
+    for (const RowSpec* part = row.next; part; part = part->next) own += measured(*part, motion_[part->a], motion_[part->b]).value;
   }
   return off;
 }
@@ -215,7 +217,8 @@ void Statics::stiffness(const VecX& lambda, std::vector<Entry>& k, bool with_sli
   for (const auto& group : system_.groups) group->add_jacobian(evaluation_, parts);
   for (const PairJacobian& part : parts) add_pair(part.a, part.b, part.stiffness, k);
   for (std::size_t r = 0; r < rows_.size(); ++r)
-    add_curvature(*rows_[r].spec, motion_, lambda[static_cast<Eigen::Index>(r)], k);
+    for (const RowSpec* part = rows_[r].spec; part; part = part->next)
+      add_curvature(*part, motion_, lambda[static_cast<Eigen::Index>(r)], k);
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f)
     if (state_->friction[f].phase == FrictionPhase::slip) add_sliding_stiffness(f, parts, with_sliding, k);
 }

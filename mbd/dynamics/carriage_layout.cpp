@@ -1,6 +1,7 @@
 #include "mbd/dynamics/carriage_layout.h"
 
 #include "mbd/math/portable_math.h"
+#include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +25,8 @@ bool is_guide(const System& system, const RowBlock& block) {
 class Finder {
 public:
   Finder(const System& system, const State& state, const Layout& layout)
-      : system_(system), state_(state), layout_(layout), held_(layout.clusters.size(), 0), is_carrier_(layout.clusters.size(), 0) {}
+      : system_(system), state_(state), layout_(layout), held_(layout.clusters.size(), 0), is_carrier_(layout.clusters.size(), 0),
+        is_long_(layout.clusters.size(), 0) {}
 
   std::unique_ptr<Carriages> find(const std::vector<char>& is_block_merged, const std::vector<char>& is_friction_merged,
                                   JointCoordinates& found) {
@@ -62,10 +64,19 @@ private:
     for (std::size_t f = 0; f < system_.frictions.size(); ++f)
       if (is_friction_merged[f] == 0 && state_.friction[f].phase == FrictionPhase::stick)
         hold(system_.frictions[f].friction->rows(state_.friction[f])[0]);
+    for (const FrictionUnit& unit : system_.frictions) { // taut or slack: rows over several bodies are between absolute ones
+      const OneSidedRow* const rope = one_sided_row(*unit.friction);
+      if (!rope || !rope->is_long()) continue;
+      rope->for_parts([this](const RowSpec& part) {
+        for (const int k : {cluster_of(part.a), cluster_of(part.b)})
+          if (k >= 0) is_long_[k] = 1;
+      });
+    }
   }
 
   [[nodiscard]] bool is_fit(int k, int on, const JointCoordinates& found) const {
-    if (k < 0 || held_[k] != 1 || is_carrier_[k] != 0 || found.mechanism_of[k] >= 0) return false;
+    if (k < 0 || is_long_[k] != 0 || (on >= 0 && is_long_[on] != 0)) return false;
+    if (held_[k] != 1 || is_carrier_[k] != 0 || found.mechanism_of[k] >= 0) return false;
     return on < 0 || found.mechanism_of[on] < 0;
   }
 
@@ -126,6 +137,7 @@ private:
   const Layout& layout_;
   std::vector<int> held_; // by how many joints, drives and sticking frictions
   std::vector<char> is_carrier_;
+  std::vector<char> is_long_; // of a row over more than two bodies
   std::vector<std::tuple<int, int, Carriage>> chosen_; // carrier, cluster
 };
 

@@ -2,7 +2,7 @@
 //
 // A cluster that one guide and nothing else holds: no other joint, no drive, no friction that sticks (forces, contacts and
 // friction that slides may act on it), on the ground or on a cluster in absolute coordinates that is no carriage
-// itself.
+// itself; neither of them on a rope over more than two bodies.
 #pragma once
 
 #include "mbd/dynamics/carriage.h"

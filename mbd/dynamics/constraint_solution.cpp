@@ -68,7 +68,7 @@ double ConstraintSolution::cluster_bias(const RowSpec& spec, const MeasureValue<
 }
 
 MeasureValue<double> ConstraintSolution::load(const RowSpec& spec, SchurRow& row) const {
-  auto m = evaluate_row<true>(spec, motion_);
+  auto m = evaluate_row<true>(spec, motion_[spec.a], motion_[spec.b]);
   row.body[0] = layout_->placements[spec.a].cluster;
   row.body[1] = layout_->placements[spec.b].cluster;
   for (int side = 0; side < 2; ++side)
@@ -131,6 +131,7 @@ void ConstraintSolution::prepare() {
   const auto count = static_cast<std::size_t>(layout.schur.size());
   if (count == 0) return;
   for (std::size_t r = 0; r < count; ++r) multiplier_[r] = pull(r);
+  if (layout.has_long_rows()) [[unlikely]] pull_parts();
   if (layout.carriages) layout.carriages->weigh_rows(layout.schur_rows.data());
   layout.schur.factor(layout.schur_rows);
 }
@@ -151,6 +152,7 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
   const auto count = static_cast<std::size_t>(layout.schur.size());
   double* const right = multiplier_.data();
   for (std::size_t r = 0; r < count; ++r) right[r] = less_accelerations(layout.schur_rows[r], right[r], a);
+  if (layout.has_long_rows()) [[unlikely]] take_part_accelerations(a, right);
   if (layout.has_mechanisms()) solve_mechanisms(force, a);
   if (layout.active.empty()) return;
   for (const int r : layout.driven_rows) {
@@ -170,6 +172,7 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
   if (count == 0) return;
   layout.schur.solve(layout.schur_rows, right);
   add_responses(layout.schur_rows.data(), count, right, a);
+  if (layout.has_long_rows()) [[unlikely]] add_part_responses(right, a);
 }
 
 double ConstraintSolution::power_of_drives() const {
@@ -187,6 +190,7 @@ void ConstraintSolution::compare(double t) {
     off_[r] = off_target(*layout_->active[r].spec, m.value, target.value);
     rate_off_[r] = m.rate - target.rate;
   }
+  if (layout_->has_long_rows()) [[unlikely]] compare_parts();
   if (layout_->carriages) layout_->carriages->weigh_rows(layout_->schur_rows.data());
   for (Mechanism& m : layout_->mechanisms) m.reduce_rows(layout_->schur_rows.data() + m.first_row);
 }
@@ -220,6 +224,7 @@ void ConstraintSolution::take_away(const double* r, double* change) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(layout.schur.size()); ++i)
     for (int side = 0; side < 2; ++side)
       if (layout.schur_rows[i].body[side] >= 0) add_response(layout.schur_rows[i], side, response[i], change);
+  if (layout.has_long_rows()) [[unlikely]] add_part_responses(response, change);
   if (layout.carriages) layout.carriages->let_go(change);
   for (const Mechanism& m : layout.mechanisms) {
     if (m.row_count == 0) continue;
@@ -239,6 +244,7 @@ double ConstraintSolution::along(std::size_t r, const double* change) const {
   for (int side = 0; side < 2; ++side)
     if (row.body[side] >= 0)
       for (int c = 0; c < 3; ++c) sum += row.j[side][c] * change[3 * row.body[side] + c];
+  if (layout.has_long_rows()) [[unlikely]] sum += along_parts(r, change);
   return sum;
 }
 

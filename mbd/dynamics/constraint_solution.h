@@ -54,13 +54,21 @@ public:
   [[nodiscard]] double along(std::size_t row, const double* change) const;
 
   // --- of a row that is not active ------------------------------------------------------------------
-  /// Gradient in the clusters' coordinates; returns the measure, its bias that of the clusters.
+  /// Gradient in the clusters' coordinates; returns the measure, its bias that of the clusters. Of one part of a longer row.
   MeasureValue<double> load(const RowSpec& spec, SchurRow& row) const;
 
 private:
   template <bool WithBias> MeasureValue<double> load_active(std::size_t r);
   double pull(std::size_t r);
   void solve_mechanisms(const BodyForce* force, double* a);
+  // Of rows over more than two bodies what their parts add (row_parts.cpp): to γ, to what they are off by, to what is left
+  // of `right` at the accelerations `a`, to the accelerations, and along a row.
+  template <bool WithBias> MeasureValue<double> load_part(std::size_t i);
+  void pull_parts();
+  void compare_parts();
+  void take_part_accelerations(const double* a, double* right) const;
+  void add_part_responses(const double* lambda, double* a) const;
+  [[nodiscard]] double along_parts(std::size_t row, const double* change) const;
   void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
   [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
 

@@ -227,6 +227,20 @@ void add_rows(const System& system, std::vector<ActiveRow> wanted, Layout& layou
   }
 }
 
+// What rows over more than two bodies act on beyond their first part, behind all rows.
+void add_parts(Layout& layout) {
+  for (std::size_t r = 0; r < layout.active.size(); ++r)
+    for (const RowSpec* part = layout.active[r].spec->next; part; part = part->next) {
+      SchurRow row;
+      row.body[0] = layout.placements[part->a].cluster;
+      row.body[1] = layout.placements[part->b].cluster;
+      if (row.body[0] == row.body[1]) row.body[0] = row.body[1] = -1; // of one piece: it changes nothing
+      layout.parts.push_back({static_cast<int>(layout.schur_rows.size()), static_cast<int>(r)});
+      layout.part_specs.push_back(part);
+      layout.schur_rows.push_back(row);
+    }
+}
+
 // Clusters of mechanisms behind the others, each mechanism's together, then carriages.
 void take_joint_coordinates(JointCoordinates found, std::unique_ptr<Carriages> carriages, Layout& layout) {
   std::vector<int> order, place(layout.clusters.size());
@@ -342,6 +356,7 @@ void find_riding(const System& system, const State& state, Layout& layout) {
   std::vector<char> is_needed(system.bodies.size(), 0);
   for (const auto& group : system.groups) group->mark_bodies(is_needed);
   for (const ActiveRow& row : layout.active) is_needed[row.spec->a] = is_needed[row.spec->b] = 1;
+  for (const RowSpec* part : layout.part_specs) is_needed[part->a] = is_needed[part->b] = 1;
   for (const int f : layout.sliding) {
     const RowSpec* rows = system.frictions[f].friction->rows(state.friction[f]);
     is_needed[rows[0].a] = is_needed[rows[0].b] = 1;
@@ -399,14 +414,16 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   want_bilateral(system, is_block_merged, is_pin, layout, wanted);
   want_frictions(system, state, is_friction_merged, layout, wanted);
   add_rows(system, std::move(wanted), layout);
+  add_parts(layout);
   for (const RowSpec* row : pin_rows(system, layout))
     if (layout.is_carried[row->a] || layout.is_carried[row->b]) layout.is_carried_by_pins = true;
   find_riding(system, state, layout);
   find_links(system, state, layout);
   for (std::size_t r = 0; r < layout.active.size(); ++r) {
-    const RowSpec& spec = *layout.active[r].spec;
-    if (layout.is_carried[spec.a] || layout.is_carried[spec.b])
-      layout.carried_rows.push_back(static_cast<int>(r));
+    const auto is_carried = [&layout](const RowSpec& part) { return layout.is_carried[part.a] || layout.is_carried[part.b]; };
+    bool is_any = false;
+    for (const RowSpec* part = layout.active[r].spec; part; part = part->next) is_any = is_any || is_carried(*part);
+    if (is_any) layout.carried_rows.push_back(static_cast<int>(r));
   }
   for (int k = 0; k < layout.absolute_count; ++k) {
     const Cluster& cluster = layout.clusters[k];
@@ -416,10 +433,14 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   }
   number_coordinates(system, layout);
   if (layout.carriages) close_carriages(layout);
-  for (Lock& lock : layout.locks)
-    for (int r = 0; r < static_cast<int>(layout.active.size()); ++r)
+  for (Lock& lock : layout.locks) {
+    const auto add_terms = [&](int r, int multiplier) {
       for (int side = 0; side < 2; ++side)
-        if (layout.schur_rows[r].body[side] == lock.cluster) lock.terms.push_back({r, side});
+        if (layout.schur_rows[r].body[side] == lock.cluster) lock.terms.push_back({r, side, multiplier});
+    };
+    for (int r = 0; r < static_cast<int>(layout.active.size()); ++r) add_terms(r, r);
+    for (const SchurPart& part : layout.parts) add_terms(part.row, part.of);
+  }
   // A row between two bodies that move as one moves nothing: without inverse masses it drops out as dependent.
   for (SchurRow& row : layout.schur_rows)
     for (int side = 0; side < 2; ++side)
@@ -440,7 +461,7 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());
   int absolute_rows = static_cast<int>(layout.active.size());
   for (const Mechanism& m : layout.mechanisms) absolute_rows -= m.row_count;
-  layout.schur.analyze(layout.schur_rows, absolute_rows);
+  layout.schur.analyze(layout.schur_rows, absolute_rows, layout.parts);
   return layout;
 }
 

@@ -57,9 +57,10 @@ struct ActiveRow {
   RowPullKind pull = RowPullKind::other;
 };
 
-/// Row `row` acts with its side `side` on a locked coordinate.
+/// Row `row` of the layout's schur_rows acts with its side `side` on a locked coordinate.
 struct LockedTerm {
   int row = 0, side = 0;
+  int multiplier = 0; ///< the active row that it is, or is a part of
 };
 
 /// A driven coordinate of a cluster that consists of one body.
@@ -145,9 +146,13 @@ struct Layout {
   std::vector<char> is_friction_row; ///< per active row: it holds friction that can slip
   std::vector<int> driven_rows;      ///< active rows that move with time
   SchurSolver schur;                 ///< of the rows between absolute clusters
-  std::vector<SchurRow> schur_rows;  ///< per active row: bodies filled in, numbers are scratch
+  std::vector<SchurRow> schur_rows;  ///< per active row, then per part: bodies filled in, numbers are scratch
+  std::vector<SchurPart> parts;      ///< of rows over more than two bodies; those are between absolute clusters
+  std::vector<const RowSpec*> part_specs; ///< of each of those
 
   [[nodiscard]] int cluster_count() const { return static_cast<int>(clusters.size()); }
+  /// Some rows that hold are over more than two bodies.
+  [[nodiscard]] bool has_long_rows() const { return !parts.empty(); }
   [[nodiscard]] bool has_mechanisms() const { return !mechanisms.empty(); }
   /// Some clusters are not in absolute coordinates.
   [[nodiscard]] bool has_joint_coordinates() const { return !mechanisms.empty() || carriages; }

@@ -201,8 +201,13 @@ void Linearization::add_transport() {
   }
 }
 
+// Part by part of a row over more than two bodies: all that is asked for is linear in the row.
 void Linearization::add_row(std::size_t r) {
-  const DualRow row = differentiate<true>(*layout_->active[r].spec, *layout_, dynamics_->motion());
+  for (const RowSpec* part = layout_->active[r].spec; part; part = part->next) add_part(r, *part);
+}
+
+void Linearization::add_part(std::size_t r, const RowSpec& spec) {
+  const DualRow row = differentiate<true>(spec, *layout_, dynamics_->motion());
   const double lambda = dynamics_->multipliers()[r];
   const int i = static_cast<int>(r);
   D12 slack = -row.bias; // γ − J a, but for the drive, which the state does not change

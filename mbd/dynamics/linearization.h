@@ -77,6 +77,7 @@ private:
   void add_inner(const InnerJacobian& part);
   void add_transport();
   void add_row(std::size_t r);
+  void add_part(std::size_t r, const RowSpec& part);
   void reduce();
   void find_levers();
   void reduce_forces(const Mechanism& m);

@@ -41,9 +41,27 @@ RowGradient gradient_at(const MeasureValue<double>& m) {
   return {{{d.x, d.y, cross(m.lever_a, d) + m.couple}, {-d.x, -d.y, -cross(m.lever_b, d) - m.couple}}};
 }
 
-RowGradient gradient_of(const RowSpec& row, const std::vector<Motion<double>>& motion) {
-  return gradient_at(evaluate_row<false>(row, motion.data()));
+// Of a part, which most rows are one of.
+RowGradient gradient_of(const RowSpec& part, const std::vector<Motion<double>>& motion) {
+  return gradient_at(evaluate_row<false>(part, motion[part.a], motion[part.b]));
 }
+
+// f(body, 3 numbers) for either side of every part of a row that is not the ground's.
+template <class F> void for_sides(const RowSpec& row, const std::vector<Motion<double>>& motion, const F& f) {
+  for (const RowSpec* part = &row; part; part = part->next) {
+    const RowGradient g = gradient_of(*part, motion);
+    for (const int side : {0, 1})
+      if (const int body = side == 0 ? part->a : part->b; body != k_ground) f(body, g.side[side]);
+  }
+}
+
+template <class F> void for_bodies(const RowSpec& row, const F& f) {
+  for (const RowSpec* part = &row; part; part = part->next)
+    for (const int body : {part->a, part->b})
+      if (body != k_ground) f(body);
+}
+
+int first_body(const RowSpec& row) { return row.a != k_ground ? row.a : row.b; }
 
 // Null vectors of a matrix, each with the only entry of one of its columns ("pivot"); entries of rounding are zero.
 struct NullSpace {
@@ -154,14 +172,17 @@ LoadSharing::LoadSharing(const System& system, const State& state, const std::ve
   const std::vector<HeldRow> rows = held_rows(state);
   std::vector<int> parent(system.bodies.size());
   std::iota(parent.begin(), parent.end(), 0);
-  for (const HeldRow& row : rows)
-    if (row.spec->a != k_ground && row.spec->b != k_ground)
-      parent[find_root(parent, row.spec->a)] = find_root(parent, row.spec->b);
+  for (const HeldRow& row : rows) {
+    const int first = first_body(*row.spec);
+    for_bodies(*row.spec, [&](int body) {
+      if (body != first) parent[find_root(parent, first)] = find_root(parent, body);
+    });
+  }
   std::vector<int> part_of(system.bodies.size(), -1), size(system.bodies.size(), 0);
   for (int i = 1; i < system.body_count(); ++i) ++size[find_root(parent, i)];
   std::vector<Part> parts;
   for (const HeldRow& row : rows) {
-    const int root = find_root(parent, row.spec->a != k_ground ? row.spec->a : row.spec->b);
+    const int root = find_root(parent, first_body(*row.spec));
     if (root == k_ground) continue;
     if (part_of[root] < 0) {
       part_of[root] = static_cast<int>(parts.size());
@@ -173,8 +194,7 @@ LoadSharing::LoadSharing(const System& system, const State& state, const std::ve
   for (Part& part : parts) {
     const bool has_friction = part.rows.back().is_bounded;
     has_friction_ = has_friction_ || has_friction;
-    const RowSpec& first = *part.rows.front().spec;
-    const int bodies = size[find_root(parent, first.a != k_ground ? first.a : first.b)];
+    const int bodies = size[find_root(parent, first_body(*part.rows.front().spec))];
     if (!has_friction && bodies > k_most_bodies) continue;
     analyze(part, motion, body_index);
     if (part.null.cols() == 0) continue;
@@ -187,23 +207,23 @@ void LoadSharing::analyze(Part& part, const std::vector<Motion<double>>& motion,
   std::fill(body_index.begin(), body_index.end(), -1);
   int bodies = 0;
   for (const HeldRow& row : part.rows)
-    for (const int body : {row.spec->a, row.spec->b})
-      if (body != k_ground && body_index[body] < 0) body_index[body] = bodies++;
+    for_bodies(*row.spec, [&](int body) {
+      if (body_index[body] < 0) body_index[body] = bodies++;
+    });
   const auto count = static_cast<Eigen::Index>(part.rows.size());
   MatX gradient = MatX::Zero(3 * bodies, count);
   VecX inverse_norm = VecX::Zero(count), mobility = VecX::Zero(count);
   for (Eigen::Index r = 0; r < count; ++r) {
-    const RowSpec& spec = *part.rows[r].spec;
-    const RowGradient g = gradient_of(spec, motion);
-    for (const int side : {0, 1}) {
-      const int body = side == 0 ? spec.a : spec.b;
-      if (body == k_ground) continue;
+    for_sides(*part.rows[r].spec, motion, [&](int body, const double* side) {
       const BodyData& data = system_.bodies[body];
       for (int c = 0; c < 3; ++c) {
-        gradient(3 * body_index[body] + c, r) += g.side[side][c];
-        mobility[r] += g.side[side][c] * g.side[side][c] / (c < 2 ? data.mass : data.inertia);
+        // Of a body that several parts act on: their sum squared.
+        double& sum = gradient(3 * body_index[body] + c, r);
+        const double before = sum;
+        sum += side[c];
+        mobility[r] += side[c] * (side[c] + 2.0 * before) / (c < 2 ? data.mass : data.inertia);
       }
-    }
+    });
     const double norm = gradient.col(r).norm();
     inverse_norm[r] = norm > 0.0 ? 1.0 / norm : 0.0;
     if (!part.rows[r].is_bounded) part.free_count = static_cast<int>(r) + 1;
@@ -293,17 +313,13 @@ VecX LoadSharing::off_balance(const Part& part, const std::vector<Motion<double>
   MatX sum = MatX::Zero(3 * static_cast<Eigen::Index>(system_.bodies.size()), vectors);
   VecX size = VecX::Zero(vectors);
   for (std::size_t r = 0; r < part.rows.size(); ++r) {
-    const RowSpec& spec = *part.rows[r].spec;
-    const RowGradient g = gradient_of(spec, motion);
     const auto row = part.null.row(static_cast<Eigen::Index>(r));
-    for (const int side : {0, 1}) {
-      const int body = side == 0 ? spec.a : spec.b;
-      if (body == k_ground) continue;
+    for_sides(*part.rows[r].spec, motion, [&](int body, const double* side) {
       for (int c = 0; c < 3; ++c) {
-        sum.row(3 * body + c) += g.side[side][c] * row;
-        size += std::abs(g.side[side][c]) * row.cwiseAbs().transpose();
+        sum.row(3 * body + c) += side[c] * row;
+        size += std::abs(side[c]) * row.cwiseAbs().transpose();
       }
-    }
+    });
   }
   for (Eigen::Index j = 0; j < vectors; ++j) size[j] = size[j] > 0.0 ? sum.col(j).lpNorm<Eigen::Infinity>() / size[j] : 0.0;
   return size;
@@ -355,17 +371,19 @@ double LoadSharing::discord(int group, const Evaluation& e, const double* accele
           const SignalJet target = row_target(spec, e.memory, e.t);
           double along = m.bias - target.acceleration, terms = std::abs(m.bias) + std::abs(target.acceleration);
           double rate_sum = std::abs(m.rate) + std::abs(target.rate);
-          const RowGradient j = gradient_at(m);
-          for (const int side : {0, 1}) {
-            const int body = side == 0 ? spec.a : spec.b;
-            if (body == k_ground) continue;
-            farthest = std::max({farthest, std::abs(e.motion[body].x), std::abs(e.motion[body].y)});
-            const double v[3] = {e.motion[body].vx, e.motion[body].vy, e.motion[body].omega};
-            for (int c = 0; c < 3; ++c) {
-              const double term = j.side[side][c] * acceleration[3 * body + c];
-              along += term;
-              terms += std::abs(term);
-              rate_sum += std::abs(j.side[side][c] * v[c]);
+          for (const RowSpec* piece = &spec; piece; piece = piece->next) {
+            const RowGradient j = gradient_at(spec.next ? evaluate_row<true>(*piece, e.motion[piece->a], e.motion[piece->b]) : m);
+            for (const int side : {0, 1}) {
+              const int body = side == 0 ? piece->a : piece->b;
+              if (body == k_ground) continue;
+              farthest = std::max({farthest, std::abs(e.motion[body].x), std::abs(e.motion[body].y)});
+              const double v[3] = {e.motion[body].vx, e.motion[body].vy, e.motion[body].omega};
+              for (int c = 0; c < 3; ++c) {
+                const double term = j.side[side][c] * acceleration[3 * body + c];
+                along += term;
+                terms += std::abs(term);
+                rate_sum += std::abs(j.side[side][c] * v[c]);
+              }
             }
           }
           gap += n * off_target(spec, m.value, target.value);

@@ -1,5 +1,7 @@
 #include "mbd/dynamics/mechanism_layout.h"
 
+#include "mbd/system/one_sided_row.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -53,6 +55,7 @@ public:
   Finder(const System& system, const State& state, const Layout& layout, Coordinates choice)
       : system_(system), state_(state), layout_(layout), choice_(choice), islands_(layout.clusters.size()),
         rows_(layout.clusters.size(), 0), hinges_at_(layout.clusters.size()), is_driven_(layout.clusters.size(), 0),
+        is_long_(layout.clusters.size(), 0),
         member_(layout.clusters.size(), -1) {}
 
   JointCoordinates find(const std::vector<char>& is_block_merged, const std::vector<char>& is_friction_merged) {
@@ -97,6 +100,14 @@ private:
         if (const RowSpec& row = friction.rows(state_.friction[f])[r]; cluster_of(row.a) >= 0 || cluster_of(row.b) >= 0)
           add_row(row);
     }
+    for (const FrictionUnit& unit : system_.frictions) { // taut or slack: rows over several bodies are between absolute ones
+      const OneSidedRow* const rope = one_sided_row(*unit.friction);
+      if (!rope || !rope->is_long()) continue;
+      rope->for_parts([this](const RowSpec& part) {
+        for (const int k : {cluster_of(part.a), cluster_of(part.b)})
+          if (k >= 0) is_long_[k] = 1;
+      });
+    }
   }
 
   void add_hinge(int block, const RowSpec& row) {
@@ -120,7 +131,7 @@ private:
   void consider(const std::vector<int>& island) {
     if (island.size() > static_cast<std::size_t>(Mechanism::k_most)) return; // each has a coordinate at least
     for (const int k : island)
-      if (is_driven_[k] != 0) return;
+      if (is_driven_[k] != 0 || is_long_[k] != 0) return;
     tree_ = Mechanism();
     used_.clear();
     reached_.clear();
@@ -236,6 +247,7 @@ private:
   std::vector<Hinge> hinges_;
   std::vector<std::vector<int>> hinges_at_;
   std::vector<char> is_driven_;
+  std::vector<char> is_long_; // of a row over more than two bodies
   std::vector<int> member_; // of a cluster
   std::vector<int> reached_, used_; // clusters and blocks of tree_
   Mechanism tree_;

@@ -40,12 +40,16 @@ void Dynamics::slip_motion(int f, const double* dy, double* rate, double* accele
   kinematics_.complete();
   const double* const a = cluster_accelerations(dy);
   for (int r = 0; r < friction.dimension(); ++r) {
-    SchurRow row;
-    const auto m = rows_.load(specs[r], row);
-    const AlongRow along = along_row(row, m.bias, a);
-    rate[r] = m.rate;
-    acceleration[r] = along.acceleration;
-    rounding[r] = k_least_acceleration + k_rounded_share * along.terms;
+    rate[r] = acceleration[r] = 0.0;
+    rounding[r] = k_least_acceleration;
+    for (const RowSpec* part = &specs[r]; part; part = part->next) {
+      SchurRow row;
+      const auto m = rows_.load(*part, row);
+      const AlongRow along = along_row(row, m.bias, a);
+      rate[r] += m.rate;
+      acceleration[r] += along.acceleration;
+      rounding[r] += k_rounded_share * along.terms;
+    }
   }
 }
 
@@ -128,25 +132,30 @@ void Dynamics::respond(Candidates& candidates, const double* dy) {
   candidates.acceleration.assign(n, 0.0);
   candidates.rounding.assign(n, 0.0);
   kinematics_.complete();
-  std::vector<CandidateRow> rows(n);
+  std::vector<std::vector<CandidateRow>> rows(n); // each the sum of its parts
   std::vector<double> response(coordinate_count());
   const double* const a = cluster_accelerations(dy);
   for (std::size_t c = 0; c < n; ++c) {
-    const auto m = rows_.load(*candidates.rows[c], rows[c].row);
-    const AlongRow along = along_row(rows[c].row, m.bias, a);
-    candidates.acceleration[c] = along.acceleration;
-    candidates.rounding[c] = k_least_acceleration + k_rounded_share * along.terms;
-    rows[c].reduce(layout);
+    candidates.rounding[c] = k_least_acceleration;
+    for (const RowSpec* part = candidates.rows[c]; part; part = part->next) {
+      CandidateRow& row = rows[c].emplace_back();
+      const auto m = rows_.load(*part, row.row);
+      const AlongRow along = along_row(row.row, m.bias, a);
+      candidates.acceleration[c] += along.acceleration;
+      candidates.rounding[c] += k_rounded_share * along.terms;
+      row.reduce(layout);
+    }
   }
   for (std::size_t c = 0; c < n; ++c) {
     std::fill(response.begin(), response.end(), 0.0);
-    rows[c].add_response(1.0, response.data());
+    for (const CandidateRow& part : rows[c]) part.add_response(1.0, response.data());
     if (layout.carriages) layout.carriages->let_go(response.data()); // carriers move what stands on them
     if (!layout.active.empty()) {
       for (std::size_t r = 0; r < layout.active.size(); ++r) kept_[r] = rows_.along(r, response.data());
       rows_.take_away(kept_.data(), response.data());
     }
-    for (std::size_t d = 0; d < n; ++d) candidates.compliance[d * n + c] = rows[d].along(response.data());
+    for (std::size_t d = 0; d < n; ++d)
+      for (const CandidateRow& part : rows[d]) candidates.compliance[d * n + c] += part.along(response.data());
   }
 }
 

@@ -60,12 +60,12 @@ void Reactions::place_edges() {
   }
 }
 
-// Takes what a row bears from the wrench balance of the members of clusters that it acts on.
+// Takes what a row, or a part of one, bears from the wrench balance of the members of clusters that it acts on.
 void Reactions::add_carried(const RowSpec& spec, double lambda) {
   const Layout& layout = *layout_;
   const int body[2] = {spec.a, spec.b};
   if (!layout.is_carried[body[0]] && !layout.is_carried[body[1]]) return;
-  const auto m = evaluate_row<false>(spec, motion_);
+  const auto m = evaluate_row<false>(spec, motion_[spec.a], motion_[spec.b]);
   for (int side = 0; side < 2; ++side) {
     if (!layout.is_carried[body[side]]) continue;
     const double f = side == 0 ? -lambda : lambda;
@@ -140,7 +140,8 @@ void Reactions::find_joints(const double* cluster_a, const double* lambda) {
     wrench_[edge.child] = {at_centre.x - turning * y - centripetal * x, at_centre.y + turning * x - centripetal * y,
                            body.inertia * a[2] - f.m};
   }
-  for (const int r : layout.carried_rows) add_carried(*layout.active[r].spec, lambda[r]);
+  for (const int r : layout.carried_rows)
+    for (const RowSpec* part = layout.active[r].spec; part; part = part->next) add_carried(*part, lambda[r]);
   if (layout.is_carried_by_pins) {
     find_pins(cluster_a, lambda);
     for (const Mechanism& mechanism : layout.mechanisms)
@@ -184,7 +185,7 @@ double Reactions::of_lock(const Lock& lock, const double* a, const double* lambd
     return missing_force(layout, lock, force_[layout.clusters[lock.cluster].motion], a, layout.schur_rows.data(), lambda);
   double force = Carriages::lack(layout.carriages->carriers[carrier], lock.coordinate, a + 3 * lock.cluster);
   for (const LockedTerm& term : lock.terms)
-    force -= layout.schur_rows[term.row].j[term.side][lock.coordinate] * lambda[term.row];
+    force -= layout.schur_rows[term.row].j[term.side][lock.coordinate] * lambda[term.multiplier];
   return force;
 }
 

@@ -20,7 +20,7 @@ template <class S>
   const Cluster& cluster = layout.clusters[lock.cluster];
   S force = (lock.coordinate < 2 ? cluster.mass : cluster.inertia) * a[k] - layout.weight[k] -
             (lock.coordinate == 0 ? f.fx : lock.coordinate == 1 ? f.fy : f.m);
-  for (const LockedTerm& term : lock.terms) force -= rows[term.row].j[term.side][lock.coordinate] * lambda[term.row];
+  for (const LockedTerm& term : lock.terms) force -= rows[term.row].j[term.side][lock.coordinate] * lambda[term.multiplier];
   return force;
 }
 

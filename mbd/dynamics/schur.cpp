@@ -1,4 +1,5 @@
 #include "mbd/dynamics/schur.h"
+#include "mbd/base/diagnostics.h"
 #include "mbd/base/types.h"
 #include "mbd/system/motion.h"
 #include "mbd/dynamics/dependent_rows.h"
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -41,17 +43,21 @@ double squared_length(const SchurRow& row) {
   return sum;
 }
 
-int count_bodies(const std::vector<SchurRow>& rows, int n) {
+int count_bodies(const std::vector<SchurRow>& rows, int n, const std::vector<SchurPart>& parts) {
   int count = 0;
   for (const SchurRow& row : std::span(rows).first(n)) count = std::max({count, row.body[0] + 1, row.body[1] + 1});
+  for (const SchurPart& part : parts) count = std::max({count, rows[part.row].body[0] + 1, rows[part.row].body[1] + 1});
   return count;
 }
 
-std::vector<Coupling> couplings(const std::vector<SchurRow>& rows, int n, int body_count) {
+std::vector<Coupling> couplings(const std::vector<SchurRow>& rows, int n, const std::vector<SchurPart>& parts, int body_count) {
   std::vector<std::vector<std::pair<int, unsigned char>>> at_body(body_count);
-  for (int i = 0; i < n; ++i)
+  const auto enter = [&](int i) {
     for (unsigned char side = 0; side < 2; ++side)
       if (rows[i].body[side] >= 0) at_body[rows[i].body[side]].push_back({i, side});
+  };
+  for (int i = 0; i < n; ++i) enter(i);
+  for (const SchurPart& part : parts) enter(part.row);
   std::vector<Coupling> result;
   for (const auto& members : at_body)
     for (const auto& [i, side_i] : members)
@@ -59,9 +65,17 @@ std::vector<Coupling> couplings(const std::vector<SchurRow>& rows, int n, int bo
   return result;
 }
 
-std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled) {
+// Of each row given: the row that it is, or is a part of.
+std::vector<int> rows_of(std::size_t count, const std::vector<SchurPart>& parts) {
+  std::vector<int> of(count);
+  std::iota(of.begin(), of.end(), 0);
+  for (const SchurPart& part : parts) of[part.row] = part.of;
+  return of;
+}
+
+std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled, const std::vector<int>& of) {
   std::vector<Eigen::Triplet<double>> entries;
-  for (const Coupling& c : coupled) entries.emplace_back(c.i, c.j, 1.0);
+  for (const Coupling& c : coupled) entries.emplace_back(of[c.i], of[c.j], 1.0);
   for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
   Pattern pattern(n, n);
   pattern.setFromTriplets(entries.begin(), entries.end());
@@ -75,11 +89,13 @@ std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled
 
 } // namespace
 
-void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count) {
+void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts) {
   n_ = count;
+  parts_ = parts;
   length_ = std::max(1.0, n_ / k_usual_rows);
-  body_count_ = count_bodies(rows, n_);
-  const std::vector<Coupling> coupled = couplings(rows, n_, body_count_);
+  body_count_ = count_bodies(rows, n_, parts);
+  const std::vector<Coupling> coupled = couplings(rows, n_, parts, body_count_);
+  const std::vector<int> of = rows_of(rows.size(), parts);
   right_.assign(n_, 0.0);
   correction_.assign(n_, 0.0);
   response_.assign(3 * static_cast<std::size_t>(body_count_), 0.0);
@@ -89,14 +105,17 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count) {
     dense_products_.clear();
     for (int k = 0; k < n_; ++k) position_[k] = k;
     const auto place = [](int row, std::size_t member, int side) {
-      return static_cast<std::uint16_t>((row * sizeof(SchurRow) + member) / sizeof(double) + 3 * side);
+      const std::size_t at = (row * sizeof(SchurRow) + member) / sizeof(double) + 3 * side;
+      if (at > std::numeric_limits<std::uint16_t>::max()) // only parts of rows can stand so far behind
+        throw NumericalFailure("ropes over so many points that move are too much for so few other constraints: give them a 'stiffness'");
+      return static_cast<std::uint16_t>(at);
     };
     dense_turns_.clear();
     dense_constant_.fill(0.0);
     for (const Coupling& c : coupled) {
-      if (c.j > c.i) continue;
+      if (of[c.j] > of[c.i]) continue;
       const SchurRow &row = rows[c.i], &other = rows[c.j];
-      const auto entry = static_cast<std::uint16_t>(c.i * n_ + c.j);
+      const auto entry = static_cast<std::uint16_t>(of[c.i] * n_ + of[c.j]);
       const DenseProduct product{entry, place(c.i, offsetof(SchurRow, wj), c.side_i),
                                  place(c.j, offsetof(SchurRow, j), c.side_j)};
       if (row.is_constant && other.is_constant)
@@ -105,14 +124,18 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count) {
     }
     return;
   }
-  order_ = fill_reducing_order(n_, coupled);
+  order_ = fill_reducing_order(n_, coupled, of);
   for (int k = 0; k < n_; ++k) position_[order_[k]] = k;
 
   // Upper triangle of the permuted matrix, column by column: products that make up A(i, k), i ≤ k.
   std::vector<std::vector<Product>> by_column(n_);
+  std::vector<std::vector<PartProduct>> of_parts(parts.empty() ? 0 : n_);
   for (const Coupling& c : coupled) {
-    const int k = position_[c.i], i = position_[c.j];
-    if (i <= k) by_column[k].push_back({c.j, i, c.side_i, c.side_j});
+    const int k = position_[of[c.i]], i = position_[of[c.j]];
+    if (i > k) continue;
+    const Product product{c.j, i, c.side_i, c.side_j};
+    if (c.i < n_) by_column[k].push_back(product);
+    else of_parts[k].push_back({c.i, product});
   }
   product_begin_.assign(1, 0);
   products_.clear();
@@ -122,6 +145,12 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count) {
     products_.insert(products_.end(), column.begin(), column.end());
     product_begin_.push_back(static_cast<int>(products_.size()));
   }
+  part_begin_.assign(1, 0);
+  part_products_.clear();
+  for (const auto& column : of_parts) {
+    part_products_.insert(part_products_.end(), column.begin(), column.end());
+    part_begin_.push_back(static_cast<int>(part_products_.size()));
+  }
 
   // Elimination tree and the pattern of each row of L (T. A. Davis, Direct Methods for Sparse Linear
   // Systems, §4.1): row k of L is the union of the paths from each i with A(i, k) ≠ 0 up to k.
@@ -130,13 +159,17 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count) {
   pattern_.clear();
   for (int k = 0; k < n_; ++k) {
     mark[k] = k;
-    for (const Product& p : by_column[k])
-      for (int i = p.position; mark[i] != k; i = parent[i]) {
+    const auto enter = [&](int from) {
+      for (int i = from; mark[i] != k; i = parent[i]) {
         if (parent[i] < 0) parent[i] = k;
         mark[i] = k;
         pattern_.push_back(i);
         ++length[i];
       }
+    };
+    for (const Product& p : by_column[k]) enter(p.position);
+    if (!of_parts.empty())
+      for (const PartProduct& p : of_parts[k]) enter(p.product.position);
     std::sort(pattern_.begin() + pattern_begin_.back(), pattern_.end());
     pattern_begin_.push_back(static_cast<int>(pattern_.size()));
   }
@@ -177,18 +210,23 @@ bool SchurSolver::is_in_doubt(const std::vector<SchurRow>& rows) const {
   if (smallest_pivot_ < k_doubtful_pivot) return true;
   for (int r = 0; r < n_; ++r)
     if (is_dependent(r) && squared_length(rows[r]) > 0.0) return true;
-  return false;
+  return std::any_of(parts_.begin(), parts_.end(),
+                     [&](const SchurPart& part) { return is_dependent(part.of) && squared_length(rows[part.row]) > 0.0; });
 }
 
 std::vector<char> SchurSolver::dependent_friction(const std::vector<SchurRow>& rows) const {
   std::vector<WeightedRow> in_masses(n_);
-  for (int r = 0; r < n_; ++r) {
-    VecX& row = in_masses[r].row = VecX::Zero(3 * static_cast<Eigen::Index>(body_count_));
+  const auto add = [&](int of, const SchurRow& part) {
     for (int side = 0; side < 2; ++side)
-      if (rows[r].body[side] >= 0)
-        for (int c = 0; c < 3; ++c) row[3 * rows[r].body[side] + c] += weighted(rows[r], side, c);
-    in_masses[r].length = row.norm();
+      if (part.body[side] >= 0)
+        for (int c = 0; c < 3; ++c) in_masses[of].row[3 * part.body[side] + c] += weighted(part, side, c);
+  };
+  for (int r = 0; r < n_; ++r) {
+    in_masses[r].row = VecX::Zero(3 * static_cast<Eigen::Index>(body_count_));
+    add(r, rows[r]);
   }
+  for (const SchurPart& part : parts_) add(part.of, rows[part.row]);
+  for (WeightedRow& row : in_masses) row.length = row.row.norm();
   return dependent_rows(in_masses, can_stay_out_.data(), was_out_);
 }
 
@@ -320,6 +358,16 @@ template <int N> void SchurSolver::solve_dense(double* x) const {
   substitute<N>(dense_.data(), inverse_d_.data(), n_, x);
 }
 
+// What the further parts of row k add to its entries.
+void SchurSolver::add_part_products(const std::vector<SchurRow>& rows, int k) {
+  for (int p = part_begin_[k]; p < part_begin_[k + 1]; ++p) {
+    const Product& product = part_products_[p].product;
+    const double* a = rows[part_products_[p].part].wj[product.side_k];
+    const double* b = rows[product.row].j[product.side_i];
+    work_[product.position] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+}
+
 void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
   dependent_count_ = 0;
   smallest_pivot_ = 1.0;
@@ -333,6 +381,7 @@ void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
       const double* b = rows[product.row].j[product.side_i];
       y[product.position] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     }
+    if (!part_products_.empty()) [[unlikely]] add_part_products(rows, k);
     const double diagonal = y[k] * (1.0 + shift_);
     double d = diagonal;
     y[k] = 0.0;
@@ -370,6 +419,12 @@ void SchurSolver::solve(const std::vector<SchurRow>& rows, double* x) const {
   refine(rows, right_.data(), x);
 }
 
+template <class F> void SchurSolver::for_parts(const F& f, const std::vector<SchurRow>& rows) const {
+  for (const SchurPart& part : parts_)
+    for (int side = 0; side < 2; ++side)
+      if (const SchurRow& row = rows[part.row]; row.body[side] >= 0) f(part, row, side, &response_[3 * row.body[side]]);
+}
+
 // x += A⁻¹ (right − J (W Jᵀ x)) while that makes the correction smaller.
 void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right, double* x) const {
   double* const correction = correction_.data();
@@ -380,6 +435,9 @@ void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right,
       for (int side = 0; side < 2; ++side)
         if (rows[r].body[side] >= 0)
           for (int c = 0; c < 3; ++c) response_[3 * rows[r].body[side] + c] += rows[r].wj[side][c] * x[r];
+    for_parts([&](const SchurPart& part, const SchurRow& row, int side, double* response) {
+      for (int c = 0; c < 3; ++c) response[c] += row.wj[side][c] * x[part.of];
+    }, rows);
     for (int r = 0; r < n_; ++r) {
       double sum = right[r];
       for (int side = 0; side < 2; ++side)
@@ -387,6 +445,9 @@ void SchurSolver::refine(const std::vector<SchurRow>& rows, const double* right,
           for (int c = 0; c < 3; ++c) sum -= rows[r].j[side][c] * response_[3 * rows[r].body[side] + c];
       correction[r] = sum;
     }
+    for_parts([&](const SchurPart& part, const SchurRow& row, int side, const double* response) {
+      for (int c = 0; c < 3; ++c) correction[part.of] -= row.j[side][c] * response[c];
+    }, rows);
     eliminate(correction);
     double size = 0.0, scale = 0.0;
     for (int r = 0; r < n_; ++r) {

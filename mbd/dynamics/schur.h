@@ -35,10 +35,16 @@ template <class S> struct SchurRowOf {
 };
 using SchurRow = SchurRowOf<double>;
 
+/// Further sides of a row that acts on more than two bodies: rows[row], which is none of its own, is a part of rows[of].
+struct SchurPart {
+  int row = 0, of = 0;
+};
+
 class SchurSolver {
 public:
-  /// Pattern from the bodies of the first `count` rows, which are all that it solves. Body −1 couples nothing.
-  void analyze(const std::vector<SchurRow>& rows, int count);
+  /// Pattern from the bodies of the first `count` rows, which are all that it solves, and of the parts of some of them that
+  /// stand behind. Body −1 couples nothing.
+  void analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts = {});
   void analyze(const std::vector<SchurRow>& rows) { analyze(rows, static_cast<int>(rows.size())); }
   /// Numbers from the rows' j and wj, the diagonal raised by the fraction `shift` (damping). Allocates nothing.
   void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
@@ -77,6 +83,8 @@ private:
   void refine(const std::vector<SchurRow>& rows, const double* right, double* x) const;
   template <int N> void factor_dense(const std::vector<SchurRow>& rows);
   void factor_sparse(const std::vector<SchurRow>& rows);
+  void add_part_products(const std::vector<SchurRow>& rows, int k);
+  template <class F> void for_parts(const F& f, const std::vector<SchurRow>& rows) const;
   template <int N> void solve_dense(double* x) const;
 
   static constexpr int k_max_dense = 8;
@@ -93,6 +101,14 @@ private:
     int position;              ///< its position in elimination order
     unsigned char side_k, side_i;
   };
+  /// The same of a part of the later row, which is not the row itself.
+  struct PartProduct {
+    int part;
+    Product product;
+  };
+  std::vector<SchurPart> parts_;
+  std::vector<PartProduct> part_products_; ///< none without parts
+  std::vector<int> part_begin_;
   int n_ = 0;
   int body_count_ = 0;
   double shift_ = 0.0;

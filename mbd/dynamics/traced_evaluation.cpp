@@ -54,7 +54,7 @@ private:
   }
 
   [[nodiscard]] bool is_plain() const {
-    return !layout_.carriages && system_.inner_count() == 0 && layout_.schur.is_small() && !layout_.is_singular() &&
+    return !layout_.carriages && !layout_.has_long_rows() && system_.inner_count() == 0 && layout_.schur.is_small() && !layout_.is_singular() &&
            !layout_.sharing &&
            std::all_of(layout_.active.begin(), layout_.active.end(),
                        [](const ActiveRow& row) { return row.pull != RowPullKind::other; });

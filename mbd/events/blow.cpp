@@ -24,13 +24,8 @@ constexpr double k_rounded_share = 1e-13;
 // smaller blows; and no nearer than the dead band, which gives each flight a little speed.
 constexpr double k_shortest_flight = 1e-9;
 
-double point_speed(const Motion<double>& m, const Pair<double>& lever) {
-  return std::abs(m.vx - m.omega * lever.y) + std::abs(m.vy + m.omega * lever.x);
-}
-
-double rest_rate(const OneSidedRow& rope, const MeasureValue<double>& m, const std::vector<Motion<double>>& motion) {
-  return k_rest_velocity +
-         k_rest_share * (point_speed(motion[rope.row.a], m.lever_a) + point_speed(motion[rope.row.b], m.lever_b));
+double rest_rate(const OneSidedRow& rope, const std::vector<Motion<double>>& motion) {
+  return k_rest_velocity + k_rest_share * rope.speed(motion.data());
 }
 
 struct Struck {
@@ -52,8 +47,7 @@ Struck ropes_at_length(const System& system, const State& state) {
     if (state.friction[f].phase != FrictionPhase::stick && !is_reached) continue;
     struck.ropes.push_back(static_cast<int>(f));
     struck.rate.push_back(m.rate);
-    struck.rounding.push_back(k_rest_velocity + k_rounded_share * (point_speed(motion[rope->row.a], m.lever_a) +
-                                                                   point_speed(motion[rope->row.b], m.lever_b)));
+    struck.rounding.push_back(k_rest_velocity + k_rounded_share * rope->speed(motion.data()));
   }
   return struck;
 }
@@ -101,7 +95,7 @@ bool set_ropes(const System& system, State& state) {
                                " m farther apart at the start than its length lets them be",
                            {name});
     }
-    const double rest = rest_rate(*rope, m, motion);
+    const double rest = rest_rate(*rope, motion);
     const bool is_at_length = m.value >= rope->length * (1.0 - OneSidedRow::k_at_length);
     friction = {};
     friction.phase = is_at_length && m.rate >= -rest ? FrictionPhase::stick : FrictionPhase::slip;

@@ -1,6 +1,8 @@
 #include "mbd/events/event_handler.h"
 
+#include "mbd/base/shown_text.h"
 #include "mbd/events/blow.h"
+#include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
@@ -299,6 +301,15 @@ void EventHandler::note_changes(const State& before, const State& state, std::ve
   clear_fresh();
 }
 
+// A rope's straight part has vanished: where it would go on from there its points do not say.
+void EventHandler::fail_on_pulley(const State& state, int f) const {
+  const std::string& name = system_.element_names[system_.frictions[f].element];
+  throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s a point of rope '" + name +
+                           "' has run onto the next one: between two of its points nothing is left of it. End the run before, "
+                           "or keep what hangs on it from its pulley by a 'limit'",
+                       {name});
+}
+
 // The friction of the slots that have fired leaves its phase or place; ropes at their length are struck behind it.
 EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fired) {
   Fired found;
@@ -313,6 +324,7 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
       fresh_[slot] = 1;
       continue;
     }
+    if (one_sided_row(*system_.frictions[f].friction) && slot == system_.frictions[f].watch + 1) fail_on_pulley(state, f);
     const int group = sharing && slot != system_.frictions[f].watch + 2 ? sharing->group_of(f) : -1;
     if (group >= 0 && slot == system_.frictions[f].watch + 1) continue; // its rows move apart: decide() finds out how
     if (group >= 0) { // fires in the slots of all its elements

@@ -70,6 +70,7 @@ private:
     bool is_any_tight = false; ///< a rope has reached its length
   };
   Fired fire(State& state, const std::vector<int>& fired);
+  [[noreturn]] void fail_on_pulley(const State& state, int f) const;
   bool strike(State& state, std::vector<Event>& events);
   void slip_rates(const State& state, int f, double* rate);
   void settle(State& state);

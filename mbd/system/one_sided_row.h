@@ -1,4 +1,5 @@
-// A distance that pulls and never pushes: the row of an inextensible rope, which comes and goes.
+// A way that pulls and never pushes: the row of an inextensible rope, which comes and goes. The way is a distance of two
+// points, or a sum of such (RowSpec::next) over pulleys that move.
 //
 // Among the friction elements, for its row holds and lets go as those of friction do; of their phases it has two:
 //   stick   taut: the length is a constraint, the tension T = −λ its multiplier, admissible while T ≥ 0
@@ -10,7 +11,9 @@
 #include "mbd/system/system.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 namespace steplap {
 
@@ -18,12 +21,45 @@ class OneSidedRow final : public FrictionElement {
 public:
   static constexpr double k_at_length = 1e-9; ///< of its length: nearer than this it starts taut
   static constexpr double k_too_long = 1e-6;  ///< of its length: what the digits of a file may be off by
+  static constexpr double k_least_part = 1e-6; ///< of its length: a straight part that is shorter has run onto its pulley
 
-  RowSpec row;               ///< a distance; its memory holds what that may be at most
+  RowSpec row;               ///< a distance, or the first of several; its memory holds what they may be at most
   double length = 0.0;       ///< the same, m
   double dead_band = 0.0;    ///< m: a slack rope is caught beyond it; far above the rounding of places
   double rest_tension = 0.0; ///< N: less than it is rounding
   int blow = 0;              ///< slots of the memory: impulse of the last blow, N s; energy lost in all of them, J
+
+  /// The ways between bodies, one at least.
+  void set_parts(std::vector<RowSpec> parts) {
+    further_.assign(parts.begin() + 1, parts.end());
+    row = parts.front();
+    row.next = further_.empty() ? nullptr : further_.data();
+    for (std::size_t i = 0; i + 1 < further_.size(); ++i) further_[i].next = &further_[i + 1];
+  }
+  [[nodiscard]] bool is_long() const { return row.next != nullptr; }
+  /// Between moving points, one after the other, as of RowSpec::next.
+  template <class F> void for_parts(const F& f) const {
+    for (const RowSpec* part = &row; part; part = part->next) f(*part);
+  }
+  [[nodiscard]] double shortest_part(const Motion<double>* motion) const {
+    double shortest = std::numeric_limits<double>::infinity();
+    for_parts([&](const RowSpec& part) {
+      shortest = std::min(shortest, evaluate_row<false>(part, motion[part.a], motion[part.b]).value);
+    });
+    return shortest;
+  }
+  /// Sum of the speeds of all points that it joins, m/s: rounding of its rate is a share of it.
+  [[nodiscard]] double speed(const Motion<double>* motion) const {
+    const auto of_point = [](const Motion<double>& m, const Pair<double>& lever) {
+      return std::abs(m.vx - m.omega * lever.y) + std::abs(m.vy + m.omega * lever.x);
+    };
+    double sum = 0.0;
+    for_parts([&](const RowSpec& part) {
+      const Motion<double>&a = motion[part.a], &b = motion[part.b];
+      sum += of_point(a, to_ground(a, part.point_a)) + of_point(b, to_ground(b, part.point_b));
+    });
+    return sum;
+  }
 
   [[nodiscard]] MeasureValue<double> measured(const Motion<double>* motion) const { return evaluate_row<false>(row, motion); }
   [[nodiscard]] double left(const Motion<double>* motion) const { return length - measured(motion).value; }
@@ -31,13 +67,15 @@ public:
   [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   [[nodiscard]] bool never_slips() const override { return true; }
-  void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
+  void mark_bodies(std::vector<char>& is_used) const override {
+    for_parts([&is_used](const RowSpec& part) { is_used[part.a] = is_used[part.b] = 1; });
+  }
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
   void slip_wrench(const Evaluation&, const FrictionState&, const double*, double* wrench) const override { wrench[0] = 0.0; }
   [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double*) const override { return 0.0; }
-  void watch_stick(const Evaluation&, const FrictionState&, const double* wrench, double* watch) const override {
+  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
     watch[0] = rest_tension - wrench[0];
-    watch[1] = 1.0;
+    watch[1] = is_long() ? shortest_part(e.motion) - k_least_part * length : 1.0;
   }
   void watch_slip(const Evaluation&, const FrictionState&, const double*, double* watch) const override {
     watch[0] = watch[1] = 1.0;
@@ -56,6 +94,9 @@ public:
     block.wrench[0] = std::min(wanted, 0.0);
     return block;
   }
+
+private:
+  std::vector<RowSpec> further_; ///< parts beyond the first
 };
 
 /// Null where a friction element is none.

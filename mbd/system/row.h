@@ -1,7 +1,8 @@
 // One scalar constraint row: a measure of two bodies that is held at a target.
 //
 //   measure(q) = base + base_rate·t + drive(t)
-// base (and base_rate for a row driven by its acceleration) live in the state's memory: they are set
+// A row over more than two bodies (a rope over a pulley that moves) is a list of such measures, its parts, whose sum is held:
+// everything linear in a row, its gradient and second rate, is a sum over parts of two bodies each. base (and base_rate for a row driven by its acceleration) live in the state's memory: they are set
 // when the row begins to hold (at the start of a run; at the begin of sticking).
 #pragma once
 
@@ -9,6 +10,7 @@
 #include "mbd/model/signal.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -29,6 +31,7 @@ struct RowSpec {
   DriveLevel level = DriveLevel::position;
   const char* quantity = "";     ///< what the row holds, for messages and channels: "x", "angle"
   int element = -1;              ///< index of the element it belongs to
+  const RowSpec* next = nullptr; ///< a further part of the same row; of a part only the bodies and the measure count
 };
 
 /// Rolls are rare: out of line, so that the loops over the other rows stay short.
@@ -59,8 +62,24 @@ STEPLAP_INLINE MeasureValue<S> evaluate_row(const RowSpec& row, const Motion<S>&
       .at<WithBias>(a, b);
 }
 
+/// The sum over the parts of a row: value, rate and bias. No one direction stands for all of them: it is not a number, for
+/// whoever would use it; gradients are those of each part.
+template <bool WithBias>
+[[gnu::noinline]] MeasureValue<double> evaluate_parts(const RowSpec& row, const Motion<double>* motion) {
+  MeasureValue<double> sum;
+  for (const RowSpec* part = &row; part; part = part->next) {
+    const MeasureValue<double> m = evaluate_row<WithBias>(*part, motion[part->a], motion[part->b]);
+    sum.value += m.value;
+    sum.rate += m.rate;
+    sum.bias += m.bias;
+  }
+  sum.direction.x = sum.direction.y = std::numeric_limits<double>::quiet_NaN();
+  return sum;
+}
+
 template <bool WithBias>
 STEPLAP_INLINE MeasureValue<double> evaluate_row(const RowSpec& row, const Motion<double>* motion) {
+  if (row.next) [[unlikely]] return evaluate_parts<WithBias>(row, motion);
   return evaluate_row<WithBias>(row, motion[row.a], motion[row.b]);
 }
 

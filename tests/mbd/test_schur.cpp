@@ -66,6 +66,46 @@ VecX solve(SchurSolver& solver, const Problem& p, VecX right) {
 
 } // namespace
 
+// Some rows act on further bodies, or once more on the same: their parts stand behind all rows, in any order.
+TEST_CASE("constraint equations: rows over more than two bodies against a dense factorisation") {
+  std::mt19937 generator(11);
+  std::uniform_int_distribution<int> pick_parts(0, 3);
+  for (int rows = 1; rows <= 24; ++rows)
+    for (int draw = 0; draw < 6; ++draw) {
+      const int bodies = rows + 2, behind = draw % 2 == 0 ? 0 : 3; // rows of others may stand between
+      Problem p = random_problem(rows, bodies, 0.0, generator);
+      for (int i = 0; i < behind; ++i) p.rows.emplace_back();
+      std::vector<SchurPart> parts;
+      for (int r = rows - 1; r >= 0; --r)
+        for (int count = pick_parts(generator); count > 0; --count) {
+          Problem more = random_problem(1, bodies, 0.0, generator);
+          SchurRow& part = more.rows[0];
+          for (int side = 0; side < 2; ++side)
+            for (int c = 0; c < 3 && part.body[side] >= 0; ++c) {
+              const int k = 3 * part.body[side] + c;
+              p.j(r, k) += part.j[side][c];
+              part.wj[side][c] = p.w(k, k) * part.j[side][c];
+            }
+          parts.push_back({static_cast<int>(p.rows.size()), r});
+          p.rows.push_back(part);
+        }
+      const MatX a = p.matrix();
+      const Eigen::SelfAdjointEigenSolver<MatX> eigen(a, Eigen::EigenvaluesOnly);
+      const double condition = eigen.eigenvalues()[rows - 1] / std::max(1e-300, eigen.eigenvalues()[0]);
+      if (condition > 1e6) continue;
+      CAPTURE(rows);
+      CAPTURE(draw);
+      SchurSolver solver;
+      solver.analyze(p.rows, rows, parts);
+      const VecX wanted = VecX::Random(rows);
+      VecX right = a * wanted;
+      solver.factor(p.rows);
+      solver.solve(p.rows, right.data());
+      CHECK(!solver.is_singular());
+      CHECK((right - wanted).norm() < 2e-15 * rows * condition * wanted.norm()); // as below, and that of the right-hand side
+    }
+}
+
 TEST_CASE("constraint equations: independent rows of all sizes against a dense factorisation") {
   std::mt19937 generator(1);
   int compared = 0;

@@ -18,6 +18,8 @@ MACHINES = {
     "tank_with_lid": (0.9, True, []),
     "forklift": (2.4, True, ["load"]),
     "crane_arm": (4.0, True, ["load"]),
+    "atwood": (0.35, True, ["heavy", "light"]),
+    "rope_pendulum": (1.1, False, ["bob"]),
     "cradle": (0.42, False, ["ball 1", "ball 5"]),
     "ladder": (1.0, True, []),
     "ball_on_incline": (0.9, True, ["ball"]),
