@@ -47,8 +47,9 @@ struct KelvinVoigtContact {
       watch[1] = -raw(value, rate);
     }
   }
+  // What closes presses: where it does, rounding leaves a gap of either sign, and a force of −kδ − cδ̇ of either, if nothing damps.
   [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate) const {
-    if (mode == k_contact_open) return raw(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
+    if (mode == k_contact_open) return rate <= 0.0 || raw(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
     if (mode == k_contact_pressed) return value - offset < 0.0 ? k_contact_released : k_contact_open;
     return slot == 0 ? k_contact_open : k_contact_pressed;
   }

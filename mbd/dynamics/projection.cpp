@@ -214,8 +214,12 @@ void Dynamics::rates_nearby(double t, const double* y, double* dy) {
     rates_at(t, y, dy);
     return;
   }
-  const bool is_placed = reach_positions(t, placed_.data(), place_rounding(y), off);
-  if (is_placed) reach_velocities(t, placed_.data(), off, rate_rounding(y));
+  bool is_placed = reach_positions(t, placed_.data(), place_rounding(y), off);
+  try {
+    if (is_placed) reach_velocities(t, placed_.data(), off, rate_rounding(y));
+  } catch (const ElementFailure&) { // a stage far off: what its rates are worth, the step's error tells
+    is_placed = false;
+  }
   rates_at(t, is_placed ? placed_.data() : y, dy);
 }
 

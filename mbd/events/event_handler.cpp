@@ -3,6 +3,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/events/blow.h"
 #include "mbd/system/element_failure.h"
+#include "mbd/friction/rest_rate.h"
 #include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
@@ -12,16 +13,37 @@ namespace steplap {
 
 namespace {
 
-// Below this relative velocity, m/s, a friction element that becomes loaded counts as at rest: far
-// above the rounding of a projected velocity, far below any motion.
-constexpr double k_rest_velocity = 1e-12;
 constexpr double k_projection_tolerance = 1e-12; // m, rad
-// Of the velocities that make up a relative one: what the instant of an event and projection leave of zero.
-constexpr double k_rest_share = 1e-9;
+// Rows that rest together one way only, as nearly parallel ones do (two feet of a box that is not quite level), take
+// what is left of one's slip from the motion many times over. More than this is no rest.
+constexpr double k_most_taken = 1e3;
 
-// Velocity of a body's point, with what it turns by.
-double point_speed(const Motion<double>& m, const Pair<double>& lever, double couple) {
-  return std::abs(m.vx - m.omega * lever.y) + std::abs(m.vy + m.omega * lever.x) + std::abs(couple * m.omega);
+// What holds of one dimension: fills in f(row, its measure).
+template <class F> void for_each_held(const System& system, const State& state, const std::vector<Motion<double>>& motion, const F& f) {
+  for (std::size_t i = 0; i < system.frictions.size(); ++i) {
+    const FrictionElement& friction = *system.frictions[i].friction;
+    if (state.friction[i].phase != FrictionPhase::stick || friction.dimension() != 1) continue;
+    const RowSpec& row = *friction.rows(state.friction[i]);
+    f(row, evaluate_row<false>(row, motion.data()));
+  }
+}
+
+// Are the velocities that setting to rest has taken those of what was left of slips? Else a slip has not ended: velocities
+// are known no better than that it may have turned, and what turned it goes on.
+bool is_slight(const System& system, const State& before, const State& after) {
+  std::vector<Motion<double>> motion;
+  double left = 0.0, taken = 0.0;
+  place_bodies(before.q, before.v, motion);
+  for_each_held(system, before, motion, [&](const RowSpec& row, const MeasureValue<double>& m) {
+    left = std::max({left, std::abs(m.rate), rest_rate(row, m, motion.data())});
+  });
+  State change = before;
+  for (std::size_t i = 0; i < change.v.size(); ++i) change.v[i] = after.v[i] - before.v[i];
+  place_bodies(change.q, change.v, motion);
+  for_each_held(system, change, motion, [&](const RowSpec& row, const MeasureValue<double>& m) {
+    taken = std::max({taken, point_speed(motion[row.a], m.lever_a, m.couple), point_speed(motion[row.b], m.lever_b, m.couple)});
+  });
+  return taken <= k_most_taken * left;
 }
 
 } // namespace
@@ -154,6 +176,7 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
     if (unit.friction->goes_on_slipping(dynamics_.evaluation(), friction, rate, slot - unit.watch)) return;
     modes_.end_slip(state, f);
     friction.phase = FrictionPhase::stick; // or it reverses: the mode problem tells
+    if (unit.friction->dimension() == 1) modes_.note_rest(f, rate[0]);
   }
 }
 
@@ -167,8 +190,7 @@ void EventHandler::move_on(State& state, int f) {
   const RowSpec& row = *element.rows(friction);
   place_bodies(state.q, state.v, motion_);
   const auto m = evaluate_row<false>(row, motion_.data());
-  const double speed = point_speed(motion_[row.a], m.lever_a, m.couple) + point_speed(motion_[row.b], m.lever_b, m.couple);
-  if (std::abs(m.rate) <= k_rest_velocity + k_rest_share * speed) return;
+  if (std::abs(m.rate) <= rest_rate(row, m, motion_.data())) return;
   friction.phase = FrictionPhase::slip;
   friction.has_slipped = true;
   friction.is_starting = false;
@@ -374,6 +396,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
   before_ = state.friction;
   memory_before_ = state.memory;
   forget_moved_layouts(state);
+  modes_.begin_event();
   modes_.evaluate(state);
   bool is_contact_changed = switch_units(state, fired, events);
   const Fired found = fire(state, fired);
@@ -382,8 +405,15 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
   bool is_settled = false; // in the modes that it has
   // The mode problem is one of elements at rest: what little is left of a slip that has ended goes first.
   if (found.is_any_at_rest) {
+    const State unsettled = state;
+    const double settled = settled_;
     settle(state);
-    is_settled = !modes_.rejoin(state);
+    if (is_slight(system_, unsettled, state)) {
+      is_settled = !modes_.rejoin(state);
+    } else {
+      state = unsettled;
+      settled_ = settled;
+    }
   }
   if (is_contact_changed) {
     modes_.evaluate(state);

@@ -3,6 +3,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/friction/box_problem.h"
+#include "mbd/friction/rest_rate.h"
 #include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
@@ -20,14 +21,13 @@ constexpr double k_settled = 1e-15;
 // many sweeps, once the change is small, is the end too.
 constexpr int k_stalled_sweeps = 20;
 constexpr double k_small_change = 1e-9;
-// Relative velocity, m/s, that counts as rest: far above the rounding of a projected one, far below any motion.
-constexpr double k_rest_velocity = 1e-12;
-
-// The same for an event or drive that brings several to rest at once: what projection and the instant's own rounding
-// leave of their rates.
+// Relative velocity, m/s, that counts as rest for an event or drive that brings several to rest at once: what projection
+// and the instant's own rounding leave of their rates.
 constexpr double k_rest_at_event = 1e-11;
 // Accelerations that a sweep still changes by more than this share have not settled.
 constexpr double k_settled_acceleration = 1e-7;
+// Times what an element had left of its rate as it came to rest: the rates of rows that depend on it are known no better.
+constexpr double k_rest_error = 2.0;
 
 // The dual. Of elements of one dimension an active-set method makes an exact end (box_problem.h). With others among
 // them block Gauss–Seidel: each element's part is solved exactly in turn. It converges for every positive semidefinite
@@ -176,7 +176,19 @@ bool slacken_idle(const System& system, const Dynamics& dynamics, State& state) 
 } // namespace
 
 FrictionModes::FrictionModes(const System& system, Dynamics& dynamics)
-    : system_(system), dynamics_(dynamics), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {}
+    : system_(system), dynamics_(dynamics), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()),
+      rest_error_(system.frictions.size(), 0.0) {}
+
+// Of a group that comes to rest one row is projected to it and another, left out of the equations, takes over what the
+// first had left of its rate.
+double FrictionModes::rest_error(int f) const {
+  const LoadSharing* const sharing = dynamics_.sharing();
+  const int group = sharing ? sharing->group_of(f) : -1;
+  double error = rest_error_[f];
+  if (group >= 0)
+    for (const int other : sharing->groups()[group].frictions) error = std::max(error, rest_error_[other]);
+  return k_rest_error * error;
+}
 
 void FrictionModes::set_anchor(State& state, int f) const {
   const FrictionElement& friction = *system_.frictions[f].friction;
@@ -276,8 +288,11 @@ bool FrictionModes::is_at_rest(const State& state, int f) const {
   const FrictionElement& friction = *system_.frictions[f].friction;
   const RowSpec* rows = friction.rows(state.friction[f]);
   place_bodies(state.q, state.v, motion_);
-  for (int r = 0; r < friction.dimension(); ++r)
-    if (std::abs(evaluate_row<false>(rows[r], motion_.data()).rate) > k_rest_velocity) return false;
+  const double error = rest_error(f);
+  for (int r = 0; r < friction.dimension(); ++r) {
+    const auto m = evaluate_row<false>(rows[r], motion_.data());
+    if (std::abs(m.rate) > rest_rate(rows[r], m, motion_.data()) + error) return false;
+  }
   return true;
 }
 
@@ -333,7 +348,6 @@ bool FrictionModes::catch_reversals(State& state, const std::vector<FrictionStat
 // Rows that hold together only at rest, of which some move: those slide, the way they move.
 void FrictionModes::let_go_moving(State& state) {
   bool is_any = false;
-  std::vector<Motion<double>> motion;
   const LoadSharing* const sharing = dynamics_.sharing();
   if (!sharing) return;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
@@ -341,9 +355,8 @@ void FrictionModes::let_go_moving(State& state) {
                                dynamics_.watch()[system_.frictions[f].watch + 1] < 0.0;
     const FrictionElement& friction = *system_.frictions[f].friction;
     if (!is_discordant || friction.dimension() != 1) continue;
-    if (motion.empty()) place_bodies(state.q, state.v, motion);
-    const double rate = evaluate_row<false>(*friction.rows(state.friction[f]), motion.data()).rate;
-    if (std::abs(rate) <= k_rest_velocity) continue;
+    if (is_at_rest(state, f)) continue;
+    const double rate = evaluate_row<false>(*friction.rows(state.friction[f]), motion_.data()).rate;
     state.friction[f].phase = FrictionPhase::slip;
     state.friction[f].has_slipped = true;
     state.friction[f].is_starting = false;

@@ -9,6 +9,8 @@
 
 #include "mbd/dynamics/dynamics.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace steplap {
@@ -36,6 +38,10 @@ public:
   /// values at `state`.
   void release(State& state, int group) const;
 
+  /// Element f came to rest with `rate` at this event: what the instant and the motion are known to.
+  void note_rest(int f, double rate) { rest_error_[f] = std::abs(rate); }
+  void begin_event() { std::fill(rest_error_.begin(), rest_error_.end(), 0.0); }
+
   /// Elements in phase slip that are at rest, since others which stick hold them, share in bearing the load: they
   /// stick, if the group they make can bear it. True if any does.
   bool rejoin(State& state);
@@ -59,11 +65,13 @@ private:
   void settle_candidates(State& state, std::vector<int> candidates);
   [[nodiscard]] bool release_overloaded(State& state) const;
   [[nodiscard]] bool is_at_rest(const State& state, int f) const;
+  [[nodiscard]] double rest_error(int f) const;
 
   const System& system_;
   Dynamics& dynamics_;
   std::vector<double> y_, dy_;
   bool is_evaluated_ = false;
+  std::vector<double> rest_error_; ///< per element: of its rate, m/s, as it came to rest at the present event
   mutable std::vector<Motion<double>> motion_; ///< of the bodies at an anchor: scratch
 };
 

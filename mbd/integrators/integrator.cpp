@@ -1,6 +1,7 @@
 #include "mbd/integrators/integrator.h"
 
 #include "mbd/math/portable_math.h"
+#include "mbd/system/element_failure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,14 +104,17 @@ void Integrator::finish_step(Dynamics& dynamics) {
 }
 
 bool Integrator::try_finish_step(Dynamics& dynamics) {
+  // Where no step is short enough, the failure itself tells more than the step's length.
+  const bool is_shortest = h_ < k_shortest_try * std::max(std::abs(t0_), 1e-3);
   try {
     finish_step(dynamics);
     return true;
   } catch (const ConstraintFailure&) {
-    // Where no step is short enough, the failure itself tells more than the step's length.
-    if (h_ < k_shortest_try * std::max(std::abs(t0_), 1e-3)) throw;
-    return false;
+    if (is_shortest) throw;
+  } catch (const ElementFailure&) { // rates that cannot be met: the step ends beside a singular position of the joints
+    if (is_shortest) throw;
   }
+  return false;
 }
 
 bool Integrator::is_merged_look_due(double theta) const {

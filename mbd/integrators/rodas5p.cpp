@@ -10,14 +10,19 @@
 // (order 6) over the dense output; what they differ by from the rule with the inner points alone (order 2) tells their
 // error, which counts in the step's. The two points inside also serve as looks inside the step for events:
 // the stages of such a method are no approximations of the motion.
+//
+// A singular position of the joints ahead is crossed as the explicit methods do (singular_crossing.h): the linearisation
+// is worth nothing there. Where forces are too stiff for that the usual steps go on.
 #include "mbd/integrators/explicit_runge_kutta.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/integrators/methods.h"
+#include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/stage_system.h"
 #include "mbd/integrators/tableau_rodas5p.h"
 #include "mbd/math/portable_math.h"
 
 #include <limits>
+#include <memory>
 
 namespace steplap {
 
@@ -25,6 +30,9 @@ namespace {
 
 constexpr double k_time_step = 1.0 / 32.0; // of h, between the points of ∂F/∂t
 constexpr double k_share_of_cube = 0.1;
+// A step with a stage nearer than this (a square, rad²) to a singular position is made by collocation, unless it begins so
+// near that it would have to be tiny: as explicit pairs have it.
+constexpr double k_crossed_pivot = 2e-2, k_closest_start = 4e-4;
 const double k_lobatto[2] = {0.5 - std::sqrt(0.05), 0.5 + std::sqrt(0.05)};
 
 class Rodas5p final : public Integrator {
@@ -41,7 +49,8 @@ public:
 
   void step(Dynamics& dynamics, double t_limit) override;
 
-  void dense(Dynamics&, double theta, double* out) override {
+  void dense(Dynamics& dynamics, double theta, double* out) override {
+    if (is_crossing_) return crossing_->dense(theta, crossing_step(dynamics), out);
     interpolate(theta, out);
     // The integral of the cubic through the powers at Lobatto's points.
     const int e = n_ - 2;
@@ -49,7 +58,10 @@ public:
   }
 
 protected:
-  void on_restart(Dynamics&) override { control_.previous_error = 1e-4; }
+  void on_restart(Dynamics&) override {
+    control_.previous_error = 1e-4;
+    start_pivot_ = highest_pivot_ = 1.0;
+  }
 
 private:
   double* u(int i) { return u_.data() + i * stride_; }
@@ -57,6 +69,10 @@ private:
   void find_time_slope(Dynamics& dynamics);
   void finish_powers(Dynamics& dynamics);
   void interpolate(double theta, double* out);
+  SingularCrossing::Step crossing_step(Dynamics& dynamics);
+  [[nodiscard]] bool comes_near_singularity(const Dynamics& dynamics) const;
+  bool cross_singularity(Dynamics& dynamics, double left);
+  void note_end(const Dynamics& dynamics);
   static double power_integral(double theta, const double* power);
   [[nodiscard]] double error_of_powers() const;
 
@@ -68,6 +84,9 @@ private:
   StageSystem system_of_stages_;
   StepControl control_;
   double next_h_ = 0.0;
+  std::unique_ptr<SingularCrossing> crossing_; ///< made where one is met
+  double start_pivot_ = 1.0, highest_pivot_ = 1.0; ///< of the constraints at t0, and since the last restart; 1: not known
+  bool is_crossing_ = false;                       ///< the step made is one
 };
 
 // ∂F/∂t at (t0, y0) from five points forward (order 4).
@@ -181,6 +200,44 @@ double Rodas5p::error_of_powers() const {
   return worst / std::sqrt(static_cast<double>(n_)); // as part of the norm
 }
 
+SingularCrossing::Step Rodas5p::crossing_step(Dynamics& dynamics) {
+  SingularCrossing::Step step;
+  step.t0 = t0_;
+  step.h = h_;
+  step.y0 = y0_.data();
+  step.rate0 = k0_;
+  step.n = n_;
+  step.norm = [this](const double* error) { return error_norm(error); };
+  step.note_stage = [this, &dynamics](const double* rates, double theta) { note_stage_watches(dynamics, rates, theta); };
+  return step;
+}
+
+// Falling towards a singular position, not merely small all the time?
+bool Rodas5p::comes_near_singularity(const Dynamics& dynamics) const {
+  const double lowest = dynamics.lowest_pivot();
+  return lowest < k_crossed_pivot && lowest < start_pivot_ && lowest < 0.5 * highest_pivot_ && start_pivot_ > k_closest_start;
+}
+
+// After a try that came near a singular position: the same way in one step of another kind, the position in a gap of its
+// stages. True if that step was made.
+bool Rodas5p::cross_singularity(Dynamics& dynamics, double left) {
+  if (!crossing_) crossing_ = std::make_unique<SingularCrossing>(stride_);
+  const double ahead = h_ * crossing_->locate(dynamics, crossing_step(dynamics));
+  const double h = ahead > 0.0 ? crossing_->length_with_gap_at(ahead, left) : 0.0;
+  if (h == 0.0) return false;
+  h_ = h;
+  t1_ = t0_ + h_;
+  begin_watch_nodes();
+  is_crossing_ = crossing_->cross(dynamics, crossing_step(dynamics), y1_.data()) <= 1.0;
+  return is_crossing_ && try_finish_step(dynamics);
+}
+
+void Rodas5p::note_end(const Dynamics& dynamics) {
+  ++steps_;
+  start_pivot_ = dynamics.layout().active.empty() ? 1.0 : dynamics.layout().smallest_pivot();
+  highest_pivot_ = highest_pivot_ == 1.0 ? start_pivot_ : std::max(highest_pivot_, start_pivot_);
+}
+
 void Rodas5p::step(Dynamics& dynamics, double t_limit) {
   const double left = t_limit - t0_;
   const double h_max = limited(left);
@@ -190,11 +247,19 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
   if (is_restarted_) h = restrained_step(dynamics, h);
   linearization_.evaluate(dynamics, t0_, y0_.data());
   system_of_stages_.set(linearization_, dynamics.layout());
+  bool has_tried_crossing = false;
   for (bool is_retry = false;; is_retry = true) {
+    is_crossing_ = false;
     const bool is_last = h >= left * (1.0 - 1e-10);
     h_ = is_last ? left : (2.0 * h > left ? 0.5 * left : h);
     t1_ = is_last ? t_limit : t0_ + h_;
+    dynamics.forget_pivots();
     double error = try_step(dynamics);
+    if (!has_tried_crossing && comes_near_singularity(dynamics)) [[unlikely]] {
+      has_tried_crossing = true;
+      if (cross_singularity(dynamics, left)) return note_end(dynamics);
+      continue;
+    }
     if (error <= 1.0) {
       begin_watch_nodes();
       if (!try_finish_step(dynamics)) error = std::numeric_limits<double>::infinity();
@@ -204,8 +269,7 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
     if (error <= 1.0) {
       const double factor = control_.factor(error, is_retry);
       next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
-      ++steps_;
-      return;
+      return note_end(dynamics);
     }
     ++rejections_;
     h = std::isfinite(error)

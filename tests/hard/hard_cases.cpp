@@ -34,10 +34,6 @@ bool is_first_order(const std::string& integrator) {
   return integrator == "moreau";
 }
 
-bool is_known_to_fail(const HardCase& hard_case, const std::string& integrator) {
-  return hard_case.file == "singular_parallelogram" && integrator == "rodas5p";
-}
-
 double bound_for(const HardCase& hard_case, const std::string& integrator) {
   return is_first_order(integrator) ? hard_case.first_order_bound : hard_case.bound;
 }

@@ -58,9 +58,6 @@ struct Outcome {
   bool is_finite = false; ///< it reached its end, and no sample is NaN or infinite in a coordinate or velocity
 };
 
-/// Cases that a method is known to get wrong: docs/hard_cases.md says how.
-[[nodiscard]] bool is_known_to_fail(const HardCase& hard_case, const std::string& integrator);
-
 /// The methods that are held to the answers.
 [[nodiscard]] std::vector<std::string> integrators();
 [[nodiscard]] bool is_first_order(const std::string& integrator);

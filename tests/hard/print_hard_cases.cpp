@@ -18,7 +18,7 @@ std::string cell(const HardCase& hard_case, const std::string& integrator, const
   char text[64];
   if (!o.failure.empty()) return "stops";
   if (!o.is_finite) return "not a number";
-  const bool is_unfit = bound_for(hard_case, integrator) == 0.0 || is_known_to_fail(hard_case, integrator);
+  const bool is_unfit = bound_for(hard_case, integrator) == 0.0;
   std::snprintf(text, sizeof text, "%.1e, %.3g ms%s", o.error, 1e3 * o.statistics.cpu_seconds, is_unfit ? " †" : "");
   return text;
 }

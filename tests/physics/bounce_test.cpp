@@ -1,5 +1,6 @@
 // A mass dropped on a unilateral contact: every flight and every contact is a closed form, so the events
 // of a published case (1 kg from 1 m, k = 1e5, c = 20) are known to all digits.
+#include "elements/contact_laws.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>
@@ -122,4 +123,17 @@ preload = 9.81
                     {"rk4", 1e-3, 10.0, 1.0});
   CHECK(r.result.events.empty());
   for (const double y : r.series("ball.y")) CHECK(std::abs(y) < 1e-18);
+}
+
+// At the instant at which a gap closes it is zero but for rounding, which has a sign: a contact that took it for tension would
+// let what lands on it through until an event of its own found that out.
+TEST_CASE("a contact that closes presses, damped or not, whatever rounding leaves of its gap") {
+  for (const double damping : {0.0, 20.0})
+    for (const double gap : {-1e-18, 0.0, 1e-18})
+      for (const double rate : {-1.0, -1e-12, 0.0}) {
+        const KelvinVoigtContact law{1e5, damping, 0.0};
+        CHECK(law.next_mode(k_contact_open, 0, gap, rate) == k_contact_pressed);
+      }
+  // Drawn out of the ground faster than its spring follows it does not pull.
+  CHECK(KelvinVoigtContact{1e5, 20.0, 0.0}.next_mode(k_contact_open, 0, -1e-6, 1.0) == k_contact_released);
 }
