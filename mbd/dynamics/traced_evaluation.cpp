@@ -13,6 +13,8 @@ namespace steplap {
 namespace {
 
 constexpr std::size_t k_of_lock = 3, k_of_driven_row = 2;
+// Beyond these the code of an evaluation, some 80 instructions for each, leaves the cache that loops stay in.
+constexpr int k_most_coordinates = 100;
 
 // In the order of Dynamics::rates_at and of the parts that it calls.
 class Tracer {
@@ -54,8 +56,8 @@ private:
   }
 
   [[nodiscard]] bool is_plain() const {
-    return !layout_.carriages && !layout_.has_long_rows() && system_.inner_count() == 0 && layout_.schur.is_small() && !layout_.is_singular() &&
-           !layout_.sharing &&
+    return layout_.coordinate_count <= k_most_coordinates && !layout_.carriages && !layout_.has_long_rows() &&
+           system_.inner_count() == 0 && layout_.schur.is_small() && !layout_.is_singular() && !layout_.sharing &&
            std::all_of(layout_.active.begin(), layout_.active.end(),
                        [](const ActiveRow& row) { return row.pull != RowPullKind::other; });
   }
