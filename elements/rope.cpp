@@ -188,7 +188,8 @@ double lightest_mass(const std::vector<RopePart>& parts, const SystemBuilder& bu
   double mass = std::numeric_limits<double>::infinity();
   for (const Body& body : builder.model().bodies) {
     const int index = builder.body(body.name);
-    const bool is_held = std::any_of(parts.begin(), parts.end(), [index](const RopePart& part) { return part.a == index || part.b == index; });
+    const auto is_at = [index](const RopePart& part) { return part.a == index || part.b == index; };
+    const bool is_held = std::any_of(parts.begin(), parts.end(), is_at);
     if (is_held && !body.fixed) mass = std::min(mass, body.mass);
   }
   return std::isfinite(mass) ? mass : 0.0;

@@ -93,11 +93,20 @@ private:
     double sum = 0.0;
     for (int side = 0; side < 2; ++side)
       for (int c = 0; c < 3; ++c) sum += rows_[r].wj[side][c] * rows_[r].j[side][c];
-    const bool is_long = std::any_of(parts_.begin(), parts_.end(), [r](const SchurPart& part) { return part.of == r; });
-    if (!is_long) return std::sqrt(sum);
-    std::vector<double> one(rows_.size(), 0.0);
-    one[r] = 1.0;
-    return std::sqrt(gram(one)[r]);
+    auto part = std::lower_bound(parts_.begin(), parts_.end(), r, [](const SchurPart& p, int row) { return p.of < row; });
+    if (part == parts_.end() || part->of != r) return std::sqrt(sum);
+    std::map<int, double> wj, j; // of a body that several parts act on their sum counts
+    const auto add = [&](const SchurRow& row) {
+      for (int side = 0; side < 2; ++side)
+        for (int c = 0; c < 3 && row.body[side] >= 0; ++c) {
+          wj[3 * row.body[side] + c] += row.wj[side][c];
+          j[3 * row.body[side] + c] += row.j[side][c];
+        }
+    };
+    for (add(rows_[r]); part != parts_.end() && part->of == r; ++part) add(whole_[part->row]);
+    sum = 0.0;
+    for (const auto& [at, value] : wj) sum += value * j[at];
+    return std::sqrt(sum);
   }
 
   // J W Jᵀ x

@@ -201,7 +201,8 @@ VecX Statics::off() const {
     const RowSpec& row = *rows_[r].spec;
     double& own = off[static_cast<Eigen::Index>(r)];
     own = off_target(row, measured(row, motion_[row.a], motion_[row.b]).value, static_target(row, *state_));
-    for (const RowSpec* part = row.next; part; part = part->next) own += measured(*part, motion_[part->a], motion_[part->b]).value;
+    for (const RowSpec* part = row.next; part; part = part->next)
+      own += measured(*part, motion_[part->a], motion_[part->b]).value;
   }
   return off;
 }

@@ -2,9 +2,10 @@
 //
 // An island is what joints, drives and sticking friction connect. It can become a mechanism (mechanism.h) if pins or
 // distance joints leave it fewer coordinates than its bodies have, and it has few: 16 at most, and as many rows; drives
-// of a body's own coordinate stay with absolute ones, and so do ropes over more than two bodies, taut or slack. A member hangs on what is nearest to the ground, so that paths
-// are short. Where the choice is left to the program an island with a member that is free stays absolute, too: there
-// the momentum of all is a sum of coordinates' rates, which methods keep to rounding.
+// of a body's own coordinate stay with absolute ones, and so do ropes over more than two bodies, taut or slack. A member
+// hangs on what is nearest to the ground, so that paths are short. Where the choice is left to the program an island with a
+// member that is free stays absolute, too: there the momentum of all is a sum of coordinates' rates, which methods keep to
+// rounding.
 #pragma once
 
 #include "mbd/dynamics/layout.h"

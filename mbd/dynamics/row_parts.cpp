@@ -5,6 +5,8 @@
 #include "mbd/dynamics/constraint_solution.h"
 #include "mbd/dynamics/row_pull.h"
 
+#include <algorithm>
+
 namespace steplap {
 
 template <bool WithBias> MeasureValue<double> ConstraintSolution::load_part(std::size_t i) {
@@ -42,9 +44,12 @@ void ConstraintSolution::add_part_responses(const double* lambda, double* a) con
 }
 
 double ConstraintSolution::along_parts(std::size_t r, const double* change) const {
+  const std::vector<SchurPart>& parts = layout_->parts; // in the order of their rows
+  auto part = std::lower_bound(parts.begin(), parts.end(), static_cast<int>(r),
+                               [](const SchurPart& p, int row) { return p.of < row; });
   double sum = 0.0;
-  for (const SchurPart& part : layout_->parts)
-    if (part.of == static_cast<int>(r)) sum -= less_accelerations(layout_->schur_rows[part.row], 0.0, change);
+  for (; part != parts.end() && part->of == static_cast<int>(r); ++part)
+    sum -= less_accelerations(layout_->schur_rows[part->row], 0.0, change);
   return sum;
 }
 

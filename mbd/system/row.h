@@ -1,9 +1,11 @@
 // One scalar constraint row: a measure of two bodies that is held at a target.
 //
 //   measure(q) = base + base_rate·t + drive(t)
+// base (and base_rate for a row driven by its acceleration) live in the state's memory: they are set when the row begins
+// to hold (at the start of a run; at the begin of sticking).
+//
 // A row over more than two bodies (a rope over a pulley that moves) is a list of such measures, its parts, whose sum is held:
-// everything linear in a row, its gradient and second rate, is a sum over parts of two bodies each. base (and base_rate for a row driven by its acceleration) live in the state's memory: they are set
-// when the row begins to hold (at the start of a run; at the begin of sticking).
+// everything linear in a row, its gradient and second rate, is a sum over parts of two bodies each.
 #pragma once
 
 #include "mbd/system/measure.h"
