@@ -1,5 +1,7 @@
 #include "mbd/analysis/descent.h"
 
+#include "mbd/analysis/finite_forces.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -63,6 +65,7 @@ void Descent::linearise() {
   statics_.evaluate(state_);
   statics_.collect_rows(state_);
   landscape_->linearise(state_);
+  if (!landscape_->acceleration().allFinite()) throw no_direction(system_, statics_);
 }
 
 double Descent::step_size(const VecX& step) const {

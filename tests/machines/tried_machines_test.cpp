@@ -146,14 +146,30 @@ TEST_CASE("what runs away is told with what drives it: a pinion on a rack by its
   CHECK(has(answer.err, "nothing holds it against the 0.002354 N m")); // 0.06 · 9.81 · 0.004
 }
 
+// Atwood's machine has no rest: the heavier weight pulls the lighter one up to its pulley, where the rope has no direction.
+TEST_CASE("a weight that is pulled up to its pulley is no rest") {
+  const Written model("[simulation]\nend = 1.0\n" + body("heavy", "mass = 3.0; inertia = 0.1; position = [-0.2, -1.0]") +
+                      body("light", "mass = 2.0; inertia = 0.1; position = [0.2, -1.0]") +
+                      table_text("marker", "", "name = 'left'; body = 'ground'; at = [-0.2, 0.0]") +
+                      table_text("marker", "", "name = 'right'; body = 'ground'; at = [0.2, 0.0]") +
+                      element("rope", "rope", "a = 'heavy'; b = 'light'; over = ['left', 'right']; stiffness = 1e6; damping = 1e3"));
+  for (const char* command : {"equilibrium", "modes"}) {
+    const Answer answer = steplap_does({command, model.file.string()});
+    CHECK(answer.code == 4);
+    CAPTURE(answer.err);
+    CHECK(has(answer.err, "no static equilibrium found"));
+    CHECK(has(answer.err, "the force on 'light' has no direction"));
+  }
+}
+
 // At a corner where two segments end both are as far from a circle as the corner itself: two springs side by side.
 TEST_CASE("check warns of a corner at which two segments press on one circle") {
-  const auto road = [](const std::string& kerb_from, const std::string& path_from) {
+  const auto road = [](const std::string& kerb_from, const std::string& path_from, const std::string& path_to = "[9.0, 0.05]") {
     const std::string more = "; a = 'wheel'; radius = 0.2; stiffness = 2e5";
     return "[simulation]\nend = 0.01\n" + body("wheel", "mass = 20.0; inertia = 0.4; position = [0.0, 0.2]; velocity = [1.0, 0.0]") +
            element("segment_contact", "road", "from = [-8.0, 0.0]; to = [1.0, 0.0]" + more) +
            element("segment_contact", "kerb", "from = " + kerb_from + "; to = [1.0, 0.05]" + more) +
-           element("segment_contact", "path", "from = " + path_from + "; to = [9.0, 0.05]" + more);
+           element("segment_contact", "path", "from = " + path_from + "; to = " + path_to + more);
   };
   const Written doubled(road("[1.0, 0.0]", "[1.0, 0.05]"));
   const Answer warned = steplap_does({"check", doubled.file.string()});
@@ -163,7 +179,7 @@ TEST_CASE("check warns of a corner at which two segments press on one circle") {
   CHECK_FALSE(has(warned.out, "'road' and 'kerb'"));    // in an inner corner a circle touches two sides
   const Written apart(road("[1.0, 0.0]", "[1.05, 0.05]"));
   CHECK_FALSE(has(steplap_does({"check", apart.file.string()}).out, "end at the same point"));
-  const Written straight(road("[0.9, -0.3]", "[1.0, 0.0]")); // and where they lie in line with each other
+  const Written straight(road("[0.9, -0.3]", "[1.0, 0.0]", "[9.0, 0.0]")); // and where they lie in line with each other
   CHECK(has(steplap_does({"check", straight.file.string()}).out, "'road' and 'path'"));
 }
 
