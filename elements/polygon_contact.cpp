@@ -2,6 +2,7 @@
 
 #include "elements/convex_outline.h"
 #include "elements/coulomb_friction.h"
+#include "mbd/system/approximate_place.h"
 #include "mbd/system/law_group.h"
 #include "mbd/system/system.h"
 
@@ -172,7 +173,7 @@ struct HoldingPlace {
   bool is_edge = false;
 };
 
-class PolygonFriction final : public CoulombFriction {
+class PolygonFriction final : public CoulombFriction, public ApproximatePlace {
 public:
   std::shared_ptr<const Outlines> outlines;
   int a = k_ground, b = k_ground;
@@ -180,6 +181,7 @@ public:
   std::vector<int> first;           ///< of each face
 
   static constexpr double k_dead_band = 1e-13; // m, as of feet
+  static constexpr double k_same_face = 0.1;   // rad: two faces that lie on each other may be turned by less
 
   void make_places(int memory) {
     const int of_a = outlines->a.edge_count(), of_b = outlines->b.edge_count();
@@ -222,6 +224,26 @@ public:
       if (h.of[before] < h.of[after]) corner = before;
     }
     state.foot = static_cast<std::uint32_t>(first[s.face] + 2 * corner + (is_edge ? 1 : 0));
+  }
+  // With w(x) the velocity of a against b: along a face both places lie within twice the depth of it, so that w along it
+  // differs by ω times that on either side, and a face of the other body is turned by φ, through which some of w across it is
+  // seen as along it.
+  [[nodiscard]] double rate_error(const Evaluation& e, const FrictionState& from, const FrictionState& to) const override {
+    const Motion<double>&ma = e.motion[a], &mb = e.motion[b];
+    const Placed<double, Motion<double>> placed(*outlines, ma, mb);
+    const auto normal_of = [&](const FrictionState& state) {
+      const int face = places[state.foot].face, of_a = placed.a.edge_count;
+      return face < of_a ? placed.a.normal[face] : placed.b.normal[face - of_a];
+    };
+    const double turned = std::abs(cross(normal_of(from), normal_of(to)));
+    const double depth = std::max(0.0, -separation_of(placed.a, placed.b).gap), spin = std::abs(ma.omega - mb.omega);
+    double error = 4.0 * depth * spin;
+    if (turned > k_same_face) return error;
+    const RowSpec& row = feet[to.foot];
+    const Pair<double> lever_a = row.a == a ? to_ground(ma, row.point_a) : Pair<double>{mb.x - ma.x, mb.y - ma.y} + to_ground(mb, row.point_a);
+    const Pair<double> lever_b = lever_a + Pair<double>{ma.x - mb.x, ma.y - mb.y};
+    const Pair<double> w = Pair<double>{ma.vx - mb.vx, ma.vy - mb.vy} + ma.omega * perp(lever_a) - mb.omega * perp(lever_b);
+    return error + turned * (std::abs(w.x) + std::abs(w.y));
   }
 
 private:
@@ -270,6 +292,15 @@ private:
   }
 };
 
+// The body's own frame: a marker that says no more than the body is at its centre of gravity, its outline is not.
+CompiledMarker frame_of_body(const std::string& body, const SystemBuilder& builder) {
+  CompiledMarker frame = builder.marker(body);
+  const std::vector<Body>& bodies = builder.model().bodies;
+  const auto found = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == body; });
+  if (found != bodies.end()) frame.point -= rotated(found->cg, frame.angle);
+  return frame;
+}
+
 // Its own corners, or those of its body.
 std::optional<ConvexOutline> outline_of(const std::vector<Vec2>& given, const std::string& marker, const char* field,
                                         SystemBuilder& builder) {
@@ -280,7 +311,7 @@ std::optional<ConvexOutline> outline_of(const std::vector<Vec2>& given, const st
       builder.error("'" + body + "' has no outline: give it one, or '" + field + "'");
       return std::nullopt;
     }
-    return convex_outline(points, builder.marker(given.empty() ? body : marker));
+    return convex_outline(points, given.empty() ? frame_of_body(body, builder) : builder.marker(marker));
   } catch (const OutlineError& error) {
     builder.error((given.empty() ? "the outline of '" + body + "' " : "'" + std::string(field) + "' ") + error.what());
     return std::nullopt;

@@ -1,5 +1,7 @@
 #include "mbd/analysis/descent.h"
 
+#include "mbd/analysis/finite_forces.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -63,6 +65,7 @@ void Descent::linearise() {
   statics_.evaluate(state_);
   statics_.collect_rows(state_);
   landscape_->linearise(state_);
+  if (!landscape_->acceleration().allFinite()) throw no_direction(system_, statics_);
 }
 
 double Descent::step_size(const VecX& step) const {
@@ -290,7 +293,12 @@ bool Descent::has_run_away() {
   }
   if (!is_far) return false;
   runaway_ = largest_part(moved);
-  driving_force_ = std::abs(statics_.force()[3 * runaway_.body - 3 + runaway_.coordinate]);
+  const int driven = 3 * runaway_.body - 3 + runaway_.coordinate;
+  driving_force_ = std::abs(statics_.force()[driven]);
+  // What moves along with it drives it, too (a pinion that its own weight turns on its rack): by the work for its share of the way.
+  double work = 0.0;
+  for (int k = 0; k < n_; ++k) work += statics_.force()[k] * (state_.q[k + 3] - start_[k + 3]);
+  if (const double way = std::abs(state_.q[driven + 3] - start_[driven + 3]); work > 0.0 && std::isfinite(work / way)) driving_force_ = work / way;
   return true;
 }
 

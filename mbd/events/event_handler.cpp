@@ -2,8 +2,9 @@
 
 #include "mbd/base/shown_text.h"
 #include "mbd/events/blow.h"
-#include "mbd/system/element_failure.h"
 #include "mbd/friction/rest_rate.h"
+#include "mbd/system/approximate_place.h"
+#include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
@@ -162,9 +163,10 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
     friction.sign = 0;
   } else if (slot == unit.watch + 2) {
     if (friction.phase == FrictionPhase::slip) modes_.end_slip(state, f);
+    const FrictionState from = friction;
     unit.friction->change_place(dynamics_.evaluation(), friction);
     modes_.set_anchor(state, f);
-    if (unit.friction->dimension() == 1) move_on(state, f);
+    if (unit.friction->dimension() == 1) move_on(state, f, from);
   } else if (friction.phase == FrictionPhase::stick) {
     friction.phase = FrictionPhase::slip;
     friction.has_slipped = friction.is_starting = true;
@@ -181,8 +183,9 @@ void EventHandler::fire_friction(State& state, int f, int slot) {
 }
 
 // Element f acts at another place, on another point of its bodies: where that moves friction slides as it does. What held at
-// the old place cannot hold there without a blow, and what slid may slide the other way.
-void EventHandler::move_on(State& state, int f) {
+// the old place cannot hold there without a blow, and what slid may slide the other way. Of a place that only stands for a
+// face, what it is wrong by is no motion.
+void EventHandler::move_on(State& state, int f, const FrictionState& from) {
   FrictionState& friction = state.friction[f];
   const FrictionElement& element = *system_.frictions[f].friction;
   const bool is_acting = friction.phase == FrictionPhase::stick || friction.phase == FrictionPhase::slip;
@@ -190,7 +193,9 @@ void EventHandler::move_on(State& state, int f) {
   const RowSpec& row = *element.rows(friction);
   place_bodies(state.q, state.v, motion_);
   const auto m = evaluate_row<false>(row, motion_.data());
-  if (std::abs(m.rate) <= rest_rate(row, m, motion_.data())) return;
+  double at_rest = rest_rate(row, m, motion_.data());
+  if (from.phase == FrictionPhase::stick) at_rest += rate_error(element, dynamics_.evaluation(), from, friction);
+  if (std::abs(m.rate) <= at_rest) return;
   friction.phase = FrictionPhase::slip;
   friction.has_slipped = true;
   friction.is_starting = false;

@@ -56,7 +56,7 @@ private:
   void meet_constraints(State& state);
   bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
   void fire_friction(State& state, int f, int slot);
-  void move_on(State& state, int f);
+  void move_on(State& state, int f, const FrictionState& from);
   bool update_loading(State& state);
   [[nodiscard]] bool is_same_direction(std::size_t f, const FrictionState& a, const FrictionState& b) const;
   [[nodiscard]] bool has_capacity(const State& state, std::size_t f) const;

@@ -31,6 +31,7 @@ constexpr double k_tolerated = 1e-6;
 constexpr double k_negligible = 1e-6;
 constexpr double k_roundings_of_time = 64.0;
 constexpr double k_whole = 1e-6; // of a part: what is left beyond is added to it
+constexpr double k_known = 1e-12; // m, rad: to which places are known, as constraints are met
 
 } // namespace
 
@@ -139,9 +140,7 @@ TimeStepping::Trouble TimeStepping::settle_forces(Dynamics& dynamics, double t1,
     move(dynamics, t1, tolerance);
     const double last = change;
     change = 0.0;
-    double size = 0.0;
-    for (const FrictionPart& part : parts_)
-      size = std::max(size, size_of(part, wrench_.data()));
+    const double size = largest_size(dynamics.evaluation());
     for (std::size_t p = 0; p < parts_.size(); ++p)
       if (const double c = change_of(parts_[p], &before_[parts_[p].first], size); !(c <= change)) {
         change = c;
@@ -170,14 +169,15 @@ int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
 
 // A contact that is open at both ends, but which went on at the rate of either end would have closed before the other: a
 // fast body may be on its other side (a plate thinner than what a step goes). −1: none. Rates that turn round from approach
-// to parting without any force of the contact need something that turns them; a part half as long then tells.
+// to parting without any force of the contact need something that turns them; a part half as long then tells. One that would have
+// gone in by no more than places are known lies there.
 int TimeStepping::passed_unit(const Dynamics& dynamics, const State& state, double h) const {
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
     if (state.mode[u] != 0 || start_.mode[u] != 0) continue;
     for (int slot = unit.watch; slot < unit.watch + unit.watch_count; ++slot)
-      if (start_watch_[slot] + h * start_watch_rate_[slot] < 0.0 && // not so where a rate is not known
-          dynamics.watch()[slot] - h * dynamics.watch_rate()[slot] < 0.0)
+      if (start_watch_[slot] + h * start_watch_rate_[slot] < -k_known && // not so where a rate is not known
+          dynamics.watch()[slot] - h * dynamics.watch_rate()[slot] < -k_known)
         return static_cast<int>(u);
   }
   return -1;

@@ -97,6 +97,7 @@ private:
   void find_slope(Dynamics& dynamics, double t1, const FrictionPart& by);
   [[nodiscard]] double change_of(const FrictionPart& part, const double* before, double size) const;
   [[nodiscard]] double size_of(const FrictionPart& part, const double* wrench) const;
+  [[nodiscard]] double largest_size(const Evaluation& e) const;
   void hold_together();
   void stretch(const Evaluation& e);
   [[nodiscard]] bool bears(const Evaluation& e, double share) const;

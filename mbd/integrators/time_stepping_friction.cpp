@@ -337,6 +337,19 @@ double TimeStepping::size_of(const FrictionPart& part, const double* wrench) con
   return size;
 }
 
+// The largest wrench, or what an element of one dimension bears, if that is more: a wheel that rolls on by itself takes a
+// friction force of zero, and what rounding makes of that is no change.
+double TimeStepping::largest_size(const Evaluation& e) const {
+  double size = 0.0;
+  for (const FrictionPart& part : parts_) {
+    size = std::max(size, size_of(part, wrench_.data()));
+    if (part.dimension != 1) continue;
+    const double bound = bound_of(e, part, false), c = compliance_[static_cast<std::size_t>(part.first) * rows_ + part.first];
+    size = std::max(size, bound * std::sqrt(std::max(0.0, c)));
+  }
+  return size;
+}
+
 // Of an element's wrench against that before (of its dimension), relative to its own size or a
 // small share of the largest.
 double TimeStepping::change_of(const FrictionPart& part, const double* before, double size) const {
@@ -355,9 +368,7 @@ double TimeStepping::change_of(const FrictionPart& part, const double* before, d
 double TimeStepping::sweep(Dynamics& dynamics, int& worst) {
   const Evaluation& e = dynamics.evaluation();
   last_ = wrench_;
-  double largest = 0.0, size = 0.0;
-  for (const FrictionPart& part : parts_)
-    size = std::max(size, size_of(part, wrench_.data()));
+  double largest = 0.0, size = largest_size(e);
   for (FrictionPart& part : parts_) {
     FrictionBlock block;
     block.is_inside = false;

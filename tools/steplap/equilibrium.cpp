@@ -1,5 +1,6 @@
 #include "tools/steplap/equilibrium.h"
 
+#include "mbd/analysis/statics.h"
 #include "mbd/base/shown_text.h"
 #include "tools/steplap/edges.h"
 #include "tools/steplap/log.h"
@@ -44,8 +45,35 @@ void print_poses(std::ostream& out, const System& system, const State& start, co
   out << table;
 }
 
-void print_reactions(std::ostream& out, const System& system, State found) {
+// While this lives drives stay where they are at `state`, whether they move or accelerate now: what they take is what
+// holding takes.
+class HeldDrives {
+public:
+  HeldDrives(System& system, State& state) : system_(system) {
+    static const Signal k_still;
+    for (RowSpec& row : system.rows) {
+      drives_.push_back(row.drive);
+      if (!row.drive) continue;
+      const double now = static_target(row, state);
+      row.drive = &k_still;
+      state.memory[row.memory + 1] = 0.0;
+      state.memory[row.memory] += now - static_target(row, state);
+    }
+  }
+  HeldDrives(const HeldDrives&) = delete;
+  HeldDrives& operator=(const HeldDrives&) = delete;
+  ~HeldDrives() {
+    for (std::size_t r = 0; r < drives_.size(); ++r) system_.rows[r].drive = drives_[r];
+  }
+
+private:
+  System& system_;
+  std::vector<const Signal*> drives_;
+};
+
+void print_reactions(std::ostream& out, System& system, State found) {
   std::fill(found.v.begin(), found.v.end(), 0.0);
+  const HeldDrives held(system, found);
   Dynamics dynamics(system);
   dynamics.set_state(found);
   std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());

@@ -5,6 +5,7 @@
 #include "mbd/model/validate.h"
 #include "tools/steplap/edges.h"
 #include "tools/steplap/far_joints.h"
+#include "tools/steplap/seams.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/progress.h"
@@ -110,9 +111,11 @@ void estimate_error(const SimulateOptions& options, FinishedRun& finished) {
   why_not = "would take long; ask with --estimate-error";
 }
 
-// Poses given to the digits of a file need no mention, nor do velocities that a drive or a joint sets.
+// What is hardly meant, and how bodies were moved: poses given to the digits of a file need no mention, nor do velocities that
+// a drive or a joint sets.
 void note_assembly(const LoadedModel& loaded) {
   constexpr double k_noticeable = 1e-5; // m, rad
+  for (const std::string& text : doubled_corners(loaded)) log_warning("'" + loaded.path + "': " + text);
   const System& system = *loaded.system;
   auto moves = assembly_moves(system.initial_state(), loaded.assembled, k_noticeable);
   std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });

@@ -1,6 +1,7 @@
 #include "tools/steplap/warnings.h"
 
 #include "tools/steplap/far_joints.h"
+#include "tools/steplap/seams.h"
 
 #include "mbd/analysis/assembly.h"
 #include "mbd/events/event_handler.h"
@@ -92,10 +93,11 @@ void warn_of_shared_reactions(const System& system, std::vector<std::string>& wa
 
 // Does a load or a drive that changes with time act at the start, or begin to?
 bool is_driven_at_start(const Model& model, const Names& used) {
+  SignalNetwork network(model); // some are made of others
   return std::any_of(model.signals.begin(), model.signals.end(), [&](const SignalEntry& entry) {
     if (used.count(entry.definition->name) == 0) return false;
-    const Signal signal = entry.kind->build(*entry.definition);
-    return !signal.is_constant() && (signal.value(0.0) != 0.0 || signal.drive(0.0, DriveLevel::position).rate != 0.0);
+    const Signal* const signal = network.build(entry.definition->name);
+    return signal && !signal->is_constant() && (signal->value(0.0) != 0.0 || signal->drive(0.0, DriveLevel::position).rate != 0.0);
   });
 }
 
@@ -155,6 +157,7 @@ std::vector<std::string> warnings_about(const LoadedModel& loaded) {
     warnings.push_back("'step' of [simulation] is not used: '" + s.integrator +
                        "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"");
   for (std::string& message : far_joints(loaded)) warnings.push_back(std::move(message));
+  for (std::string& message : doubled_corners(loaded)) warnings.push_back(std::move(message));
   for (std::string& message : implausible_cores(model)) warnings.push_back(std::move(message));
   warn_of_shared_reactions(*loaded.system, warnings);
   const Trajectory written(*loaded.system, model.output.channels);
