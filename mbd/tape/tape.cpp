@@ -14,15 +14,31 @@ namespace {
 
 using enum TapeOperation;
 
+double result_of(TapeOperation o, double a, double b) {
+  switch (o) {
+  case add: return a + b;
+  case subtract: return a - b;
+  case multiply: return a * b;
+  case divide: return a / b;
+  case negate: return -a;
+  case square_root: return std::sqrt(a);
+  case absolute: return std::abs(a);
+  case minimum: return a < b ? a : b;
+  case maximum: return a < b ? b : a;
+  case sine: return portable::sin_cos(a).sin;
+  default: return portable::sin_cos(a).cos;
+  }
+}
+
 // A tape that takes what there is not, or not yet, is a fault of what wrote it: better said than computed with.
 class TapeCheck {
 public:
-  explicit TapeCheck(const Tape& tape) : tape_(tape) {}
+  TapeCheck(const Tape& tape, bool needs_constants) : tape_(tape), has_constants_(needs_constants || !tape.constants.empty()) {}
 
   void step(std::size_t i) const {
     const TapeStep& s = tape_.steps[i];
     if (s.operation == input) return need(s.a >= 0 && s.a < tape_.input_count, i);
-    if (s.operation == constant) return need(s.a >= 0 && (tape_.constants.empty() || static_cast<std::size_t>(s.a) < tape_.constants.size()), i);
+    if (s.operation == constant) return need(s.a >= 0 && (!has_constants_ || static_cast<std::size_t>(s.a) < tape_.constants.size()), i);
     need(is_value_before(s.a, i) && (!takes_two(s.operation) || is_value_before(s.b, i)), i);
   }
 
@@ -39,6 +55,7 @@ private:
   }
 
   const Tape& tape_;
+  const bool has_constants_;
 };
 
 /// A value of the simplified tape, or that with its sign turned, for which no step need be made where what takes it can turn
@@ -52,12 +69,12 @@ struct Signed {
 /// open addresses.
 class Simplifier {
 public:
-  explicit Simplifier(const Tape& tape) : tape_(tape), table_(std::bit_ceil(4 * tape.steps.size() + 4), -1), value_(tape.steps.size()) {
+  Simplifier(const Tape& tape, bool looks_at_constants) : tape_(tape), looks_at_constants_(looks_at_constants), table_(std::bit_ceil(4 * tape.steps.size() + 4), -1), value_(tape.steps.size()) {
     made_.reserve(tape.steps.size());
   }
 
   Tape simplified() {
-    const TapeCheck check(tape_);
+    const TapeCheck check(tape_, looks_at_constants_);
     for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
       check.step(i);
       value_[i] = value_of(tape_.steps[i]);
@@ -67,7 +84,9 @@ public:
       check.output(k);
       outputs[k] = plain(at(tape_.outputs[k]));
     }
-    return with_what_counts(std::move(outputs));
+    Tape result = with_what_counts(std::move(outputs));
+    if (looks_at_constants_) result.constants = std::move(constants_);
+    return result;
   }
 
 private:
@@ -89,10 +108,38 @@ private:
     }
   }
 
-  std::int32_t plain(Signed x) { return x.is_negative ? make(negate, x.step) : x.step; }
+  std::int32_t plain(Signed x) {
+    if (!x.is_negative) return x.step;
+    return is_known(x) ? constant_step(known(x)) : make(negate, x.step);
+  }
+
+  bool is_known(Signed x) const { return looks_at_constants_ && made_[static_cast<std::size_t>(x.step)].operation == constant; }
+  double known(Signed x) const {
+    const double value = constants_[static_cast<std::size_t>(made_[static_cast<std::size_t>(x.step)].a)];
+    return x.is_negative ? -value : value;
+  }
+  bool is_known_as(Signed x, double value) const { return is_known(x) && std::bit_cast<std::uint64_t>(known(x)) == std::bit_cast<std::uint64_t>(value); }
+
+  // Constants of the same bits are one.
+  std::int32_t constant_step(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    if (constant_table_.empty()) constant_table_.assign(table_.size(), -1);
+    const std::size_t mask = constant_table_.size() - 1;
+    for (std::size_t i = (bits ^ bits >> 29) * 0x9e3779b97f4a7c15u >> 32 & mask;; i = (i + 1) & mask) {
+      std::int32_t& step = constant_table_[i];
+      if (step < 0) {
+        step = make(constant, static_cast<std::int32_t>(constants_.size()));
+        constants_.push_back(value);
+        return step;
+      }
+      if (std::bit_cast<std::uint64_t>(known({step})) == bits) return step;
+    }
+  }
 
   // Both terms negative: −a − b is not −(a + b), whose zero has the other sign.
   Signed sum(Signed a, Signed b) {
+    if (is_known_as(b, -0.0)) return a; // adding +0 makes +0 of −0
+    if (is_known_as(a, -0.0)) return b;
     if (b.is_negative) return {make(subtract, plain(a), b.step)};
     if (a.is_negative) return {make(subtract, b.step, a.step)};
     return {make(add, a.step, b.step)};
@@ -100,13 +147,19 @@ private:
 
   Signed value_of(const TapeStep& s) {
     const TapeOperation o = s.operation;
+    if (o == constant && looks_at_constants_) return {constant_step(tape_.constants[static_cast<std::size_t>(s.a)])};
     if (is_given(o)) return {make(o, s.a)};
-    const Signed a = at(s.a), b = takes_two(o) ? at(s.b) : Signed{};
+    const Signed a = at(s.a), b = takes_two(o) ? at(s.b) : a;
+    if (is_known(a) && is_known(b)) return from_constants(o, a, b);
     switch (o) {
     case add: return sum(a, b);
     case subtract: return sum(a, {b.step, !b.is_negative});
     case multiply:
-    case divide: return {make(o, a.step, b.step), a.is_negative != b.is_negative};
+      if (is_known_as(a, 1.0) || is_known_as(a, -1.0)) return {b.step, b.is_negative != (known(a) < 0.0)};
+      [[fallthrough]];
+    case divide:
+      if (is_known_as(b, 1.0) || is_known_as(b, -1.0)) return {a.step, a.is_negative != (known(b) < 0.0)};
+      return {make(o, a.step, b.step), a.is_negative != b.is_negative};
     case negate: return {a.step, !a.is_negative};
     case absolute: return made_[static_cast<std::size_t>(a.step)].operation == absolute ? Signed{a.step} : Signed{make(o, a.step)};
     case if_less:
@@ -117,6 +170,14 @@ private:
     case maximum: return {make(o, plain(a), plain(b))};
     default: return {make(o, plain(a))};
     }
+  }
+
+  // Of a condition that does not hold something has to be left.
+  Signed from_constants(TapeOperation o, Signed a, Signed b) {
+    if (!is_condition(o)) return {constant_step(result_of(o, known(a), known(b)))};
+    if ((known(a) < known(b)) == (o == if_less)) return {};
+    const std::int32_t first = plain(a), second = plain(b);
+    return {make(o, first, second)};
   }
 
   // Steps that an output or a condition hangs on, numbered anew.
@@ -145,6 +206,9 @@ private:
   }
 
   const Tape& tape_;
+  const bool looks_at_constants_;
+  std::vector<double> constants_;            ///< those that differ, where they are looked at
+  std::vector<std::int32_t> constant_table_; ///< their steps by their bits
   std::vector<std::int32_t> table_; ///< steps made, −1: none; a power of two
   std::vector<TapeStep> made_;
   std::vector<Signed> value_; ///< of the steps of the tape
@@ -154,27 +218,17 @@ private:
 double value_of(const TapeStep& s, const double* inputs, const double* constants, const std::vector<double>& values) {
   if (s.operation == input) return inputs[s.a];
   if (s.operation == constant) return constants[s.a];
-  const double a = values[static_cast<std::size_t>(s.a)];
-  const double b = takes_two(s.operation) ? values[static_cast<std::size_t>(s.b)] : 0.0;
-  switch (s.operation) {
-  case add: return a + b;
-  case subtract: return a - b;
-  case multiply: return a * b;
-  case divide: return a / b;
-  case negate: return -a;
-  case square_root: return std::sqrt(a);
-  case absolute: return std::abs(a);
-  case minimum: return a < b ? a : b;
-  case maximum: return a < b ? b : a;
-  case sine: return portable::sin_cos(a).sin;
-  default: return portable::sin_cos(a).cos;
-  }
+  return result_of(s.operation, values[static_cast<std::size_t>(s.a)], takes_two(s.operation) ? values[static_cast<std::size_t>(s.b)] : 0.0);
 }
 
 } // namespace
 
 Tape simplified(const Tape& tape) {
-  return Simplifier(tape).simplified();
+  return Simplifier(tape, false).simplified();
+}
+
+Tape specialized(const Tape& tape) {
+  return Simplifier(tape, true).simplified();
 }
 
 bool replay(const Tape& tape, const double* inputs, const double* constants, double* outputs) {
