@@ -4,8 +4,12 @@
 #include "mbd/math/portable_math.h"
 #include "mbd/system/system.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace steplap {
 
@@ -32,8 +36,37 @@ struct Sheet {
 Sheet yoke_of(const StepLapInterface& e) { return {"yoke", &e.yoke, &e.yoke_holes, &e.yoke_cutouts}; }
 Sheet limb_of(const StepLapInterface& e) { return {"limb", &e.limb, &e.limb_holes, &e.limb_cutouts}; }
 
-Outline make_sheet(const StepLapInterface& e, const Sheet& sheet, const std::string& body,
-                   const SystemBuilder& builder) {
+bool are_same_bits(const Ring& a, const Ring& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec2)) == 0);
+}
+
+bool are_same_bits(const Polygon& a, const Polygon& b) {
+  return are_same_bits(a.outer, b.outer) && std::equal(a.holes.begin(), a.holes.end(), b.holes.begin(), b.holes.end(),
+                                                       [](const Ring& x, const Ring& y) { return are_same_bits(x, y); });
+}
+
+// make_outline(polygon), which takes a quarter of what a system takes to compile: an interface is compiled once to be
+// checked and once with its joint, and a scene with other values has the same sheets mostly. Good until the next call.
+const Outline& outline_of(Polygon polygon) {
+  struct Made {
+    Polygon polygon;
+    Outline outline;
+  };
+  constexpr std::size_t k_kept = 64;
+  thread_local std::vector<Made> made;
+  thread_local std::size_t next = 0;
+  const auto known = std::find_if(made.begin(), made.end(), [&](const Made& m) { return are_same_bits(m.polygon, polygon); });
+  if (known != made.end()) return known->outline;
+  Outline outline = make_outline(polygon);
+  if (made.size() < k_kept) return made.emplace_back(Made{std::move(polygon), std::move(outline)}).outline;
+  Made& place = made[next];
+  next = (next + 1) % k_kept;
+  place = {std::move(polygon), std::move(outline)};
+  return place.outline;
+}
+
+const Outline& make_sheet(const StepLapInterface& e, const Sheet& sheet, const std::string& body,
+                          const SystemBuilder& builder) {
   const bool is_in_body_frame = e.frame == "body";
   const auto ring_in_body = [&](const std::vector<Vec2>& points) {
     Ring ring;
@@ -46,7 +79,7 @@ Outline make_sheet(const StepLapInterface& e, const Sheet& sheet, const std::str
     polygon.holes.push_back(
         round_hole(in_body(p, is_in_body_frame, body, builder), e.hole_diameter, e.hole_sides));
   for (const std::vector<Vec2>& cutout : *sheet.cutouts) polygon.holes.push_back(ring_in_body(cutout));
-  return make_outline(std::move(polygon));
+  return outline_of(std::move(polygon));
 }
 
 /// Throws PolygonError, which names rings by the fields of the model file and places by its coordinates.

@@ -76,6 +76,23 @@ TEST_CASE("margin and required pressure follow the present pressure, and what re
   }
 }
 
+// Outlines that have been made are kept for the next scene: for one with the same corners, and no other.
+TEST_CASE("scenes compiled one after the other have the sheets of their own corners and cutouts") {
+  const auto margin = [](double half_width, const std::string& more) {
+    const std::vector<Vec2> limb = rectangle(-half_width, -0.05, half_width, 0.05);
+    return run_text(header("end = 1e-3\nintegrator = \"dop853\"\ntolerance = 1e-6", 1e-3) + body("limb", 10.0, 1.0, Vec2::Zero()) + joint("limb", "ground") +
+                    interface(k_yoke, limb, 1e5, 0.2, more) + pull(100.0)).last("joint.margin");
+  };
+  const std::string cutout = "limb_cutouts = [" + points(rectangle(-0.01, -0.01, 0.01, 0.01)) + "]";
+  // Area times pressure and friction, over the load; an integral over polygons, to rounding.
+  const auto expected = [](double half_width, double lost) { return (0.2 * half_width - lost) * 1e5 * 0.2 / 100.0; };
+  CHECK(margin(0.1, "") == doctest::Approx(expected(0.1, 0.0)).epsilon(1e-11));
+  CHECK(margin(0.1, cutout) == doctest::Approx(expected(0.1, 4e-4)).epsilon(1e-11));
+  CHECK(margin(0.1, "") == doctest::Approx(expected(0.1, 0.0)).epsilon(1e-11));
+  for (int i = 0; i < 70; ++i) CHECK(margin(0.1 + 1e-3 * i, "") == doctest::Approx(expected(0.1 + 1e-3 * i, 0.0)).epsilon(1e-11));
+  CHECK(margin(0.1, cutout) == doctest::Approx(expected(0.1, 4e-4)).epsilon(1e-11));
+}
+
 TEST_CASE("a pressure that grows along the joint shifts its centre: capacities are integrals of the field") {
   // p = 1e5 (1 + 8 x) over ±0.1 m: a force through the centroid of the pressure meets all of it. x̄ = 8 · 0.2²/12.
   const auto system = steplap::compile(
