@@ -9,3 +9,14 @@
 #define STEPLAP_TESTS_SANITIZED
 #endif
 #endif
+
+namespace steplap::testing {
+
+/// Cases that differ in numbers alone, not in the code that they go through, are tested once under the sanitizers.
+#ifdef STEPLAP_TESTS_SANITIZED
+inline constexpr bool k_is_sanitized = true;
+#else
+inline constexpr bool k_is_sanitized = false;
+#endif
+
+} // namespace steplap::testing

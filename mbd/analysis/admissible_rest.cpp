@@ -1,12 +1,11 @@
 #include "mbd/analysis/admissible_rest.h"
 
+#include "mbd/algebra/decompositions.h"
 #include "mbd/math/portable_math.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap {
 
@@ -58,7 +57,7 @@ private:
     gradient[n] += sharp;
     MatX hessian = rows.transpose() * inverse.cwiseAbs2().asDiagonal() * rows;
     hessian.diagonal().head(n).array() += k_tie;
-    const VecX step = hessian.ldlt().solve(-gradient);
+    const VecX step = solve_symmetric(hessian, VecX(-gradient));
     const double slope = gradient.dot(step), start = barrier(c, z_, t_, sharp);
     if (!(slope < -1e-9)) return false;
     for (double factor = 1.0; factor > 1e-10; factor *= 0.5) {
@@ -122,9 +121,7 @@ private:
     if (!hard_.empty()) {
       hard_rows_ = MatX(n, static_cast<Eigen::Index>(hard_.size()));
       for (std::size_t i = 0; i < hard_.size(); ++i) hard_rows_.col(static_cast<Eigen::Index>(i)) = rows.col(hard_[i]);
-      Eigen::ColPivHouseholderQR<MatX> qr(hard_rows_);
-      qr.setThreshold(k_rank);
-      free_ = MatX(qr.householderQ() * MatX::Identity(n, n)).rightCols(n - qr.rank());
+      free_ = PivotedQr(hard_rows_, k_rank).complement();
     }
     const VecX force = scale_.cwiseProduct(statics_.force());
     const MatX k = scale_.asDiagonal() * statics_.stiffness(lambda_) * scale_.asDiagonal();
@@ -136,15 +133,10 @@ private:
     a.leftCols(free_.cols()) = reduced / kappa_;
     for (Eigen::Index i = 0; i < count; ++i) a.col(free_.cols() + i) = free_.transpose() * rows.col(bounded_[i]);
     const VecX right = -(free_.transpose() * force);
-    Eigen::CompleteOrthogonalDecomposition<MatX> whole;
-    whole.setThreshold(k_rank);
-    whole.compute(a);
-    at_ = whole.solve(right);
+    at_ = shortest_solution(a, right, k_rank);
     force_scale_ = std::max(force.cwiseAbs().maxCoeff(), at_.cwiseAbs().maxCoeff());
     if (!(force_scale_ > 0.0) || !((a * at_ - right).cwiseAbs().maxCoeff() <= k_balance * force_scale_)) return false;
-    Eigen::ColPivHouseholderQR<MatX> null(a.transpose());
-    null.setThreshold(k_rank);
-    ways_ = MatX(null.householderQ() * MatX::Identity(a.cols(), a.cols())).rightCols(a.cols() - null.rank());
+    ways_ = PivotedQr(a.transpose(), k_rank).complement();
     find_capacities();
     return give_ > 0.0;
   }
@@ -258,10 +250,7 @@ private:
         left[r] = off[hard_[static_cast<std::size_t>(r)]];
       }
       if (left.cwiseAbs().maxCoeff() <= 1e-14 * length_) break;
-      Eigen::CompleteOrthogonalDecomposition<MatX> least;
-      least.setThreshold(k_rank);
-      least.compute(hard);
-      const VecX back = least.solve(left);
+      const VecX back = shortest_solution(hard, left, k_rank);
       for (int k = 0; k < statics_.coordinates(); ++k) state_.q[k + 3] -= scale_[k] * back[k];
     }
     return step.cwiseAbs().maxCoeff();

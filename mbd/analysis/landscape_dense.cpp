@@ -1,8 +1,5 @@
+#include "mbd/algebra/decompositions.h"
 #include "mbd/analysis/landscape.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +47,7 @@ public:
       w.col(i) = shape_.col(firm[i]);
       for (Eigen::Index j = 0; j < count; ++j) a(i, j) = reduced_(firm[i], firm[j]);
     }
-    return w * a.partialPivLu().solve(g);
+    return w * DenseLu(a).solve(g);
   }
 
   bool is_pushed() override {
@@ -100,9 +97,8 @@ public:
   // With what friction that slides takes part in that.
   int count_yielding() override {
     if (value_.size() == 0) return 0;
-    const Eigen::EigenSolver<MatX> solver(reduced_, false);
     const double rounding = value_rounding_.maxCoeff();
-    return static_cast<int>((solver.eigenvalues().real().array() <= rounding).count());
+    return static_cast<int>((eigenvalues(reduced_).real().array() <= rounding).count());
   }
 
   VecX acceleration() override {
@@ -154,13 +150,13 @@ private:
     const Eigen::Index r = shape_.cols();
     value_ = share_ = value_rounding_ = VecX::Zero(r);
     if (r == 0) return;
-    const Eigen::LLT<MatX> mass(shape_.transpose() * scene_.mass.asDiagonal() * shape_);
-    shape_ = mass.matrixL().solve(shape_.transpose()).transpose();
+    const MatX mass = shape_.transpose() * scene_.mass.asDiagonal() * shape_;
+    shape_ = solve_lower(mass, shape_.transpose()).transpose();
     const MatX turned = -(shape_.transpose() * stiffness_ * shape_);
-    const Eigen::SelfAdjointEigenSolver<MatX> solver(0.5 * (turned + turned.transpose()));
-    shape_ = shape_ * solver.eigenvectors();
-    value_ = solver.eigenvalues();
-    reduced_ = solver.eigenvectors().transpose() * turned * solver.eigenvectors();
+    const SymmetricEigen eigen = symmetric_eigen(0.5 * (turned + turned.transpose()));
+    shape_ = shape_ * eigen.vectors;
+    value_ = eigen.values;
+    reduced_ = eigen.vectors.transpose() * turned * eigen.vectors;
     share_ = shape_.transpose() * force_;
     const MatX size = stiffness_.cwiseAbs() * shape_.cwiseAbs();
     const double largest = value_.cwiseAbs().maxCoeff();

@@ -1,9 +1,8 @@
+#include "mbd/algebra/decompositions.h"
 #include "mbd/analysis/bordered_system.h"
 #include "mbd/analysis/landscape.h"
 #include "mbd/dynamics/schur.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <Eigen/SparseLU>
 
 #include <algorithm>
@@ -430,16 +429,15 @@ private:
         if (!steps_.solve(inertia_.cwiseProduct(VecX(block.col(k))), next)) return;
         block.col(k) = next.cwiseProduct(root);
       }
-      const Eigen::HouseholderQR<MatX> qr(block);
-      block = root.cwiseInverse().asDiagonal() * MatX(qr.householderQ() * MatX::Identity(n_, count));
+      block = root.cwiseInverse().asDiagonal() * orthonormal(block, count);
     }
     if (count == 1) {
       parts.push_back(largest_part(block.col(0)));
       return;
     }
-    const Eigen::ColPivHouseholderQR<MatX> qr(block.transpose());
+    const PivotedQr qr(block.transpose());
     for (int k = 0; k < count; ++k) {
-      const int at = qr.colsPermutation().indices()[k];
+      const int at = qr.column(k);
       parts.push_back({at / 3 + 1, at % 3, 1.0});
     }
   }

@@ -1,15 +1,11 @@
 #include "mbd/analysis/modes.h"
 
+#include "mbd/algebra/decompositions.h"
 #include "mbd/analysis/tangent.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -40,11 +36,11 @@ struct FreeVibration {
 // Singular values of A with their right vectors; of a symmetric one by its eigenvectors.
 std::pair<VecX, MatX> singular_vectors(const MatX& a) {
   if ((a - a.transpose()).cwiseAbs().sum() <= 1e-9 * a.cwiseAbs().sum()) {
-    const Eigen::SelfAdjointEigenSolver<MatX> solver(0.5 * (a + a.transpose()));
-    return {solver.eigenvalues().cwiseAbs(), solver.eigenvectors()};
+    const auto [values, vectors] = symmetric_eigen(0.5 * (a + a.transpose()));
+    return {values.cwiseAbs(), vectors};
   }
-  const Eigen::BDCSVD<MatX> svd(a, Eigen::ComputeFullV);
-  return {svd.singularValues(), svd.matrixV()};
+  const auto [values, v] = right_singular(a);
+  return {values, v};
 }
 
 FreeVibration free_vibration(const System& system, State state) {
@@ -63,8 +59,8 @@ FreeVibration free_vibration(const System& system, State state) {
   FreeVibration v;
   v.basis = scale.asDiagonal() * tangent.free;
   if (v.basis.cols() == 0) return v;
-  const Eigen::LLT<MatX> metric(tangent.free.transpose() * mass.asDiagonal() * tangent.free);
-  v.basis = metric.matrixL().solve(v.basis.transpose()).transpose();
+  const MatX metric = tangent.free.transpose() * mass.asDiagonal() * tangent.free;
+  v.basis = solve_lower(metric, v.basis.transpose()).transpose();
   const MatX stiffness = statics.stiffness(lambda);
   v.a = v.basis.transpose() * stiffness * v.basis;
   v.b = v.basis.transpose() * statics.damping() * v.basis;
@@ -93,8 +89,7 @@ FreeVibration free_vibration(const System& system, State state) {
 MatX complement(const MatX& columns) {
   const Eigen::Index n = columns.rows();
   if (columns.cols() == 0) return MatX::Identity(n, n);
-  const Eigen::HouseholderQR<MatX> qr(columns);
-  return MatX(qr.householderQ() * MatX::Identity(n, n)).rightCols(n - columns.cols());
+  return orthonormal(columns, n).rightCols(n - columns.cols());
 }
 
 // Motions at constant velocity that damping does not resist either: (β, η') with Vᵀη' = 0, A V β + B η' = 0.
@@ -104,21 +99,20 @@ MatX steady_motions(const FreeVibration& v) {
   const MatX av = v.a * v.held, bl = v.b * v.loose;
   MatX beyond = bl;
   if (k > 0) {
-    const Eigen::HouseholderQR<MatX> qr(av);
-    const MatX q = qr.householderQ() * MatX::Identity(r, k);
+    const MatX q = orthonormal(av, k);
     beyond -= q * (q.transpose() * bl);
   }
   const double size = (v.b.cwiseAbs() * v.loose.cwiseAbs()).norm();
-  const Eigen::BDCSVD<MatX> svd(beyond, Eigen::ComputeThinV);
+  const RightSingular singular = right_singular(beyond);
   std::vector<Eigen::Index> free;
   for (Eigen::Index i = 0; i < v.loose.cols(); ++i)
-    if (i >= svd.singularValues().size() || svd.singularValues()[i] <= k_rounded_terms * k_epsilon * size)
+    if (i >= singular.values.size() || singular.values[i] <= k_rounded_terms * k_epsilon * size)
       free.push_back(i);
   MatX motions(k + r, static_cast<Eigen::Index>(free.size()));
   for (std::size_t i = 0; i < free.size(); ++i) {
-    const VecX rate = v.loose * svd.matrixV().col(free[i]);
+    const VecX rate = v.loose * singular.v.col(free[i]);
     const auto at = static_cast<Eigen::Index>(i);
-    if (k > 0) motions.col(at).head(k) = -av.colPivHouseholderQr().solve(v.b * rate);
+    if (k > 0) motions.col(at).head(k) = -least_squares(av, v.b * rate);
     motions.col(at).tail(r) = rate;
   }
   return motions;
@@ -166,7 +160,7 @@ void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
       q.row(k) /= size;
       right[k] /= size;
     }
-    const ComplexVector next = q.householderQr().solve(right); // an LU would ask the C library for cabs
+    const ComplexVector next = solve_complex(q, right);
     const Complex ratio = shape.dot(next);
     if (!next.allFinite() || size_of(ratio) == 0.0) break; // on the eigenvalue
     const Complex change = Complex(shape.squaredNorm()) / ratio;
@@ -227,12 +221,11 @@ VibrationModes vibration_modes(const System& system, const State& state) {
   if (moving.cols() == 0) return found;
   MatX companion = moving.transpose() * whole * moving;
   const VecX scale = balance(companion);
-  const Eigen::EigenSolver<MatX> solver(companion);
-  if (solver.info() != Eigen::Success) throw NumericalFailure("the eigenvalues of the small vibrations do not converge");
-  const auto& values = solver.eigenvalues();
+  const auto [values, vectors, is_converged] = eigenpairs(companion);
+  if (!is_converged) throw NumericalFailure("the eigenvalues of the small vibrations do not converge");
   for (Eigen::Index i = 0; i < values.size(); ++i) {
     if (values[i].imag() < 0.0) continue;
-    const ComplexVector state_vector = moving * scale.asDiagonal() * solver.eigenvectors().col(i);
+    const ComplexVector state_vector = moving * scale.asDiagonal() * vectors.col(i);
     ComplexVector x = state_vector.tail(r);
     x /= x.norm();
     VibrationMode mode;

@@ -1,6 +1,6 @@
 #include "mbd/analysis/tangent.h"
 
-#include <Eigen/QR>
+#include "mbd/algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,17 +21,16 @@ std::vector<int> independent(const MatX& rows, Eigen::Index joints) {
   const Eigen::Index n = rows.rows(), frictions = rows.cols() - joints;
   MatX held(n, 0);
   if (joints > 0) {
-    Eigen::ColPivHouseholderQR<MatX> qr(rows.leftCols(joints));
-    qr.setThreshold(k_rank);
-    for (Eigen::Index i = 0; i < qr.rank(); ++i) kept.push_back(qr.colsPermutation().indices()[i]);
-    if (frictions > 0) held = qr.householderQ() * MatX::Identity(n, qr.rank());
+    const PivotedQr qr(rows.leftCols(joints), k_rank);
+    for (Eigen::Index i = 0; i < qr.rank(); ++i) kept.push_back(qr.column(i));
+    if (frictions > 0) held = qr.q(qr.rank());
   }
   if (frictions == 0) return kept;
   const MatX beyond = rows.rightCols(frictions) - held * (held.transpose() * rows.rightCols(frictions));
-  const Eigen::ColPivHouseholderQR<MatX> qr(beyond);
+  const PivotedQr qr(beyond);
   const Eigen::Index most = std::min(frictions, n);
-  for (Eigen::Index i = 0; i < most && std::abs(qr.matrixQR()(i, i)) > k_friction_rank; ++i)
-    kept.push_back(static_cast<int>(joints + qr.colsPermutation().indices()[i]));
+  for (Eigen::Index i = 0; i < most && qr.length(i) > k_friction_rank; ++i)
+    kept.push_back(static_cast<int>(joints + qr.column(i)));
   return kept;
 }
 
@@ -83,11 +82,10 @@ Tangent tangent_of(const Statics& statics, const VecX& scale, const std::vector<
   }
   MatX kept(n, count);
   for (Eigen::Index i = 0; i < count; ++i) kept.col(i) = rows.col(t.kept[i]);
-  const Eigen::HouseholderQR<MatX> qr(kept);
-  const MatX q = qr.householderQ() * MatX::Identity(n, kept_before ? count : n);
+  const auto [q, r] = qr_of(kept, kept_before ? count : n);
   t.held = q.leftCols(count);
   if (!kept_before) t.free = q.rightCols(n - count);
-  t.triangle = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+  t.triangle = r;
   return t;
 }
 

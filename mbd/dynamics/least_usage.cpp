@@ -1,7 +1,6 @@
 #include "mbd/dynamics/least_usage.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include "mbd/algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,7 +84,7 @@ void LeastUsage::share_by_capacity(const Gauges& gauges, const VecX& wrench) {
     capacity_[r] = length_[r] * std::max(capacity_[r], k_least_capacity * scale_);
   weighted_ = capacity_.cwiseInverse().asDiagonal() * basis_;
   normal_matrix_ = basis_.transpose() * weighted_;
-  settled_ = normal_matrix_.ldlt().solve(-(weighted_.transpose() * wrench));
+  settled_ = solve_symmetric(normal_matrix_, VecX(-(weighted_.transpose() * wrench)));
   trial_ = wrench + basis_ * settled_;
 }
 
@@ -139,14 +138,14 @@ void LeastUsage::improve(const Gauges& gauges, const VecX& wrench) {
   VecX cost(k + 1), right = VecX::Zero(k + 1), weight, step, entering(k + 1);
   right[k] = 1.0;
   for (int pivot = 0; pivot < most; ++pivot) {
-    const Eigen::PartialPivLU<MatX> lu(columns_);
+    const DenseLu lu(columns_);
     weight = lu.solve(right);
     for (Eigen::Index i = 0; i <= k; ++i) {
       const Normal& normal = normals_[static_cast<std::size_t>(i)];
       cost[i] = 0.0;
       for (int r = 0; r < dimension_[normal.part]; ++r) cost[i] += normal.n[r] * wrench[first_[normal.part] + r];
     }
-    const VecX dual = lu.transpose().solve(cost);
+    const VecX dual = lu.solve_transposed(cost);
     const double value = dual[k];
     if (!dual.allFinite()) return;
     if (value > lower_) {

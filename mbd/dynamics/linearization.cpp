@@ -1,9 +1,9 @@
 #include "mbd/dynamics/linearization.h"
 
+#include "mbd/algebra/decompositions.h"
 #include "mbd/math/dual.h"
 #include "mbd/system/law_group.h"
 
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -247,7 +247,7 @@ void Linearization::acceleration_by_state(MatX& by_pose, MatX& by_velocity) cons
     wj.setZero();
     for (const Triplet& e : response_) wj(e.row(), e.col()) += e.value();
   }
-  const Eigen::FullPivLU<MatX> schur(j * wj); // rank-revealing: redundant rows
+  const RankLu schur(j * wj); // rank-revealing: redundant rows
   by_pose += wj * schur.solve(dense(bias_q_, m_) - j * by_pose);
   by_velocity += wj * schur.solve(dense(bias_v_, m_) - j * by_velocity);
 }

@@ -1,10 +1,8 @@
 #include "mbd/dynamics/load_sharing.h"
 
+#include "mbd/algebra/decompositions.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -63,72 +61,17 @@ template <class F> void for_bodies(const RowSpec& row, const F& f) {
 
 int first_body(const RowSpec& row) { return row.a != k_ground ? row.a : row.b; }
 
-// Null vectors of a matrix, each with the only entry of one of its columns ("pivot"); entries of rounding are zero.
-struct NullSpace {
-  MatX vectors;
-  std::vector<int> pivots;
-};
-
-using Factor = Eigen::ColPivHouseholderQR<MatX>;
-
-// Eigen's own does not take matrices without rows or columns.
-struct RankFactor {
-  explicit RankFactor(const MatX& matrix, double threshold = k_dependent) : rows(matrix.rows()), cols(matrix.cols()), qr(std::max<Eigen::Index>(rows, 1), std::max<Eigen::Index>(cols, 1)) {
-    if (rows == 0 || cols == 0) return;
-    qr.setThreshold(threshold);
-    qr.compute(matrix);
-    rank = qr.rank();
-  }
-  // What no column reaches: orthonormal.
-  [[nodiscard]] MatX complement() const {
-    if (rank == 0) return MatX::Identity(rows, rows);
-    const MatX q = qr.householderQ() * MatX::Identity(rows, rows);
-    return q.rightCols(rows - rank);
-  }
-  [[nodiscard]] NullSpace null_space() const {
-    const Eigen::Index k = cols - rank;
-    NullSpace found;
-    MatX vectors = MatX::Zero(cols, k);
-    if (k > 0) vectors.bottomRows(k).setIdentity(); // of an empty matrix it would be an offset from null
-    if (rank == 0) {
-      for (Eigen::Index j = 0; j < k; ++j) found.pivots.push_back(static_cast<int>(j));
-      found.vectors = vectors;
-      return found;
-    }
-    if (k == 0) { // nothing is left open
-      found.vectors = vectors;
-      return found;
-    }
-    vectors.topRows(rank) = -qr.matrixR().topLeftCorner(rank, rank).template triangularView<Eigen::Upper>().solve(
-        qr.matrixR().topRightCorner(rank, k));
-    vectors = (vectors.array().abs() < k_no_part).select(0.0, vectors);
-    found.vectors = qr.colsPermutation() * vectors;
-    for (Eigen::Index j = 0; j < k; ++j) found.pivots.push_back(qr.colsPermutation().indices()[rank + j]);
-    return found;
-  }
-
-  // x of the columns that span what there is with matrix x = right, as nearly as can be.
-  [[nodiscard]] MatX solve(const MatX& right) const {
-    MatX found = MatX::Zero(cols, right.cols());
-    if (rank == 0 || right.cols() == 0) return found;
-    found.topRows(rank) = qr.matrixR().topLeftCorner(rank, rank).template triangularView<Eigen::Upper>().solve(
-        (qr.householderQ().transpose() * right).topRows(rank));
-    return qr.colsPermutation() * found;
-  }
-
-  Eigen::Index rows, cols, rank = 0;
-  Factor qr;
-};
+using NullSpace = PivotedQr::NullSpace;
 
 // Null vectors of `matrix` of which the columns in `left_out` depend on the others, as nearly as that may be.
 NullSpace null_space_of(const MatX& matrix, const std::vector<char>& left_out) {
   std::vector<Eigen::Index> kept, out;
   for (Eigen::Index c = 0; c < matrix.cols(); ++c) (left_out[c] != 0 ? out : kept).push_back(c);
-  const RankFactor factor(matrix(Eigen::all, kept), k_exactly_dependent);
-  const NullSpace exact = factor.null_space();
+  const PivotedQr factor(matrix(Eigen::all, kept), k_exactly_dependent);
+  const NullSpace exact = factor.null_space(k_no_part);
   const Eigen::Index known = exact.vectors.cols(), count = known + static_cast<Eigen::Index>(out.size());
   NullSpace found{MatX::Zero(matrix.cols(), count), {}};
-  const MatX others = factor.solve(-matrix(Eigen::all, out));
+  const MatX others = factor.solve_by_rank(-matrix(Eigen::all, out));
   for (std::size_t k = 0; k < kept.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     if (known > 0) found.vectors.row(kept[k]).head(known) = exact.vectors.row(i);
@@ -232,8 +175,8 @@ void LoadSharing::analyze(Part& part, const std::vector<Motion<double>>& motion,
   const Eigen::Index free = part.free_count, bounded = count - free;
 
   // Joints alone; then what motions they leave, and which sticking wrenches do nothing on those.
-  const RankFactor joints(gradient.leftCols(free));
-  const NullSpace idle = joints.null_space();
+  const PivotedQr joints(gradient.leftCols(free), k_dependent);
+  const NullSpace idle = joints.null_space(k_no_part);
   NullSpace shared;
   if (bounded > 0) {
     MatX held = joints.complement().transpose() * gradient.rightCols(bounded);
@@ -248,12 +191,12 @@ void LoadSharing::analyze(Part& part, const std::vector<Motion<double>>& motion,
   part.null.topRightCorner(free, idle.vectors.cols()) = idle.vectors;
   if (k > 0) {
     part.null.bottomLeftCorner(bounded, k) = shared.vectors;
-    if (joints.rank > 0) part.null.topLeftCorner(free, k) = joints.qr.solve(-gradient.rightCols(bounded) * shared.vectors);
+    if (joints.rank() > 0) part.null.topLeftCorner(free, k) = joints.solve(-gradient.rightCols(bounded) * shared.vectors);
   }
   part.null = inverse_norm.asDiagonal() * part.null;
   const auto vectors = part.null.topRightCorner(free, idle.vectors.cols());
   const MatX weighted = vectors.transpose() * mobility.head(free).asDiagonal();
-  if (vectors.cols() > 0) part.settle = -(weighted * vectors).ldlt().solve(weighted);
+  if (vectors.cols() > 0) part.settle = -solve_symmetric(MatX(weighted * vectors), weighted);
   if (k > 0) make_groups(part, shared.pivots, shared.vectors);
 }
 

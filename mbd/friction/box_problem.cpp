@@ -1,6 +1,6 @@
 #include "mbd/friction/box_problem.h"
 
-#include <Eigen/QR>
+#include "mbd/algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,10 +58,7 @@ private:
       right[i] = -scale[i] * g[free[i]];
       for (Eigen::Index j = 0; j < m; ++j) own(i, j) = scale[i] * scale[j] * a_(free[i], free[j]);
     }
-    Eigen::CompleteOrthogonalDecomposition<MatX> factor(m, m);
-    factor.setThreshold(k_dependent);
-    factor.compute(own);
-    VecX direction = factor.solve(right);
+    VecX direction = shortest_solution(own, right, k_dependent);
     const VecX left = right - own * direction; // in the null space, if not rounding
     // First to the minimum where there is one: as long as the way there is far, what is left is its rounding, too.
     bool is_near = steps_to_minimum_ >= k_most_steps, is_endless = false, is_far = false;

@@ -1,5 +1,7 @@
 #include "mbd/integrators/stage_system.h"
 
+#include <Eigen/LU> // of three rows
+
 namespace steplap {
 
 void StageSystem::set(const Linearization& linearization, const Layout& layout) {
@@ -92,8 +94,8 @@ bool StageSystem::factor(double g) {
     matrix_.setZero(n_ + m_, n_ + m_);
     assemble(g, [this](int i, int j, double value) { matrix_(i, j) += value; });
     if (!matrix_.allFinite()) return false;
-    dense_.compute(matrix_);
-    return dense_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0;
+    dense_.factor(matrix_);
+    return dense_.least_pivot() > 0.0;
   }
   sparse_.begin(n_ + m_);
   assemble(g, [this](int i, int j, double value) { sparse_.add(i, j, value); });
@@ -123,7 +125,7 @@ void StageSystem::solve(const double* r, double* u) {
 
 void StageSystem::solve_unknowns() {
   if (is_dense_) {
-    solution_.noalias() = dense_.solve(right_);
+    dense_.solve(right_, solution_);
     return;
   }
   solution_ = right_;

@@ -19,9 +19,8 @@
 #pragma once
 
 #include "mbd/integrators/sparse_lu.h"
+#include "mbd/algebra/decompositions.h"
 #include "mbd/dynamics/linearization.h"
-
-#include <Eigen/LU>
 
 namespace steplap {
 
@@ -50,7 +49,7 @@ private:
   double g_ = 0.0;
   bool is_dense_ = true;
   MatX matrix_;
-  Eigen::PartialPivLU<MatX> dense_;
+  DenseLu dense_;
   SparseLu sparse_;
   VecX right_, solution_, moved_;
   struct Inner {

@@ -58,7 +58,7 @@ double* RowStore::add_row() {
     ++full_;
     tail_.clear();
   }
-  if (tail_.empty() && full_ > 0) tail_.reserve(full_size);
+  if (tail_.empty()) tail_.reserve(full_size); // what is not used of it takes no memory: rows do not move as they come
   const double* before = tail_.data();
   tail_.resize(tail_.size() + width_);
   if (cache_ == before) cached_ = ~std::size_t{0}; // it has moved, or may have

@@ -15,18 +15,6 @@ using namespace steplap::testing;
 
 namespace {
 
-#ifdef STEPLAP_TESTS_SANITIZED
-constexpr bool k_is_sanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool k_is_sanitized = true;
-#else
-constexpr bool k_is_sanitized = false;
-#endif
-#else
-constexpr bool k_is_sanitized = false;
-#endif
-
 struct LeftOut {
   std::string begins, reason;
 };

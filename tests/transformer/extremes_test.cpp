@@ -5,6 +5,7 @@
 #include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
 #include "transformer/verdict.h"
+#include "tests/sanitized.h"
 #include "tests/transformer/swing.h"
 
 #include <doctest/doctest.h>
@@ -89,7 +90,8 @@ TEST_CASE("every model: the same verdict and extremes whatever is written, and h
     if (entry.path().extension() == ".toml" && entry.path().parent_path().filename() != "studies") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   REQUIRE(files.size() > 30);
-  for (const fs::path& file : files) {
+  for (std::size_t i = 0; i < files.size(); i += steplap::testing::k_is_sanitized ? 3 : 1) {
+    const fs::path& file = files[i];
     CAPTURE(file.string());
     const auto with = [&](double step, const std::vector<std::string>& channels) {
       Model model = read_model(file.string(), transformer_catalog());

@@ -15,6 +15,8 @@ namespace steplap {
 
 namespace {
 
+using Align = TextTable::Align;
+
 struct ChannelsOptions {
   std::string model;
   std::vector<std::string> overrides, patterns;
@@ -61,7 +63,6 @@ std::string table_csv(const std::vector<Listed>& list) {
 }
 
 void print_channels(std::ostream& out, const LoadedModel& loaded, const std::vector<Listed>& list) {
-  using Align = TextTable::Align;
   TextTable table({Align::left, Align::left, Align::left, Align::left, Align::left});
   table.add_row({"channel", "unit", "made", "sign", "meaning"});
   bool is_any_on_request = false;

@@ -97,16 +97,16 @@ private:
     return rotated(p - Vec2(pose.x(), pose.y()), -pose.z());
   }
 
-  [[nodiscard]] Place place_of(const std::string& name) const {
+  [[nodiscard]] MarkerPlace place_of(const std::string& name) const {
     const Marker& marker = *markers_.at(name);
     const bool is_in_ground = !marker.point;
     return {marker.body, about_centre(is_in_ground ? *marker.at : *marker.point, is_in_ground, body(marker.body)),
             marker.angle};
   }
 
-  [[nodiscard]] static Json places_json(const std::vector<Place>& places) {
+  [[nodiscard]] static Json places_json(const std::vector<MarkerPlace>& places) {
     Json json = Json::array();
-    for (const Place& place : places)
+    for (const MarkerPlace& place : places)
       json.push_back({{"body", place.body}, {"point", point_json(place.point)}});
     return json;
   }
@@ -142,7 +142,7 @@ private:
   }
 
   // All that touches one line of one body shares one half-plane.
-  std::size_t plane_of(const Place& place, const Vec2& normal, const std::vector<double>& ends) {
+  std::size_t plane_of(const MarkerPlace& place, const Vec2& normal, const std::vector<double>& ends) {
     std::vector<long long> key{coarse(normal.x()), coarse(normal.y()), coarse(normal.dot(place.point))};
     const double along = Vec2(normal.y(), -normal.x()).dot(place.point);
     for (const double end : ends)

@@ -124,7 +124,7 @@ std::vector<double> column_errors(const Run& run, const RunSummary& summary) {
 } // namespace
 
 void write_trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors, const FileSink& put) {
-  constexpr std::size_t k_part = 1 << 20; // bytes, about
+  constexpr std::size_t k_part = 1 << 16; // bytes, about: what a cache holds
   std::vector<std::string> header{"t [s]"};
   for (const Channel* channel : trajectory.channels())
     header.push_back(channel->name + (channel->unit.empty() ? "" : " [" + channel->unit + "]"));

@@ -29,7 +29,7 @@ void rope(Sketch& s) {
   for (const std::string& marker : s.texts("over"))
     shape.at.push_back(s.place_of(marker));
   if (const auto b = s.place("b")) shape.at.push_back(*b);
-  for (const Place& place : shape.at)
+  for (const MarkerPlace& place : shape.at)
     s.note_place(place);
   s.draw(std::move(shape));
 }
@@ -176,13 +176,13 @@ std::vector<std::string> Sketch::texts(const char* field) const {
   return value<std::vector<std::string>>(field).value_or(std::vector<std::string>());
 }
 
-std::optional<Place> Sketch::place(const char* field) const {
+std::optional<MarkerPlace> Sketch::place(const char* field) const {
   const std::string marker = text(field);
-  return marker.empty() ? std::nullopt : std::optional<Place>(place_of_(marker));
+  return marker.empty() ? std::nullopt : std::optional<MarkerPlace>(place_of_(marker));
 }
 
-std::vector<Place> Sketch::places() const {
-  std::vector<Place> places;
+std::vector<MarkerPlace> Sketch::places() const {
+  std::vector<MarkerPlace> places;
   for (const Field& field : entry_->kind->fields.fields())
     if (field.type == FieldType::marker)
       if (const auto found = place(field.name.c_str())) places.push_back(*found);
@@ -198,16 +198,16 @@ std::optional<Vec2> Sketch::direction(const char* field) const {
 
 Shape& Sketch::draw(Shape shape) { return shapes_.emplace_back(std::move(shape)); }
 
-void Sketch::circle(const Place& centre, double radius, bool is_ring) {
+void Sketch::circle(const MarkerPlace& centre, double radius, bool is_ring) {
   geometry_of_(centre.body).circles.insert({centre.point.x(), centre.point.y(), radius, is_ring ? 1.0 : 0.0});
 }
 
-void Sketch::segment(const Place& frame, const Vec2& from, const Vec2& to, double thickness) {
+void Sketch::segment(const MarkerPlace& frame, const Vec2& from, const Vec2& to, double thickness) {
   const Vec2 first = frame.in_body(from), last = frame.in_body(to);
   geometry_of_(frame.body).segments.insert({first.x(), first.y(), last.x(), last.y(), thickness});
 }
 
-void Sketch::polygon(const Place& frame, const std::vector<Vec2>& corners) {
+void Sketch::polygon(const MarkerPlace& frame, const std::vector<Vec2>& corners) {
   std::vector<std::array<double, 2>> ring;
   for (const Vec2& corner : corners) {
     const Vec2 p = frame.in_body(corner);
@@ -217,7 +217,7 @@ void Sketch::polygon(const Place& frame, const std::vector<Vec2>& corners) {
 }
 
 void draw_element(Sketch& sketch) {
-  for (const Place& place : sketch.places())
+  for (const MarkerPlace& place : sketch.places())
     sketch.note_place(place);
   symbol_of(sketch.entry().kind->name)(sketch);
   const std::string& asked = sketch.entry().element->draw;

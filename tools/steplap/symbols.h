@@ -19,7 +19,7 @@
 namespace steplap {
 
 /// Where a marker sits: in its body's axes about the centre of gravity; the ground's own.
-struct Place {
+struct MarkerPlace {
   std::string body;
   Vec2 point = Vec2::Zero();
   double angle = 0.0; ///< of the marker's axes against the body's
@@ -48,7 +48,7 @@ struct Place {
 struct Shape {
   std::string type, style;
   std::string quantity;          ///< the element's channel that arrows and values show; "" = none
-  std::vector<Place> at;
+  std::vector<MarkerPlace> at;
   std::optional<Vec2> direction; ///< unit, in the axes of the last place's body
   std::vector<double> sizes;     ///< m, in the axes of the last place's body where they are points
 };
@@ -64,7 +64,7 @@ struct BodyGeometry {
 /// What a symbol is drawn with: the element's fields by name, its places, what it draws.
 class Sketch {
 public:
-  using PlaceOf = std::function<Place(const std::string& marker)>;
+  using PlaceOf = std::function<MarkerPlace(const std::string& marker)>;
   using GeometryOf = std::function<BodyGeometry&(const std::string& body)>;
 
   Sketch(const ElementEntry& entry, PlaceOf place_of, GeometryOf geometry_of);
@@ -78,21 +78,21 @@ public:
   [[nodiscard]] std::vector<Vec2> points(const char* field) const;
   [[nodiscard]] std::vector<std::string> texts(const char* field) const;
   /// Of the marker that the field names; nullopt if it names none.
-  [[nodiscard]] std::optional<Place> place(const char* field) const;
-  [[nodiscard]] Place place_of(const std::string& marker) const { return place_of_(marker); }
+  [[nodiscard]] std::optional<MarkerPlace> place(const char* field) const;
+  [[nodiscard]] MarkerPlace place_of(const std::string& marker) const { return place_of_(marker); }
   /// Of all its marker fields, in order.
-  [[nodiscard]] std::vector<Place> places() const;
+  [[nodiscard]] std::vector<MarkerPlace> places() const;
   /// A field's direction, unit, turned from the axes of marker b into its body's.
   [[nodiscard]] std::optional<Vec2> direction(const char* field) const;
 
   Shape& draw(Shape shape);
   void replace(std::vector<Shape> shapes) { shapes_ = std::move(shapes); }
   /// Geometry of the body that carries the place; corners and ends in the marker's axes.
-  void circle(const Place& centre, double radius, bool is_ring = false);
-  void segment(const Place& frame, const Vec2& from, const Vec2& to, double thickness);
-  void polygon(const Place& frame, const std::vector<Vec2>& corners);
+  void circle(const MarkerPlace& centre, double radius, bool is_ring = false);
+  void segment(const MarkerPlace& frame, const Vec2& from, const Vec2& to, double thickness);
+  void polygon(const MarkerPlace& frame, const std::vector<Vec2>& corners);
   /// The element acts there.
-  void note_place(const Place& place) { geometry_of_(place.body).places.push_back(place.point); }
+  void note_place(const MarkerPlace& place) { geometry_of_(place.body).places.push_back(place.point); }
 
   [[nodiscard]] const ElementEntry& entry() const { return *entry_; }
   [[nodiscard]] const std::vector<Shape>& shapes() const { return shapes_; }

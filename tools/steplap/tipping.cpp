@@ -1,5 +1,6 @@
 #include "tools/steplap/tipping.h"
 
+#include "mbd/algebra/decompositions.h"
 #include "mbd/analysis/statics.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/math/portable_math.h"
@@ -8,7 +9,6 @@
 #include "tools/steplap/tipping_feet.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -111,10 +111,7 @@ private:
       rows.block<1, 3>(static_cast<Eigen::Index>(r), 3 * place[row.a]) = j.head<3>().transpose();
       rows.block<1, 3>(static_cast<Eigen::Index>(r), 3 * place[row.b]) = j.tail<3>().transpose();
     }
-    Eigen::ColPivHouseholderQR<MatX> qr;
-    qr.setThreshold(k_rank);
-    qr.compute(rows);
-    return qr.rank() == 3 * bodies - 3;
+    return PivotedQr(rows, k_rank).rank() == 3 * bodies - 3;
   }
 
   void add_component(int component, Part& part) const {
@@ -193,12 +190,7 @@ private:
 
   [[nodiscard]] std::optional<Tipping> nearest(const Part& part) const {
     const MatX rows = outer_rows(part);
-    if (rows.rows() > 0) {
-      Eigen::ColPivHouseholderQR<MatX> qr;
-      qr.setThreshold(k_rank);
-      qr.compute(rows);
-      if (qr.rank() > 1) return std::nullopt;
-    }
+    if (PivotedQr(rows, k_rank).rank() > 1) return std::nullopt;
     std::optional<Tipping> best;
     for (const Foot& pivot : feet_) {
       const Vec2 normal = push_on(part, pivot);

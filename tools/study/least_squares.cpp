@@ -1,11 +1,12 @@
 #include "tools/study/least_squares.h"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include "mbd/algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 namespace steplap::study {
 
@@ -45,10 +46,7 @@ struct Linear {
   VectorXd rhs;
 
   Linear(const MatrixXd& jacobian, const VectorXd& residuals) {
-    const Eigen::Index n = jacobian.cols();
-    const Eigen::HouseholderQR<MatrixXd> qr(jacobian);
-    r = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
-    rhs = VectorXd(qr.householderQ().adjoint() * residuals).head(n);
+    std::tie(r, rhs) = triangle_of(jacobian, residuals);
   }
   // Marquardt's: each parameter damped by what it does. Those that are `held` stay.
   [[nodiscard]] VectorXd step(double damping, const std::vector<bool>& held) const {
@@ -64,7 +62,7 @@ struct Linear {
       whole.col(i).setZero();
       whole(n + i, i) = 1.0;
     }
-    return whole.colPivHouseholderQr().solve(target);
+    return steplap::least_squares(whole, target);
   }
   [[nodiscard]] VectorXd gradient() const { return r.transpose() * rhs; }
   // By how much the sum of squares falls along the step, if the problem were linear.
@@ -151,9 +149,9 @@ LeastSquaresMinimum minimise(const LeastSquaresProblem& problem, const VectorXd&
 Identified identify(const LeastSquaresMinimum& minimum, double variance) {
   constexpr double k_widest = 0.5; // of a range: a standard deviation beyond says that the record tells nothing
   Identified told;
-  const Eigen::JacobiSVD<MatrixXd> svd(minimum.jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  told.singular = svd.singularValues();
-  told.directions = svd.matrixV();
+  RightSingular singular = right_singular(minimum.jacobian);
+  told.singular = std::move(singular.values);
+  told.directions = std::move(singular.v);
   const Eigen::Index n = told.singular.size();
   const double deviation = std::sqrt(variance);
   while (told.rank < n && told.singular[told.rank] > 3.0 * minimum.jacobian_error &&

@@ -84,7 +84,7 @@ Json numbers_json(const LoadedStudy& loaded) {
 }
 
 // Measured records that a fit compares channels with, where studies have such.
-template <class AnyStudy> Json histories_json(const AnyStudy& study) {
+template <class AnyStudy> Json history_count_json(const AnyStudy& study) {
   Json json = Json::array();
   if constexpr (requires { study.histories; })
     for (const auto& h : study.histories)
@@ -118,7 +118,7 @@ std::string about_of(const LoadedStudy& loaded, const JointLaw& law) {
   for (std::size_t i = 0; i < study.variables.size(); ++i) json["variables"].push_back(variable_json(loaded, law, i));
   json["numbers"] = numbers_json(loaded);
   json["settings"] = settings_of(study);
-  json["histories"] = histories_json(study);
+  json["histories"] = history_count_json(study);
   json["models"] = Json::array();
   for (const auto& m : loaded.models) json["models"].push_back(m->path);
   json["variants"] = Json::array();
