@@ -7,8 +7,8 @@ namespace steplap {
 
 StageProgram::StageProgram(const Layout& layout, const State& state, StageCode choice)
     : layout_(&layout), modes_(state.mode.begin(), state.mode.end()),
-      inputs_(2 * static_cast<std::size_t>(layout.coordinate_count) + time_input_count(layout)),
-      coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), choice_(choice), is_hopeless_(!MachineCode::is_available()) {
+      coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), time_count_(time_input_count(layout)), choice_(choice), is_hopeless_(!MachineCode::is_available()) {
+  inputs_.resize(2 * coordinate_count_ + time_count_);
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
 }
 
@@ -18,18 +18,35 @@ bool StageProgram::is_of(const Layout& layout, const State& state) const {
                     [](const Friction& a, const FrictionState& b) { return a == Friction{b.phase, b.sign, b.foot}; });
 }
 
+void StageProgram::look_for_code() {
+  if (code_ || !stored_ || !stored_->code()) return;
+  const MachineCode& made = *stored_->code();
+  const bool is_same = made.run(traced_.inputs.data(), traced_.tape.constants.data(), outputs_.data()) != 0 &&
+                       std::memcmp(outputs_.data(), traced_.outputs.data(), outputs_.size() * sizeof(double)) == 0;
+  if (is_same) {
+    code_ = &made;
+  } else {
+    stored_.reset();
+    is_hopeless_ = true;
+  }
+}
+
+void StageProgram::give_up() {
+  code_ = nullptr;
+  stored_.reset();
+  failures_ = 0;
+  is_hopeless_ = tapes_ >= k_most_tapes;
+}
+
 bool StageProgram::run(double t, const double* y, double* dy, double* watch, double* watch_rate) {
   const std::size_t n = coordinate_count_, signals = traced_.signals.size();
   std::copy_n(y, 2 * n, inputs_.data());
   for (std::size_t i = 0; i < signals; ++i) inputs_[inputs_.size() - signals + i] = traced_.signals[i].at(t);
   if (code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data()) == 0) {
-    if (++failures_ > k_most_failures) {
-      code_ = nullptr;
-      stored_.reset();
-      is_hopeless_ = true;
-    }
+    if (++failures_ > k_most_failures) give_up();
     return false;
   }
+  failures_ = 0;
   const double* out = outputs_.data();
   std::copy_n(out, n + 2, dy);
   out += n + 2;
@@ -48,8 +65,9 @@ void StageProgram::note_stage() {
 void StageProgram::take_down(const System& system, const State& state, double t, const double* y, const double* dy,
                              const double* watch, const double* watch_rate) {
   is_hopeless_ = true; // unless it is found to be the same to the bit
+  ++tapes_;
   const std::size_t n = coordinate_count_;
-  if (!trace_rates(system, *layout_, state, t, y, {time_inputs(), inputs_.size() - 2 * n}, k_traced_pivot, traced_)) return;
+  if (!trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_)) return;
   const double* out = traced_.outputs.data();
   const auto is_same = [&out](double x) { return std::memcmp(out++, &x, sizeof x) == 0; };
   for (std::size_t i = 0; i < n + 2; ++i)
@@ -59,7 +77,7 @@ void StageProgram::take_down(const System& system, const State& state, double t,
   for (const int slot : traced_.watch_rates)
     if (!is_same(watch_rate[slot])) return;
   is_hopeless_ = false;
-  inputs_.resize(inputs_.size() + traced_.signals.size());
+  inputs_.resize(2 * n + time_count_ + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());
   stored_ = stored_code(traced_.tape);
   if (choice_ == StageCode::at_once) stored_->make();

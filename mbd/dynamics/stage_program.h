@@ -32,8 +32,8 @@ public:
   StageProgram(const Layout& layout, const State& state, StageCode choice);
   [[nodiscard]] bool is_of(const Layout& layout, const State& state) const;
 
-  /// Code may have been made since.
-  void look_for_code() { code_ = stored_ ? stored_->code() : nullptr; }
+  /// Code may have been made since. It is used if it makes of the stage that was written down what that has made.
+  void look_for_code();
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
   /// For accelerations, power and switching values at coordinates and rates y; false: evaluate as ever, nothing was changed.
   [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate);
@@ -52,8 +52,11 @@ public:
                  const double* watch_rate);
 
 private:
-  /// A tape whose conditions fail so often is of no use.
-  static constexpr int k_most_failures = 40;
+  void give_up();
+
+  /// After so many failures in a row another branch is the usual one (angles that grow beyond the series of their sines): it is
+  /// written down anew, but not for ever.
+  static constexpr int k_most_failures = 16, k_most_tapes = 8;
   /// Writing a stage down takes as long as code saves in so many.
   static constexpr int k_settled = 120;
 
@@ -71,8 +74,8 @@ private:
   std::shared_ptr<StoredCode> stored_; ///< null until it is written down
   const MachineCode* code_ = nullptr;
   std::vector<double> inputs_, outputs_;
-  std::size_t coordinate_count_ = 0;
-  int stages_ = 0, failures_ = 0;
+  std::size_t coordinate_count_ = 0, time_count_ = 0;
+  int stages_ = 0, failures_ = 0, tapes_ = 0; ///< failures: since it last held
   StageCode choice_;
   bool is_hopeless_ = false;
 };

@@ -221,6 +221,10 @@ private:
       Traced::output(watch_rate_[i]);
     }
     traced.signals = e_.time_inputs;
+    traced.inputs.clear();
+    for (const auto* given : {&q_, &v_, &time_})
+      for (const Traced& x : *given) traced.inputs.push_back(value_of(x));
+    for (const TimeInput& signal : e_.time_inputs) traced.inputs.push_back(signal.at(e_.t));
     traced.outputs.clear();
     for (const Traced& a : a_) traced.outputs.push_back(value_of(a));
     traced.outputs.push_back(value_of(e_.dissipation));

@@ -20,7 +20,7 @@ struct TracedRates {
   std::vector<TimeInput> signals;
   std::vector<int> watches;      ///< the slots of watch values
   std::vector<int> watch_rates;  ///< those whose rate is no constant
-  std::vector<double> outputs; ///< for the inputs traced
+  std::vector<double> inputs, outputs; ///< those traced
 };
 
 /// The numbers of a layout that follow from time: of each lock value, rate and acceleration, of each driven row acceleration and

@@ -42,13 +42,13 @@ a = "bob's"
 b = "bob"
 )";
 
-struct Evaluated {
+struct EvaluatedScene {
   std::unique_ptr<System> system;
   State state;
   Dynamics dynamics;
   std::vector<double> y, dy;
 
-  explicit Evaluated(const std::string& text)
+  explicit EvaluatedScene(const std::string& text)
       : system(compile(scene(text))), state(system->initial_state()), dynamics(*system), y(system->largest_dimension()), dy(y.size()) {
     dynamics.set_state(state);
     dynamics.pack(state, y.data());
@@ -59,7 +59,7 @@ struct Evaluated {
 } // namespace
 
 TEST_CASE("multipliers are those of the last evaluation, whatever is projected or asked since") {
-  Evaluated e(k_pendulum);
+  EvaluatedScene e(k_pendulum);
   const std::vector<double> lambda = e.dynamics.multipliers();
   REQUIRE(e.dynamics.layout().active.size() == 2);
   // The pin bears the weight less what falls: not zero, so that a residual in its place would show.
@@ -81,7 +81,7 @@ TEST_CASE("multipliers are those of the last evaluation, whatever is projected o
 }
 
 TEST_CASE("every body is where it moves to, also those that no force acts on") {
-  Evaluated e(k_pendulum);
+  EvaluatedScene e(k_pendulum);
   REQUIRE(e.dynamics.layout().riding_along.size() + e.dynamics.layout().riding.size() > 0);
   const double quarter = 0.5 * std::acos(-1.0);
   for (const double angle : {0.0, 0.3, quarter}) {

@@ -328,7 +328,7 @@ std::vector<Shape> shapes_of(const Faces& faces, std::map<std::string, BodyGeome
   kind.fields.add("static_friction", &Faces::static_friction);
   kind.holds<Faces>();
   const ElementEntry entry(&kind, std::make_shared<Faces>(faces));
-  Sketch sketch(entry, [](const std::string& name) { return Place{name, Vec2(1.0, 0.0), 0.5 * M_PI}; },
+  Sketch sketch(entry, [](const std::string& name) { return MarkerPlace{name, Vec2(1.0, 0.0), 0.5 * M_PI}; },
                 [&](const std::string& body) -> BodyGeometry& { return geometry[body]; });
   draw_element(sketch);
   return sketch.shapes();
@@ -371,7 +371,7 @@ TEST_CASE("every kind of element of the catalogue has its own symbol; one that h
     CAPTURE(kind->name);
     const ElementEntry entry(kind, kind->create());
     BodyGeometry geometry;
-    Sketch sketch(entry, [](const std::string&) { return Place{"ground", Vec2::Zero(), 0.0}; },
+    Sketch sketch(entry, [](const std::string&) { return MarkerPlace{"ground", Vec2::Zero(), 0.0}; },
                   [&](const std::string&) -> BodyGeometry& { return geometry; });
     draw_element(sketch);
     for (const Shape& shape : sketch.shapes()) CHECK(shape.type != "neutral");
@@ -380,7 +380,7 @@ TEST_CASE("every kind of element of the catalogue has its own symbol; one that h
   unheard_of.name = "unheard_of";
   const ElementEntry entry(&unheard_of, unheard_of.create());
   BodyGeometry geometry;
-  Sketch sketch(entry, [](const std::string&) { return Place{"ground", Vec2::Zero(), 0.0}; },
+  Sketch sketch(entry, [](const std::string&) { return MarkerPlace{"ground", Vec2::Zero(), 0.0}; },
                 [&](const std::string&) -> BodyGeometry& { return geometry; });
   draw_element(sketch);
   REQUIRE(sketch.shapes().size() == 1);
