@@ -7,7 +7,8 @@ namespace steplap {
 
 StageProgram::StageProgram(const Layout& layout, const State& state, StageCode choice)
     : layout_(&layout), modes_(state.mode.begin(), state.mode.end()),
-      coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), time_count_(time_input_count(layout)), choice_(choice), is_hopeless_(!MachineCode::is_available()) {
+      coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), time_count_(time_input_count(layout)), choice_(choice),
+      is_hopeless_(!MachineCode::is_available()) {
   inputs_.resize(2 * coordinate_count_ + time_count_);
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
 }
@@ -34,7 +35,7 @@ void StageProgram::look_for_code() {
 void StageProgram::give_up() {
   code_ = nullptr;
   stored_.reset();
-  failures_ = 0;
+  failures_ = stages_ = 0;
   is_hopeless_ = tapes_ >= k_most_tapes;
 }
 
