@@ -11,6 +11,7 @@ namespace steplap {
 
 namespace {
 
+constexpr double k_no_share = 1e-6; // of the work: what acts on a body itself and is rounding beside it
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // of the trust region: of the scene's length; rad
 // rad: poses half a turn apart are not to be taken for each other
@@ -295,10 +296,12 @@ bool Descent::has_run_away() {
   runaway_ = largest_part(moved);
   const int driven = 3 * runaway_.body - 3 + runaway_.coordinate;
   driving_force_ = std::abs(statics_.force()[driven]);
-  // What moves along with it drives it, too (a pinion that its own weight turns on its rack): by the work for its share of the way.
+  // Where next to nothing acts on it itself, what moves along with it drives it (a pinion that its own weight turns on its rack): by the
+  // work for its share of the way.
   double work = 0.0;
   for (int k = 0; k < n_; ++k) work += statics_.force()[k] * (state_.q[k + 3] - start_[k + 3]);
-  if (const double way = std::abs(state_.q[driven + 3] - start_[driven + 3]); work > 0.0 && std::isfinite(work / way)) driving_force_ = work / way;
+  const double way = std::abs(state_.q[driven + 3] - start_[driven + 3]);
+  if (driving_force_ * way < k_no_share * work && std::isfinite(work / way)) driving_force_ = work / way;
   return true;
 }
 

@@ -35,10 +35,7 @@ template <class S> struct MechanismWorkOf {
 
   /// q and v of the coordinates to the link's own motion; `all`: those before it are placed.
   STEPLAP_INLINE static void turn(Link& now, const Link* all, const S* q, const S* v) {
-    Motion<S> turn;
-    set_angle(turn, q[now.coordinate]);
-    now.c = turn.c;
-    now.s = turn.s;
+    find_sin_cos(q[now.coordinate], now.s, now.c); // what hangs on a pin turns far: the series of set_angle would seldom do
     now.omega = v[now.coordinate];
     if (now.parent >= 0) {
       const Link& above = all[now.parent];

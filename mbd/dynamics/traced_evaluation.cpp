@@ -16,6 +16,13 @@ constexpr std::size_t k_of_lock = 3, k_of_driven_row = 2;
 // Beyond these the code of an evaluation, some 80 instructions for each, leaves the cache that loops stay in.
 constexpr int k_most_coordinates = 100;
 
+bool is_plain(const System& system, const Layout& layout) {
+  return layout.coordinate_count <= k_most_coordinates && !layout.carriages && !layout.has_long_rows() && system.inner_count() == 0 &&
+         layout.schur.is_small() && !layout.is_singular() && !layout.sharing &&
+         std::all_of(layout.active.begin(), layout.active.end(),
+                     [](const ActiveRow& row) { return row.pull != RowPullKind::other; });
+}
+
 // In the order of Dynamics::rates_at and of the parts that it calls.
 class Tracer {
 public:
@@ -37,7 +44,6 @@ public:
 
   // Throws NotTraceable.
   void trace(double t, const double* y, std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
-    require(is_plain());
     e_.t = t;
     take_inputs(y, time_inputs);
     place();
@@ -53,13 +59,6 @@ public:
 private:
   static void require(bool holds) {
     if (!holds) throw NotTraceable();
-  }
-
-  [[nodiscard]] bool is_plain() const {
-    return layout_.coordinate_count <= k_most_coordinates && !layout_.carriages && !layout_.has_long_rows() &&
-           system_.inner_count() == 0 && layout_.schur.is_small() && !layout_.is_singular() && !layout_.sharing &&
-           std::all_of(layout_.active.begin(), layout_.active.end(),
-                       [](const ActiveRow& row) { return row.pull != RowPullKind::other; });
   }
 
   [[nodiscard]] std::size_t coordinate_count() const { return static_cast<std::size_t>(layout_.coordinate_count); }
@@ -253,6 +252,7 @@ std::size_t time_input_count(const Layout& layout) {
 
 bool trace_rates(const System& system, const Layout& layout, const State& state, double t, const double* y,
                  std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
+  if (!is_plain(system, layout)) return false;
   Traced::start();
   try {
     Tracer(system, layout, state).trace(t, y, time_inputs, least_pivot, traced);

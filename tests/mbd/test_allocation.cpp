@@ -48,7 +48,7 @@ using namespace steplap::testing;
 namespace {
 
 struct Count {
-  long steps = 0, allocating = 0;
+  long steps = 0, allocating = 0, events = 0;
 };
 
 // Steps of a run that neither change a mode nor pass a kink of a signal nor follow on such a one, and those of them
@@ -63,6 +63,7 @@ Count count_allocations(const System& system, SimulationOptions o, double warm) 
     const long restarts = simulation.statistics().events, before = allocations;
     const bool is_on = simulation.advance();
     const long made = allocations - before;
+    count.events = static_cast<long>(simulation.events().size());
     if (!is_on) return count;
     const double t = simulation.state().t;
     // At a kink all modes are decided anew.
@@ -102,9 +103,17 @@ TEST_CASE("no step of the paper's transformer allocates, whatever the method") {
       const bool is_fixed = std::string(integrator) == "rk4" || std::string(integrator) == "moreau";
       SimulationOptions o = options({integrator, 1e-9, 0.8});
       o.settings.step = is_fixed ? 1e-4 : 0.0;
-      const Count count = count_allocations(*system, o, is_fixed ? 0.01 : 0.05);
+      const double warm = is_fixed ? 0.01 : 0.05;
+      o.stage_code = StageCode::never;
+      const Count count = count_allocations(*system, o, warm);
       CHECK(count.steps > 100);
       CHECK(count.allocating == 0);
+      // Writing a stage down and making code of it take memory: each once for a set of modes, of which there are at most as many
+      // as events.
+      o.stage_code = StageCode::when_it_pays;
+      const Count with_code = count_allocations(*system, o, warm);
+      CHECK(with_code.steps == count.steps);
+      CHECK(with_code.allocating <= 2 * (with_code.events + 1));
     }
 }
 
