@@ -24,7 +24,7 @@ using namespace steplap::random;
 namespace {
 
 #ifdef STEPLAP_TESTS_SANITIZED
-constexpr std::uint64_t k_scenes = 8; // ten times as slow
+constexpr std::uint64_t k_scenes = 40; // ten times as slow
 #else
 constexpr std::uint64_t k_scenes = 300;
 #endif
