@@ -178,7 +178,8 @@ class FrictionElement {
 public:
   virtual ~FrictionElement() = default;
   /// What slip_wrench(), watch_slip(), watch_stick() and watch_place() do, on numbers that are written down: with `rate` while
-  /// it slips, then `wrench` is found; else `wrench` is what it bears. False: it cannot.
+  /// it slips, then `wrench` is found; else `wrench` is what it bears. False: it cannot. Of `state` it may use phase, sign and
+  /// foot alone: by these (and modes of units) it is known whether what was written down still holds.
   [[nodiscard]] virtual bool trace_friction(const TracedEvaluation& /*e*/, const FrictionState& /*state*/, const Traced* /*rate*/,
                                             Traced* /*wrench*/, Traced* /*watch*/) const {
     return false;
