@@ -263,6 +263,30 @@ void Dynamics::stage_rates(double t, const double* y, double* dy) {
   program->take_down(system_, *state_, now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data());
 }
 
+StageProgram* Dynamics::lane_program() {
+  StageProgram* const program = stage_programs_.now();
+  if (!program || layout_->smallest_pivot() < k_traced_pivot) return nullptr;
+  program->look_for_lane_code();
+  return program->lane_code() ? program : nullptr;
+}
+
+void Dynamics::stage_time_inputs(const StageProgram& program, double t, double* into) {
+  t = std::min(t, time_cap_);
+  take_time_inputs(t, into);
+  into += program.time_count() - static_cast<int>(program.signals().size());
+  for (const TimeInput& signal : program.signals()) *into++ = signal.at(t);
+}
+
+void Dynamics::take_stage(const StageProgram& program, const double* watches, int stride) {
+  ++evaluations_;
+  ++coded_stages_;
+  rows_.forget_factors();
+  for (const int slot : program.watches()) {
+    watch_[slot] = *watches;
+    watches += stride;
+  }
+}
+
 double Dynamics::mechanical_energy(double t, const double* y) {
   t = std::min(t, time_cap_);
   if (!kinematics_.is_placed(t, y)) kinematics_.place(t, y, y + coordinate_count());

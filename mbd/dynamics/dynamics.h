@@ -76,6 +76,12 @@ public:
   /// by-products may be those of the evaluation before, and factors are forgotten. Near a singular position (k_traced_pivot) it
   /// is rates().
   void stage_rates(double t, const double* y, double* dy);
+  /// What makes stages of several samples side by side; null: nothing does, here and now.
+  [[nodiscard]] StageProgram* lane_program();
+  /// The numbers of time that stages of `program` take at t.
+  void stage_time_inputs(const StageProgram& program, double t, double* into);
+  /// As after stage_rates(), with what was made elsewhere: `watches` of the program's, `stride` places from one to the next.
+  void take_stage(const StageProgram& program, const double* watches, int stride);
   /// From here on stages are made in the modes that state() has now.
   void begin_stages() { stage_programs_.enter(*layout_, *state_); }
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the

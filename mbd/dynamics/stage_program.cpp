@@ -1,13 +1,36 @@
 #include "mbd/dynamics/stage_program.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 namespace steplap {
 
+namespace {
+
+bool agrees_in_all_lanes(const MachineCode& code, const TracedRates& traced) {
+  const auto lanes = static_cast<std::size_t>(code.lanes());
+  static thread_local std::vector<double> inputs, constants, wanted, found; // asked for every tape of every run
+  const auto fill = [lanes](std::vector<double>& columns, const std::vector<double>& x) {
+    columns.resize(std::max(columns.size(), x.size() * lanes));
+    double* to = columns.data();
+    for (const double value : x) to = std::fill_n(to, lanes, value);
+  };
+  fill(inputs, traced.inputs);
+  fill(constants, traced.tape.constants);
+  fill(wanted, traced.outputs);
+  found.resize(wanted.size());
+  const unsigned holds = code.run(inputs.data(), constants.data(), found.data());
+  return holds == (1U << lanes) - 1U &&
+         std::memcmp(found.data(), wanted.data(), traced.outputs.size() * lanes * sizeof(double)) == 0;
+}
+
+} // namespace
+
 StageProgram::StageProgram(const Layout& layout, const State& state, StageCode choice)
     : layout_(&layout), modes_(state.mode.begin(), state.mode.end()),
       coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), time_count_(time_input_count(layout)), choice_(choice),
+      settled_(choice == StageCode::at_once ? 0 : choice == StageCode::of_ensemble ? k_settled_of_ensemble : k_settled),
       is_hopeless_(!MachineCode::is_available()) {
   inputs_.resize(2 * coordinate_count_ + time_count_);
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
@@ -32,8 +55,26 @@ void StageProgram::look_for_code() {
   }
 }
 
+void StageProgram::look_for_lane_code() {
+  if (lane_code_ || !stored_) return;
+  const MachineCode* const made = choice_ == StageCode::at_once ? stored_->make_lanes() : stored_->lane_code();
+  if (!made) return;
+  if (agrees_in_all_lanes(*made, traced_)) {
+    lane_code_ = made;
+  } else {
+    give_up();
+    is_hopeless_ = true;
+  }
+}
+
+std::vector<int> StageProgram::lock_coordinates() const {
+  std::vector<int> all;
+  for (const Lock& lock : layout_->locks) all.push_back(3 * lock.cluster + lock.coordinate);
+  return all;
+}
+
 void StageProgram::give_up() {
-  code_ = nullptr;
+  code_ = lane_code_ = nullptr;
   stored_.reset();
   failures_ = stages_ = 0;
   is_hopeless_ = tapes_ >= k_most_tapes;
@@ -68,6 +109,13 @@ void StageProgram::take_down(const System& system, const State& state, double t,
   is_hopeless_ = true; // unless it is found to be the same to the bit
   ++tapes_;
   const std::size_t n = coordinate_count_;
+  // Steps are kept by the store alone, and their memory for the next tape: a run has dozens of sets of modes.
+  static thread_local std::vector<TapeStep> steps;
+  traced_.tape.steps.swap(steps);
+  struct GiveBack {
+    std::vector<TapeStep>& from;
+    ~GiveBack() { from.swap(steps); }
+  } const give_back{traced_.tape.steps};
   if (!trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_)) return;
   const double* out = traced_.outputs.data();
   const auto is_same = [&out](double x) { return std::memcmp(out++, &x, sizeof x) == 0; };
@@ -77,6 +125,8 @@ void StageProgram::take_down(const System& system, const State& state, double t,
     if (!is_same(watch[slot])) return;
   for (const int slot : traced_.watch_rates)
     if (!is_same(watch_rate[slot])) return;
+  static std::atomic<std::uint64_t> tapes{0};
+  tape_number_ = ++tapes;
   is_hopeless_ = false;
   inputs_.resize(2 * n + time_count_ + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());

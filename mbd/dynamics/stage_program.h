@@ -24,6 +24,7 @@ enum class StageCode : std::uint8_t {
   never,
   when_it_pays, ///< once a set of modes has lasted, and code for its tape would have paid
   at_once,      ///< from the second stage on
+  of_ensemble,  ///< once a set of modes has lasted two tries of a step: other samples are in it as well
 };
 
 /// Of one layout in one set of modes.
@@ -40,9 +41,26 @@ public:
   /// Where run() takes the layout's numbers of time, in the order of traced_evaluation.h.
   [[nodiscard]] double* time_inputs() { return inputs_.data() + 2 * coordinate_count_; }
 
+  // --- for several samples side by side (mbd/integrators/lane_try.h) ---------------------------------------------------------
+  /// Code for several lanes may have been made since. It is used if in every lane it makes of the stage that was written down what
+  /// that has made.
+  void look_for_lane_code();
+  [[nodiscard]] const MachineCode* lane_code() const { return lane_code_; }
+  [[nodiscard]] int coordinate_count() const { return static_cast<int>(coordinate_count_); }
+  /// Inputs behind coordinates and rates: the layout's numbers of time, signals.
+  [[nodiscard]] int time_count() const { return static_cast<int>(time_count_ + traced_.signals.size()); }
+  [[nodiscard]] int output_count() const { return static_cast<int>(traced_.outputs.size()); }
+  [[nodiscard]] const std::vector<TimeInput>& signals() const { return traced_.signals; }
+  [[nodiscard]] const std::vector<int>& watches() const { return traced_.watches; }
+  [[nodiscard]] const std::vector<double>& constants() const { return traced_.tape.constants; }
+  /// Of driven coordinates, in the order of their numbers of time.
+  [[nodiscard]] std::vector<int> lock_coordinates() const;
+  /// Another one for every tape written down in this process; 0: none was.
+  [[nodiscard]] std::uint64_t tape_number() const { return tape_number_; }
+
   /// Have the modes lasted, so that the stage that follows is to be written down?
   [[nodiscard]] bool wants_stage() const {
-    return !is_hopeless_ && !stored_ && (stages_ >= k_settled || choice_ == StageCode::at_once);
+    return !is_hopeless_ && !stored_ && stages_ >= settled_;
   }
   /// After a stage that was evaluated as ever: counts it.
   void note_stage();
@@ -57,8 +75,8 @@ private:
   /// After so many failures in a row another branch is the usual one (angles that grow beyond the series of their sines): it is
   /// written down anew, but not for ever.
   static constexpr int k_most_failures = 16, k_most_tapes = 8;
-  /// Writing a stage down takes as long as code saves in so many.
-  static constexpr int k_settled = 120;
+  /// Writing a stage down takes as long as code saves in so many; lanes save more, but are not sure to be filled.
+  static constexpr int k_settled = 120, k_settled_of_ensemble = 20;
 
   struct Friction {
     FrictionPhase phase;
@@ -73,10 +91,13 @@ private:
   TracedRates traced_;
   std::shared_ptr<StoredCode> stored_; ///< null until it is written down
   const MachineCode* code_ = nullptr;
+  const MachineCode* lane_code_ = nullptr;
+  std::uint64_t tape_number_ = 0;
   std::vector<double> inputs_, outputs_;
   std::size_t coordinate_count_ = 0, time_count_ = 0;
   int stages_ = 0, failures_ = 0, tapes_ = 0; ///< failures: since it last held
   StageCode choice_;
+  int settled_; ///< stages after which it is written down
   bool is_hopeless_ = false;
 };
 

@@ -46,11 +46,21 @@ public:
     if (implicit_) implicit_->limit_step(longest);
   }
 
-  void step(Dynamics& dynamics, double t_limit) override {
+  void step(Dynamics& dynamics, double t_limit) override { step_by_parts(dynamics, t_limit); }
+
+  void begin_step(Dynamics& dynamics, double t_limit) override {
     choose(dynamics);
     if (!is_started_) active_->restart(dynamics, t0_, y0_.data());
     is_started_ = true;
-    active_->step(dynamics, t_limit);
+    active_->begin_step(dynamics, t_limit);
+  }
+
+  void make_try(Dynamics& dynamics) override { active_->make_try(dynamics); }
+
+  [[nodiscard]] LaneTry* lane_try() override { return active_->lane_try(); }
+
+  [[nodiscard]] bool conclude_try(Dynamics& dynamics) override {
+    if (!active_->conclude_try(dynamics)) return false;
     t1_ = active_->t1();
     h_ = active_->h();
     std::copy(active_->y1(), active_->y1() + n_, y1_.begin());
@@ -61,6 +71,7 @@ public:
     residual_.position = std::max(residual_.position, active_->max_position_residual());
     residual_.velocity = std::max(residual_.velocity, active_->max_velocity_residual());
     judge(dynamics);
+    return true;
   }
 
   void dense(Dynamics& dynamics, double theta, double* out) override { active_->dense(dynamics, theta, out); }

@@ -1,12 +1,15 @@
 // The explicit pair of order 8 of Dormand and Prince (DOP853) with its dense output of order 7, whose
 // three extra evaluations are made only for steps that are looked into.
 #include "mbd/integrators/explicit_pair.h"
+#include "mbd/integrators/lane_try.h"
 #include "mbd/integrators/methods.h"
 #include "mbd/integrators/tableau_dop853.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <stdexcept>
 
 namespace steplap {
 
@@ -20,7 +23,7 @@ constexpr std::size_t k_looked_stage = 14;
 constexpr double k_most_departure = 5.0;
 constexpr double k_most_defect = 10.0; // of accurate steps about 1: an eighth of the polynomial's error, times hρ
 
-class Dop853 final : public ExplicitPair {
+class Dop853 final : public ExplicitPair, public LaneTry {
 public:
   Dop853(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
       : ExplicitPair(dynamics, settings, max_dimension, 16, 8), r_(7 * max_dimension) {
@@ -53,6 +56,26 @@ public:
     return rate_of_stages(12, 11, y) / 6.1; // stable for hρ up to 6.1 on the negative axis
   }
 
+  [[nodiscard]] LaneTry* lane_try() override { return this; }
+  [[nodiscard]] Given given() const override { return {t0_, h_, n_, y0_.data(), k0_, weight_.data()}; }
+  void take(Dynamics& dynamics, const LaneColumns& made, int lane) override {
+    is_dense_ready_ = false;
+    const StageProgram& program = *dynamics.lane_program();
+    const int lanes = made.lanes();
+    for (int s = 1; s <= k_lane_stages; ++s) {
+      const auto stage = static_cast<std::size_t>(s);
+      gather(made.rates(s, lane), lanes, k(stage));
+      const double theta = dop853::c[stage];
+      if (dynamics.looks_at_merged(is_merged_look_due(theta))) look_at_stage(dynamics, made.state(s, lane), lanes, stage);
+      else dynamics.take_stage(program, made.watches(s, lane), lanes);
+      note_stage_watches(dynamics, k(stage), theta);
+    }
+    gather(made.end(lane), lanes, y1_.data());
+    try_error_ = dynamics.is_near_singular()
+                     ? error_of_stages(dynamics)
+                     : error_of(std::sqrt(made.fifth(lane) / n_), std::sqrt(made.third(lane) / n_));
+  }
+
 protected:
   double try_step(Dynamics& dynamics) override {
     using namespace dop853;
@@ -61,12 +84,7 @@ protected:
       (stage<a, I + 1>(dynamics, c[I + 1]), ...);
     }(std::make_index_sequence<11>{});
     combine<a, 12, 12>(y0_.data(), h_, k_.data(), stride_, n_, y1_.data());
-    weighted_sum<e5, 12>(k_.data(), stride_, n_, scratch_.data());
-    const double fifth = projected_error_norm(dynamics, scratch_.data());
-    weighted_sum<e3, 12>(k_.data(), stride_, n_, scratch_.data());
-    const double third = projected_error_norm(dynamics, scratch_.data());
-    const double denominator = std::sqrt(fifth * fifth + 0.01 * third * third);
-    return denominator > 0.0 ? h_ * fifth * fifth / denominator : h_ * fifth;
+    return error_of_stages(dynamics);
   }
 
   [[nodiscard]] double dense_error(Dynamics& dynamics) override {
@@ -77,6 +95,34 @@ protected:
   }
 
 private:
+  [[nodiscard]] double error_of_stages(Dynamics& dynamics) {
+    using namespace dop853;
+    weighted_sum<e5, 12>(k_.data(), stride_, n_, scratch_.data());
+    const double fifth = projected_error_norm(dynamics, scratch_.data());
+    weighted_sum<e3, 12>(k_.data(), stride_, n_, scratch_.data());
+    return error_of(fifth, projected_error_norm(dynamics, scratch_.data()));
+  }
+  [[nodiscard]] double error_of(double fifth, double third) const {
+    const double denominator = std::sqrt(fifth * fifth + 0.01 * third * third);
+    return denominator > 0.0 ? h_ * fifth * fifth / denominator : h_ * fifth;
+  }
+
+  void gather(const double* column, int lanes, double* to) const {
+    for (int i = 0; i < n_; ++i) to[i] = column[static_cast<std::ptrdiff_t>(i) * lanes];
+  }
+
+  // A stage that was made elsewhere is evaluated for its merged joints.
+  void look_at_stage(Dynamics& dynamics, const double* state, int lanes, std::size_t stage) {
+    double* const y = scratch_.data();
+    double* const f = y + n_;
+    for (int i = 0; i < n_ - 2; ++i) y[i] = state[static_cast<std::ptrdiff_t>(i) * lanes];
+    y[n_ - 2] = y0_[n_ - 2]; // energies, on which no rate hangs
+    y[n_ - 1] = y0_[n_ - 1];
+    dynamics.rates(t0_ + dop853::c[stage] * h_, y, f);
+    if (std::memcmp(f, k(stage), static_cast<std::size_t>(n_) * sizeof(double)) != 0)
+      throw std::logic_error("a stage made in lanes is not what its evaluation makes");
+  }
+
   void prepare_dense(Dynamics& dynamics) {
     using namespace dop853;
     stage<a, 13>(dynamics, c[13]);

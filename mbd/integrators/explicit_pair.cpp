@@ -1,7 +1,6 @@
 #include "mbd/integrators/explicit_pair.h"
 
 #include "mbd/base/shown_text.h"
-#include "mbd/integrators/singular_passage.h"
 #include "mbd/math/portable_math.h"
 
 #include <limits>
@@ -12,10 +11,6 @@ namespace {
 
 constexpr double k_shortest_retry = 0.1;
 constexpr double k_shorter = 0.2; // after a step that came to nothing
-// A step with a stage nearer than this (a square, rad²) to a singular position is made by collocation.
-constexpr double k_crossed_pivot = 2e-2;
-// Unless it begins so near that it would have to be tiny.
-constexpr double k_closest_start = 4e-4;
 // Rounding beside a singular position keeps stages from agreeing to tolerances below this one only.
 constexpr double k_near_rounding = 1e-10;
 // Of the way to the position: where the next attempt begins if one fails.
@@ -34,7 +29,7 @@ ExplicitPair::ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& s
 // The step size survives an event: what limited it was the motion, which goes on much the same.
 void ExplicitPair::on_restart(Dynamics&) {
   control_.previous_error = 1e-4;
-  start_pivot_ = highest_pivot_ = 1.0;
+  approach_.restart();
 }
 
 double ExplicitPair::shorter(double error) const {
@@ -44,24 +39,8 @@ double ExplicitPair::shorter(double error) const {
 
 void ExplicitPair::note_end(double pivot) {
   ++steps_;
-  before_.start_pivot = start_pivot_;
-  before_.highest_pivot = highest_pivot_;
-  // The first step's end tells what is usual here.
-  const bool is_first = highest_pivot_ == 1.0;
-  start_pivot_ = pivot;
-  highest_pivot_ = is_first ? start_pivot_ : std::max(highest_pivot_, start_pivot_);
-}
-
-SingularCrossing::Step ExplicitPair::crossing_step(Dynamics& dynamics) {
-  SingularCrossing::Step step;
-  step.t0 = t0_;
-  step.h = h_;
-  step.y0 = y0_.data();
-  step.rate0 = k0_;
-  step.n = n_;
-  step.norm = [this](const double* error) { return error_norm(error); };
-  step.note_stage = [this, &dynamics](const double* rates, double theta) { note_stage_watches(dynamics, rates, theta); };
-  return step;
+  before_.approach = approach_;
+  approach_.note_end(pivot);
 }
 
 // Beside a singular position of joints what projection takes away is no error, and most of what stages differ by.
@@ -82,8 +61,7 @@ bool ExplicitPair::bears_look(Dynamics& dynamics) {
   if (inside <= 1.0) return true;
   --steps_;
   ++rejections_;
-  start_pivot_ = before_.start_pivot;
-  highest_pivot_ = before_.highest_pivot;
+  approach_ = before_.approach;
   control_.previous_error = before_.error;
   next_h_ = h_ * shorter(inside);
   refuse_shorter_than_rounding(next_h_);
@@ -94,13 +72,6 @@ bool ExplicitPair::bears_look(Dynamics& dynamics) {
 void ExplicitPair::dense(Dynamics& dynamics, double theta, double* out) {
   if (is_crossing_) crossing_->dense(theta, crossing_step(dynamics), out);
   else dense_of_pair(dynamics, theta, out);
-}
-
-// Falling towards a singular position, not merely small all the time?
-bool ExplicitPair::comes_near_singularity(const Dynamics& dynamics) const {
-  const double lowest = dynamics.lowest_pivot();
-  return lowest < k_crossed_pivot && lowest < start_pivot_ && lowest < 0.5 * highest_pivot_ &&
-         start_pivot_ > k_closest_start;
 }
 
 // After a try that came near a singular position: the same way in one step of another kind, the position in
@@ -123,67 +94,70 @@ double ExplicitPair::cross_singularity(Dynamics& dynamics, double left) {
   return is_crossing_ ? 0.0 : std::min(h_tried, k_closer * ahead);
 }
 
-void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
-  const double left = t_limit - t0_;
-  const double h_max = limited(left);
+void ExplicitPair::begin_step(Dynamics& dynamics, double t_limit) {
+  Integrator::begin_step(dynamics, t_limit);
+  attempt_.left = t_limit - t0_;
+  const double h_max = limited(attempt_.left);
   if (next_h_ <= 0.0) next_h_ = first_step(dynamics, order_ - 1, h_max);
   update_weights(dynamics);
-  double h = std::min(next_h_, h_max);
-  SingularPassage passage(dynamics);
-  if (is_restarted_) h = restrained_step(dynamics, h);
-  bool has_tried_crossing = false;
-  for (bool is_retry = false;; is_retry = true) {
-    const bool is_last = h >= left * (1.0 - 1e-10);
-    // Two even steps rather than a long one and a sliver.
-    h_ = is_last ? left : (2.0 * h > left ? 0.5 * left : h);
-    t1_ = is_last ? t_limit : t0_ + h_;
-    begin_watch_nodes();
-    passage.begin_try();
-    is_crossing_ = is_inside_known_ = false;
-    const double error = try_step(dynamics);
-    if (!has_tried_crossing && comes_near_singularity(dynamics)) [[unlikely]] {
-      has_tried_crossing = true;
-      const double h_next = cross_singularity(dynamics, left);
-      if (h_next == 0.0 && try_finish_step(dynamics)) {
-        note_end(dynamics.layout().smallest_pivot());
-        return;
-      }
-      h = h_next == 0.0 ? k_shorter * h_ : h_next;
-      continue;
+  attempt_.h = std::min(next_h_, h_max);
+  attempt_.passage.emplace(dynamics);
+  if (is_restarted_) attempt_.h = restrained_step(dynamics, attempt_.h);
+  attempt_.is_retry = attempt_.has_tried_crossing = false;
+  prepare_try();
+}
+
+void ExplicitPair::prepare_try() {
+  const double h = attempt_.h, left = attempt_.left;
+  attempt_.is_last = h >= left * (1.0 - 1e-10);
+  // Two even steps rather than a long one and a sliver.
+  h_ = attempt_.is_last ? left : (2.0 * h > left ? 0.5 * left : h);
+  t1_ = attempt_.is_last ? t_limit_ : t0_ + h_;
+  begin_watch_nodes();
+  attempt_.passage->begin_try();
+  is_crossing_ = is_inside_known_ = false;
+}
+
+bool ExplicitPair::accept_inside(Dynamics& dynamics, double& inside) {
+  const double pivot = dynamics.layout().smallest_pivot();
+  is_beside_singular_ = approach_.is_beside(dynamics.lowest_pivot());
+  if (are_looks_expected()) inside = error_inside(dynamics);
+  if (inside > 1.0) return false;
+  before_.error = control_.previous_error;
+  const double factor = control_.factor(std::max(try_error_, inside), attempt_.is_retry);
+  // A step cut short by the limit says nothing against the longer one that was planned.
+  next_h_ = h_ < attempt_.h ? std::max(attempt_.h, h_ * factor) : h_ * factor;
+  note_end(pivot);
+  return true;
+}
+
+bool ExplicitPair::conclude_try(Dynamics& dynamics) {
+  if (!attempt_.has_tried_crossing && approach_.is_ahead(dynamics.lowest_pivot())) [[unlikely]] {
+    attempt_.has_tried_crossing = true;
+    const double h_next = cross_singularity(dynamics, attempt_.left);
+    if (h_next == 0.0 && try_finish_step(dynamics)) {
+      note_end(dynamics.layout().smallest_pivot());
+      return true;
     }
-    if (error <= 1.0 && !is_last && passage.wants_other_end()) {
-      ++rejections_;
-      h = SingularPassage::k_shorter_end * h_;
-      continue;
-    }
-    double inside = 0.0;
-    if (error <= 1.0) {
-      if (!try_finish_step(dynamics)) {
-        ++rejections_;
-        h = k_shorter * h_;
-        continue;
-      }
-      const double pivot = dynamics.layout().smallest_pivot();
-      const double lowest = dynamics.lowest_pivot();
-      is_beside_singular_ = lowest < k_crossed_pivot && lowest < 0.5 * highest_pivot_;
-      if (are_looks_expected()) inside = error_inside(dynamics);
-      if (inside <= 1.0) {
-        before_.error = control_.previous_error;
-        const double factor = control_.factor(std::max(error, inside), is_retry);
-        // A step cut short by the limit says nothing against the longer one that was planned.
-        next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
-        note_end(pivot);
-        return;
-      }
-    }
-    ++rejections_;
-    if (inside <= 1.0 && passage.wants_other_stages()) {
-      h = SingularPassage::k_shorter_across * h_;
-      continue;
-    }
-    h = h_ * shorter(std::max(error, inside));
-    refuse_shorter_than_rounding(h);
+    return try_again(h_next == 0.0 ? k_shorter * h_ : h_next);
   }
+  if (try_error_ <= 1.0 && !attempt_.is_last && attempt_.passage->wants_other_end()) {
+    ++rejections_;
+    return try_again(SingularPassage::k_shorter_end * h_);
+  }
+  double inside = 0.0;
+  if (try_error_ <= 1.0) {
+    if (!try_finish_step(dynamics)) {
+      ++rejections_;
+      return try_again(k_shorter * h_);
+    }
+    if (accept_inside(dynamics, inside)) return true;
+  }
+  ++rejections_;
+  if (inside <= 1.0 && attempt_.passage->wants_other_stages()) return try_again(SingularPassage::k_shorter_across * h_);
+  const double h = h_ * shorter(std::max(try_error_, inside));
+  refuse_shorter_than_rounding(h);
+  return try_again(h);
 }
 
 } // namespace steplap

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "mbd/integrators/explicit_runge_kutta.h"
-#include "mbd/integrators/singular_crossing.h"
+#include "mbd/integrators/singular_passage.h"
+
+#include <optional>
 
 namespace steplap {
 
@@ -17,7 +19,10 @@ public:
   ExplicitPair(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension,
                int stages, int order);
   [[nodiscard]] bool is_adaptive() const override { return true; }
-  void step(Dynamics& dynamics, double t_limit) override;
+  void step(Dynamics& dynamics, double t_limit) override { step_by_parts(dynamics, t_limit); }
+  void begin_step(Dynamics& dynamics, double t_limit) override;
+  void make_try(Dynamics& dynamics) override { try_error_ = try_step(dynamics); }
+  [[nodiscard]] bool conclude_try(Dynamics& dynamics) override;
   [[nodiscard]] bool bears_look(Dynamics& dynamics) final;
   void dense(Dynamics& dynamics, double theta, double* out) final;
   [[nodiscard]] double stability_share(Dynamics& dynamics) final {
@@ -56,27 +61,45 @@ protected:
   std::vector<double> k_;
   int stride_;
 
+  double try_error_ = 0.0; ///< of the try made last
+
 private:
-  [[nodiscard]] bool comes_near_singularity(const Dynamics& dynamics) const;
+  /// Of the step that is being tried.
+  struct Attempt {
+    double left = 0.0;   ///< to the limit, s
+    double h = 0.0;      ///< that is wanted, before it is cut to end well
+    bool is_last = false, is_retry = false, has_tried_crossing = false;
+    std::optional<SingularPassage> passage;
+  };
+  void prepare_try();
+  /// Is the step, whose end was finished, as good inside as at its end? Then it is noted.
+  [[nodiscard]] bool accept_inside(Dynamics& dynamics, double& inside);
   double cross_singularity(Dynamics& dynamics, double left);
   void note_end(double pivot);
   [[nodiscard]] double error_inside(Dynamics& dynamics);
   void refuse_shorter_than_rounding(double h) const;
   [[nodiscard]] double shorter(double error) const;
-  [[nodiscard]] SingularCrossing::Step crossing_step(Dynamics& dynamics);
+  /// The next try takes h.
+  bool try_again(double h) {
+    attempt_.h = h;
+    attempt_.is_retry = true;
+    prepare_try();
+    return false;
+  }
 
   StepControl control_;
   int order_;
   double next_h_ = 0.0;
+  Attempt attempt_;
   std::unique_ptr<SingularCrossing> crossing_; ///< made where one is met
-  double start_pivot_ = 1.0;                   ///< of the constraints at t0, 1: not known
-  double highest_pivot_ = 1.0;                 ///< since the last restart
-  bool is_crossing_ = false;                   ///< the step made is one
-  bool is_inside_known_ = false;               ///< of the step made: it bears a look
-  bool is_beside_singular_ = false;            ///< the step made is
+  SingularApproach approach_;
+  bool is_crossing_ = false;        ///< the step made is one
+  bool is_inside_known_ = false;    ///< of the step made: it bears a look
+  bool is_beside_singular_ = false; ///< the step made is
   /// What was before the step made, if it is withdrawn.
   struct Before {
-    double start_pivot = 1.0, highest_pivot = 1.0, error = 1e-4;
+    SingularApproach approach;
+    double error = 1e-4;
   };
   Before before_;
 };

@@ -81,6 +81,33 @@ double Integrator::rate_accuracy(const Dynamics& dynamics) const {
 
 bool Integrator::end_at(Dynamics&, double) { return false; }
 
+void Integrator::begin_step(Dynamics&, double t_limit) { t_limit_ = t_limit; }
+
+void Integrator::make_try(Dynamics&) {}
+
+bool Integrator::conclude_try(Dynamics& dynamics) {
+  step(dynamics, t_limit_);
+  return true;
+}
+
+void Integrator::step_by_parts(Dynamics& dynamics, double t_limit) {
+  begin_step(dynamics, t_limit);
+  do make_try(dynamics);
+  while (!conclude_try(dynamics));
+}
+
+SingularCrossing::Step Integrator::crossing_step(Dynamics& dynamics) {
+  SingularCrossing::Step step;
+  step.t0 = t0_;
+  step.h = h_;
+  step.y0 = y0_.data();
+  step.rate0 = k0_;
+  step.n = n_;
+  step.norm = [this](const double* error) { return error_norm(error); };
+  step.note_stage = [this, &dynamics](const double* rates, double theta) { note_stage_watches(dynamics, rates, theta); };
+  return step;
+}
+
 void Integrator::accept() {
   t0_ = t1_;
   std::swap(y0_, y1_);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/watch_nodes.h"
 
 #include <algorithm>
@@ -16,6 +17,8 @@
 #include <vector>
 
 namespace steplap {
+
+class LaneTry;
 
 struct IntegratorSettings {
   double tolerance = 1e-8;            ///< relative local error of adaptive methods
@@ -49,6 +52,13 @@ public:
   static constexpr double k_largest_turn = 1.6;
   /// Makes one step of at most t_limit − t. Throws NumericalFailure where no step can be made.
   virtual void step(Dynamics& dynamics, double t_limit) = 0;
+  /// The same in parts, so that tries of several samples can be made side by side (mbd/ensemble): begin_step(), then make_try() and
+  /// conclude_try() in turn until the step is made. A method without tries makes its step in the last.
+  virtual void begin_step(Dynamics& dynamics, double t_limit);
+  virtual void make_try(Dynamics& dynamics);
+  [[nodiscard]] virtual bool conclude_try(Dynamics& dynamics);
+  /// The try that is due, where it may be made by others and taken instead of make_try(); null: it may not.
+  [[nodiscard]] virtual LaneTry* lane_try() { return nullptr; }
   /// Ends the step just made at theta of it, anew as a step of its own. Fixed steps do where forces have a kink behind
   /// the event; no error estimate has shortened them. False: it was left as it is.
   virtual bool end_at(Dynamics& dynamics, double theta);
@@ -126,6 +136,10 @@ protected:
   /// near the step's end.
   [[nodiscard]] double projected_error_norm(Dynamics& dynamics, double* error) const;
   [[nodiscard]] double first_step(Dynamics& dynamics, int order, double h_max);
+  /// The step of h_ from t0_ for a crossing of a singular position.
+  [[nodiscard]] SingularCrossing::Step crossing_step(Dynamics& dynamics);
+  /// step() by its parts.
+  void step_by_parts(Dynamics& dynamics, double t_limit);
   /// h, or as much of it as the forces of the present modes allow without stopping and turning the motion: what
   /// limited the steps before an event knew nothing of them. After update_weights.
   [[nodiscard]] double restrained_step(Dynamics& dynamics, double h);
@@ -136,6 +150,7 @@ protected:
   bool is_restarted_ = false; ///< no step was made since
   bool are_looks_expected_ = true;
   double t0_ = 0.0, t1_ = 0.0, h_ = 0.0;
+  double t_limit_ = 0.0; ///< of begin_step()
   std::vector<double> y0_, y1_, weight_, scratch_;
   double* k0_ = nullptr;
   double* k1_ = nullptr;

@@ -30,9 +30,6 @@ namespace {
 
 constexpr double k_time_step = 1.0 / 32.0; // of h, between the points of ∂F/∂t
 constexpr double k_share_of_cube = 0.1;
-// A step with a stage nearer than this (a square, rad²) to a singular position is made by collocation, unless it begins so
-// near that it would have to be tiny: as explicit pairs have it.
-constexpr double k_crossed_pivot = 2e-2, k_closest_start = 4e-4;
 const double k_lobatto[2] = {0.5 - std::sqrt(0.05), 0.5 + std::sqrt(0.05)};
 
 class Rodas5p final : public Integrator {
@@ -60,7 +57,7 @@ public:
 protected:
   void on_restart(Dynamics&) override {
     control_.previous_error = 1e-4;
-    start_pivot_ = highest_pivot_ = 1.0;
+    approach_.restart();
   }
 
 private:
@@ -69,8 +66,6 @@ private:
   void find_time_slope(Dynamics& dynamics);
   void finish_powers(Dynamics& dynamics);
   void interpolate(double theta, double* out);
-  SingularCrossing::Step crossing_step(Dynamics& dynamics);
-  [[nodiscard]] bool comes_near_singularity(const Dynamics& dynamics) const;
   bool cross_singularity(Dynamics& dynamics, double left);
   void note_end(const Dynamics& dynamics);
   static double power_integral(double theta, const double* power);
@@ -85,8 +80,8 @@ private:
   StepControl control_;
   double next_h_ = 0.0;
   std::unique_ptr<SingularCrossing> crossing_; ///< made where one is met
-  double start_pivot_ = 1.0, highest_pivot_ = 1.0; ///< of the constraints at t0, and since the last restart; 1: not known
-  bool is_crossing_ = false;                       ///< the step made is one
+  SingularApproach approach_;
+  bool is_crossing_ = false; ///< the step made is one
 };
 
 // ∂F/∂t at (t0, y0) from five points forward (order 4).
@@ -200,24 +195,6 @@ double Rodas5p::error_of_powers() const {
   return worst / std::sqrt(static_cast<double>(n_)); // as part of the norm
 }
 
-SingularCrossing::Step Rodas5p::crossing_step(Dynamics& dynamics) {
-  SingularCrossing::Step step;
-  step.t0 = t0_;
-  step.h = h_;
-  step.y0 = y0_.data();
-  step.rate0 = k0_;
-  step.n = n_;
-  step.norm = [this](const double* error) { return error_norm(error); };
-  step.note_stage = [this, &dynamics](const double* rates, double theta) { note_stage_watches(dynamics, rates, theta); };
-  return step;
-}
-
-// Falling towards a singular position, not merely small all the time?
-bool Rodas5p::comes_near_singularity(const Dynamics& dynamics) const {
-  const double lowest = dynamics.lowest_pivot();
-  return lowest < k_crossed_pivot && lowest < start_pivot_ && lowest < 0.5 * highest_pivot_ && start_pivot_ > k_closest_start;
-}
-
 // After a try that came near a singular position: the same way in one step of another kind, the position in a gap of its
 // stages. True if that step was made.
 bool Rodas5p::cross_singularity(Dynamics& dynamics, double left) {
@@ -234,8 +211,7 @@ bool Rodas5p::cross_singularity(Dynamics& dynamics, double left) {
 
 void Rodas5p::note_end(const Dynamics& dynamics) {
   ++steps_;
-  start_pivot_ = dynamics.layout().active.empty() ? 1.0 : dynamics.layout().smallest_pivot();
-  highest_pivot_ = highest_pivot_ == 1.0 ? start_pivot_ : std::max(highest_pivot_, start_pivot_);
+  approach_.note_end(dynamics.layout().active.empty() ? 1.0 : dynamics.layout().smallest_pivot());
 }
 
 void Rodas5p::step(Dynamics& dynamics, double t_limit) {
@@ -255,7 +231,7 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
     t1_ = is_last ? t_limit : t0_ + h_;
     dynamics.forget_pivots();
     double error = try_step(dynamics);
-    if (!has_tried_crossing && comes_near_singularity(dynamics)) [[unlikely]] {
+    if (!has_tried_crossing && approach_.is_ahead(dynamics.lowest_pivot())) [[unlikely]] {
       has_tried_crossing = true;
       if (cross_singularity(dynamics, left)) return note_end(dynamics);
       continue;

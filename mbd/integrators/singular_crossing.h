@@ -10,11 +10,36 @@
 
 #include "mbd/dynamics/dynamics.h"
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <vector>
 
 namespace steplap {
+
+/// How near to a singular position of the joints steps have come: pivots of the constraints (Dynamics::lowest_pivot),
+/// squares of distances in rad². Copied to be taken back with a step.
+class SingularApproach {
+public:
+  void restart() { start_ = highest_ = 1.0; }
+  /// A step was made that has this smallest pivot at its end.
+  void note_end(double pivot) {
+    const bool is_first = highest_ == 1.0; // the first step's end tells what is usual here
+    start_ = pivot;
+    highest_ = is_first ? pivot : std::max(highest_, pivot);
+  }
+  /// Came a step whose lowest pivot this is so near that rounding rules its stages?
+  [[nodiscard]] bool is_beside(double lowest) const { return lowest < k_crossed_pivot && lowest < 0.5 * highest_; }
+  /// Is it to be crossed by collocation: falling towards a singular position, not merely small all the time, and not so near
+  /// at the start that the step would have to be tiny?
+  [[nodiscard]] bool is_ahead(double lowest) const { return is_beside(lowest) && lowest < start_ && start_ > k_closest_start; }
+
+private:
+  static constexpr double k_crossed_pivot = 2e-2, k_closest_start = 4e-4;
+
+  double start_ = 1.0;   ///< at t0, 1: not known
+  double highest_ = 1.0; ///< since the last restart
+};
 
 class SingularCrossing {
 public:

@@ -319,32 +319,56 @@ void Simulation::look_for_extremes(long evaluations, bool is_last) {
   extremes_->add_step(*integrator_, dynamics_, is_at_end, is_last);
 }
 
-// False: in other coordinates first.
-bool Simulation::make_step(double limit) {
+bool Simulation::begin_advance() {
+  if (is_over()) return false;
+  integrator_->begin_step(dynamics_, next_limit());
+  return true;
+}
+
+void Simulation::load_try(LaneColumns& columns, int lane) {
+  const StageProgram& program = *lane_program();
+  columns.begin(program);
+  columns.load(lane, integrator_->lane_try()->given(), dynamics_, program);
+}
+
+bool Simulation::conclude_try() {
+  bool is_made = false;
   try {
-    integrator_->step(dynamics_, limit);
-    return true;
+    is_made = integrator_->conclude_try(dynamics_);
   } catch (const JointsNearSingular&) { // rounding is spread otherwise over places and angles
     state_ = current_state();
     options_.coordinates = Coordinates::absolute;
     dynamics_.use_coordinates(Coordinates::absolute);
     restart();
-    return false;
+    return true;
   }
+  return is_made && pass_step();
 }
 
 bool Simulation::advance() {
-  if (state_.t >= options_.end || !handler_.stop_reason().empty()) return false;
+  if (!begin_advance()) return false;
+  do make_try();
+  while (!conclude_try());
+  return !is_over();
+}
+
+// Events in the step made, its samples, its end. False: the step is withdrawn, and another try of it due.
+bool Simulation::pass_step() {
   const double limit = next_limit();
-  if (!make_step(limit)) return true;
   constexpr long k_now_and_then = 64; // steps: also where no sample is due for long
   if (options_.progress && integrator_->steps() % k_now_and_then == 0) options_.progress(state_.t);
   const long evaluations = dynamics_.evaluations();
   guard_against_crawl();
-  if (integrator_->stepped_state()) return pass_stepped();
+  if (integrator_->stepped_state()) {
+    pass_stepped();
+    return true;
+  }
   check_finite();
   const bool is_event = finder_.find(*integrator_, dynamics_, handler_.fresh());
-  if (finder_.is_step_withdrawn()) return advance();
+  if (finder_.is_step_withdrawn()) {
+    integrator_->begin_step(dynamics_, limit);
+    return false;
+  }
   if (is_event) {
     const double t = integrator_->t0() + finder_.theta() * integrator_->h();
     const bool is_ended = are_joints(finder_.fired()) && integrator_->end_at(dynamics_, finder_.theta());
@@ -371,7 +395,7 @@ bool Simulation::advance() {
     integrator_->accept();
     dynamics_.unpack(t1, integrator_->y0(), state_);
     end_run();
-    return false;
+    return true;
   }
   state_.t = t1;
   integrator_->accept();
@@ -393,7 +417,7 @@ void Simulation::end_run() {
 }
 
 // A step that has decided the modes itself: they are taken over, and noted where they changed.
-bool Simulation::pass_stepped() {
+void Simulation::pass_stepped() {
   const double t1 = integrator_->t1();
   if (ledger_) {
     dynamics_.rates(t1, integrator_->y1(), dy_.data());
@@ -407,9 +431,7 @@ bool Simulation::pass_stepped() {
   statistics_.events += static_cast<long>(events_.size() - known);
   dynamics_.set_time_limit(next_limit());
   restart();
-  if (t1 < options_.end) return true;
-  end_run();
-  return false;
+  if (t1 >= options_.end) end_run();
 }
 
 State Simulation::current_state() const {

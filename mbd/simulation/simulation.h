@@ -8,6 +8,7 @@
 #include "mbd/simulation/extremes.h"
 #include "mbd/simulation/power_ledger.h"
 #include "mbd/integrators/integrator.h"
+#include "mbd/integrators/lane_try.h"
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/simulation/trajectory.h"
 
@@ -74,6 +75,17 @@ public:
   /// One accepted step, or up to an event and through it. False at the end.
   bool advance();
 
+  /// The same in parts, for who makes the tries of several runs side by side (mbd/ensemble): unless begin_advance() says that
+  /// the end is reached, make_try() or take_try() and conclude_try() in turn, until that says that the step is made.
+  [[nodiscard]] bool begin_advance();
+  void make_try() { integrator_->make_try(dynamics_); }
+  [[nodiscard]] bool conclude_try();
+  /// What makes the try that is due in lanes; null: only make_try() does.
+  [[nodiscard]] StageProgram* lane_program() { return integrator_->lane_try() ? dynamics_.lane_program() : nullptr; }
+  /// Precondition of both: lane_program() is not null.
+  void load_try(LaneColumns& columns, int lane);
+  void take_try(const LaneColumns& columns, int lane) { integrator_->lane_try()->take(dynamics_, columns, lane); }
+
   [[nodiscard]] const State& state() const { return state_; } ///< at the last event or the end
   /// The state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
@@ -94,14 +106,15 @@ private:
   void check_finite();
   void check_holding(double t, const std::vector<double>& watch) const;
   void pass_event(double t, const double* y, const std::vector<int>& fired);
-  bool pass_stepped();
+  void pass_stepped();
   [[nodiscard]] bool are_joints(const std::vector<int>& slots) const;
   void step_through_storm(const std::string& element);
   void guard_against_chatter(double t);
   void guard_against_crawl();
   [[noreturn]] void fail_infinite(double t) const;
   void refuse_time_stepping() const;
-  [[nodiscard]] bool make_step(double limit);
+  [[nodiscard]] bool is_over() const { return state_.t >= options_.end || !handler_.stop_reason().empty(); }
+  [[nodiscard]] bool pass_step();
   [[nodiscard]] double next_limit() const;
   [[nodiscard]] Coordinates chosen_coordinates() const;
   void approach_limit();

@@ -34,15 +34,26 @@ void StoredCode::note_use(long evaluations) {
   if (evaluations_.fetch_add(evaluations) + evaluations >= k_enough) make();
 }
 
+Tape StoredCode::tape() const {
+  Tape tape;
+  tape.steps = steps_;
+  tape.outputs = outputs_;
+  tape.input_count = input_count_;
+  return simplified(tape);
+}
+
 void StoredCode::make() {
   std::call_once(is_made_, [this] {
-    Tape tape;
-    tape.steps = steps_;
-    tape.outputs = outputs_;
-    tape.input_count = input_count_;
-    made_ = MachineCode(simplified(tape));
+    made_ = MachineCode(tape());
     if (made_) code_.store(&made_, std::memory_order_release);
   });
+}
+
+const MachineCode* StoredCode::lane_code() { return evaluations_.load() >= k_enough ? make_lanes() : nullptr; }
+
+const MachineCode* StoredCode::make_lanes() {
+  std::call_once(are_lanes_made_, [this] { made_lanes_ = MachineCode(tape(), MachineCode::most_lanes()); });
+  return made_lanes_ ? &made_lanes_ : nullptr;
 }
 
 std::shared_ptr<StoredCode> stored_code(const Tape& tape) {

@@ -26,6 +26,11 @@ public:
   /// So many evaluations were made that it could have made: it is made as soon as they are as many as would have paid for it.
   void note_use(long evaluations);
   void make();
+  /// Code for several lanes (MachineCode::most_lanes), made when asked for once note_use() has heard of enough; null till then,
+  /// and where there is none.
+  [[nodiscard]] const MachineCode* lane_code();
+  /// The same, made at once.
+  [[nodiscard]] const MachineCode* make_lanes();
 
 private:
   /// Making code takes as long as some of these save.
@@ -35,8 +40,10 @@ private:
   std::vector<std::int32_t> outputs_;
   int input_count_;
   std::atomic<long> evaluations_{0};
-  std::once_flag is_made_;
-  MachineCode made_;
+  [[nodiscard]] Tape tape() const;
+
+  std::once_flag is_made_, are_lanes_made_;
+  MachineCode made_, made_lanes_;
   std::atomic<const MachineCode*> code_{nullptr};
 };
 

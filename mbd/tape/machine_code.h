@@ -47,14 +47,16 @@ public:
   /// outputs of lanes that fail mean nothing and the others are right. Thread-safe. Precondition: not empty.
   unsigned run(const double* inputs, const double* constants, double* outputs) const { return run_(inputs, constants, outputs); }
 
+  /// run() as a function of its own, good as long as this object.
+  using Run = unsigned (*)(const double* inputs, const double* constants, double* outputs);
+  [[nodiscard]] Run entry() const { return run_; }
+
   [[nodiscard]] int lanes() const { return lanes_; }
   /// Bytes of instructions, and how many there are.
   [[nodiscard]] std::size_t code_size() const { return code_size_; }
   [[nodiscard]] std::size_t instruction_count() const { return instruction_count_; }
 
 private:
-  using Run = unsigned (*)(const double*, const double*, double*);
-
   Run run_ = nullptr;
   void* memory_ = nullptr;      ///< where the system's pages begin
   std::size_t memory_size_ = 0; ///< 0: none
