@@ -63,22 +63,42 @@ void StageProgram::note_stage() {
   look_for_code();
 }
 
-void StageProgram::take_down(const System& system, const State& state, double t, const double* y, const double* dy,
-                             const double* watch, const double* watch_rate) {
-  is_hopeless_ = true; // unless it is found to be the same to the bit
-  ++tapes_;
-  const std::size_t n = coordinate_count_;
-  if (!trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_)) return;
+void StageProgram::put_wrenches(double* friction_force) const {
+  const double* out = outputs_.data() + traced_.usual_outputs();
+  for (const int slot : traced_.wrenches) friction_force[slot] = *out++;
+}
+
+// In the order in which the solvers compare.
+double StageProgram::smallest_pivot(const std::vector<double>& outputs) const {
+  const double* out = outputs.data() + traced_.usual_outputs() + traced_.wrenches.size();
+  double smallest = 1.0;
+  for (const int count : traced_.pivots) {
+    double of_solver = 1.0;
+    for (int i = 0; i < count; ++i, out += 2)
+      if (out[0] < of_solver * out[1]) of_solver = out[0] / out[1];
+    smallest = std::min(smallest, of_solver);
+  }
+  return smallest;
+}
+
+// The stage that was written down, to the bit?
+bool StageProgram::has_found(const StageFound& found) const {
   const double* out = traced_.outputs.data();
   const auto is_same = [&out](double x) { return std::memcmp(out++, &x, sizeof x) == 0; };
-  for (std::size_t i = 0; i < n + 2; ++i)
-    if (!is_same(dy[i])) return;
-  for (const int slot : traced_.watches)
-    if (!is_same(watch[slot])) return;
-  for (const int slot : traced_.watch_rates)
-    if (!is_same(watch_rate[slot])) return;
+  const auto are_same = [&is_same](const std::vector<int>& slots, const double* x) {
+    return std::all_of(slots.begin(), slots.end(), [&](int slot) { return is_same(x[slot]); });
+  };
+  return std::all_of(found.dy, found.dy + coordinate_count_ + 2, is_same) && are_same(traced_.watches, found.watch) &&
+         are_same(traced_.watch_rates, found.watch_rate) && are_same(traced_.wrenches, found.friction_force) &&
+         smallest_pivot(traced_.outputs) == found.smallest_pivot;
+}
+
+void StageProgram::take_down(const System& system, const State& state, double t, const double* y, const StageFound& found) {
+  is_hopeless_ = true; // unless it is found to be the same to the bit
+  ++tapes_;
+  if (!trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_) || !has_found(found)) return;
   is_hopeless_ = false;
-  inputs_.resize(2 * n + time_count_ + traced_.signals.size());
+  inputs_.resize(2 * coordinate_count_ + time_count_ + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());
   stored_ = stored_code(traced_.tape);
   if (choice_ == StageCode::at_once) stored_->make();

@@ -26,6 +26,13 @@ enum class StageCode : std::uint8_t {
   at_once,      ///< from the second stage on
 };
 
+/// What an evaluation as ever has found.
+struct StageFound {
+  const double* dy; ///< accelerations, dissipation and work
+  const double *watch, *watch_rate, *friction_force;
+  double smallest_pivot;
+};
+
 /// Of one layout in one set of modes.
 class StageProgram {
 public:
@@ -37,6 +44,11 @@ public:
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
   /// For accelerations, power and switching values at coordinates and rates y; false: evaluate as ever, nothing was changed.
   [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate);
+  /// Can merged joints be looked at by what the last run() has found? Then: what they bear, into their slots.
+  [[nodiscard]] bool can_look() const { return traced_.has_wrenches; }
+  void put_wrenches(double* friction_force) const;
+  /// At the last run(), to the bit that of Layout::smallest_pivot.
+  [[nodiscard]] double smallest_pivot() const { return smallest_pivot(outputs_); }
   /// Where run() takes the layout's numbers of time, in the order of traced_evaluation.h.
   [[nodiscard]] double* time_inputs() { return inputs_.data() + 2 * coordinate_count_; }
 
@@ -46,13 +58,13 @@ public:
   }
   /// After a stage that was evaluated as ever: counts it.
   void note_stage();
-  /// Writes down the stage evaluated last, at t, y and these time_inputs(). `dy`, `watch`, `watch_rate`: what was found, against
-  /// which the tape is held.
-  void take_down(const System& system, const State& state, double t, const double* y, const double* dy, const double* watch,
-                 const double* watch_rate);
+  /// Writes down the stage evaluated last, at t, y and these time_inputs(). The tape is held against what was found.
+  void take_down(const System& system, const State& state, double t, const double* y, const StageFound& found);
 
 private:
   void give_up();
+  [[nodiscard]] bool has_found(const StageFound& found) const;
+  [[nodiscard]] double smallest_pivot(const std::vector<double>& outputs) const;
 
   /// After so many failures in a row another branch is the usual one (angles that grow beyond the series of their sines): it is
   /// written down anew, but not for ever.
