@@ -79,6 +79,7 @@ public:
   // would accelerate the body as the motion does to which tolerances are absolute. Else the contact rattles: it would
   // lose and regain, by errors alone, a normal force so small that the tolerance does not show it and yet enough to
   // carry the body by its friction.
+  [[nodiscard]] bool turns_with_slip(const FrictionState&) const override { return mu_kinetic > 1.0 && damping > 0.0; }
   [[nodiscard]] SlipScale slip_scale(const Evaluation&, const FrictionState&, const double*) const override {
     SlipScale scale;
     scale.lever = lever;

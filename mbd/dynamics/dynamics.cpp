@@ -43,7 +43,7 @@ void Dynamics::set_state(const State& state) {
   evaluation_.mode = state.mode.data();
   evaluation_.friction = state.friction.data();
   evaluation_.memory = state.memory.data();
-  is_merged_near_ = was_merged_near_ = false;
+  is_merged_near_ = was_merged_near_ = is_behind_ = false;
   stage_programs_.leave();
   std::fill(watch_.begin(), watch_.end(), 1.0);
   std::fill(force_.begin(), force_.end(), BodyForce{}); // of bodies that none acts on in the new layout
@@ -59,7 +59,8 @@ void Dynamics::set_state(const State& state) {
     std::vector<double> packed(dimension());
     pack(system_.initial_state(), packed.data());
     layout_->reference.assign(packed.begin(), packed.begin() + coordinate_count());
-    if (placed_.size() < packed.size()) placed_.resize(packed.size());
+    for (std::vector<double>* const state_like : {&placed_, &behind_y_, &behind_dy_})
+      if (state_like->size() < packed.size()) state_like->resize(packed.size());
     if (kept_.size() < layout_->active.size()) kept_.resize(layout_->active.size());
   }
   if (layout_->has_joint_coordinates()) cluster_a_.resize(3 * layout_->clusters.size());
@@ -169,6 +170,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   const Layout& layout = *layout_;
   const int n = coordinate_count();
   ++evaluations_;
+  is_behind_ = false;
   t = std::min(t, time_cap_);
   evaluation_.t = t;
   evaluation_.dissipation = 0.0;
@@ -238,29 +240,95 @@ void Dynamics::take_time_inputs(double t, double* into) {
   }
 }
 
-void Dynamics::stage_rates(double t, const double* y, double* dy) {
+// Rates, power and watch values; false: as ever then, nothing was changed.
+bool Dynamics::run_code(double t, const double* y, double* dy) {
   StageProgram* const program = stage_programs_.now();
+  if (!program || !program->is_ready() || !(layout_->smallest_pivot() >= k_traced_pivot)) return false;
   const double now = std::min(t, time_cap_);
-  if (program && program->is_ready() && layout_->smallest_pivot() >= k_traced_pivot) {
-    take_time_inputs(now, program->time_inputs());
-    if (program->run(now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data())) {
-      ++evaluations_;
-      ++coded_stages_;
-      rows_.forget_factors();
-      std::copy_n(y + coordinate_count(), coordinate_count(), dy);
-      for (std::size_t i = 0; i < layout_->locks.size(); ++i)
-        dy[3 * layout_->locks[i].cluster + layout_->locks[i].coordinate] = kinematics_.lock_target(i).rate;
-      return;
-    }
-  }
+  take_time_inputs(now, program->time_inputs());
+  if (!program->run(now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data())) return false;
+  ++evaluations_;
+  ++coded_stages_;
+  is_behind_ = false;
+  rows_.forget_factors();
+  std::copy_n(y + coordinate_count(), coordinate_count(), dy);
+  for (std::size_t i = 0; i < layout_->locks.size(); ++i)
+    dy[3 * layout_->locks[i].cluster + layout_->locks[i].coordinate] = kinematics_.lock_target(i).rate;
+  return true;
+}
+
+void Dynamics::stage_rates(double t, const double* y, double* dy) {
+  if (run_code(t, y, dy)) return;
   rates(t, y, dy);
   // A projection begins with the factors of the evaluation before it: results must not hang on which way that was made.
   if (layout_->smallest_pivot() >= k_traced_pivot) rows_.forget_factors();
+  note_stage(t, y, dy);
+}
+
+void Dynamics::look_rates(double t, const double* y, double* dy, bool always) {
+  if (!looks_at_merged(always)) {
+    stage_rates(t, y, dy);
+    watch_merged_if_near(dy, always);
+  } else if (may_look_by_code() && run_code(t, y, dy)) {
+    const StageProgram& program = *stage_programs_.now();
+    fall_behind(program, program.last(), t, y);
+    (void)look_by_code(program, program.last(), t);
+  } else {
+    rates(t, y, dy);
+    watch_merged_if_near(dy, always);
+    note_stage(t, y, dy);
+  }
+}
+
+void Dynamics::end_rates(double t, const double* y, double* dy) {
+  if (!may_look_by_code() || !run_code(t, y, dy)) {
+    rates(t, y, dy);
+    watch_merged(dy);
+    return;
+  }
+  const StageProgram& program = *stage_programs_.now();
+  fall_behind(program, program.last(), t, y);
+  if (!layout_->is_merged_watched) return;
+  was_merged_near_ = is_merged_near_;
+  is_merged_near_ = look_by_code(program, program.last(), t);
+}
+
+bool Dynamics::may_look_by_code() const {
+  const StageProgram* const program = stage_programs_.now();
+  return program && program->is_ready() && program->can_look() && !sharing();
+}
+
+// After a stage made by code: the watch values of merged joints. Is any near its limit?
+bool Dynamics::look_by_code(const StageProgram& program, const StageColumn& made, double t) {
+  evaluation_.t = std::min(t, time_cap_); // what holds in a cluster is judged by its wrench, the time and what is remembered
+  program.put_wrenches(made, friction_force_);
+  return watch_wrenches();
+}
+
+// After a stage that was evaluated as ever: it is written down where that will pay.
+void Dynamics::note_stage(double t, const double* y, const double* dy) {
+  StageProgram* const program = stage_programs_.now();
   if (!program) return;
   program->note_stage();
   if (!program->wants_stage()) return;
+  const double now = std::min(t, time_cap_);
   take_time_inputs(now, program->time_inputs());
-  program->take_down(system_, *state_, now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data());
+  reactions_.find_joints(cluster_accelerations(dy), multipliers().data());
+  program->take_down(system_, *state_, now, y,
+                     {dy + coordinate_count(), watch_.data(), watch_rate_.data(), friction_force_, layout_->smallest_pivot()});
+}
+
+void Dynamics::fall_behind(const StageProgram& program, const StageColumn& made, double t, const double* y) {
+  is_behind_ = true;
+  behind_t_ = std::min(t, time_cap_);
+  behind_pivot_ = program.smallest_pivot(made);
+  std::copy_n(y, dimension(), behind_y_.begin());
+}
+
+// Not one more of evaluations(): results must not hang on which way it was made.
+void Dynamics::evaluate_behind() {
+  --evaluations_;
+  rates_at(behind_t_, behind_y_.data(), behind_dy_.data());
 }
 
 StageProgram* Dynamics::lane_program() {
@@ -277,14 +345,20 @@ void Dynamics::stage_time_inputs(const StageProgram& program, double t, double* 
   for (const TimeInput& signal : program.signals()) *into++ = signal.at(t);
 }
 
-void Dynamics::take_stage(const StageProgram& program, const double* watches, int stride) {
+void Dynamics::take_stage(const StageProgram& program, const StageColumn& made) {
   ++evaluations_;
   ++coded_stages_;
+  is_behind_ = false;
   rows_.forget_factors();
-  for (const int slot : program.watches()) {
-    watch_[slot] = *watches;
-    watches += stride;
-  }
+  program.put_watches(made, watch_.data());
+}
+
+void Dynamics::take_look(const StageProgram& program, const StageColumn& made, double t, const double* y) {
+  take_stage(program, made);
+  fall_behind(program, made, t, y);
+  const auto n = static_cast<std::size_t>(2 * coordinate_count());
+  for (std::size_t i = 0; i < n; ++i) behind_y_[i] = made.input(i);
+  (void)look_by_code(program, made, t);
 }
 
 double Dynamics::mechanical_energy(double t, const double* y) {
@@ -318,6 +392,7 @@ bool Dynamics::has_groups() const { return !sharing()->groups().empty(); }
 
 // Is any near its limit?
 bool Dynamics::watch_joints(const double* dy) {
+  catch_up();
   kinematics_.complete();
   const double* const cluster_a = cluster_accelerations(dy);
   if (layout_->sharing) {
@@ -325,7 +400,13 @@ bool Dynamics::watch_joints(const double* dy) {
     reactions_.find_accelerations(cluster_a); // for the discord of groups
   }
   reactions_.find_joints(cluster_a, multipliers().data());
-  bool is_near = watch_groups();
+  const bool is_group_near = watch_groups();
+  return watch_wrenches() || is_group_near;
+}
+
+// By the wrenches that joints inside clusters bear.
+bool Dynamics::watch_wrenches() {
+  bool is_near = false;
   for (const int f : layout_->merged) {
     if (is_shared(f)) continue;
     const FrictionUnit& unit = system_.frictions[f];
@@ -338,6 +419,7 @@ bool Dynamics::watch_joints(const double* dy) {
 
 Snapshot Dynamics::snapshot(const double* dy) {
   const Layout& layout = *layout_;
+  catch_up();
   kinematics_.complete();
   if (layout.sharing) take_solved_friction();
   const double* const cluster_a = cluster_accelerations(dy);

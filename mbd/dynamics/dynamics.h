@@ -76,12 +76,21 @@ public:
   /// by-products may be those of the evaluation before, and factors are forgotten. Near a singular position (k_traced_pivot) it
   /// is rates().
   void stage_rates(double t, const double* y, double* dy);
+  /// The same with the watch values of joints that are merged and of groups that share a load, where some are near their limit,
+  /// or `always`; as of rates() and watch_merged_if_near().
+  void look_rates(double t, const double* y, double* dy, bool always);
+  /// rates() and watch_merged() at the end of a step, of which nobody may ask more than rates and watch values: by-products are
+  /// found when somebody does.
+  void end_rates(double t, const double* y, double* dy);
   /// What makes stages of several samples side by side; null: nothing does, here and now.
   [[nodiscard]] StageProgram* lane_program();
   /// The numbers of time that stages of `program` take at t.
   void stage_time_inputs(const StageProgram& program, double t, double* into);
-  /// As after stage_rates(), with what was made elsewhere: `watches` of the program's, `stride` places from one to the next.
-  void take_stage(const StageProgram& program, const double* watches, int stride);
+  /// As after stage_rates(), with what was made elsewhere.
+  void take_stage(const StageProgram& program, const StageColumn& made);
+  /// As after look_rates() that looks at merged joints, for a program that can_look(). `y`: coordinates and rates are those of
+  /// `made`, what follows is taken from here.
+  void take_look(const StageProgram& program, const StageColumn& made, double t, const double* y);
   /// From here on stages are made in the modes that state() has now.
   void begin_stages() { stage_programs_.enter(*layout_, *state_); }
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
@@ -104,6 +113,8 @@ public:
   void forget_pivots() { lowest_pivot_ = 1.0; }
   /// Was the last evaluation that near?
   [[nodiscard]] bool is_near_singular() const;
+  /// That of the last rates(), look_rates() or end_rates(), or of a projection since.
+  [[nodiscard]] double smallest_pivot() const { return is_behind_ ? behind_pivot_ : layout_->smallest_pivot(); }
   /// Residuals at y without moving it.
   [[nodiscard]] Residual residual(double t, const double* y);
 
@@ -112,23 +123,28 @@ public:
   [[nodiscard]] const std::vector<double>& watch_rate() const { return watch_rate_; }
   /// Both with all bodies where they are.
   [[nodiscard]] const Evaluation& evaluation() {
+    catch_up();
     kinematics_.complete();
     return evaluation_;
   }
   [[nodiscard]] const std::vector<Motion<double>>& motion() {
+    catch_up();
     kinematics_.complete();
     return kinematics_.motion();
   }
   /// Multipliers of the layout's active rows.
-  [[nodiscard]] const std::vector<double>& multipliers() const { return rows_.multipliers(); }
+  [[nodiscard]] const std::vector<double>& multipliers() {
+    catch_up();
+    return rows_.multipliers();
+  }
   /// The loads that sticking elements share in more than one way, as last solved by watch_merged(); null where
   /// every wrench is its element's own.
   [[nodiscard]] const LoadSharing* sharing() const;
   /// Per rate of a coordinate what velocity errors must be small against for the slip laws' sake, infinite
   /// where none asks for it; false if that is everywhere.
-  [[nodiscard]] bool slip_scales(double* scale) const;
+  [[nodiscard]] bool slip_scales(double* scale);
   /// The fastest decay that a slip law gives to changes of velocity, 1/s (an upper bound).
-  [[nodiscard]] double slip_decay_rate() const;
+  [[nodiscard]] double slip_decay_rate();
   /// Adds the watch values of joints that are merged, and of groups of sticking elements that share a load: costs
   /// a pass over the merged bodies.
   void watch_merged(const double* dy);
@@ -184,7 +200,17 @@ private:
   void take_solved_friction();
   [[nodiscard]] bool watch_groups();
   [[nodiscard]] bool watch_joints(const double* dy);
+  [[nodiscard]] bool watch_wrenches();
   void take_time_inputs(double t, double* into);
+  [[nodiscard]] bool run_code(double t, const double* y, double* dy);
+  [[nodiscard]] bool may_look_by_code() const;
+  [[nodiscard]] bool look_by_code(const StageProgram& program, const StageColumn& made, double t);
+  void note_stage(double t, const double* y, const double* dy);
+  void fall_behind(const StageProgram& program, const StageColumn& made, double t, const double* y);
+  void catch_up() {
+    if (is_behind_) [[unlikely]] evaluate_behind();
+  }
+  void evaluate_behind();
   void settle_loads();
 
   /// A merged joint with more of its capacity left than this at a step's ends is not looked at in between: what
@@ -218,6 +244,10 @@ private:
   double lowest_pivot_ = 1.0;
   double booked_[2] = {0.0, 0.0};       ///< dissipated energy and work at the last rates(), J
   const Integrals* integrals_ = nullptr;
+  /// The last evaluation was made by code: its by-products, factors among them, are found where somebody asks for them.
+  bool is_behind_ = false;
+  double behind_t_ = 0.0, behind_pivot_ = 1.0;
+  std::vector<double> behind_y_, behind_dy_;
   std::vector<double> placed_;     ///< state of rates_nearby
   std::vector<double> kept_;       ///< scratch of keep_allowed, per active row
   mutable std::vector<double> cluster_q_, cluster_v_; ///< 3 per cluster, where some are in mechanisms

@@ -109,6 +109,7 @@ const double* Dynamics::cluster_rates(const double* y) {
 const double* Dynamics::cluster_accelerations(const double* dy) {
   const double* const a = dy + coordinate_count();
   if (!layout_->has_joint_coordinates()) return a;
+  catch_up();
   std::copy_n(a, 3 * layout_->absolute_count, cluster_a_.begin());
   for (const Mechanism& m : layout_->mechanisms) m.expand(a + m.first_coordinate, cluster_a_.data());
   if (layout_->carriages) layout_->carriages->expand(a, cluster_a_.data());

@@ -1,6 +1,7 @@
 #include "mbd/dynamics/reactions.h"
 
 #include "mbd/dynamics/carriage.h"
+#include "mbd/dynamics/joint_wrench.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,7 @@ Reactions::Reactions(const System& system, const Kinematics& kinematics, const B
 void Reactions::use(const Layout& layout, const State& state) {
   layout_ = &layout;
   state_ = &state;
-  place_edges();
+  place_edges(system_, layout, state, edges_);
 }
 
 void Reactions::find_accelerations(const double* cluster_a) {
@@ -37,22 +38,19 @@ double* Reactions::multipliers_of(const RigidEdge& edge) {
   return &friction_force_[system_.frictions[edge.friction].row];
 }
 
-// The joints inside clusters in their present places (rows of friction move to another foot, or anchor).
-void Reactions::place_edges() {
-  const Layout& layout = *layout_;
-  edges_.resize(layout.edges.size());
+void place_edges(const System& system, const Layout& layout, const State& state, std::vector<EdgeGeometry>& edges) {
+  edges.resize(layout.edges.size());
   for (std::size_t e = 0; e < layout.edges.size(); ++e) {
     const RigidEdge& edge = layout.edges[e];
-    const RowSpec* const rows =
-        edge.block >= 0 ? &system_.rows[system_.row_blocks[edge.block].first]
-                        : system_.frictions[edge.friction].friction->rows(state_->friction[edge.friction]);
+    const RowSpec* const rows = edge.block >= 0 ? &system.rows[system.row_blocks[edge.block].first]
+                                                : system.frictions[edge.friction].friction->rows(state.friction[edge.friction]);
     const auto turned = [](const Placement& p, const Vec2& local) {
       return Pair<double>{p.c * local.x() - p.s * local.y(), p.s * local.x() + p.c * local.y()};
     };
     const Vec2 lever = layout.placements[edge.child].offset - layout.placements[edge.parent].offset;
     const Placement& a = layout.placements[rows[0].a];
     const Placement& b = layout.placements[rows[0].b];
-    EdgeGeometry& geometry = edges_[e];
+    EdgeGeometry& geometry = edges[e];
     geometry.lever = {lever.x(), lever.y()};
     for (int r = 0; r < 2; ++r) geometry.axis[r] = turned(b, rows[r].direction);
     geometry.point = turned(a, rows[0].point_a);
@@ -60,23 +58,7 @@ void Reactions::place_edges() {
   }
 }
 
-// Takes what a row, or a part of one, bears from the wrench balance of the members of clusters that it acts on.
-void Reactions::add_carried(const RowSpec& spec, double lambda) {
-  const Layout& layout = *layout_;
-  const int body[2] = {spec.a, spec.b};
-  if (!layout.is_carried[body[0]] && !layout.is_carried[body[1]]) return;
-  const auto m = evaluate_row<false>(spec, motion_[spec.a], motion_[spec.b]);
-  for (int side = 0; side < 2; ++side) {
-    if (!layout.is_carried[body[side]]) continue;
-    const double f = side == 0 ? -lambda : lambda;
-    const Motion<double>& k = motion_[layout.clusters[layout.placements[body[side]].cluster].motion];
-    const double fx = f * m.direction.x, fy = f * m.direction.y;
-    BodyForce& w = wrench_[body[side]];
-    w.fx += k.c * fx + k.s * fy;
-    w.fy += k.c * fy - k.s * fx;
-    w.m += f * (cross(side == 0 ? m.lever_a : m.lever_b, m.direction) + m.couple);
-  }
-}
+void Reactions::add_carried(const RowSpec& spec, double lambda) { take_carried(*layout_, spec, lambda, motion_, wrench_.data()); }
 
 // Multipliers of the pins and rods of mechanisms, which are no rows of theirs: what hangs on them lacks so much.
 void Reactions::find_pins(const double* cluster_a, const double* lambda) {
@@ -120,25 +102,12 @@ void Reactions::find_guides(const double* cluster_a) {
   }
 }
 
-// Newton–Euler from the leaves of each merged cluster, in its axes: what an edge carries is what its subtree lacks.
 void Reactions::find_joints(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
-  const auto in_cluster = [](const Motion<double>& k, double x, double y) {
-    return Pair<double>{k.c * x + k.s * y, k.c * y - k.s * x};
-  };
   for (const RigidEdge& edge : layout.edges) {
-    const BodyData& body = system_.bodies[edge.child];
     const Placement& place = layout.placements[edge.child];
-    const Motion<double>& k = motion_[layout.clusters[place.cluster].motion];
-    const double* const a = cluster_a + 3 * place.cluster;
-    const BodyForce& f = force_[edge.child];
-    // m (R a_c + α ẑ×r − ω² r − g) less the forces; R the same for all.
-    const Pair<double> at_centre = in_cluster(k, body.mass * (a[0] - system_.gravity.x()) - f.fx,
-                                              body.mass * (a[1] - system_.gravity.y()) - f.fy);
-    const double turning = body.mass * a[2], centripetal = body.mass * k.omega * k.omega;
-    const double x = place.offset.x(), y = place.offset.y();
-    wrench_[edge.child] = {at_centre.x - turning * y - centripetal * x, at_centre.y + turning * x - centripetal * y,
-                           body.inertia * a[2] - f.m};
+    wrench_[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity, motion_[layout.clusters[place.cluster].motion],
+                                      cluster_a + 3 * place.cluster, force_[edge.child]);
   }
   for (const int r : layout.carried_rows)
     for (const RowSpec* part = layout.active[r].spec; part; part = part->next) add_carried(*part, lambda[r]);
@@ -157,25 +126,8 @@ void Reactions::find_joints(const double* cluster_a, const double* lambda) {
           add_carried(system_.rows[row], row_force_[row]);
         }
   }
-  for (std::size_t e = 0; e < layout.edges.size(); ++e) {
-    const RigidEdge& edge = layout.edges[e];
-    const EdgeGeometry& geometry = edges_[e];
-    const BodyForce& on_child = wrench_[edge.child];
-    const Pair<double> force{on_child.fx, on_child.fy};
-    const double at_parent = on_child.m + cross(geometry.lever, force); // its couple about the parent's centre
-    if (layout.is_carried[edge.parent]) {
-      BodyForce& w = wrench_[edge.parent];
-      w.fx += force.x;
-      w.fy += force.y;
-      w.m += at_parent;
-    }
-    // Along the rows (two axes fixed in b, then the angle): the wrench on a about the joint's point.
-    const double sign = geometry.is_child_a ? 1.0 : -1.0;
-    double* const along = multipliers_of(edge);
-    along[0] = sign * dot(force, geometry.axis[0]);
-    along[1] = sign * dot(force, geometry.axis[1]);
-    along[2] = sign * ((geometry.is_child_a ? on_child.m : at_parent) - cross(geometry.point, force));
-  }
+  hand_on_lack(layout, edges_, wrench_.data(),
+               [this](const RigidEdge& edge, const double* along) { std::copy_n(along, 3, multipliers_of(edge)); });
 }
 
 double Reactions::of_lock(const Lock& lock, const double* a, const double* lambda) const {

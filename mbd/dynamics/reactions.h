@@ -48,7 +48,6 @@ public:
   [[nodiscard]] std::vector<double>& friction_force() { return friction_force_; }   ///< of every friction element's
 
 private:
-  void place_edges();
   void add_carried(const RowSpec& spec, double lambda);
   void find_guides(const double* cluster_a);
   [[nodiscard]] double* multipliers_of(const RigidEdge& edge);

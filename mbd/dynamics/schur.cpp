@@ -327,7 +327,8 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
   });
 }
 
-void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x) const {
+void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x,
+                        std::vector<TracedPivot>& pivots) const {
   // Places in the rows as doubles: of which row, which side.
   constexpr std::size_t k_row = sizeof(SchurRow) / sizeof(double);
   const auto side_of = [](std::size_t place, std::size_t member) {
@@ -346,8 +347,9 @@ void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double leas
                   rows[p.j / k_row].j[side_of(p.j, offsetof(SchurRow, j))][2];
   const double least = n_ > 1 ? least_pivot : k_pivot_tolerance; // one row alone is never near to others
   eliminate_rows<0>(m.data(), inverse_d.data(), n_, [](const Traced& diagonal) { return diagonal; },
-                    [least](int, const Traced& d, const Traced& diagonal) {
+                    [&](int, const Traced& d, const Traced& diagonal) {
                       if (!(d > least * diagonal)) throw NotTraceable();
+                      if (n_ > 1) pivots.push_back({d, diagonal});
                       return Traced(1.0) / d;
                     });
   if (n_ == 1) x[0] *= inverse_d[0];

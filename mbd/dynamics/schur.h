@@ -35,6 +35,11 @@ template <class S> struct SchurRowOf {
 };
 using SchurRow = SchurRowOf<double>;
 
+/// A pivot that was written down, and what it counts against.
+struct TracedPivot {
+  Traced pivot, diagonal;
+};
+
 /// Further sides of a row that acts on more than two bodies: rows[row], which is none of its own, is a part of rows[of].
 struct SchurPart {
   int row = 0, of = 0;
@@ -53,8 +58,8 @@ public:
   /// asked again, a row that was out stays so up to twice the bound.
   void decide_rank(const std::vector<char>& is_friction);
   /// What factor() and solve() do for few rows that are independent, on numbers that are written down: conditions are that they
-  /// stay as far from singular positions as `least_pivot`. x = A⁻¹ x.
-  void trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x) const;
+  /// stay as far from singular positions as `least_pivot`. x = A⁻¹ x. Adds the pivots that smallest_pivot() is one of.
+  void trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const;
   /// In place: x = A⁻¹ x. `rows`: those factored.
   void solve(const std::vector<SchurRow>& rows, double* x) const;
 

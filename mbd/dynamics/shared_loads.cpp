@@ -20,7 +20,7 @@ void Dynamics::find_sharing() {
 
 const LoadSharing* Dynamics::sharing() const {
   const Layout& layout = *layout_;
-  return layout.sharing && layout.is_singular() ? layout.sharing.get() : nullptr;
+  return layout.sharing && !is_behind_ && layout.is_singular() ? layout.sharing.get() : nullptr; // code holds for rows that do not
 }
 
 bool Dynamics::is_shared(int friction) const {

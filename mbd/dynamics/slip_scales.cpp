@@ -39,11 +39,13 @@ void Dynamics::sliding_rates(std::size_t i, double* rate) const {
     rate[r] = evaluate_row<false>(rows[r], motion_[layout_->sliding_link[i]], Origin{}).rate;
 }
 
-bool Dynamics::slip_scales(double* scale) const {
+bool Dynamics::slip_scales(double* scale) {
   bool is_any = false;
   for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
     const FrictionState& friction = state_->friction[layout_->sliding[i]];
     const FrictionElement& element = *system_.frictions[layout_->sliding[i]].friction;
+    if (!element.turns_with_slip(friction)) continue;
+    catch_up();
     double rate[3];
     sliding_rates(i, rate);
     const SlipScale found = element.slip_scale(evaluation_, friction, rate);
@@ -69,10 +71,12 @@ bool Dynamics::slip_scales(double* scale) const {
   return is_any;
 }
 
-double Dynamics::slip_decay_rate() const {
+double Dynamics::slip_decay_rate() {
   double fastest = 0.0;
   for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
     const int f = layout_->sliding[i];
+    if (!system_.frictions[f].friction->turns_with_slip(state_->friction[f])) continue;
+    catch_up();
     double rate[3];
     sliding_rates(i, rate);
     fastest = std::max(fastest, system_.frictions[f].friction->decay_rate(evaluation_, state_->friction[f], rate));

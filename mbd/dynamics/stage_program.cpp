@@ -67,6 +67,11 @@ void StageProgram::look_for_lane_code() {
   }
 }
 
+void StageProgram::put_watches(const StageColumn& made, double* watch) const {
+  std::size_t at = coordinate_count_ + 2;
+  for (const int slot : traced_.watches) watch[slot] = made.output(at++);
+}
+
 std::vector<int> StageProgram::lock_coordinates() const {
   std::vector<int> all;
   for (const Lock& lock : layout_->locks) all.push_back(3 * lock.cluster + lock.coordinate);
@@ -104,11 +109,39 @@ void StageProgram::note_stage() {
   look_for_code();
 }
 
-void StageProgram::take_down(const System& system, const State& state, double t, const double* y, const double* dy,
-                             const double* watch, const double* watch_rate) {
+void StageProgram::put_wrenches(const StageColumn& made, double* friction_force) const {
+  std::size_t at = traced_.usual_outputs();
+  for (const int slot : traced_.wrenches) friction_force[slot] = made.output(at++);
+}
+
+// In the order in which the solvers compare.
+double StageProgram::smallest_pivot(const StageColumn& made) const {
+  std::size_t at = traced_.usual_outputs() + traced_.wrenches.size();
+  double smallest = 1.0;
+  for (const int count : traced_.pivots) {
+    double of_solver = 1.0;
+    for (int i = 0; i < count; ++i, at += 2)
+      if (made.output(at) < of_solver * made.output(at + 1)) of_solver = made.output(at) / made.output(at + 1);
+    smallest = std::min(smallest, of_solver);
+  }
+  return smallest;
+}
+
+// The stage that was written down, to the bit?
+bool StageProgram::has_found(const StageFound& found) const {
+  const double* out = traced_.outputs.data();
+  const auto is_same = [&out](double x) { return std::memcmp(out++, &x, sizeof x) == 0; };
+  const auto are_same = [&is_same](const std::vector<int>& slots, const double* x) {
+    return std::all_of(slots.begin(), slots.end(), [&](int slot) { return is_same(x[slot]); });
+  };
+  return std::all_of(found.dy, found.dy + coordinate_count_ + 2, is_same) && are_same(traced_.watches, found.watch) &&
+         are_same(traced_.watch_rates, found.watch_rate) && are_same(traced_.wrenches, found.friction_force) &&
+         smallest_pivot({nullptr, traced_.outputs.data(), 1}) == found.smallest_pivot;
+}
+
+void StageProgram::take_down(const System& system, const State& state, double t, const double* y, const StageFound& found) {
   is_hopeless_ = true; // unless it is found to be the same to the bit
   ++tapes_;
-  const std::size_t n = coordinate_count_;
   // Steps are kept by the store alone, and their memory for the next tape: a run has dozens of sets of modes.
   static thread_local std::vector<TapeStep> steps;
   traced_.tape.steps.swap(steps);
@@ -116,19 +149,11 @@ void StageProgram::take_down(const System& system, const State& state, double t,
     std::vector<TapeStep>& from;
     ~GiveBack() { from.swap(steps); }
   } const give_back{traced_.tape.steps};
-  if (!trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_)) return;
-  const double* out = traced_.outputs.data();
-  const auto is_same = [&out](double x) { return std::memcmp(out++, &x, sizeof x) == 0; };
-  for (std::size_t i = 0; i < n + 2; ++i)
-    if (!is_same(dy[i])) return;
-  for (const int slot : traced_.watches)
-    if (!is_same(watch[slot])) return;
-  for (const int slot : traced_.watch_rates)
-    if (!is_same(watch_rate[slot])) return;
+  if (!trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_) || !has_found(found)) return;
   static std::atomic<std::uint64_t> tapes{0};
   tape_number_ = ++tapes;
   is_hopeless_ = false;
-  inputs_.resize(2 * n + time_count_ + traced_.signals.size());
+  inputs_.resize(2 * coordinate_count_ + time_count_ + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());
   stored_ = stored_code(traced_.tape);
   if (choice_ == StageCode::at_once) stored_->make();

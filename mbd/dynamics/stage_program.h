@@ -27,6 +27,23 @@ enum class StageCode : std::uint8_t {
   of_ensemble,  ///< once a set of modes has lasted two tries of a step: other samples are in it as well
 };
 
+/// What an evaluation as ever has found.
+struct StageFound {
+  const double* dy; ///< accelerations, dissipation and work
+  const double *watch, *watch_rate, *friction_force;
+  double smallest_pivot;
+};
+
+/// A stage that was made, each number `stride` places from the one before.
+struct StageColumn {
+  const double* inputs;  ///< coordinates and rates, numbers of time
+  const double* outputs; ///< of the tape
+  int stride;
+
+  [[nodiscard]] double output(std::size_t i) const { return outputs[i * static_cast<std::size_t>(stride)]; }
+  [[nodiscard]] double input(std::size_t i) const { return inputs[i * static_cast<std::size_t>(stride)]; }
+};
+
 /// Of one layout in one set of modes.
 class StageProgram {
 public:
@@ -38,6 +55,14 @@ public:
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
   /// For accelerations, power and switching values at coordinates and rates y; false: evaluate as ever, nothing was changed.
   [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate);
+  /// That of the last run().
+  [[nodiscard]] StageColumn last() const { return {inputs_.data(), outputs_.data(), 1}; }
+  void put_watches(const StageColumn& made, double* watch) const;
+  /// Can merged joints be looked at by what a stage has found? Then: what they bear, into their slots.
+  [[nodiscard]] bool can_look() const { return traced_.has_wrenches; }
+  void put_wrenches(const StageColumn& made, double* friction_force) const;
+  /// To the bit that of Layout::smallest_pivot.
+  [[nodiscard]] double smallest_pivot(const StageColumn& made) const;
   /// Where run() takes the layout's numbers of time, in the order of traced_evaluation.h.
   [[nodiscard]] double* time_inputs() { return inputs_.data() + 2 * coordinate_count_; }
 
@@ -51,7 +76,6 @@ public:
   [[nodiscard]] int time_count() const { return static_cast<int>(time_count_ + traced_.signals.size()); }
   [[nodiscard]] int output_count() const { return static_cast<int>(traced_.outputs.size()); }
   [[nodiscard]] const std::vector<TimeInput>& signals() const { return traced_.signals; }
-  [[nodiscard]] const std::vector<int>& watches() const { return traced_.watches; }
   [[nodiscard]] const std::vector<double>& constants() const { return traced_.tape.constants; }
   /// Of driven coordinates, in the order of their numbers of time.
   [[nodiscard]] std::vector<int> lock_coordinates() const;
@@ -64,13 +88,12 @@ public:
   }
   /// After a stage that was evaluated as ever: counts it.
   void note_stage();
-  /// Writes down the stage evaluated last, at t, y and these time_inputs(). `dy`, `watch`, `watch_rate`: what was found, against
-  /// which the tape is held.
-  void take_down(const System& system, const State& state, double t, const double* y, const double* dy, const double* watch,
-                 const double* watch_rate);
+  /// Writes down the stage evaluated last, at t, y and these time_inputs(). The tape is held against what was found.
+  void take_down(const System& system, const State& state, double t, const double* y, const StageFound& found);
 
 private:
   void give_up();
+  [[nodiscard]] bool has_found(const StageFound& found) const;
 
   /// After so many failures in a row another branch is the usual one (angles that grow beyond the series of their sines): it is
   /// written down anew, but not for ever.

@@ -1,5 +1,6 @@
 #include "mbd/dynamics/traced_evaluation.h"
 
+#include "mbd/dynamics/joint_wrench.h"
 #include "mbd/dynamics/kinematics.h"
 #include "mbd/dynamics/reactions.h"
 #include "mbd/dynamics/row_pull.h"
@@ -54,6 +55,8 @@ public:
     find_power();
     watch_friction();
     put_out(traced);
+    put_out_wrenches(traced);
+    put_out_pivots(traced);
   }
 
 private:
@@ -165,10 +168,10 @@ private:
       const Mechanism& of = m.constants();
       if (of.row_count > 0)
         m.solve_rows(&rows_[static_cast<std::size_t>(of.first_row)], least_pivot, &multiplier_[static_cast<std::size_t>(of.first_row)],
-                     &a_[static_cast<std::size_t>(of.first_coordinate)]);
+                     &a_[static_cast<std::size_t>(of.first_coordinate)], pivots_.emplace_back());
     }
     if (of_absolute == 0) return;
-    layout_.schur.trace(rows_, least_pivot, multiplier_.data());
+    layout_.schur.trace(rows_, least_pivot, multiplier_.data(), pivots_.emplace_back());
     add_responses(rows_.data(), of_absolute, multiplier_.data(), a_.data());
   }
 
@@ -204,32 +207,76 @@ private:
   }
 
   void put_out(TracedRates& traced) {
-    for (const Traced& a : a_) Traced::output(a);
-    Traced::output(e_.dissipation);
-    Traced::output(e_.work);
+    traced.outputs.clear();
+    for (const Traced& a : a_) put_out(a, traced);
+    put_out(e_.dissipation, traced);
+    put_out(e_.work, traced);
     traced.watches.clear();
     for (std::size_t i = 0; i < watch_.size(); ++i) {
       if (watch_[i].is_constant()) continue; // as the evaluation before has left it
       traced.watches.push_back(static_cast<int>(i));
-      Traced::output(watch_[i]);
+      put_out(watch_[i], traced);
     }
     traced.watch_rates.clear();
     for (std::size_t i = 0; i < watch_rate_.size(); ++i) {
       if (watch_rate_[i].is_constant()) continue;
       traced.watch_rates.push_back(static_cast<int>(i));
-      Traced::output(watch_rate_[i]);
+      put_out(watch_rate_[i], traced);
     }
     traced.signals = e_.time_inputs;
     traced.inputs.clear();
     for (const auto* given : {&q_, &v_, &time_})
       for (const Traced& x : *given) traced.inputs.push_back(value_of(x));
     for (const TimeInput& signal : e_.time_inputs) traced.inputs.push_back(signal.at(e_.t));
-    traced.outputs.clear();
-    for (const Traced& a : a_) traced.outputs.push_back(value_of(a));
-    traced.outputs.push_back(value_of(e_.dissipation));
-    traced.outputs.push_back(value_of(e_.work));
-    for (const int slot : traced.watches) traced.outputs.push_back(value_of(watch_[slot]));
-    for (const int slot : traced.watch_rates) traced.outputs.push_back(value_of(watch_rate_[slot]));
+  }
+
+  // Of joints inside clusters, if any of them has to be watched: as Reactions::find_joints.
+  void put_out_wrenches(TracedRates& traced) {
+    traced.wrenches.clear();
+    traced.has_wrenches = !layout_.is_carried_by_pins; // forces of pins are not traced
+    if (!traced.has_wrenches || !layout_.is_merged_watched) return;
+    const Traced* const a = cluster_accelerations();
+    std::vector<BodyForceOf<Traced>> lack(system_.bodies.size());
+    for (const RigidEdge& edge : layout_.edges) {
+      const Placement& place = layout_.placements[edge.child];
+      lack[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity, motion_[layout_.clusters[place.cluster].motion],
+                                     a + 3 * place.cluster, force_[edge.child]);
+    }
+    for (const int r : layout_.carried_rows)
+      take_carried(layout_, *layout_.active[r].spec, multiplier_[static_cast<std::size_t>(r)], motion_.data(), lack.data());
+    std::vector<EdgeGeometry> edges;
+    place_edges(system_, layout_, state_, edges);
+    hand_on_lack(layout_, edges, lack.data(), [&](const RigidEdge& edge, const Traced* along) {
+      if (edge.friction < 0 || system_.frictions[edge.friction].friction->never_slips()) return;
+      for (int r = 0; r < 3; ++r) {
+        traced.wrenches.push_back(system_.frictions[edge.friction].row + r);
+        put_out(along[r], traced);
+      }
+    });
+  }
+
+  [[nodiscard]] const Traced* cluster_accelerations() {
+    if (mechanisms_.empty()) return a_.data();
+    cluster_a_.resize(3 * layout_.clusters.size());
+    std::copy_n(a_.begin(), 3 * absolute_count(), cluster_a_.begin());
+    for (TracedMechanism& m : mechanisms_) m.expand(&a_[static_cast<std::size_t>(m.constants().first_coordinate)], cluster_a_.data());
+    return cluster_a_.data();
+  }
+
+  void put_out_pivots(TracedRates& traced) {
+    traced.pivots.clear();
+    for (const std::vector<TracedPivot>& of_solver : pivots_) {
+      traced.pivots.push_back(static_cast<int>(of_solver.size()));
+      for (const TracedPivot& p : of_solver) {
+        put_out(p.pivot, traced);
+        put_out(p.diagonal, traced);
+      }
+    }
+  }
+
+  static void put_out(const Traced& x, TracedRates& traced) {
+    Traced::output(x);
+    traced.outputs.push_back(value_of(x));
   }
 
   const System& system_;
@@ -241,6 +288,7 @@ private:
   std::vector<Traced> q_, v_, time_, a_, multiplier_, cluster_a_;
   std::vector<TracedMechanism> mechanisms_;
   std::vector<SchurRowOf<Traced>> rows_;
+  std::vector<std::vector<TracedPivot>> pivots_; ///< of each solver
   TracedEvaluation e_;
 };
 

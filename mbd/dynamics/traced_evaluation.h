@@ -2,12 +2,14 @@
 //
 // The same templates that evaluate doubles run once on numbers that write down what is done with them: no second statement of
 // the equations. What hangs on time alone (drives) is an input, computed as ever. What it leaves out is what nobody asks of a
-// stage inside a step: reactions, and whether the constraints come near a singular position, where it refuses.
+// stage inside a step: reactions, but for those of joints inside clusters that may give way, and what happens near a singular
+// position, where it refuses.
 #pragma once
 
 #include "mbd/dynamics/layout.h"
 #include "mbd/tape/tape.h"
 
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -15,11 +17,19 @@ namespace steplap {
 
 struct TracedRates {
   /// Inputs: coordinates and rates, then the numbers of the layout that follow from time, then those of signals; outputs:
-  /// accelerations, dissipation, work, watch values, rates of watch values.
+  /// accelerations, dissipation, work, watch values, rates of watch values; then what a look at merged joints and the end of a step
+  /// ask for: wrenches, and of each pivot that and its diagonal.
   Tape tape;
   std::vector<TimeInput> signals;
   std::vector<int> watches;      ///< the slots of watch values
   std::vector<int> watch_rates;  ///< those whose rate is no constant
+  bool has_wrenches = false;     ///< else merged joints are not to be looked at by it
+  std::vector<int> wrenches;     ///< the slots (Snapshot::friction_force) of merged joints that can slip
+  std::vector<int> pivots;       ///< how many of the rows between absolute clusters, then of each mechanism
+
+  /// Where in the outputs accelerations, watch values and their rates end.
+  [[nodiscard]] std::size_t usual_outputs() const { return outputs.size() - wrenches.size() - 2 * pivot_count(); }
+  [[nodiscard]] std::size_t pivot_count() const { return std::accumulate(pivots.begin(), pivots.end(), std::size_t{0}); }
   std::vector<double> inputs, outputs; ///< those traced
 };
 

@@ -53,7 +53,8 @@ void TracedMechanism::accelerate(const BodyForceOf<Traced>* force, Traced* s) {
   solve_mass(s);
 }
 
-void TracedMechanism::solve_rows(const SchurRowOf<Traced>* rows, double least_pivot, Traced* lambda, Traced* change) {
+void TracedMechanism::solve_rows(const SchurRowOf<Traced>* rows, double least_pivot, Traced* lambda, Traced* change,
+                                 std::vector<TracedPivot>& pivots) {
   const int count = mechanism_.row_count;
   for (int r = 0; r < count; ++r) {
     const auto at = static_cast<std::size_t>(r);
@@ -65,8 +66,9 @@ void TracedMechanism::solve_rows(const SchurRowOf<Traced>* rows, double least_pi
   }
   for (int r = 0; r < count; ++r) work_.whiten_row(static_cast<std::size_t>(r), rows[r]);
   work_.factor_rows<0>(count, [](const Traced& d, const Traced&) { return d; },
-                       [least_pivot](int, const Traced& d, const Traced& own) {
+                       [&](int, const Traced& d, const Traced& own) {
                          if (!(d > least_pivot * own)) throw NotTraceable();
+                         pivots.push_back({d, own});
                          return 1.0 / d;
                        });
   work_.eliminate<0>(count, lambda);

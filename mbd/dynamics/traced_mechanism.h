@@ -15,7 +15,8 @@ public:
   void accelerate(const BodyForceOf<Traced>* force, Traced* s);
   void expand(const Traced* s, Traced* cluster_a) { work_.expand(s, cluster_a); }
   /// Throws NotTraceable where a pivot is below `least_pivot` of its diagonal, which the tape makes a condition.
-  void solve_rows(const SchurRowOf<Traced>* rows, double least_pivot, Traced* lambda, Traced* change);
+  /// Adds its pivots.
+  void solve_rows(const SchurRowOf<Traced>* rows, double least_pivot, Traced* lambda, Traced* change, std::vector<TracedPivot>& pivots);
 
 private:
   void solve_mass(Traced* x) const;

@@ -26,9 +26,7 @@ EventFinder::EventFinder(const System& system, int max_dimension)
 void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look) {
   integrator.dense(dynamics, theta, y_.data());
   const double t = integrator.t0() + theta * integrator.h();
-  if (dynamics.looks_at_merged(is_merged_near_)) dynamics.rates(t, y_.data(), dy_.data());
-  else dynamics.stage_rates(t, y_.data(), dy_.data());
-  dynamics.watch_merged_if_near(dy_.data(), is_merged_near_);
+  dynamics.look_rates(t, y_.data(), dy_.data(), is_merged_near_);
   look.theta = theta;
   look.watch = dynamics.watch();
   look.rate = dynamics.watch_rate();

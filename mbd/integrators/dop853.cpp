@@ -65,10 +65,7 @@ public:
     for (int s = 1; s <= k_lane_stages; ++s) {
       const auto stage = static_cast<std::size_t>(s);
       gather(made.rates(s, lane), lanes, k(stage));
-      const double theta = dop853::c[stage];
-      if (dynamics.looks_at_merged(is_merged_look_due(theta))) look_at_stage(dynamics, made.state(s, lane), lanes, stage);
-      else dynamics.take_stage(program, made.watches(s, lane), lanes);
-      note_stage_watches(dynamics, k(stage), theta);
+      take_stage(dynamics, program, made.stage(s, lane), stage);
     }
     gather(made.end(lane), lanes, y1_.data());
     try_error_ = dynamics.is_near_singular()
@@ -111,16 +108,27 @@ private:
     for (int i = 0; i < n_; ++i) to[i] = column[static_cast<std::ptrdiff_t>(i) * lanes];
   }
 
-  // A stage that was made elsewhere is evaluated for its merged joints.
-  void look_at_stage(Dynamics& dynamics, const double* state, int lanes, std::size_t stage) {
+  // As evaluate_stage(), of what was made elsewhere.
+  void take_stage(Dynamics& dynamics, const StageProgram& program, const StageColumn& made, std::size_t stage) {
+    const double theta = dop853::c[stage];
+    const bool is_due = is_merged_look_due(theta);
+    if (is_due) last_merged_look_ = theta;
+    if (!dynamics.looks_at_merged(is_due)) dynamics.take_stage(program, made);
+    else if (program.can_look()) dynamics.take_look(program, made, t0_ + theta * h_, y0_.data());
+    else evaluate_again(dynamics, made, stage);
+    nodes_.add(theta, dynamics.watch().data());
+  }
+
+  // Joints inside clusters are looked at by an evaluation.
+  void evaluate_again(Dynamics& dynamics, const StageColumn& made, std::size_t stage) {
     double* const y = scratch_.data();
     double* const f = y + n_;
-    for (int i = 0; i < n_ - 2; ++i) y[i] = state[static_cast<std::ptrdiff_t>(i) * lanes];
-    y[n_ - 2] = y0_[n_ - 2]; // energies, on which no rate hangs
-    y[n_ - 1] = y0_[n_ - 1];
+    for (int i = 0; i < n_ - 2; ++i) y[i] = made.input(static_cast<std::size_t>(i));
+    std::copy_n(y0_.begin() + n_ - 2, 2, y + n_ - 2); // energies, on which no rate hangs
     dynamics.rates(t0_ + dop853::c[stage] * h_, y, f);
     if (std::memcmp(f, k(stage), static_cast<std::size_t>(n_) * sizeof(double)) != 0)
       throw std::logic_error("a stage made in lanes is not what its evaluation makes");
+    dynamics.watch_merged_if_near(f, true);
   }
 
   void prepare_dense(Dynamics& dynamics) {

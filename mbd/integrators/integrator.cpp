@@ -65,7 +65,7 @@ void Integrator::note_begin(Dynamics& dynamics) {
   note_slips(dynamics, slip_scale0_, has_slip_scale0_);
 }
 
-void Integrator::note_slips(const Dynamics& dynamics, std::vector<double>& scale, bool& is_any) {
+void Integrator::note_slips(Dynamics& dynamics, std::vector<double>& scale, bool& is_any) {
   is_any = is_adaptive() && dynamics.slip_scales(scale.data());
   decay_rate_ = is_adaptive() ? 0.0 : dynamics.slip_decay_rate();
 }
@@ -149,9 +149,10 @@ bool Integrator::is_merged_look_due(double theta) const {
 }
 
 void Integrator::evaluate_stage(Dynamics& dynamics, double t, const double* y, double* dy, double theta) {
-  if (dynamics.looks_at_merged(is_merged_look_due(theta))) dynamics.rates(t, y, dy);
-  else dynamics.stage_rates(t, y, dy);
-  note_stage_watches(dynamics, dy, theta);
+  const bool is_due = is_merged_look_due(theta);
+  if (is_due) last_merged_look_ = theta;
+  dynamics.look_rates(t, y, dy, is_due);
+  nodes_.add(theta, dynamics.watch().data());
 }
 
 void Integrator::note_stage_watches(Dynamics& dynamics, const double* dy, double theta) {

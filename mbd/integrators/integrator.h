@@ -113,7 +113,7 @@ protected:
   /// early in the step would have to turn a body far beyond it).
   [[nodiscard]] bool try_finish_step(Dynamics& dynamics);
   /// At the last evaluation: how fine velocities have to be known there.
-  void note_slips(const Dynamics& dynamics, std::vector<double>& scale, bool& is_any);
+  void note_slips(Dynamics& dynamics, std::vector<double>& scale, bool& is_any);
   void begin_watch_nodes() {
     nodes_.clear();
     last_merged_look_ = 0.0;

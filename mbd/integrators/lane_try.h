@@ -49,12 +49,12 @@ public:
   [[nodiscard]] unsigned run();
 
   // --- of a try that is right, stages 1 … k_lane_stages; each number lanes() places from the one before -------------------
+  /// Rates of the packed vector.
   [[nodiscard]] const double* rates(int stage, int lane) const { return rates_.data() + place(stage, rate_rows_, lane); }
-  [[nodiscard]] const double* watches(int stage, int lane) const {
-    return rates(stage, lane) + static_cast<std::size_t>(2 * coordinates_ + 2) * static_cast<std::size_t>(lanes_);
+  [[nodiscard]] StageColumn stage(int stage, int lane) const {
+    return {inputs_.data() + place(stage - 1, input_rows_, lane),
+            rates(stage, lane) + static_cast<std::size_t>(coordinates_) * static_cast<std::size_t>(lanes_), lanes_};
   }
-  /// Coordinates and their rates.
-  [[nodiscard]] const double* state(int stage, int lane) const { return inputs_.data() + place(stage - 1, input_rows_, lane); }
   [[nodiscard]] const double* end(int lane) const { return y1_.data() + lane; }
   [[nodiscard]] double fifth(int lane) const { return fifth_[static_cast<std::size_t>(lane)]; }
   [[nodiscard]] double third(int lane) const { return third_[static_cast<std::size_t>(lane)]; }

@@ -212,7 +212,8 @@ public:
     normal[0] = wrench[0] < 0.0 ? -1.0 / capacity : 1.0 / capacity;
     return normal[0] * wrench[0];
   }
-  /// Watch values while sticking with `wrench`: admissible while both are ≥ 0.
+  /// Watch values while sticking with `wrench`: admissible while both are ≥ 0. A rigid element judges by `wrench`, the time, what
+  /// the state remembers and its scratch alone: motions, forces and modes need not be those at which `wrench` was found.
   virtual void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench,
                            double* watch) const = 0;
   /// At the onset of slip, when `wrench` has reached the bound: sets sign or direction.
@@ -227,6 +228,8 @@ public:
     watch[0] = state.sign * rate[0];
     watch[1] = 1.0;
   }
+  /// Can slip_scale() or decay_rate() say anything of a slip, whatever its rate?
+  [[nodiscard]] virtual bool turns_with_slip(const FrictionState&) const { return true; }
   /// Of a slip at `rate`; infinite where the law does not turn with it.
   [[nodiscard]] virtual SlipScale slip_scale(const Evaluation&, const FrictionState&, const double* /*rate*/) const {
     return {};
