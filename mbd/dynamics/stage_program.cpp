@@ -78,6 +78,10 @@ std::vector<int> StageProgram::lock_coordinates() const {
   return all;
 }
 
+void StageProgram::note_failure() {
+  if (++failures_ > k_most_failures) give_up();
+}
+
 void StageProgram::give_up() {
   code_ = lane_code_ = nullptr;
   stored_.reset();
@@ -90,7 +94,7 @@ bool StageProgram::run(double t, const double* y, double* dy, double* watch, dou
   std::copy_n(y, 2 * n, inputs_.data());
   for (std::size_t i = 0; i < signals; ++i) inputs_[inputs_.size() - signals + i] = traced_.signals[i].at(t);
   if (code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data()) == 0) {
-    if (++failures_ > k_most_failures) give_up();
+    note_failure();
     return false;
   }
   failures_ = 0;

@@ -71,6 +71,13 @@ public:
   /// that has made.
   void look_for_lane_code();
   [[nodiscard]] const MachineCode* lane_code() const { return lane_code_; }
+  /// Keeps lane_code() where it is.
+  [[nodiscard]] const std::shared_ptr<StoredCode>& stored() const { return stored_; }
+  /// Whether the tape's conditions held in this sample's lane.
+  void note_lane(bool holds) {
+    if (holds) failures_ = 0;
+    else note_failure();
+  }
   [[nodiscard]] int coordinate_count() const { return static_cast<int>(coordinate_count_); }
   /// Inputs behind coordinates and rates: the layout's numbers of time, signals.
   [[nodiscard]] int time_count() const { return static_cast<int>(time_count_ + traced_.signals.size()); }
@@ -92,6 +99,7 @@ public:
   void take_down(const System& system, const State& state, double t, const double* y, const StageFound& found);
 
 private:
+  void note_failure();
   void give_up();
   [[nodiscard]] bool has_found(const StageFound& found) const;
 

@@ -7,11 +7,14 @@ namespace steplap {
 struct Ensemble::Sample {
   Finished run;
   const MachineCode* code = nullptr; ///< that makes the try which is due, with others
+  double t = 0.0;                    ///< where that begins, s
+  int lane = -1;                     ///< in which the last one was; −1: none was
   bool is_finished = false;
 };
 
 Ensemble::Ensemble(int width) : width_(static_cast<std::size_t>(std::max(width, 1))) {
   if (MachineCode::is_available()) columns_ = std::make_unique<LaneColumns>(MachineCode::most_lanes());
+  in_lane_.resize(static_cast<std::size_t>(lanes()));
 }
 
 Ensemble::~Ensemble() = default;
@@ -27,110 +30,105 @@ template <class Work> void Ensemble::guarded(Sample& sample, const Work& work) {
   }
 }
 
-// As far as it goes alone: until a try is due that others may share, or to its end.
-void Ensemble::bring_to_try(Sample& sample) {
-  guarded(sample, [&](Simulation& simulation) {
-    for (bool is_due = false;;) {
-      if (!is_due && !simulation.begin_advance()) {
-        sample.is_finished = true;
-        return;
-      }
-      const StageProgram* const program = columns_ ? simulation.lane_program() : nullptr;
-      sample.code = program ? program->lane_code() : nullptr;
-      if (sample.code) return;
-      simulation.make_try();
-      ++statistics_.lone_tries;
-      is_due = !simulation.conclude_try();
+// As far as it goes alone: until a try is due that others may share, or to its end. `is_due`: a try is.
+void Ensemble::go_on(Sample& sample, bool is_due) {
+  Simulation& simulation = *sample.run.simulation;
+  for (;; is_due = !simulation.conclude_try()) {
+    if (!is_due && !simulation.begin_advance()) {
+      sample.is_finished = true;
+      return;
     }
-  });
-}
-
-// After a try: the next one, of the same step or another.
-void Ensemble::conclude(Sample& sample) {
-  guarded(sample, [&](Simulation& simulation) {
-    while (!simulation.conclude_try()) {
-      const StageProgram* const program = simulation.lane_program();
-      sample.code = program ? program->lane_code() : nullptr;
-      if (sample.code) return;
-      simulation.make_try();
-      ++statistics_.lone_tries;
-    }
-    sample.code = nullptr;
-  });
-  if (!sample.is_finished && !sample.code) bring_to_try(sample);
+    const StageProgram* const program = columns_ ? simulation.lane_program() : nullptr;
+    sample.code = program ? program->lane_code() : nullptr;
+    sample.t = simulation.time();
+    if (sample.code) return;
+    simulation.make_try();
+    ++statistics_.lone_tries;
+  }
 }
 
 void Ensemble::make_alone(Sample& sample) {
   guarded(sample, [&](Simulation& simulation) {
     simulation.make_try();
     ++statistics_.lone_tries;
+    go_on(sample, !simulation.conclude_try());
   });
-  if (!sample.is_finished) conclude(sample);
 }
 
-void Ensemble::make_in_lanes(std::vector<Sample*>& together) {
-  for (std::size_t lane = 0; lane < together.size(); ++lane)
-    together[lane]->run.simulation->load_try(*columns_, static_cast<int>(lane));
+void Ensemble::make_in_lanes() {
+  for (int lane = 0; lane < lanes(); ++lane)
+    if (Sample* const sample = in_lane_[static_cast<std::size_t>(lane)]) sample->run.simulation->load_try(*columns_, lane);
   const unsigned holds = columns_->run();
   ++statistics_.lane_passes;
-  for (std::size_t lane = 0; lane < together.size(); ++lane) {
-    Sample& sample = *together[lane];
-    if ((holds >> lane & 1U) == 0) {
-      make_alone(sample); // a branch of its own
+  for (int lane = 0; lane < lanes(); ++lane) {
+    Sample* const sample = in_lane_[static_cast<std::size_t>(lane)];
+    if (!sample) continue;
+    if ((holds >> lane & 1U) == 0) { // a branch of its own
+      sample->run.simulation->refuse_try();
+      make_alone(*sample);
       continue;
     }
     ++statistics_.lane_tries;
-    guarded(sample, [&](Simulation& simulation) { simulation.take_try(*columns_, static_cast<int>(lane)); });
-    if (!sample.is_finished) conclude(sample);
+    guarded(*sample, [&](Simulation& simulation) {
+      simulation.take_try(*columns_, lane);
+      go_on(*sample, !simulation.conclude_try());
+    });
   }
 }
 
-// Those of the tape of the pass before, if they fill the lanes: their constants are there; else of the tape that most wait for.
-bool Ensemble::pick(std::vector<Sample*>& together) {
-  const auto count = [this](const MachineCode* code) {
-    return std::count_if(samples_.begin(), samples_.end(), [code](const auto& s) { return s->code == code; });
-  };
-  together.clear();
-  if (samples_.empty()) return false;
-  if (!last_ || count(last_) < lanes()) {
-    long most = 0;
-    for (const auto& sample : samples_) {
-      const long n = count(sample->code);
-      if (n > most) {
-        most = n;
-        last_ = sample->code;
-      }
-    }
+// Who lags behind in time goes first, and takes along who wants the same: so samples stay near each other in time, which is what
+// keeps them in the same modes. How many they are.
+int Ensemble::fill_lanes() {
+  std::stable_sort(samples_.begin(), samples_.end(), [](const auto& a, const auto& b) { return a->t < b->t; });
+  const MachineCode* const code = samples_.front()->code;
+  std::fill(in_lane_.begin(), in_lane_.end(), nullptr);
+  together_.clear();
+  for (const auto& sample : samples_) {
+    if (sample->code != code || together_.size() == in_lane_.size()) continue;
+    together_.push_back(sample.get());
+    // Whoever was in a lane stays there, where its constants are.
+    if (sample->lane < 0 || in_lane_[static_cast<std::size_t>(sample->lane)]) sample->lane = -1;
+    else in_lane_[static_cast<std::size_t>(sample->lane)] = sample.get();
   }
-  for (const auto& sample : samples_)
-    if (sample->code == last_ && together.size() < static_cast<std::size_t>(lanes())) together.push_back(sample.get());
-  return true;
+  for (Sample* const sample : together_) {
+    if (sample->lane >= 0) continue;
+    const auto free = std::find(in_lane_.begin(), in_lane_.end(), nullptr);
+    sample->lane = static_cast<int>(free - in_lane_.begin());
+    *free = sample;
+  }
+  return static_cast<int>(together_.size());
+}
+
+// Null: there is no more.
+std::unique_ptr<Ensemble::Sample> Ensemble::begin(const std::function<std::unique_ptr<Simulation>()>& start) {
+  auto sample = std::make_unique<Sample>();
+  try {
+    sample->run.simulation = start();
+  } catch (...) {
+    sample->run.failure = std::current_exception();
+    sample->is_finished = true;
+    return sample;
+  }
+  if (!sample->run.simulation) return nullptr;
+  guarded(*sample, [&](Simulation&) { go_on(*sample, false); });
+  return sample;
 }
 
 void Ensemble::run(const std::function<std::unique_ptr<Simulation>()>& start, const std::function<void(Finished&&)>& done) {
   std::size_t started = 0;
-  bool is_more = true;
-  std::vector<Sample*> together;
   samples_.clear();
-  for (;;) {
+  for (bool is_more = true;;) {
     while (is_more && samples_.size() < width_) {
-      auto sample = std::make_unique<Sample>();
-      sample->run.number = started;
-      try {
-        sample->run.simulation = start();
-        is_more = sample->run.simulation != nullptr;
-      } catch (...) {
-        sample->run.failure = std::current_exception();
-      }
-      if (!is_more) break;
-      ++started;
-      if (sample->run.simulation) bring_to_try(*sample);
-      if (sample->is_finished || !sample->run.simulation) done(std::move(sample->run));
+      std::unique_ptr<Sample> sample = begin(start);
+      is_more = sample != nullptr;
+      if (!sample) break;
+      sample->run.number = started++;
+      if (sample->is_finished) done(std::move(sample->run));
       else samples_.push_back(std::move(sample));
     }
-    if (!pick(together)) return;
-    if (together.size() == 1) make_alone(*together.front());
-    else make_in_lanes(together);
+    if (samples_.empty()) return;
+    if (fill_lanes() == 1) make_alone(*together_.front());
+    else make_in_lanes();
     for (auto& sample : samples_)
       if (sample->is_finished) done(std::move(sample->run));
     std::erase_if(samples_, [](const auto& sample) { return sample->is_finished; });

@@ -49,23 +49,24 @@ public:
   /// Of all runs so far.
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
 
-  /// Enough that most lanes are filled, few enough that they stay in the processor's cache.
-  static constexpr int k_usual_width = 16;
+  /// Few enough that what they need stays in the processor's cache.
+  static constexpr int k_usual_width = 8;
 
 private:
   struct Sample;
-  void bring_to_try(Sample& sample);
+  [[nodiscard]] std::unique_ptr<Sample> begin(const std::function<std::unique_ptr<Simulation>()>& start);
+  void go_on(Sample& sample, bool is_due);
+  [[nodiscard]] int fill_lanes();
   void make_alone(Sample& sample);
-  void make_in_lanes(std::vector<Sample*>& together);
-  void conclude(Sample& sample);
-  [[nodiscard]] bool pick(std::vector<Sample*>& together);
+  void make_in_lanes();
   template <class Work> void guarded(Sample& sample, const Work& work);
 
   std::size_t width_;
   Statistics statistics_;
   std::unique_ptr<LaneColumns> columns_; ///< null: one lane
   std::vector<std::unique_ptr<Sample>> samples_;
-  const MachineCode* last_ = nullptr; ///< of the pass made last
+  std::vector<Sample*> in_lane_;  ///< of the pass that is due; null: nobody
+  std::vector<Sample*> together_; ///< the same without gaps
 };
 
 } // namespace steplap

@@ -23,6 +23,7 @@ void LaneColumns::begin(const StageProgram& program) {
   const MachineCode* const code = program.lane_code();
   if (code == code_) return;
   code_ = code;
+  stored_ = program.stored();
   coordinates_ = program.coordinate_count();
   time_rows_ = program.time_count();
   input_rows_ = 2 * coordinates_ + time_rows_;

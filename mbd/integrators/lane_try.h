@@ -67,6 +67,7 @@ private:
 
   int lanes_;
   int coordinates_ = 0, rate_rows_ = 0, input_rows_ = 0, time_rows_ = 0;
+  std::shared_ptr<StoredCode> stored_; ///< whose code it is: the address is no other's as long as it is kept
   const MachineCode* code_ = nullptr;
   std::vector<int> lock_coordinates_;
   std::vector<double> y0_, weight_, h_, inputs_, rates_, y1_, fifth_, third_, constants_, time_;

@@ -331,6 +331,11 @@ void Simulation::load_try(LaneColumns& columns, int lane) {
   columns.load(lane, integrator_->lane_try()->given(), dynamics_, program);
 }
 
+void Simulation::take_try(const LaneColumns& columns, int lane) {
+  lane_program()->note_lane(true);
+  integrator_->lane_try()->take(dynamics_, columns, lane);
+}
+
 bool Simulation::conclude_try() {
   bool is_made = false;
   try {

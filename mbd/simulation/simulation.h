@@ -82,9 +82,12 @@ public:
   [[nodiscard]] bool conclude_try();
   /// What makes the try that is due in lanes; null: only make_try() does.
   [[nodiscard]] StageProgram* lane_program() { return integrator_->lane_try() ? dynamics_.lane_program() : nullptr; }
+  void refuse_try() { lane_program()->note_lane(false); }
+  [[nodiscard]] double time() const { return integrator_->t0(); } ///< s, where the step begins that is being tried
   /// Precondition of both: lane_program() is not null.
   void load_try(LaneColumns& columns, int lane);
-  void take_try(const LaneColumns& columns, int lane) { integrator_->lane_try()->take(dynamics_, columns, lane); }
+  /// The try was right in its lane, or not: then the next ones may be made otherwise.
+  void take_try(const LaneColumns& columns, int lane);
 
   [[nodiscard]] const State& state() const { return state_; } ///< at the last event or the end
   /// The state after the last step, whether or not an event ended it.
