@@ -145,7 +145,7 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
       has_tried_crossing = true;
       const double h_next = cross_singularity(dynamics, left);
       if (h_next == 0.0 && try_finish_step(dynamics)) {
-        note_end(dynamics.layout().smallest_pivot());
+        note_end(dynamics.smallest_pivot());
         return;
       }
       h = h_next == 0.0 ? k_shorter * h_ : h_next;
@@ -163,7 +163,7 @@ void ExplicitPair::step(Dynamics& dynamics, double t_limit) {
         h = k_shorter * h_;
         continue;
       }
-      const double pivot = dynamics.layout().smallest_pivot();
+      const double pivot = dynamics.smallest_pivot();
       const double lowest = dynamics.lowest_pivot();
       is_beside_singular_ = lowest < k_crossed_pivot && lowest < 0.5 * highest_pivot_;
       if (are_looks_expected()) inside = error_inside(dynamics);

@@ -234,7 +234,7 @@ bool Rodas5p::cross_singularity(Dynamics& dynamics, double left) {
 
 void Rodas5p::note_end(const Dynamics& dynamics) {
   ++steps_;
-  start_pivot_ = dynamics.layout().active.empty() ? 1.0 : dynamics.layout().smallest_pivot();
+  start_pivot_ = dynamics.layout().active.empty() ? 1.0 : dynamics.smallest_pivot();
   highest_pivot_ = highest_pivot_ == 1.0 ? start_pivot_ : std::max(highest_pivot_, start_pivot_);
 }
 
