@@ -119,7 +119,7 @@ void ExplicitPair::prepare_try() {
 }
 
 bool ExplicitPair::accept_inside(Dynamics& dynamics, double& inside) {
-  const double pivot = dynamics.layout().smallest_pivot();
+  const double pivot = dynamics.smallest_pivot();
   is_beside_singular_ = approach_.is_beside(dynamics.lowest_pivot());
   if (are_looks_expected()) inside = error_inside(dynamics);
   if (inside > 1.0) return false;
@@ -136,7 +136,7 @@ bool ExplicitPair::conclude_try(Dynamics& dynamics) {
     attempt_.has_tried_crossing = true;
     const double h_next = cross_singularity(dynamics, attempt_.left);
     if (h_next == 0.0 && try_finish_step(dynamics)) {
-      note_end(dynamics.layout().smallest_pivot());
+      note_end(dynamics.smallest_pivot());
       return true;
     }
     return try_again(h_next == 0.0 ? k_shorter * h_ : h_next);

@@ -122,8 +122,12 @@ void Integrator::finish_step(Dynamics& dynamics) {
   const Residual found = dynamics.project(t1_, y1_.data(), settings_.projection_tolerance);
   residual_.position = std::max(residual_.position, found.position);
   residual_.velocity = std::max(residual_.velocity, found.velocity);
-  dynamics.rates(t1_, y1_.data(), k1_);
-  dynamics.watch_merged(k1_);
+  if (is_adaptive() || !are_looks_expected_) {
+    dynamics.end_rates(t1_, y1_.data(), k1_);
+  } else { // who looks at fixed steps takes what was found at their ends
+    dynamics.rates(t1_, y1_.data(), k1_);
+    dynamics.watch_merged(k1_);
+  }
   watch1_ = dynamics.watch();
   watch_rate1_ = dynamics.watch_rate();
   note_slips(dynamics, slip_scale1_, has_slip_scale1_);
@@ -222,7 +226,7 @@ double Integrator::restrained_step(Dynamics& dynamics, double h) {
   double* const f = y + n_;
   for (int attempt = 0; attempt < k_most_tries; ++attempt) {
     for (int i = 0; i < n_; ++i) y[i] = y0_[i] + h * k0_[i];
-    dynamics.rates(t0_ + h, y, f);
+    dynamics.stage_rates(t0_ + h, y, f);
     double turned = 0.0;
     for (int i = m; i < 2 * m; ++i)
       turned = std::max(turned, settings_.tolerance * weight_[i] * h * std::abs(f[i] - k0_[i]));

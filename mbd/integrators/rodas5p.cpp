@@ -211,7 +211,7 @@ bool Rodas5p::cross_singularity(Dynamics& dynamics, double left) {
 
 void Rodas5p::note_end(const Dynamics& dynamics) {
   ++steps_;
-  approach_.note_end(dynamics.layout().active.empty() ? 1.0 : dynamics.layout().smallest_pivot());
+  approach_.note_end(dynamics.layout().active.empty() ? 1.0 : dynamics.smallest_pivot());
 }
 
 void Rodas5p::step(Dynamics& dynamics, double t_limit) {

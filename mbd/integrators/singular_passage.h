@@ -29,8 +29,7 @@ public:
 
 private:
   [[nodiscard]] bool is_near() const {
-    const Layout& layout = dynamics_.layout();
-    return !layout.active.empty() && layout.smallest_pivot() < k_end_pivot;
+    return !dynamics_.layout().active.empty() && dynamics_.smallest_pivot() < k_end_pivot;
   }
 
   // Squares of distances, rad².
