@@ -64,8 +64,4 @@ private:
   int lanes_ = 1;
 };
 
-/// Whether the code gives the bits that replay gives with these inputs and the tape's constants, in every lane, the verdict on
-/// conditions included; NaN are equal. What a caller asks once of code that it has made, before it trusts it.
-[[nodiscard]] bool agrees_with_replay(const MachineCode& code, const Tape& tape, const double* inputs);
-
 } // namespace steplap

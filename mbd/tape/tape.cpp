@@ -33,7 +33,7 @@ double result_of(TapeOperation o, double a, double b) {
 // A tape that takes what there is not, or not yet, is a fault of what wrote it: better said than computed with.
 class TapeCheck {
 public:
-  TapeCheck(const Tape& tape, bool needs_constants) : tape_(tape), has_constants_(needs_constants || !tape.constants.empty()) {}
+  explicit TapeCheck(const Tape& tape) : tape_(tape), has_constants_(!tape.constants.empty()) {}
 
   void step(std::size_t i) const {
     const TapeStep& s = tape_.steps[i];
@@ -69,12 +69,13 @@ struct Signed {
 /// open addresses.
 class Simplifier {
 public:
-  Simplifier(const Tape& tape, bool looks_at_constants) : tape_(tape), looks_at_constants_(looks_at_constants), table_(std::bit_ceil(4 * tape.steps.size() + 4), -1), value_(tape.steps.size()) {
+  explicit Simplifier(const Tape& tape)
+      : tape_(tape), table_(std::bit_ceil(4 * tape.steps.size() + 4), -1), value_(tape.steps.size()) {
     made_.reserve(tape.steps.size());
   }
 
   Tape simplified() {
-    const TapeCheck check(tape_, looks_at_constants_);
+    const TapeCheck check(tape_);
     for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
       check.step(i);
       value_[i] = value_of(tape_.steps[i]);
@@ -84,9 +85,7 @@ public:
       check.output(k);
       outputs[k] = plain(at(tape_.outputs[k]));
     }
-    Tape result = with_what_counts(std::move(outputs));
-    if (looks_at_constants_) result.constants = std::move(constants_);
-    return result;
+    return with_what_counts(std::move(outputs));
   }
 
 private:
@@ -110,36 +109,11 @@ private:
 
   std::int32_t plain(Signed x) {
     if (!x.is_negative) return x.step;
-    return is_known(x) ? constant_step(known(x)) : make(negate, x.step);
-  }
-
-  bool is_known(Signed x) const { return looks_at_constants_ && made_[static_cast<std::size_t>(x.step)].operation == constant; }
-  double known(Signed x) const {
-    const double value = constants_[static_cast<std::size_t>(made_[static_cast<std::size_t>(x.step)].a)];
-    return x.is_negative ? -value : value;
-  }
-  bool is_known_as(Signed x, double value) const { return is_known(x) && std::bit_cast<std::uint64_t>(known(x)) == std::bit_cast<std::uint64_t>(value); }
-
-  // Constants of the same bits are one.
-  std::int32_t constant_step(double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    if (constant_table_.empty()) constant_table_.assign(table_.size(), -1);
-    const std::size_t mask = constant_table_.size() - 1;
-    for (std::size_t i = (bits ^ bits >> 29) * 0x9e3779b97f4a7c15u >> 32 & mask;; i = (i + 1) & mask) {
-      std::int32_t& step = constant_table_[i];
-      if (step < 0) {
-        step = make(constant, static_cast<std::int32_t>(constants_.size()));
-        constants_.push_back(value);
-        return step;
-      }
-      if (std::bit_cast<std::uint64_t>(known({step})) == bits) return step;
-    }
+    return make(negate, x.step);
   }
 
   // Both terms negative: −a − b is not −(a + b), whose zero has the other sign.
   Signed sum(Signed a, Signed b) {
-    if (is_known_as(b, -0.0)) return a; // adding +0 makes +0 of −0
-    if (is_known_as(a, -0.0)) return b;
     if (b.is_negative) return {make(subtract, plain(a), b.step)};
     if (a.is_negative) return {make(subtract, b.step, a.step)};
     return {make(add, a.step, b.step)};
@@ -147,19 +121,13 @@ private:
 
   Signed value_of(const TapeStep& s) {
     const TapeOperation o = s.operation;
-    if (o == constant && looks_at_constants_) return {constant_step(tape_.constants[static_cast<std::size_t>(s.a)])};
     if (is_given(o)) return {make(o, s.a)};
     const Signed a = at(s.a), b = takes_two(o) ? at(s.b) : a;
-    if (is_known(a) && is_known(b)) return from_constants(o, a, b);
     switch (o) {
     case add: return sum(a, b);
     case subtract: return sum(a, {b.step, !b.is_negative});
     case multiply:
-      if (is_known_as(a, 1.0) || is_known_as(a, -1.0)) return {b.step, b.is_negative != (known(a) < 0.0)};
-      [[fallthrough]];
-    case divide:
-      if (is_known_as(b, 1.0) || is_known_as(b, -1.0)) return {a.step, a.is_negative != (known(b) < 0.0)};
-      return {make(o, a.step, b.step), a.is_negative != b.is_negative};
+    case divide: return {make(o, a.step, b.step), a.is_negative != b.is_negative};
     case negate: return {a.step, !a.is_negative};
     case absolute: return made_[static_cast<std::size_t>(a.step)].operation == absolute ? Signed{a.step} : Signed{make(o, a.step)};
     case if_less:
@@ -170,14 +138,6 @@ private:
     case maximum: return {make(o, plain(a), plain(b))};
     default: return {make(o, plain(a))};
     }
-  }
-
-  // Of a condition that does not hold something has to be left.
-  Signed from_constants(TapeOperation o, Signed a, Signed b) {
-    if (!is_condition(o)) return {constant_step(result_of(o, known(a), known(b)))};
-    if ((known(a) < known(b)) == (o == if_less)) return {};
-    const std::int32_t first = plain(a), second = plain(b);
-    return {make(o, first, second)};
   }
 
   // Steps that an output or a condition hangs on, numbered anew.
@@ -206,9 +166,6 @@ private:
   }
 
   const Tape& tape_;
-  const bool looks_at_constants_;
-  std::vector<double> constants_;            ///< those that differ, where they are looked at
-  std::vector<std::int32_t> constant_table_; ///< their steps by their bits
   std::vector<std::int32_t> table_; ///< steps made, −1: none; a power of two
   std::vector<TapeStep> made_;
   std::vector<Signed> value_; ///< of the steps of the tape
@@ -223,13 +180,7 @@ double value_of(const TapeStep& s, const double* inputs, const double* constants
 
 } // namespace
 
-Tape simplified(const Tape& tape) {
-  return Simplifier(tape, false).simplified();
-}
-
-Tape specialized(const Tape& tape) {
-  return Simplifier(tape, true).simplified();
-}
+Tape simplified(const Tape& tape) { return Simplifier(tape).simplified(); }
 
 bool replay(const Tape& tape, const double* inputs, const double* constants, double* outputs) {
   std::vector<double> values(tape.steps.size());

@@ -66,12 +66,6 @@ struct Tape {
 /// constant of the tape, is a fault of the program: std::logic_error.
 [[nodiscard]] Tape simplified(const Tape& tape);
 
-/// The same for the tape's own constants, which are looked at: those that are equal to the bit are one, what constants alone make
-/// is a constant, x · 1 and x − 0 are x. The result has constants of its own. It serves samples whose own specialized tapes
-/// have the same steps, each with its own specialized constants; two samples of one scene have, unless constants that are equal in one
-/// differ in the other, or are 1 or 0 in one alone.
-[[nodiscard]] Tape specialized(const Tape& tape);
-
 /// Does the steps one after another; false, with outputs untouched, where a condition fails. Slow: what others are compared
 /// with. Arrays are as long as the tape says. Precondition: a tape that `simplified` takes.
 [[nodiscard]] bool replay(const Tape& tape, const double* inputs, const double* constants, double* outputs);

@@ -361,20 +361,3 @@ TEST_CASE("a frame of many pages; more values than it takes: no code, and no har
   const MachineCode none(tape_with_many_live(40000));
   CHECK(!none);
 }
-
-TEST_CASE("code that is not the tape's does not agree with it") {
-  if (!MachineCode::is_available()) return;
-  const Tape tape{{{input, 0}, {constant, 0}, {add, 0, 1}, {if_less, 1, 0}}, {0.5}, 1, {2}};
-  Tape other = tape, turned = tape;
-  other.steps[2].operation = subtract;
-  turned.steps[3] = {if_less, 0, 1};
-  for (const Target& target : all_targets()) {
-    const MachineCode code(tape, target.lanes, target.instructions);
-    for (const double x : {2.0, 0.25}) {
-      CHECK(agrees_with_replay(code, tape, &x));
-      CHECK(!agrees_with_replay(code, turned, &x));
-    }
-    const double x = 2.0;
-    CHECK(!agrees_with_replay(code, other, &x));
-  }
-}
