@@ -1,7 +1,6 @@
 #include "mbd/dynamics/carriage_layout.h"
 
 #include "mbd/math/portable_math.h"
-#include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +25,7 @@ class Finder {
 public:
   Finder(const System& system, const State& state, const Layout& layout)
       : system_(system), state_(state), layout_(layout), held_(layout.clusters.size(), 0), is_carrier_(layout.clusters.size(), 0),
-        is_long_(layout.clusters.size(), 0) {}
+        is_long_(clusters_on_long_rows(system, layout)) {}
 
   std::unique_ptr<Carriages> find(const std::vector<char>& is_block_merged, const std::vector<char>& is_friction_merged,
                                   JointCoordinates& found) {
@@ -64,14 +63,6 @@ private:
     for (std::size_t f = 0; f < system_.frictions.size(); ++f)
       if (is_friction_merged[f] == 0 && state_.friction[f].phase == FrictionPhase::stick)
         hold(system_.frictions[f].friction->rows(state_.friction[f])[0]);
-    for (const FrictionUnit& unit : system_.frictions) { // taut or slack: rows over several bodies are between absolute ones
-      const OneSidedRow* const rope = one_sided_row(*unit.friction);
-      if (!rope || !rope->is_long()) continue;
-      rope->for_parts([this](const RowSpec& part) {
-        for (const int k : {cluster_of(part.a), cluster_of(part.b)})
-          if (k >= 0) is_long_[k] = 1;
-      });
-    }
   }
 
   [[nodiscard]] bool is_fit(int k, int on, const JointCoordinates& found) const {

@@ -55,7 +55,7 @@ public:
   Finder(const System& system, const State& state, const Layout& layout, Coordinates choice)
       : system_(system), state_(state), layout_(layout), choice_(choice), islands_(layout.clusters.size()),
         rows_(layout.clusters.size(), 0), hinges_at_(layout.clusters.size()), is_driven_(layout.clusters.size(), 0),
-        is_long_(layout.clusters.size(), 0),
+        is_long_(clusters_on_long_rows(system, layout)),
         member_(layout.clusters.size(), -1) {}
 
   JointCoordinates find(const std::vector<char>& is_block_merged, const std::vector<char>& is_friction_merged) {
@@ -99,14 +99,6 @@ private:
       for (int r = 0; r < friction.dimension(); ++r)
         if (const RowSpec& row = friction.rows(state_.friction[f])[r]; cluster_of(row.a) >= 0 || cluster_of(row.b) >= 0)
           add_row(row);
-    }
-    for (const FrictionUnit& unit : system_.frictions) { // taut or slack: rows over several bodies are between absolute ones
-      const OneSidedRow* const rope = one_sided_row(*unit.friction);
-      if (!rope || !rope->is_long()) continue;
-      rope->for_parts([this](const RowSpec& part) {
-        for (const int k : {cluster_of(part.a), cluster_of(part.b)})
-          if (k >= 0) is_long_[k] = 1;
-      });
     }
   }
 
@@ -255,6 +247,19 @@ private:
 };
 
 } // namespace
+
+std::vector<char> clusters_on_long_rows(const System& system, const Layout& layout) {
+  std::vector<char> is_long(layout.clusters.size(), 0);
+  for (const FrictionUnit& unit : system.frictions) {
+    const OneSidedRow* const rope = one_sided_row(*unit.friction);
+    if (!rope || !rope->is_long()) continue;
+    rope->for_parts([&](const RowSpec& part) {
+      for (const int body : {part.a, part.b})
+        if (const int k = layout.placements[body].cluster; k >= 0) is_long[k] = 1;
+    });
+  }
+  return is_long;
+}
 
 JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout,
                                         Coordinates choice, const std::vector<char>& is_block_merged,

@@ -18,6 +18,9 @@ struct JointCoordinates {
   std::vector<char> is_pin;          ///< per row block: a member hangs by it
 };
 
+/// Per cluster: a rope over more than two bodies acts on it, taut or slack; such rows are between absolute coordinates.
+[[nodiscard]] std::vector<char> clusters_on_long_rows(const System& system, const Layout& layout);
+
 /// `is_block_merged`, `is_friction_merged`: held inside clusters.
 [[nodiscard]] JointCoordinates find_joint_coordinates(const System& system, const State& state, const Layout& layout,
                                                       Coordinates choice,
