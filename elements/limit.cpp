@@ -3,6 +3,8 @@
 #include "elements/contact_laws.h"
 #include "mbd/system/system.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace steplap {
@@ -77,14 +79,25 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Sto
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }
 
+// Where a coordinate is given at a stop the stop lies by what closing joints and rounding may move it, and no more, on
+// this side of there (rad or m; of large coordinates a share): touched, by a force of that times its stiffness.
+constexpr double k_touch = 4e-12, k_touch_of_size = 1e-14;
+// Nearer to it than this is at it: digits of a distance or an angle that was worked out.
+constexpr double k_at_stop = 1e-11;
+
+double stop_at(double given, double now, double inwards) {
+  const double size = std::max(1.0, std::abs(now));
+  return std::abs(given - now) <= k_at_stop * size ? now + inwards * std::max(k_touch, k_touch_of_size * size) : given;
+}
+
 template <class Measure>
 void add_stops(const Limit& e, SystemBuilder& builder, int a, int b, const Measure& measure, bool is_absolute, bool is_angle) {
   const double now = measure.template at<false, double>(builder.reference(a), builder.reference(b)).value;
   const double zero = is_absolute ? 0.0 : now;
   const double never = std::numeric_limits<double>::max(); // a stop that is not there
   StopsLaw law;
-  law.lower = {e.stiffness, e.damping, e.lower ? zero + *e.lower : -never};
-  law.upper = {e.stiffness, e.damping, e.upper ? -(zero + *e.upper) : -never};
+  law.lower = {e.stiffness, e.damping, e.lower ? stop_at(zero + *e.lower, now, 1.0) : -never};
+  law.upper = {e.stiffness, e.damping, e.upper ? -stop_at(zero + *e.upper, now, -1.0) : -never};
   add(builder, a, b, measure, law, is_angle);
 }
 

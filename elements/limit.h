@@ -3,6 +3,9 @@
 // Beyond a stop it presses back like a unilateral contact (contact_laws.h, Kelvin–Voigt without adhesion):
 // f = max(0, −kδ − cδ̇), δ < 0 the depth; between the stops it does nothing. f is along the coordinate: positive
 // at the lower stop, negative at the upper one.
+//
+// What is given at its stop, to the digits that poses are known to, begins in touch with it: nothing is reached then,
+// and where the motion leads away from there it leaves its stop at once. Rounding has no say in either.
 #pragma once
 
 #include "mbd/model/model.h"

@@ -5,6 +5,7 @@
 #include "mbd/math/dual.h"
 #include "mbd/model/method.h"
 #include "mbd/system/one_sided_row.h"
+#include "mbd/system/rope_end.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -22,20 +23,32 @@ using D12 = Dual<12>;
 struct RopePart {
   int a = k_ground, b = k_ground;
   DistanceMeasure measure;
+  double given = 0.0;         ///< its length in the reference pose, m
+  std::string name_a, name_b; ///< of its markers
 };
 
 // A contact of the coordinate −L: taut is pressed, slack is open, and a rope let out faster than its spring follows is
-// released. The contact's force is the tension.
+// released. The contact's force is the tension. Over pulleys one more watch value tells whether a part is left between
+// any two points while it is taut: by less than what the rest of the rope would be taut without, of a part that was a
+// thousand times as long, what hangs on it is jammed in its pulley; and no part has a direction at no length.
 class RopeGroup final : public ForceGroup {
 public:
+  static constexpr int k_watches = KelvinVoigtContact::k_watches + 1, k_on_pulley = KelvinVoigtContact::k_watches;
+  static constexpr double k_run_in = 1e-3; ///< of a part's length as given
+
   struct Entry {
     std::vector<RopePart> parts;
     KelvinVoigtContact law;
     double fixed_length = 0.0; ///< of parts within one body
+    std::string name;
     int unit = 0, watch = 0;
   };
   struct Way {
     double length = 0.0, rate = 0.0;
+  };
+  struct Left {
+    const RopePart* part = nullptr;
+    double length = std::numeric_limits<double>::infinity(); ///< beyond what counts as none, m
   };
   std::vector<Entry> entries;
 
@@ -48,6 +61,17 @@ public:
     }
     return way;
   }
+  /// Of the part that is nearest to having run onto its pulley.
+  static Left least_left(const Entry& entry, double stretch, const Motion<double>* motion) {
+    Left least;
+    for (const RopePart& part : entry.parts) {
+      const double now = part.measure.at<false, double>(motion[part.a], motion[part.b]).value;
+      const double none =
+          std::max(OneSidedRow::k_least_part * -entry.law.offset, std::min(stretch, k_run_in * part.given));
+      if (now - none < least.length) least = {&part, now - none};
+    }
+    return least;
+  }
   [[nodiscard]] double tension(int i, const Evaluation& e) const {
     const Way way = way_of(entries[i], e.motion);
     return entries[i].law.force(-way.length, -way.rate, e.mode[entries[i].unit]);
@@ -59,6 +83,9 @@ public:
       const UnitMode mode = e.mode[entry.unit];
       const double f = entry.law.force(-way.length, -way.rate, mode);
       entry.law.watch(-way.length, -way.rate, mode, e.watch + entry.watch, e.watch_rate + entry.watch);
+      const bool is_watched = mode == k_contact_pressed && entry.parts.size() > 1;
+      e.watch[entry.watch + k_on_pulley] =
+          is_watched ? least_left(entry, way.length + entry.law.offset, e.motion).length : 1.0;
       e.dissipation -= (entry.law.elastic_force(-way.length, mode) - f) * way.rate;
       if (f == 0.0) continue;
       for (const RopePart& part : entry.parts) {
@@ -106,8 +133,13 @@ public:
     return entries[element].law.mode_at(-way.length, -way.rate);
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
-    const Way way = way_of(entries[element], e.motion);
-    return entries[element].law.next_mode(mode, slot, -way.length, -way.rate);
+    const Entry& entry = entries[element];
+    const Way way = way_of(entry, e.motion);
+    if (slot == k_on_pulley) {
+      const RopePart& part = *least_left(entry, way.length + entry.law.offset, e.motion).part;
+      throw rope_has_run_in(e.t, entry.name, part.name_a, part.name_b);
+    }
+    return entry.law.next_mode(mode, slot, -way.length, -way.rate);
   }
   [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
     if (to == k_contact_open) return EventKind::enters_gap;
@@ -224,6 +256,7 @@ void add_inextensible(const RopeGroup::Entry& entry, double now, double length, 
   rope->dead_band = k_dead_band * rope->length + k_least_band;
   rope->rest_tension = k_least_acceleration * lightest_mass(entry.parts, builder);
   rope->set_parts(rows_of(entry.parts, builder));
+  for (const RopePart& part : entry.parts) rope->points.emplace_back(part.name_a, part.name_b);
   rope->row.memory = builder.add_memory(rope->length);
   rope->blow = builder.add_memory();
   const int force = builder.next_friction_row(), f = builder.next_friction(), blow = rope->blow;
@@ -247,6 +280,7 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
   names.insert(names.end(), e.over.begin(), e.over.end());
   names.push_back(e.b);
   RopeGroup::Entry entry;
+  entry.name = e.name;
   double now = 0.0;
   for (std::size_t i = 0; i + 1 < names.size(); ++i) {
     const CompiledMarker from = builder.marker(names[i]), to = builder.marker(names[i + 1]);
@@ -259,7 +293,7 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
     if (length < 1e-12)
       return builder.error("its points '" + names[i] + "' and '" + names[i + 1] +
                            "' coincide, so its direction there is undefined: move a marker");
-    entry.parts.push_back({from.body, to.body, {from.point, to.point}});
+    entry.parts.push_back({from.body, to.body, {from.point, to.point}, length, names[i], names[i + 1]});
   }
   if (entry.parts.empty()) return builder.error("joins a body with itself: name markers on two different bodies");
   double length = e.length.value_or(now);
@@ -270,7 +304,7 @@ void compile_rope(const Element& element, SystemBuilder& builder) {
   entry.law = {*e.stiffness, e.damping, -length};
   RopeGroup& group = builder.group<RopeGroup>();
   group.entries.push_back(std::move(entry));
-  builder.add_unit(group, KelvinVoigtContact::k_watches);
+  builder.add_unit(group, RopeGroup::k_watches);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("length", "m", "length of the way over its points",
                       [&group, i](const Snapshot& s) { return RopeGroup::way_of(group.entries[i], s.motion).length; });

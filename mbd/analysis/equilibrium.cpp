@@ -48,6 +48,10 @@ struct Slip {
   bool gives_way = false; ///< nothing but its friction resisted it
 };
 
+std::string unstable_text(const System& system, const MotionPart& nudge) {
+  return "a pose on the way balances, but not stably: a nudge of " + part_text(system, nudge) + " leaves it";
+}
+
 class RestSearch {
 public:
   RestSearch(const System& system, const State& start, RestAlgebra algebra)
@@ -333,7 +337,10 @@ private:
   [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
     const MotionPart& part = descent.runaway();
     const std::string unit = part.coordinate == 2 ? " N m" : " N";
+    // An unstable rest is one: what there is none of is a rest that stays.
     std::string text = "no static equilibrium: ";
+    if (!result_.left.empty())
+      text = "no stable equilibrium: " + unstable_text(system_, result_.left.front()) + "; downhill from there ";
     if (!slips_.empty()) text += overload_text(slips_.front()) + "; ";
     if (end == DescentEnd::runs_away)
       text += part_text(system_, part) + " goes on without end: nothing holds it against the " +
@@ -341,10 +348,6 @@ private:
     else
       text += "none was found; forces do not balance on " + part_text(system_, part) + " (" +
               rounded(descent.residual()) + " m/s² are left after " + std::to_string(descent.iterations()) + " steps)";
-    for (const MotionPart& left : descent.left()) {
-      text += "; the pose given balances, but not stably: it tips over with " + part_text(system_, left);
-      break;
-    }
     std::vector<std::string> names;
     if (!slips_.empty()) names.push_back(name_of(slips_.front().friction));
     names.push_back(system_.bodies[part.body].name);
@@ -425,9 +428,8 @@ std::string part_text(const System& system, const MotionPart& part) {
 
 std::vector<std::string> remarks_on(const System& system, const Equilibrium& found) {
   std::vector<std::string> remarks;
-  for (const MotionPart& part : found.left)
-    remarks.push_back("a pose on the way balances, but not stably: a nudge of " + part_text(system, part) +
-                      " leaves it, and so did the search");
+  for (const MotionPart& nudge : found.left)
+    remarks.push_back(unstable_text(system, nudge) + ", and so did the search");
   for (std::string& text : indifference_texts(system, found.indifferent)) remarks.push_back(std::move(text));
   if (found.more_indifferent > 0)
     remarks.push_back("indifferent: so it is in " + std::to_string(found.more_indifferent) + " more directions");

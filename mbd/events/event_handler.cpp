@@ -1,11 +1,10 @@
 #include "mbd/events/event_handler.h"
 
-#include "mbd/base/shown_text.h"
 #include "mbd/events/blow.h"
 #include "mbd/friction/rest_rate.h"
 #include "mbd/system/approximate_place.h"
-#include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
+#include "mbd/system/rope_end.h"
 
 #include <algorithm>
 #include <cmath>
@@ -328,13 +327,12 @@ void EventHandler::note_changes(const State& before, const State& state, std::ve
   clear_fresh();
 }
 
-// A rope's straight part has vanished: where it would go on from there its points do not say.
 void EventHandler::fail_on_pulley(const State& state, int f) const {
-  const std::string& name = system_.element_names[system_.frictions[f].element];
-  throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s a point of rope '" + name +
-                           "' has run onto the next one: between two of its points nothing is left of it. End the run before, "
-                           "or keep what hangs on it from its pulley by a 'limit'",
-                       {name});
+  const OneSidedRow& rope = *one_sided_row(*system_.frictions[f].friction);
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  const auto& [one, next] = rope.points.at(rope.shortest_part(motion.data()).place);
+  throw rope_has_run_in(state.t, system_.element_names[system_.frictions[f].element], one, next);
 }
 
 // The friction of the slots that have fired leaves its phase or place; ropes at their length are struck behind it.

@@ -33,6 +33,17 @@ constexpr double k_roundings_of_time = 64.0;
 constexpr double k_whole = 1e-6; // of a part: what is left beyond is added to it
 constexpr double k_known = 1e-12; // m, rad: to which places are known, as constraints are met
 
+// What a law does not hold beyond, whatever the mode (a rope that has run onto its pulley), ends the run from
+// next_mode().
+void refuse_beyond_laws(const System& system, Dynamics& dynamics, const State& state) {
+  for (std::size_t u = 0; u < system.units.size(); ++u) {
+    const Unit& unit = system.units[u];
+    for (int w = 0; w < unit.watch_count; ++w)
+      if (dynamics.watch()[unit.watch + w] < 0.0)
+        (void)unit.group->next_mode(unit.index, state.mode[u], w, dynamics.evaluation());
+  }
+}
+
 } // namespace
 
 TimeStepping::TimeStepping(const System& system) : system_(system) {
@@ -217,6 +228,7 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
     if (unit < 0) {
       if (const int passed = passed_unit(dynamics, state, h); passed >= 0)
         return {"the gap", system_.units[passed].element, dynamics.watch()[system_.units[passed].watch], " m"};
+      refuse_beyond_laws(system_, dynamics, state);
       dynamics.unpack(t1, y1_.data(), state);
       return {};
     }

@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace steplap {
@@ -28,6 +30,7 @@ public:
   double dead_band = 0.0;    ///< m: a slack rope is caught beyond it; far above the rounding of places
   double rest_tension = 0.0; ///< N: less than it is rounding
   int blow = 0;              ///< slots of the memory: impulse of the last blow, N s; energy lost in all of them, J
+  std::vector<std::pair<std::string, std::string>> points; ///< names of the ends of each part
 
   /// The ways between bodies, one at least.
   void set_parts(std::vector<RowSpec> parts) {
@@ -41,10 +44,17 @@ public:
   template <class F> void for_parts(const F& f) const {
     for (const RowSpec* part = &row; part; part = part->next) f(*part);
   }
-  [[nodiscard]] double shortest_part(const Motion<double>* motion) const {
-    double shortest = std::numeric_limits<double>::infinity();
+  struct Part {
+    double length = std::numeric_limits<double>::infinity();
+    std::size_t place = 0;
+  };
+  [[nodiscard]] Part shortest_part(const Motion<double>* motion) const {
+    Part shortest;
+    std::size_t place = 0;
     for_parts([&](const RowSpec& part) {
-      shortest = std::min(shortest, evaluate_row<false>(part, motion[part.a], motion[part.b]).value);
+      const double now = evaluate_row<false>(part, motion[part.a], motion[part.b]).value;
+      if (now < shortest.length) shortest = {now, place};
+      ++place;
     });
     return shortest;
   }
@@ -75,7 +85,7 @@ public:
   [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double*) const override { return 0.0; }
   void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
     watch[0] = rest_tension - wrench[0];
-    watch[1] = is_long() ? shortest_part(e.motion) - k_least_part * length : 1.0;
+    watch[1] = is_long() ? shortest_part(e.motion).length - k_least_part * length : 1.0;
   }
   void watch_slip(const Evaluation&, const FrictionState&, const double*, double* watch) const override {
     watch[0] = watch[1] = 1.0;

@@ -218,3 +218,46 @@ TEST_CASE("check: a machine at rest that a signal made of others is to move") {
     CHECK_FALSE(has(answer.out, "not in equilibrium"));
   }
 }
+
+// An arm on a pin, given at one of its stops at whatever angle: digits of sines and cosines leave its angle on either
+// side of the stop. Its weight presses it on, and nothing has been reached; or it leads away from there, and it leaves
+// its stop.
+TEST_CASE("what is given at its stop begins in touch with it, whatever its last digits") {
+  for (int i = 0; i < 24; ++i) {
+    const double angle = -1.4 + 0.117 * i, x = 0.5 * std::cos(angle),
+                 y = 0.5 * std::sin(angle); // to the right of its pin: it turns clockwise
+    for (const bool is_pressed : {true, false}) {
+      CAPTURE(angle);
+      CAPTURE(is_pressed);
+      const Written model(
+          "[simulation]\nend = 0.05\n[output]\nstep = 0.01\n" +
+          body("arm", "mass = 2.0; inertia = 0.2; position = [" + number(x) + ", " + number(y) +
+                          "]; angle = " + number(angle)) +
+          element("revolute", "pin",
+                  "a = { body = 'arm', point = [-0.5, 0.0] }; b = { body = 'ground', at = [0.0, 0.0] }") +
+          element("limit", "stop",
+                  "a = 'arm'; stiffness = 1e6; damping = 100.0; " +
+                      std::string(is_pressed ? "lower = 0.0" : "upper = 0.0")));
+      const Run run = run_model(model.loaded());
+      REQUIRE(run.failure.empty());
+      CHECK(count(run, "stop", EventKind::reaches_lower_stop) == 0);
+      CHECK(count(run, "stop", EventKind::reaches_upper_stop) == 0);
+      CHECK(count(run, "stop", EventKind::leaves_stop) == (is_pressed ? 0 : 1));
+      // The angle that it is moved by, 4e-12, and the couple of that.
+      if (is_pressed) CHECK(last(run, "stop.couple") > 0.0);
+      else CHECK(last(run, "stop.couple") == 0.0);
+    }
+  }
+  // A load that hangs with its slack just taken up by a stop of its distance, typed to twelve digits; and one that is
+  // not there yet.
+  for (const std::string upper : {"1.11803398875", "1.2"}) {
+    const Written model(
+        "[simulation]\nend = 0.05\n[output]\nstep = 0.01\n" +
+        body("load", "mass = 2.0; inertia = 0.2; position = [0.5, -1.0]") +
+        element("limit", "stop", "a = 'load'; coordinate = 'distance'; stiffness = 1e6; upper = " + upper));
+    const Run run = run_model(model.loaded());
+    REQUIRE(run.failure.empty());
+    CHECK(count(run, "stop", EventKind::reaches_upper_stop) == 0);
+    CHECK((last(run, "stop.force") < 0.0) == (upper != "1.2"));
+  }
+}

@@ -215,6 +215,29 @@ TEST_CASE("a pose that balances without holding is left, and told") {
   CHECK(std::abs(found.rest.state.q[4] + 1.0) < 1e-12);
 }
 
+// On a smooth hill a bead balances on the top, and nowhere else: that is a rest, if not one that stays, and what is
+// said must not deny it. Beside the top there is none to speak of. In a valley beyond it would come to rest.
+TEST_CASE("a bead on a smooth hill has an unstable rest, and that is said") {
+  const auto bead = [](double x) {
+    return body("bead", "mass = 1.0; inertia = 0.004; position = [" + std::to_string(x) + ", " +
+                            std::to_string(std::sqrt(1.21 - x * x)) + "]") +
+           element("circle_contact", "hill", "a = \"bead\"; radius_a = 0.1; radius_b = 1.0; stiffness = 1e6");
+  };
+  const std::string on_top = reason(bead(0.0));
+  CHECK(has(on_top,
+            "no stable equilibrium: a pose on the way balances, but not stably: a nudge of 'bead' along +x leaves it"));
+  CHECK(has(on_top, "downhill from there 'bead' along -y goes on without end"));
+  CHECK_FALSE(has(on_top, "no static equilibrium"));
+  const std::string aside = reason(bead(0.05));
+  CHECK(has(aside, "no static equilibrium: 'bead' along -y goes on without end"));
+  CHECK_FALSE(has(aside, "balances"));
+  const Found caught =
+      settle(bead(0.0) + element("circle_contact", "valley",
+                                 "a = \"bead\"; radius_a = 0.1; radius_b = 3.0; inside = true; stiffness = 1e6"));
+  CHECK(caught.rest.left.size() == 1);
+  CHECK(std::abs(caught.rest.state.q[4] + 2.9) < 1e-4); // m g/k of 1e-5 deeper
+}
+
 // Friction of M on the pin of a pendulum holds it where m g r |sin φ| ≤ M: from the horizontal it sinks to that border.
 TEST_CASE("a pendulum with dry friction in its pin sinks to where that holds it") {
   const Found found = settle(body("bob", "mass = 2; inertia = 0.1; position = [1.0, 0.0]") +

@@ -93,6 +93,20 @@ TEST_CASE("all mistakes of a file are told at once") {
   CHECK(has(said, "no channel of model"));
 }
 
+// A name that is none makes every expression behind it unreadable: that is no second mistake.
+TEST_CASE("a wrong name is one mistake") {
+  for (const std::string name : {"slid path", "slid-path", "2nd", "sin"}) {
+    CAPTURE(name);
+    const std::string said = complaint(
+        "kind = \"sweep\"\n" + k_model + k_variable + "[[response]]\nname = \"" + name +
+        "\"\nchannel = \"front joint.margin\"\nwhat = \"lowest\"\n" +
+        "[[limit_state]]\nname = \"g\"\nexpression = \"1 - mu\"\n[[limit_state]]\nname = \"f\"\nexpression = \"" +
+        name + " - 1\"\n");
+    CHECK(has(said, "the name of response '" + name + "'"));
+    CHECK(said.find("error:") == said.rfind("error:"));
+  }
+}
+
 TEST_CASE("the examples are read without a complaint") {
   int studies = 0;
   for (const auto& entry : fs::directory_iterator(STEPLAP_MODELS "/studies")) {

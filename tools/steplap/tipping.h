@@ -5,8 +5,9 @@
 // the power of gravity g(φ), turned by φ, and of the other loads in a rotation about P that lifts the other feet vanishes:
 //   A cos φ + B sin φ + C = 0,
 // A of gravity, B of gravity turned by a right angle, C of loads and springs. For a block of width 2b and height 2h on an
-// incline α: φ = atan(b/h) − α. Nothing is said of parts that joints keep from turning over, of parts with joints that can
-// move, and of those on which something leans that stands elsewhere, too.
+// incline α: φ = atan(b/h) − α. What hangs freely counts with its mass in the point that it hangs from (tipping_hung.h). What
+// stands on several others, and these with it, are blocks that come down together (tipping_mechanism.h). Nothing is said of
+// parts that joints keep from turning over, and of parts with other joints that can move.
 #pragma once
 
 #include "tools/steplap/run.h"

@@ -69,7 +69,8 @@ private:
   void add_foot(const UnilateralContact& contact) {
     const Seen a = seen(contact.a), b = seen(contact.b);
     if (touches(contact.name, a.body, b.body))
-      feet_.push_back({contact.name, a.body, b.body, a.point, rotated(contact.normal, b.angle).normalized()});
+      feet_.push_back(
+          {contact.name, contact.name, a.body, b.body, a.point, rotated(contact.normal, b.angle).normalized()});
   }
 
   void add_wheel(const SegmentContact& contact) {
@@ -78,7 +79,7 @@ private:
     const Vec2 from = b.point + rotated(contact.from, b.angle), along = b.point + rotated(contact.to, b.angle) - from;
     const double share = std::clamp((a.point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
     const Vec2 normal = (a.point - from - share * along).normalized();
-    feet_.push_back({contact.name, a.body, b.body, a.point - contact.radius * normal, normal});
+    feet_.push_back({contact.name, contact.name, a.body, b.body, a.point - contact.radius * normal, normal});
   }
 
   void add_roller(const CircleContact& contact) {
@@ -86,7 +87,7 @@ private:
     if (!touches(contact.name, a.body, b.body) || a.point == b.point) return;
     const Vec2 outwards = (a.point - b.point).normalized();
     const Vec2 normal = contact.inside ? Vec2(-outwards) : outwards;
-    feet_.push_back({contact.name, a.body, b.body, a.point - contact.radius_a * normal, normal});
+    feet_.push_back({contact.name, contact.name, a.body, b.body, a.point - contact.radius_a * normal, normal});
   }
 
   // Corners of one side, counter-clockwise.
@@ -136,7 +137,8 @@ private:
     const Vec2 along(best.normal.y(), -best.normal.x());
     const Vec2 on_face = best.normal * best.normal.dot(best.origin);
     const auto add = [&](double at, const char* which) {
-      feet_.push_back({contact.name + which, a.body, b.body, on_face + at * along, best.is_of_a ? Vec2(-best.normal) : best.normal});
+      feet_.push_back({contact.name, contact.name + which, a.body, b.body, on_face + at * along,
+                       best.is_of_a ? Vec2(-best.normal) : best.normal});
     };
     if (best.high - best.low <= 0.0) return add(best.low, "");
     const bool is_forward = along.x() >= 0.0;

@@ -7,7 +7,8 @@ namespace steplap {
 
 /// A place of contact. Of outlines whose faces lie on each other there are two, at the ends of the common part.
 struct Foot {
-  std::string name; ///< of the element, and which end of the face
+  std::string element;
+  std::string name; ///< of it, and which end of the face
   int a = k_ground, b = k_ground;
   Vec2 point = Vec2::Zero();
   Vec2 normal = Vec2::Zero(); ///< of the force on a

@@ -79,9 +79,11 @@ public:
     stop_if_wrong();
     add_border();
     add_variants();
+    const std::size_t known = problems_.size();
     check_names();
+    const bool are_names_right = problems_.size() == known;
     find_nominal();
-    check_expressions();
+    if (are_names_right) check_expressions(); // what a wrong name makes of them is no mistake of theirs
     stop_if_wrong();
     loaded_.study = std::move(study_);
     check_values();

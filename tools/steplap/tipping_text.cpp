@@ -1,0 +1,62 @@
+#include "mbd/base/shown_text.h"
+#include "tools/steplap/summary.h"
+#include "tools/steplap/text_table.h"
+#include "tools/steplap/tipping.h"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <ostream>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_pi = std::numbers::pi;
+
+std::string degrees(double angle) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g°", std::abs(angle) * 180.0 / k_pi);
+  return text;
+}
+
+std::string part_name(const System& system, const Tipping& t) {
+  const std::string name = system.bodies[t.body].name;
+  return t.others == 0 ? name : name + " and " + counted(static_cast<std::size_t>(t.others), "other", "others");
+}
+
+} // namespace
+
+std::vector<std::string> tipping_over(const LoadedModel& loaded, const State& state) {
+  std::vector<std::string> found;
+  for (const Tipping& t : tipping_of(loaded, state)) {
+    if (t.margin >= 0.0) continue;
+    const std::string name =
+        "'" + loaded.system->bodies[t.body].name + "'" +
+        (t.others == 0 ? "" : " with " + counted(static_cast<std::size_t>(t.others), "other", "others"));
+    std::string text = "in the pose given " + name + " tips over '" + t.about + "', and '" + t.lifts +
+                       "' lifts: the line of its loads passes " + degrees(t.margin) + " outside";
+    if (t.slope && std::abs(*t.slope) > std::abs(*t.slope_at_most))
+      text +=
+          "; it would stand on slopes of up to " + degrees(*t.slope_at_most) + ", this one has " + degrees(*t.slope);
+    found.push_back(text);
+  }
+  return found;
+}
+
+void print_tipping(std::ostream& out, const LoadedModel& loaded, const State& state) {
+  using Align = TextTable::Align;
+  TextTable table({Align::left, Align::left, Align::left, Align::right, Align::left, Align::right});
+  table.add_row({"what stands", "tips over", "lifts", "tilted by", "", "or accelerated by"});
+  bool is_any = false;
+  for (const Tipping& t : tipping_of(loaded, state)) {
+    if (t.margin < 0.0) continue;
+    is_any = true;
+    table.add_row({part_name(*loaded.system, t), t.about, t.lifts, degrees(t.margin),
+                   t.is_clockwise ? "clockwise" : "counter-clockwise",
+                   t.acceleration > 0.0 ? quantity_text(t.acceleration, "m/s^2", 1.0) : "-"});
+  }
+  if (is_any) out << "\nDistance from tipping over\n" << table;
+}
+
+} // namespace steplap
