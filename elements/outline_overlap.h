@@ -25,6 +25,7 @@
 
 #include <array>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -44,11 +45,29 @@ struct ConvexOutline {
   [[nodiscard]] int corner_count() const { return static_cast<int>(corners.size()); }
 };
 
+/// An array of which what is not used is not made either: most outlines have four corners, and to set the room for the most to
+/// zero would take longer than to place them. What is read was written before.
+template <class T, std::size_t N> class Room {
+public:
+  Room() {} // NOLINT: not as zeros
+  [[nodiscard]] T& operator[](std::size_t i) { return items_[i]; }
+  [[nodiscard]] const T& operator[](std::size_t i) const { return items_[i]; }
+
+private:
+  static_assert(std::is_trivially_copyable_v<T>);
+  union {
+    T items_[N];
+  };
+};
+/// Of plain numbers; others are made.
+template <class S, class T, std::size_t N>
+using RoomFor = std::conditional_t<std::is_floating_point_v<S>, Room<T, N>, std::array<T, N>>;
+
 /// The same where its body is, seen from one origin.
 template <class S> struct PlacedOutline {
   int corner_count = 0, edge_count = 0;
-  std::array<Pair<S>, k_most_corners> corner, normal;
-  std::array<S, k_most_corners> offset;
+  RoomFor<S, Pair<S>, k_most_corners> corner, normal;
+  RoomFor<S, S, k_most_corners> offset;
 };
 
 template <class S, class Body>
@@ -103,7 +122,7 @@ inline Separation separation_of(const PlacedOutline<double>& a, const PlacedOutl
 /// A convex polygon being cut; `edge` of the edge from each corner to the next: of a, or of b behind those of a.
 template <class S> struct CutRing {
   int size = 0;
-  std::array<Pair<S>, k_most_ring> corner;
+  RoomFor<S, Pair<S>, k_most_ring> corner;
   std::array<int, k_most_ring> edge;
 };
 
@@ -198,7 +217,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
   const Pair<S> origin = overlap.corner[0];
   for (int i = 0; i < overlap.size; ++i) overlap.corner[i] = overlap.corner[i] - origin;
   const Pair<S> u = velocity.u + velocity.spin * perp(origin);
-  std::array<EdgeLine<S>, k_most_ring> line;
+  RoomFor<S, EdgeLine<S>, k_most_ring> line;
   int of_a = 0;
   for (int i = 0; i < overlap.size; ++i) {
     const int edge = overlap.edge[i];

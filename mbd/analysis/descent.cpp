@@ -1,6 +1,7 @@
 #include "mbd/analysis/descent.h"
 
 #include "mbd/analysis/finite_forces.h"
+#include "mbd/analysis/landing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -137,15 +138,32 @@ double Descent::correct(const VecX& step, const std::vector<double>& from, doubl
   return slope;
 }
 
-// The share of a long step at which a contact first closes that its end may have passed through.
-double Descent::first_contact(const std::vector<double>& from, const VecX& step) {
-  double parts = 0.0; // in quarters of a body's size, and tenths of a radian
+// Quarters of a body's size, and tenths of a radian, that a step passes over: contacts may close and open between them.
+int Descent::looks_along(const VecX& step) const {
+  double parts = 0.0;
   for (int k = 0; k < n_; ++k) {
     const double inverse_size = scale_[k - k % 3 + 2];
     parts = std::max(parts, (k % 3 < 2 ? 4.0 : 10.0) * std::abs(step[k]) * inverse_size);
   }
-  if (system_.contact_count == 0 || parts <= 1.0) return 1.0;
-  const int count = static_cast<int>(std::min(std::ceil(parts), k_most_looks));
+  return static_cast<int>(std::clamp(std::ceil(parts), 1.0, k_most_looks));
+}
+
+// In a large scene what lands does so at once, each body where it touches. False if nothing lands.
+bool Descent::land(const std::vector<double>& from, VecX& step) {
+  if (!is_sparse_ || system_.contact_count == 0) return false;
+  const bool is_cut = Landing(system_, statics_).cut(step, looks_along(step), [&](const VecX& way) {
+    for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * way[k];
+    statics_.evaluate(state_);
+  });
+  state_.q = from;
+  statics_.evaluate(state_);
+  return is_cut;
+}
+
+// The share of a long step at which a contact first closes that its end may have passed through.
+double Descent::first_contact(const std::vector<double>& from, const VecX& step) {
+  const int count = looks_along(step);
+  if (system_.contact_count == 0 || count <= 1) return 1.0;
   const double* const force = statics_.evaluation().contact_force;
   const std::vector<double> open(force, force + system_.contact_count);
   double first = 1.0;
@@ -210,12 +228,13 @@ void Descent::adapt_region(double factor, const VecX& step, bool is_straight) {
   else if (!is_straight) turn_ = std::min(turn_, k_small_turn);
 }
 
-bool Descent::advance(const VecX& step) {
+bool Descent::advance(VecX step) {
   const std::vector<double> from = state_.q;
+  const std::vector<UnitMode> modes = state_.mode;
+  const bool has_landed = land(from, step);
   const double start = -step.dot(landscape_->force());
   if (!(start < 0.0)) return false;
-  const std::vector<UnitMode> modes = state_.mode;
-  const double whole = first_contact(from, step);
+  const double whole = has_landed ? 1.0 : first_contact(from, step);
   double low = 0.0, high = whole, slope = 0.0, factor = whole;
   bool is_taken = false;
   for (int trial = 0; trial < k_most_trials; ++trial) {
@@ -241,7 +260,7 @@ bool Descent::advance(const VecX& step) {
     state_.q = from;
     return false;
   }
-  factor = first_load(from, step, low < factor ? low : 0.0, factor);
+  if (!has_landed || factor < whole) factor = first_load(from, step, low < factor ? low : 0.0, factor);
   const bool is_straight = std::abs(slope - start) < 0.3 * std::abs(start);
   adapt_region(factor, factor * step, is_straight);
   follow_friction(from);

@@ -57,7 +57,9 @@ private:
   [[nodiscard]] double step_size(const VecX& step) const;
   bool move_to(const std::vector<double>& from, const VecX& step);
   bool project();
-  bool advance(const VecX& step);
+  bool advance(VecX step);
+  [[nodiscard]] int looks_along(const VecX& step) const;
+  bool land(const std::vector<double>& from, VecX& step);
   [[nodiscard]] double slope_along(const VecX& step) const;
   [[nodiscard]] double first_contact(const std::vector<double>& from, const VecX& step);
   void adapt_region(double factor, const VecX& step, bool is_straight);

@@ -1,7 +1,8 @@
 #include "mbd/algebra/decompositions.h"
 #include "mbd/analysis/bordered_system.h"
 #include "mbd/analysis/landscape.h"
-#include "mbd/dynamics/schur.h"
+#include "mbd/analysis/sparse_rows.h"
+#include "mbd/analysis/spread.h"
 
 #include <Eigen/SparseLU>
 
@@ -29,22 +30,6 @@ constexpr double k_skew = 1e-9;
 
 double largest(const VecX& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
 
-// Numbers between −½ and ½ that hang on nothing.
-class Spread {
-public:
-  VecX vector(Eigen::Index n) {
-    VecX x(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      at_ = at_ * 6364136223846793005ULL + 1442695040888963407ULL;
-      x[i] = static_cast<double>(at_ >> 11) / 9007199254740992.0 - 0.5;
-    }
-    return x;
-  }
-
-private:
-  unsigned long long at_ = 88172645463325252ULL;
-};
-
 class SparseLandscape final : public Landscape {
 public:
   explicit SparseLandscape(const Scene& scene) : Landscape(scene), n_(scene.statics.coordinates()) {
@@ -53,23 +38,22 @@ public:
   }
 
   void linearise(const State& state) override {
-    measure_rows();
-    find_dependent();
-    drop_dependent();
+    held_.measure_and_rank(scene_.statics, scene_.scale);
+    factor_rows();
     VecX reaction;
     const VecX whole = scaled_force();
     force_ = whole;
-    reaction = VecX::Zero(row_size_.size());
-    if (!rows_.empty() && !onto_rows_.solve(whole, force_, &reaction)) force_ = whole;
-    lambda_ = -reaction.cwiseQuotient(row_size_);
+    reaction = VecX::Zero(held_.size().size());
+    if (!rows().empty() && !onto_rows_.solve(whole, force_, &reaction)) force_ = whole;
+    lambda_ = -reaction.cwiseQuotient(held_.size());
     find_stiffness(whole);
     VecX pull = VecX::Zero(n_);
-    for (std::size_t r = 0; r < rows_.size(); ++r)
-      for (int k = 0; k < rows_[r].count; ++k)
-        pull[rows_[r].at[k]] += std::abs(rows_[r].j[k] * reaction[static_cast<Eigen::Index>(r)]);
+    for (std::size_t r = 0; r < rows().size(); ++r)
+      for (int k = 0; k < rows()[r].count; ++k)
+        pull[rows()[r].at[k]] += std::abs(rows()[r].j[k] * reaction[static_cast<Eigen::Index>(r)]);
     rounding_ = rounding_of(state, whole.cwiseAbs() + pull,
                             [this](const VecX& place) { return VecX(size_ * (hat_.cwiseAbs() * place)); });
-    steps_.set(hat_, rows_, inertia_);
+    steps_.set(hat_, rows(), inertia_);
     factored_ = std::numeric_limits<double>::quiet_NaN();
     is_newton_known_ = false;
     used_sigma_ = loose_;
@@ -147,7 +131,7 @@ public:
     for (int i = 0; i < static_cast<int>(n_); ++i) entries.emplace_back(i, i, scene_.mass[i] / unit);
     Sparse mass(static_cast<int>(n_), static_cast<int>(n_));
     mass.setFromTriplets(entries.begin(), entries.end());
-    by_mass.set(mass, rows_, VecX::Zero(n_));
+    by_mass.set(mass, rows(), VecX::Zero(n_));
     VecX x;
     if (!by_mass.factor(0.0) || !by_mass.solve(force_ / unit, x)) return force_.cwiseQuotient(scene_.mass);
     return x;
@@ -171,22 +155,22 @@ public:
   }
 
   double way_to_rows(const VecX& off, VecX& way) override {
-    measure_rows();
-    drop_dependent();
+    held_.measure(scene_.statics, scene_.scale);
+    factor_rows();
     way = VecX::Zero(n_);
-    if (rows_.empty()) return 0.0;
-    VecX left = off.cwiseQuotient(row_size_);
-    for (std::size_t r = 0; r < rows_.size(); ++r)
-      if (is_dependent_[r] != 0) left[static_cast<Eigen::Index>(r)] = 0.0;
+    if (rows().empty()) return 0.0;
+    VecX left = off.cwiseQuotient(held_.size());
+    for (std::size_t r = 0; r < rows().size(); ++r)
+      if (held_.is_dependent(r)) left[static_cast<Eigen::Index>(r)] = 0.0;
     if (!onto_rows_.solve(VecX::Zero(n_), way, nullptr, &left)) return std::numeric_limits<double>::quiet_NaN();
     return largest(way);
   }
 
-  const VecX& row_size() const override { return row_size_; }
+  const VecX& row_size() const override { return held_.size(); }
 
   VecX along_rows(const VecX& vector) const override {
     VecX allowed;
-    return !rows_.empty() && onto_rows_.solve(vector, allowed) ? allowed : vector;
+    return !rows().empty() && onto_rows_.solve(vector, allowed) ? allowed : vector;
   }
 
   VecX stiff_imbalance(double& size) override {
@@ -216,73 +200,13 @@ private:
     if (whole > 0.0) step += (1.0 - size(step)) / whole * soft;
   }
 
-  // Of unit length, at the present evaluation.
-  void measure_rows() {
-    const Statics& statics = scene_.statics;
-    std::vector<Entry> entries;
-    statics.gradient(entries);
-    rows_.assign(statics.rows().size(), {});
-    for (const Entry& entry : entries) {
-      SparseRow& row = rows_[static_cast<std::size_t>(entry.row())];
-      const double value = entry.value() * scene_.scale[entry.col()];
-      if (statics.rows()[static_cast<std::size_t>(entry.row())].spec->next) row.merge(entry.col(), value);
-      else row.add(entry.col(), value);
-    }
-    row_size_.resize(static_cast<Eigen::Index>(rows_.size()));
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      double square = 0.0;
-      for (int k = 0; k < rows_[r].count; ++k) square += rows_[r].j[k] * rows_[r].j[k];
-      const double size = std::max(std::sqrt(square), 1e-300);
-      row_size_[static_cast<Eigen::Index>(r)] = size;
-      for (int k = 0; k < rows_[r].count; ++k) rows_[r].j[k] /= size;
-    }
-  }
-
-  // Rows that others imply, by the rule of the equations of motion (schur.h): what is next to nothing beyond the others
-  // would hold what nothing holds.
-  void find_dependent() {
-    is_dependent_.assign(rows_.size(), 0);
-    if (rows_.empty()) return;
-    std::vector<SchurRow> rows(rows_.size());
-    std::vector<SchurPart> parts;
-    std::vector<int> bodies;
-    std::vector<char> is_friction(rows_.size(), 0);
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const SparseRow& row = rows_[r];
-      is_friction[r] = scene_.statics.rows()[r].friction >= 0 ? 1 : 0;
-      std::size_t at = r; // beyond two bodies a part of the row
-      for (int k = 0; k < row.count; ++k) {
-        const int side = k / 3 % 2, c = k % 3;
-        if (k > 0 && k % 6 == 0) {
-          at = rows.size();
-          parts.push_back({static_cast<int>(at), static_cast<int>(r)});
-          rows.emplace_back();
-        }
-        rows[at].body[side] = row.at[k] / 3;
-        rows[at].w[side][c] = 1.0;
-        rows[at].j[side][c] = rows[at].wj[side][c] = row.j[k];
-      }
-    }
-    for (const SchurRow& row : rows) bodies.insert(bodies.end(), row.body, row.body + 2);
-    for (const SchurPart& part : parts) bodies.push_back(part.of);
-    if (bodies != row_bodies_) {
-      row_bodies_ = bodies;
-      rank_ = {};
-      rank_.analyze(rows, static_cast<int>(rows_.size()), parts);
-    }
-    rank_.decide_rank(is_friction);
-    rank_.factor(rows);
-    for (std::size_t r = 0; r < rows_.size(); ++r) is_dependent_[r] = rank_.is_dependent(static_cast<int>(r)) ? 1 : 0;
-  }
-
-  // What the other rows allow is then known, too.
-  void drop_dependent() {
-    for (std::size_t r = 0; r < rows_.size(); ++r)
-      if (is_dependent_[r] != 0) rows_[r].count = 0;
-    if (rows_.empty()) return;
-    onto_rows_.set(identity_, rows_, VecX::Zero(n_));
+  // What the rows allow is then known, too.
+  void factor_rows() {
+    if (rows().empty()) return;
+    onto_rows_.set(identity_, rows(), VecX::Zero(n_));
     (void)onto_rows_.factor(0.0);
   }
+  [[nodiscard]] const std::vector<SparseRow>& rows() const { return held_.rows(); }
 
   void find_stiffness(const VecX& whole_force) {
     std::vector<Entry> entries, both;
@@ -347,7 +271,7 @@ private:
   }
   bool apply(const VecX& f, VecX& x) const {
     if (!is_skew_) return steps_.solve(f, x);
-    VecX right = VecX::Zero(n_ + static_cast<Eigen::Index>(rows_.size()));
+    VecX right = VecX::Zero(n_ + static_cast<Eigen::Index>(rows().size()));
     right.head(n_) = f;
     const VecX z = skew_factors_.solve(right);
     x = z.head(n_);
@@ -357,13 +281,13 @@ private:
     std::vector<Entry> entries;
     for (int c = 0; c < whole_hat_.outerSize(); ++c)
       for (Sparse::InnerIterator it(whole_hat_, c); it; ++it) entries.emplace_back(static_cast<int>(it.row()), c, it.value());
-    const int n = static_cast<int>(n_), m = static_cast<int>(rows_.size());
+    const int n = static_cast<int>(n_), m = static_cast<int>(rows().size());
     for (int i = 0; i < n; ++i) entries.emplace_back(i, i, loose_ * inertia_[i]);
     for (int r = 0; r < m; ++r) {
       entries.emplace_back(n + r, n + r, -1e-12); // rows that depend on others
-      for (int k = 0; k < rows_[r].count; ++k) {
-        entries.emplace_back(n + r, rows_[r].at[k], rows_[r].j[k]);
-        entries.emplace_back(rows_[r].at[k], n + r, rows_[r].j[k]);
+      for (int k = 0; k < rows()[r].count; ++k) {
+        entries.emplace_back(n + r, rows()[r].at[k], rows()[r].j[k]);
+        entries.emplace_back(rows()[r].at[k], n + r, rows()[r].j[k]);
       }
     }
     Sparse bordered(n + m, n + m);
@@ -406,7 +330,7 @@ private:
     for (int c = 0; c < hat_.outerSize(); ++c)
       for (Sparse::InnerIterator it(hat_, c); it; ++it)
         if (it.value() != 0.0) is_bare[static_cast<std::size_t>(c)] = 0;
-    for (const SparseRow& row : rows_)
+    for (const SparseRow& row : rows())
       for (int k = 0; k < row.count; ++k)
         if (row.j[k] != 0.0) is_bare[static_cast<std::size_t>(row.at[k])] = 0;
     return is_bare;
@@ -444,11 +368,7 @@ private:
 
   Eigen::Index n_;
   Sparse identity_;
-  std::vector<SparseRow> rows_;
-  VecX row_size_;
-  std::vector<char> is_dependent_; ///< rows that others imply, at the last linearisation
-  std::vector<int> row_bodies_;    ///< that rank_ was analysed for
-  SchurSolver rank_;
+  SparseRows held_;
   BorderedSystem onto_rows_, steps_;
   Sparse hat_, whole_hat_; ///< −K over size_: its symmetric part without sliding, and the whole
   double size_ = 1.0, loose_ = 0.0; ///< eigenvalues below loose_ (1/s²) are none

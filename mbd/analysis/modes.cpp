@@ -1,12 +1,13 @@
 #include "mbd/analysis/modes.h"
 
 #include "mbd/algebra/decompositions.h"
+#include "mbd/analysis/free_vibration.h"
+#include "mbd/analysis/sparse_modes.h"
 #include "mbd/analysis/tangent.h"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -16,32 +17,9 @@ namespace steplap {
 namespace {
 
 constexpr double k_two_pi = 2.0 * std::numbers::pi;
-constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
-constexpr double k_rounded_terms = 64.0;
-// Up to so many free coordinates eigenvalues are refined one by one, which costs a factorisation each.
-constexpr Eigen::Index k_refined = 60;
-constexpr double k_near = 1e-3; // a refinement that moves an eigenvalue further, as a share of it, has lost its way
 
 using Complex = std::complex<double>;
-using ComplexMatrix = Eigen::MatrixXcd;
 using ComplexVector = Eigen::VectorXcd;
-
-// η'' = A η + B η' in mass-orthonormal coordinates η: δq = basis η.
-struct FreeVibration {
-  MatX a, b, basis;
-  MatX held;  ///< orthonormal: motions that something holds
-  MatX loose; ///< and those that nothing holds: null vectors of A
-};
-
-// Singular values of A with their right vectors; of a symmetric one by its eigenvectors.
-std::pair<VecX, MatX> singular_vectors(const MatX& a) {
-  if ((a - a.transpose()).cwiseAbs().sum() <= 1e-9 * a.cwiseAbs().sum()) {
-    const auto [values, vectors] = symmetric_eigen(0.5 * (a + a.transpose()));
-    return {values.cwiseAbs(), vectors};
-  }
-  const auto [values, v] = right_singular(a);
-  return {values, v};
-}
 
 FreeVibration free_vibration(const System& system, State state) {
   Statics statics(system);
@@ -64,115 +42,9 @@ FreeVibration free_vibration(const System& system, State state) {
   const MatX stiffness = statics.stiffness(lambda);
   v.a = v.basis.transpose() * stiffness * v.basis;
   v.b = v.basis.transpose() * statics.damping() * v.basis;
-  // What nothing holds: singular vectors of A that rounding of the stiffness could make. Found beside the others with
-  // their own rounding, not with that of the stiffest.
-  const auto [sizes, vectors] = singular_vectors(v.a);
-  const MatX shapes = v.basis * vectors;
-  const MatX size = stiffness.cwiseAbs() * shapes.cwiseAbs();
-  std::vector<Eigen::Index> held, loose;
-  for (Eigen::Index i = 0; i < v.a.cols(); ++i) {
-    const double terms = shapes.col(i).cwiseAbs().dot(size.col(i));
-    const double rounding = k_epsilon * (k_rounded_terms * terms + 4.0 * sizes.maxCoeff());
-    (sizes[i] <= rounding ? loose : held).push_back(i);
-  }
-  const auto columns = [&v, &all = vectors](const std::vector<Eigen::Index>& which) { // clang 14 takes no binding along unnamed
-    MatX out(v.a.cols(), static_cast<Eigen::Index>(which.size()));
-    for (std::size_t i = 0; i < which.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = all.col(which[i]);
-    return out;
-  };
-  v.held = columns(held);
-  v.loose = columns(loose);
+  const MatX size = stiffness.cwiseAbs();
+  v.part_loose([&size](const MatX& shapes) { return MatX(size * shapes.cwiseAbs()); });
   return v;
-}
-
-// Orthonormal complement of the columns' span.
-MatX complement(const MatX& columns) {
-  const Eigen::Index n = columns.rows();
-  if (columns.cols() == 0) return MatX::Identity(n, n);
-  return orthonormal(columns, n).rightCols(n - columns.cols());
-}
-
-// Motions at constant velocity that damping does not resist either: (β, η') with Vᵀη' = 0, A V β + B η' = 0.
-MatX steady_motions(const FreeVibration& v) {
-  const Eigen::Index r = v.a.cols(), k = v.held.cols();
-  if (v.loose.cols() == 0) return MatX(k + r, 0);
-  const MatX av = v.a * v.held, bl = v.b * v.loose;
-  MatX beyond = bl;
-  if (k > 0) {
-    const MatX q = orthonormal(av, k);
-    beyond -= q * (q.transpose() * bl);
-  }
-  const double size = (v.b.cwiseAbs() * v.loose.cwiseAbs()).norm();
-  const RightSingular singular = right_singular(beyond);
-  std::vector<Eigen::Index> free;
-  for (Eigen::Index i = 0; i < v.loose.cols(); ++i)
-    if (i >= singular.values.size() || singular.values[i] <= k_rounded_terms * k_epsilon * size)
-      free.push_back(i);
-  MatX motions(k + r, static_cast<Eigen::Index>(free.size()));
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const VecX rate = v.loose * singular.v.col(free[i]);
-    const auto at = static_cast<Eigen::Index>(i);
-    if (k > 0) motions.col(at).head(k) = -least_squares(av, v.b * rate);
-    motions.col(at).tail(r) = rate;
-  }
-  return motions;
-}
-
-// D⁻¹ M D with powers of two, so that rows and columns are of one size (B. N. Parlett, C. Reinsch, Numer. Math. 13 (1969)
-// 293): slow modes keep their digits beside fast ones. Returns D.
-VecX balance(MatX& m) {
-  const Eigen::Index n = m.rows();
-  VecX d = VecX::Ones(n);
-  for (bool is_changed = true; is_changed;) {
-    is_changed = false;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      double column = m.col(i).cwiseAbs().sum() - std::abs(m(i, i)), row = m.row(i).cwiseAbs().sum() - std::abs(m(i, i));
-      if (column == 0.0 || row == 0.0) continue;
-      const double before = column + row;
-      double f = 1.0;
-      for (; column < 0.5 * row; column *= 4.0) f *= 2.0;
-      for (; column >= 2.0 * row; column *= 0.25) f *= 0.5;
-      if ((column + row) / f >= 0.95 * before) continue;
-      is_changed = true;
-      d[i] *= f;
-      m.col(i) *= f;
-      m.row(i) /= f;
-    }
-  }
-  return d;
-}
-
-// Newton's method for (λ² − λ B − A) x = 0, inverse iteration with the eigenvalue moving along: rounding is then that of
-// the mode's own terms.
-void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
-  const Eigen::Index r = v.a.cols();
-  Complex at = value;
-  ComplexVector shape = x;
-  double last = k_near;
-  for (int i = 0; i < 6; ++i) {
-    ComplexMatrix q = -at * v.b.cast<Complex>() - v.a.cast<Complex>();
-    q.diagonal().array() += at * at;
-    ComplexVector right = Complex(2.0) * at * shape - v.b.cast<Complex>() * shape;
-    for (Eigen::Index k = 0; k < r; ++k) { // rows of one size: pivots are not chosen by the units of stiff ones
-      double size = 0.0;
-      for (Eigen::Index j = 0; j < r; ++j) size = std::max(size, std::abs(q(k, j).real()) + std::abs(q(k, j).imag()));
-      if (!(size > 0.0)) return;
-      q.row(k) /= size;
-      right[k] /= size;
-    }
-    const ComplexVector next = solve_complex(q, right);
-    const Complex ratio = shape.dot(next);
-    if (!next.allFinite() || size_of(ratio) == 0.0) break; // on the eigenvalue
-    const Complex change = Complex(shape.squaredNorm()) / ratio;
-    const double moved = size_of(change) / size_of(at);
-    if (!(moved < last)) break;
-    at -= change;
-    shape = next / next.norm();
-    last = moved;
-  }
-  if (last >= k_near) return;
-  value = at;
-  x = shape;
 }
 
 // Complex displacements of all bodies.
@@ -196,47 +68,69 @@ double VibrationMode::frequency() const { return std::abs(eigenvalue.imag()) / k
 double VibrationMode::natural_frequency() const {
   return size_of(eigenvalue) / k_two_pi;
 }
+double WantedModes::distance(const std::complex<double>& eigenvalue) const {
+  return near ? size_of(eigenvalue - Complex(0.0, k_two_pi * *near)) : size_of(eigenvalue);
+}
 double VibrationMode::damping_ratio() const {
   return -eigenvalue.real() / size_of(eigenvalue);
 }
 
-VibrationModes vibration_modes(const System& system, const State& state) {
-  if (3 * (system.body_count() - 1) > k_max_modal_coordinates)
-    throw NumericalFailure("modes are found with dense algebra: " + std::to_string(3 * (system.body_count() - 1)) +
-                           " coordinates are more than the " + std::to_string(k_max_modal_coordinates) +
-                           " that it is made for");
-  VibrationModes found;
-  if (system.body_count() <= 1) return found;
-  const OneThread alone;
-  const FreeVibration v = free_vibration(system, state);
-  const Eigen::Index r = v.a.cols(), k = v.held.cols();
-  found.rigid_motions = static_cast<int>(v.loose.cols());
-  // (β, η'): positions along what nothing holds do not count, nor do velocities that nothing resists: no eigenvalue
-  // that is left is zero.
-  MatX whole = MatX::Zero(k + r, k + r);
-  whole.topRightCorner(k, r) = v.held.transpose();
-  whole.bottomLeftCorner(r, k) = v.a * v.held;
-  whole.bottomRightCorner(r, r) = v.b;
-  const MatX moving = complement(steady_motions(v));
-  if (moving.cols() == 0) return found;
-  MatX companion = moving.transpose() * whole * moving;
-  const VecX scale = balance(companion);
-  const auto [values, vectors, is_converged] = eigenpairs(companion);
-  if (!is_converged) throw NumericalFailure("the eigenvalues of the small vibrations do not converge");
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    if (values[i].imag() < 0.0) continue;
-    const ComplexVector state_vector = moving * scale.asDiagonal() * vectors.col(i);
-    ComplexVector x = state_vector.tail(r);
-    x /= x.norm();
-    VibrationMode mode;
-    mode.eigenvalue = values[i];
-    if (r <= k_refined) refine(v, mode.eigenvalue, x);
-    mode.shape = shape_of(system, v.basis * x);
-    found.modes.push_back(std::move(mode));
+namespace {
+
+// What is out of balance in a mode, in the masses' metric and against its own acceleration.
+double residual_of(const FreeVibration& v, const FreeMode& mode) {
+  const Complex square = mode.eigenvalue * mode.eigenvalue;
+  const ComplexVector left = square * mode.x - mode.eigenvalue * (v.b * mode.x) - v.a * mode.x;
+  const double size = size_of(mode.eigenvalue);
+  return left.norm() / (size * size * mode.x.norm());
+}
+
+// The nearest `count`, by ascending natural frequency.
+void keep_wanted(const WantedModes& wanted, VibrationModes& found) {
+  const auto count = static_cast<std::size_t>(wanted.count);
+  if (wanted.count > 0 && count < found.modes.size()) {
+    std::stable_sort(found.modes.begin(), found.modes.end(), [&](const VibrationMode& one, const VibrationMode& other) {
+      return wanted.distance(one.eigenvalue) < wanted.distance(other.eigenvalue);
+    });
+    found.modes.erase(found.modes.begin() + static_cast<std::ptrdiff_t>(count), found.modes.end());
+    found.is_all = false;
   }
   std::stable_sort(found.modes.begin(), found.modes.end(), [](const VibrationMode& one, const VibrationMode& other) {
     return one.natural_frequency() < other.natural_frequency();
   });
+}
+
+VibrationModes all_modes(const System& system, const State& state) {
+  const FreeVibration v = free_vibration(system, state);
+  VibrationModes found;
+  found.rigid_motions = static_cast<int>(v.loose.cols());
+  for (const FreeMode& mode : modes_of(v))
+    found.modes.push_back({mode.eigenvalue, shape_of(system, v.basis * mode.x), residual_of(v, mode)});
+  return found;
+}
+
+VibrationModes some_modes(const System& system, const State& state, const WantedModes& wanted) {
+  const SparseModes sparse = sparse_modes(system, state, wanted);
+  VibrationModes found;
+  found.rigid_motions = sparse.rigid_motions;
+  found.is_all = sparse.is_all;
+  found.is_counted = sparse.is_counted;
+  for (const SparseModes::Mode& mode : sparse.modes)
+    found.modes.push_back({mode.eigenvalue, shape_of(system, mode.q), mode.residual});
+  return found;
+}
+
+} // namespace
+
+VibrationModes vibration_modes(const System& system, const State& state, WantedModes wanted, ModesAlgebra algebra) {
+  VibrationModes found;
+  if (system.body_count() <= 1) return found;
+  const bool is_large = 3 * (system.body_count() - 1) > k_max_modal_coordinates;
+  if ((is_large || algebra == ModesAlgebra::sparse || wanted.near) && wanted.count <= 0) wanted.count = k_usual_modes;
+  const OneThread alone;
+  const bool is_sparse = algebra == ModesAlgebra::sparse || (algebra == ModesAlgebra::by_size && is_large);
+  found = is_sparse ? some_modes(system, state, wanted) : all_modes(system, state);
+  keep_wanted(wanted, found);
   return found;
 }
 

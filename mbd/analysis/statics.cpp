@@ -225,11 +225,15 @@ void Statics::stiffness(const VecX& lambda, std::vector<Entry>& k, bool with_sli
 }
 
 MatX Statics::damping() const {
-  std::vector<Entry> d;
+  std::vector<Entry> entries;
+  damping(entries);
+  return dense(entries, n_, n_);
+}
+
+void Statics::damping(std::vector<Entry>& d) const {
   std::vector<PairJacobian> parts;
   for (const auto& group : system_.groups) group->add_jacobian(evaluation_, parts);
   for (const PairJacobian& part : parts) add_pair(part.a, part.b, part.damping, d);
-  return dense(d, n_, n_);
 }
 
 // Force w(N) along the row: w ∂²(measure) and what the normal forces change. w is linear in them.

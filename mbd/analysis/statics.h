@@ -47,6 +47,7 @@ public:
   void gradient(std::vector<Entry>& entries) const;
   /// Of K; without what a normal force changes of the friction that slides on it, if asked for.
   void stiffness(const VecX& lambda, std::vector<Entry>& entries, bool with_sliding = true) const;
+  void damping(std::vector<Entry>& entries) const;
   [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
   /// Normal force of a contact, for whoever asks what friction would do with another.

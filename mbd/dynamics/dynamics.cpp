@@ -48,10 +48,11 @@ void Dynamics::set_state(const State& state) {
   std::fill(watch_.begin(), watch_.end(), 1.0);
   std::fill(force_.begin(), force_.end(), BodyForce{}); // of bodies that none acts on in the new layout
   layout_key(state, choice_, key_);
-  const auto known = std::find_if(layouts_.begin(), layouts_.end(), [this](const auto& layout) { return layout->key == key_; });
-  const bool is_new = known == layouts_.end();
-  if (is_new) layouts_.push_back(std::make_unique<Layout>(make_layout(system_, state, choice_)));
-  layout_ = is_new ? layouts_.back().get() : known->get();
+  // In the order of their keys: a run through thousands of sets of modes looks for one at every event.
+  auto known = std::lower_bound(layouts_.begin(), layouts_.end(), key_, [](const auto& layout, const LayoutKey& key) { return layout->key < key; });
+  const bool is_new = known == layouts_.end() || (*known)->key != key_;
+  if (is_new) known = layouts_.insert(known, std::make_unique<Layout>(make_layout(system_, state, choice_)));
+  layout_ = known->get();
   kinematics_.use(*layout_, state);
   rows_.use(*layout_, state);
   reactions_.use(*layout_, state);

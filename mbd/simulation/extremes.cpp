@@ -31,6 +31,12 @@ constexpr int k_most_sections = 40;
 constexpr double k_fine = 3e-4, k_about = 1e-3; // of a stretch, near the top of a polynomial
 constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
 constexpr double k_same_crossing = 1e-10; // of a stretch
+// So many channels are followed each for itself without asking whether what they do is rounding.
+constexpr std::size_t k_few = 8;
+constexpr int k_most_probes = 8;
+constexpr double k_hair = 1.25e-4; // of a stretch: smooth curves and kinks change by a hundredth of what nodes differ by
+constexpr double k_jitter = 0.25;  // of what its nodes differ by: what a few hair's breadths change by so much is rounding
+constexpr double k_most_jitter = 1e-6; // of the largest value in the same unit: more is not rounding
 constexpr double k_at_pole = 1e9; // numbers without a unit beyond it
 constexpr double k_golden = 0.3819660112501051;
 // Error of a straight line through two ends against the third, of a channel's range: below and above which the
@@ -135,7 +141,8 @@ double ExtremeFinder::tolerance(std::size_t c) const {
   if (ranges_[c].channel->unit.empty()) return tolerance_of_number(ranges_[c], k_resolution, k_rounding);
   const Kind& kind = kinds_[kind_[c]];
   const double range = ranges_[c].high.value - ranges_[c].low.value;
-  return k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounding * std::max(kind.largest, kind.scale);
+  const double wanted = k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounding * std::max(kind.largest, kind.scale);
+  return jitter_.empty() ? wanted : std::max(wanted, jitter_[c]);
 }
 
 void ExtremeFinder::note(std::size_t c, double value, double t) {
@@ -457,7 +464,53 @@ void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
     if (wanted > 1 << level) continue; // what loads do between the nodes would not be seen
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
   }
+  drop_jittery(integrator, dynamics);
   for (const std::size_t c : open_) section(c, integrator, dynamics);
+}
+
+// How far apart are the values at the outermost node and beside it?
+double ExtremeFinder::spread_about(std::size_t c, int middle) const {
+  return std::max(std::abs(at(c, middle + 1) - at(c, middle)), std::abs(at(c, middle) - at(c, middle - 1)));
+}
+
+// In a large scene what accelerations change by in a short stretch is rounding of places far from the origin: no polynomial goes
+// through it, and to follow each channel for itself would cost the square of the scene. What a hair's breadth of time changes by
+// as much as its nodes differ is told by a few looks at all of them together, and its extremes are known no better.
+void ExtremeFinder::drop_jittery(Integrator& integrator, Dynamics& dynamics) {
+  if (open_.size() <= k_few) return;
+  constexpr std::size_t k_places = k_last / 2;
+  std::vector<std::array<double, k_places>> changes(open_.size()); // the largest at each place
+  for (int probe = 0; probe < k_most_probes && open_.size() > k_few; ++probe) {
+    for (std::size_t place = 0; place < k_places; ++place) {
+      const int node = 2 * static_cast<int>(place) + 1;
+      const double theta = k_thetas[node] + (probe + 1) * k_hair;
+      const Snapshot snapshot = look(theta, integrator, dynamics);
+      for (std::size_t k = 0; k < open_.size(); ++k) {
+        take(open_[k], t_ + theta * (t1_ - t_), snapshot, scratch_.data());
+        const double change = std::abs(scratch_[open_[k]] - at(open_[k], node));
+        if (std::isfinite(change)) changes[k][place] = std::max(changes[k][place], change);
+      }
+    }
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < open_.size(); ++k) {
+      std::array<double, k_places> sorted = changes[k];
+      std::sort(sorted.begin(), sorted.end());
+      if (is_jitter(open_[k], sorted[k_places - 2])) continue; // at two places: one alone may be a jump
+      changes[left] = changes[k];
+      open_[left++] = open_[k];
+    }
+    open_.resize(left);
+  }
+}
+
+// Is a change over a hair's breadth all that the nodes show? Then it is kept in mind.
+bool ExtremeFinder::is_jitter(std::size_t c, double change) {
+  double spread = 0.0;
+  for (int i = 1; i < k_last; ++i) spread = std::max(spread, spread_about(c, i));
+  if (!(change > 0.0 && change >= k_jitter * spread && change <= k_most_jitter * kinds_[kind_[c]].largest)) return false;
+  if (jitter_.empty()) jitter_.assign(count_, 0.0);
+  jitter_[c] = std::max(jitter_[c], change);
+  return true;
 }
 
 // Golden section about the outermost node, on the motion itself.
@@ -469,7 +522,7 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
       if (sign * at(c, i) > sign * at(c, best) || std::isnan(at(c, best))) best = i;
     const int middle = std::clamp(best, 1, k_last - 1);
     const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
-    const double spread = std::max(std::abs(at(c, middle + 1) - at(c, middle)), std::abs(at(c, middle) - at(c, middle - 1)));
+    const double spread = spread_about(c, middle);
     if (!(sign * at(c, best) + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
     double a = k_thetas[middle - 1], b = k_thetas[middle + 1];
     const auto value = [&](double theta) {

@@ -6,7 +6,8 @@
 // far inside the stretch, which its second difference over three ends tells, all are evaluated on the dense
 // output as well (of a body's coordinates and velocities also the slopes at both ends tell): at the middle, then at the 5 and the 9 points of Chebyshev and Lobatto, until the
 // polynomial through them tells the next ones within `k_resolution` of the channel's range. The extreme is
-// the polynomial's. Where none is found (a kink) the search goes on by sections around the outermost point.
+// the polynomial's. Where none is found (a kink) the search goes on by sections around the outermost point, for each channel by
+// itself; of many channels those that are rounding are told first, all together, and left as they are.
 //
 // What is looked at depends on the steps alone: not on the samples written. Limits: a peak that rises and
 // falls within one step of which neither the ends nor the curve before show anything is not seen, nor is it
@@ -85,6 +86,9 @@ private:
   void search(Integrator& integrator, Dynamics& dynamics);
   void refine(int level, Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] bool settle(std::size_t c, int level);
+  void drop_jittery(Integrator& integrator, Dynamics& dynamics);
+  [[nodiscard]] bool is_jitter(std::size_t c, double change);
+  [[nodiscard]] double spread_about(std::size_t c, int middle) const;
   void section(std::size_t c, Integrator& integrator, Dynamics& dynamics);
   void find_crossings(Integrator& integrator, Dynamics& dynamics);
   void keep_step(const Integrator& integrator, const Dynamics& dynamics);
@@ -113,6 +117,7 @@ private:
   std::vector<Curve> curve_;
   std::vector<double> curvature_;                ///< second derivative as seen lately, per s²
   std::vector<std::size_t> open_;                ///< channels still followed in this stretch
+  std::vector<double> jitter_; ///< per channel: what rounding was seen to change it by; empty as long as nobody had to ask
   std::vector<ValueBounds> bounds_, bounds_before_;
   std::vector<char> is_wanted_;                  ///< per screened channel: it may be beyond its extremes at the last end
 

@@ -1,0 +1,41 @@
+// Steps downhill on which many bodies land, each on its own.
+//
+// Bodies that rows, springs or closed contacts join are an island. Along a step no island knows of another until a contact
+// between them closes; so each goes as far as to its own first one, and all land in one step. To cut the whole step at the first
+// contact that closes, as a small scene's is, takes as many steps as bodies land.
+#pragma once
+
+#include "mbd/analysis/statics.h"
+
+#include <functional>
+#include <vector>
+
+namespace steplap {
+
+class Landing {
+public:
+  /// At the last evaluation of `statics`.
+  Landing(const System& system, const Statics& statics);
+
+  /// Evaluates the statics a step away from where it begins.
+  using Look = std::function<void(const VecX& step)>;
+  /// Cuts the islands' parts of `step` where their first contact has just closed; `looks`: places along it where that is looked for.
+  /// False if none closes, or the one that moves is the only island: the step is as it was. The statics is left anywhere.
+  bool cut(VecX& step, int looks, const Look& look);
+
+private:
+  struct Pair {
+    int a = 0, b = 0, contact = 0;
+  };
+  void join_bodies();
+  [[nodiscard]] int island(int body);
+  [[nodiscard]] VecX cut_step(const VecX& step, const std::vector<double>& shares);
+  [[nodiscard]] int mover(const Pair& pair, const VecX& step);
+
+  const System& system_;
+  const Statics& statics_;
+  std::vector<int> parent_; ///< of bodies, by union and find; 0 is the ground, which joins nothing
+  std::vector<Pair> open_;  ///< contacts that may close
+};
+
+} // namespace steplap
