@@ -17,6 +17,7 @@
 #include "elements/step_lap_joint.h"
 #include "elements/tie.h"
 #include "elements/unilateral_contact.h"
+#include "elements/wound_rope.h"
 #include "mbd/io/record_signal.h"
 #include "mbd/io/presentation.h"
 
@@ -38,7 +39,7 @@ const Catalogue& element_catalog() {
                   &gear_kind(),              &rack_kind(),
                   &motor_kind(),             &limit_kind(),
                   &joint_friction_kind(),    &rope_kind(),
-                  &load_kind()};
+                  &wound_rope_kind(),        &load_kind()};
     c.signals = signal_kinds();
     c.signals.push_back(&record_signal_kind());
     c.tables = {&channel_kind(), &plot_kind(), &acceptance_kind()};

@@ -52,6 +52,25 @@ RowSpec slide_row(const ContactGeometry& g, int memory) {
   return row;
 }
 
+// What rubs at a contact twice would hold twice.
+bool is_claimed(const CoulombStick& e, SystemBuilder& builder) {
+  const auto refuse = [&builder](const std::string& contact, const std::string& where) {
+    builder.error("'" + contact + "' stands in 'contacts' " + where + ": its normal force would bear friction twice");
+    return true;
+  };
+  for (auto contact = e.contacts.begin(); contact != e.contacts.end(); ++contact)
+    if (std::find(e.contacts.begin(), contact, *contact) != contact) return refuse(*contact, "twice");
+  for (const ElementEntry& entry : builder.model().elements) {
+    if (entry.element.get() == &e) return false;
+    if (entry.kind != &coulomb_stick_kind()) continue;
+    const std::vector<std::string>& others = static_cast<const CoulombStick&>(*entry.element).contacts;
+    for (const std::string& contact : e.contacts)
+      if (std::find(others.begin(), others.end(), contact) != others.end())
+        return refuse(contact, "here and in those of '" + entry.element->name + "'");
+  }
+  return false;
+}
+
 // All contacts must lie between the same two bodies on one line, so that one coordinate serves them.
 bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactGeometry>& geometry,
              std::vector<ContactIndex>& contacts, double& damping) {
@@ -170,6 +189,7 @@ void compile_coulomb(const Element& element, SystemBuilder& builder) {
   if (e.contacts.empty()) return builder.error("'contacts' is empty: name the contacts that carry the friction");
   if (e.kinetic_friction.value_or(e.static_friction) > e.static_friction)
     return builder.error("'kinetic_friction' must not exceed 'static_friction'");
+  if (is_claimed(e, builder)) return;
   if (is_any_round(e, builder)) return compile_rolling(e, builder);
   std::vector<ContactGeometry> geometry;
   auto friction = std::make_unique<CoulombFriction>();

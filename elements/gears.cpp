@@ -59,6 +59,9 @@ void compile_rack(const Element& element, SystemBuilder& builder) {
   RowSpec row = row_between(a, b);
   row.kind = MeasureKind::roll_line;
   row.direction = builder.direction(b, perp(e.axis));
+  const Vec2 left = rotated(row.direction, builder.reference(b.body).theta);
+  if (left.dot(builder.marker_position(a) - builder.marker_position(b)) < -k_pitch_tolerance * e.radius)
+    return builder.error("its pinion is on the right of 'axis' and would turn the wrong way: turn 'axis' round");
   row.radius_a = e.radius;
   add_row(row, builder);
 }

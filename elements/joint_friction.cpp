@@ -98,8 +98,9 @@ const ElementKind& joint_friction_kind() {
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
     f.add("coordinate", &T::coordinate).one_of({"angle", "x", "y", "distance"}).doc(
         "angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
-    f.add("holds", &T::holds).positive().required().doc("largest couple or force that it takes sticking, N m or N");
-    f.add("drags", &T::drags).not_negative().doc("couple or force while it slides; default: as holds");
+    f.add("holds", &T::holds).in("N m|N").positive().required().doc(
+        "largest couple or force that it takes sticking");
+    f.add("drags", &T::drags).in("N m|N").not_negative().doc("couple or force while it slides; default: as holds");
     k.holds<T>();
     k.compile = compile_joint_friction;
     return k;

@@ -130,10 +130,11 @@ const ElementKind& limit_kind() {
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
     f.add("coordinate", &T::coordinate).one_of({"angle", "x", "y", "distance"}).doc(
         "angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
-    f.add("lower", &T::lower).doc("lower stop, rad or m from the reference pose (distance: the distance itself)");
-    f.add("upper", &T::upper).doc("upper stop");
-    f.add("stiffness", &T::stiffness).positive().required().doc("of a stop, N m/rad or N/m");
-    f.add("damping", &T::damping).not_negative().doc("of a stop, N m s/rad or N s/m");
+    f.add("lower", &T::lower).in("rad|m").doc(
+        "lower stop, from the reference pose (distance: the distance itself)");
+    f.add("upper", &T::upper).in("rad|m").doc("upper stop");
+    f.add("stiffness", &T::stiffness).in("N m/rad|N/m").positive().required().doc("of a stop");
+    f.add("damping", &T::damping).in("N m s/rad|N s/m").not_negative().doc("of a stop");
     k.holds<T>();
     k.compile = compile_limit;
     return k;

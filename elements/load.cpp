@@ -118,9 +118,9 @@ const ElementKind& load_kind() {
     f.add("at", &Load::at).as(FieldType::marker).required().doc("marker where it acts");
     f.add("force", &Load::force).in("N").doc("constant part");
     f.add("couple", &Load::couple).in("N m").doc("constant part");
-    f.add("force_x", &Load::force_x).as(FieldType::signal).doc("signal added to the force along x");
-    f.add("force_y", &Load::force_y).as(FieldType::signal).doc("signal added to the force along y");
-    f.add("torque", &Load::torque).as(FieldType::signal).doc("signal added to the couple");
+    f.add("force_x", &Load::force_x).as(FieldType::signal).in("N").doc("signal added to the force along x");
+    f.add("force_y", &Load::force_y).as(FieldType::signal).in("N").doc("signal added to the force along y");
+    f.add("torque", &Load::torque).as(FieldType::signal).in("N m").doc("signal added to the couple");
     f.add("frame", &Load::frame).one_of({"ground", "body"}).doc("axes of the force: ground, or the marker's");
     k.holds<Load>();
     k.compile = compile_load;

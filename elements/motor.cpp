@@ -18,7 +18,8 @@ struct MotorLaw {
   // `at_time`: what a signal is at the time.
   template <class S, class AtTime> [[nodiscard]] S force_by(const S& value, const S& rate, const AtTime& at_time) const {
     const auto stall = constant_effort + (effort ? at_time(TimeInput{effort}) : 0.0);
-    S f = S(stall) * (S(1) - S(droop) * rate);
+    const bool is_reverse = droop != 0.0 && stall < 0.0; // its no-load speed is on the other side
+    S f = S(stall) * (is_reverse ? S(1) + S(droop) * rate : S(1) - S(droop) * rate);
     if (proportional == 0.0 && derivative == 0.0) return f;
     const auto wanted = target ? at_time(TimeInput{target}) : 0.0, wanted_rate = target ? at_time(TimeInput{target, true}) : 0.0;
     f += S(proportional) * (S(wanted + start) - value) + S(derivative) * (S(wanted_rate) - rate);
@@ -141,20 +142,21 @@ const ElementKind& motor_kind() {
     using T = Motor;
     ElementKind k;
     k.name = "motor";
-    k.doc = "A couple or force between a and b along a coordinate: effort (1 - rate/no_load_speed) + proportional "
+    k.doc = "A couple or force between a and b along a coordinate: effort - |effort| rate/no_load_speed + proportional "
             "(target - value) + derivative (target' - rate), value counted from the reference pose.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is driven");
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
     f.add("coordinate", &T::coordinate).one_of({"angle", "x", "y", "distance"}).doc(
         "angle of a against b; x, y: of marker a in marker b's axes; distance of the markers");
-    f.add("effort", &T::effort).as(FieldType::signal).doc("couple or force at standstill");
-    f.add("constant_effort", &T::constant_effort).doc("the same, constant: N m or N, added to the signal");
-    f.add("no_load_speed", &T::no_load_speed).doc("rate at which the effort has fallen to zero, rad/s or m/s, in the "
-                                                  "direction of a positive effort; not given: it never falls");
-    f.add("target", &T::target).as(FieldType::signal).doc("wanted value; not given: the reference pose");
-    f.add("proportional", &T::proportional).not_negative().doc("servo: N m/rad or N/m");
-    f.add("derivative", &T::derivative).not_negative().doc("servo: N m s/rad or N s/m");
+    f.add("effort", &T::effort).as(FieldType::signal).in("N m|N").doc("couple or force at standstill");
+    f.add("constant_effort", &T::constant_effort).in("N m|N").doc("the same, constant, added to the signal");
+    f.add("no_load_speed", &T::no_load_speed).in("rad/s|m/s").positive().doc(
+        "rate in the direction of the effort at which it has fallen to zero; not given: it never falls");
+    f.add("target", &T::target).as(FieldType::signal).in("rad|m").doc(
+        "wanted value; not given: the reference pose");
+    f.add("proportional", &T::proportional).in("N m/rad|N/m").not_negative().doc("of the servo");
+    f.add("derivative", &T::derivative).in("N m s/rad|N s/m").not_negative().doc("of the servo");
     k.holds<T>();
     k.compile = compile_motor;
     return k;

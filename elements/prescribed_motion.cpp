@@ -105,7 +105,8 @@ const ElementKind& prescribed_motion_kind() {
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
     f.add("coordinate", &T::coordinate).one_of({"x", "y", "angle", "distance"}).doc(
         "x, y: of marker a in marker b's axes; angle of a against b; distance of the markers");
-    f.add("signal", &T::signal).as(FieldType::signal).required().doc("signal that it follows");
+    f.add("signal", &T::signal).as(FieldType::signal).in("rad|m").required().doc(
+        "signal that it follows (a velocity's per s, an acceleration's per s^2)");
     f.add("as", &T::as).one_of({"acceleration", "velocity", "position"}).doc(
         "what the signal is; acceleration and velocity start from the initial pose, a position is absolute (see zero)");
     f.add("zero", &T::zero).one_of({"origin", "reference"}).doc(

@@ -35,6 +35,8 @@ bool check(const SpringDamper& e, SystemBuilder& builder) {
   is_bad |= fails(e.stiffness == 0.0 && e.damping == 0.0 && e.force_table.empty() &&
                       e.damping_table.empty(),
                   "gives no force: set 'stiffness', 'damping' or a table");
+  is_bad |= fails(!e.axis && e.free_length.value_or(0.0) < 0.0,
+                  "'free_length' must not be negative from point to point: a distance never is");
   return !is_bad;
 }
 

@@ -465,7 +465,8 @@ const ElementKind& step_lap_joint_kind() {
         .doc("share of all its pressures that relaxation has taken");
     f.add("transverse_acceleration", &T::transverse_acceleration)
         .as(FieldType::signal)
-        .doc("across the sheets, m/s², out of the plane of motion: changes the pressure of each interface by its "
+        .in("m/s^2")
+        .doc("across the sheets, out of the plane of motion: changes the pressure of each interface by its "
              "transverse_pressure");
     f.add("least_margin", &T::least_margin).at_least(1.0).doc(
         "smallest margin (capacity over what is in use) that a run must leave: inspect below it");

@@ -122,7 +122,8 @@ void add_joints(FieldTable& f) {
       .doc("of the joints added: share of all their pressures that relaxation has taken");
   f.add("transverse_acceleration", &T::transverse_acceleration)
       .as(FieldType::signal)
-      .doc("across the sheets, from the front face to the back, m/s²: packets' pressures follow, by what leans on them");
+      .in("m/s^2")
+      .doc("across the sheets, from the front face to the back: packets' pressures follow, by what leans on them");
   f.add("transverse_support", &T::transverse_support)
       .one_of({"both", "front", "back"})
       .doc("what holds the stack against it: both faces alike (one gains what the other loses), or one face while the other is "

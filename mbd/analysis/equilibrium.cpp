@@ -201,7 +201,12 @@ private:
       const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
       if (!rope || state_.friction[f].phase == FrictionPhase::stick || rope->left(motion.data()) >= -OneSidedRow::k_at_length * rope->length) continue;
       state_.friction[f].phase = FrictionPhase::stick;
-      put_on_rows();
+      try {
+        put_on_rows();
+      } catch (const ConstraintFailure&) { // what slid beyond it rubs where it lies now: that has to give way
+        free_contacts();
+        put_on_rows();
+      }
       return count_rope(f);
     }
     return false;
@@ -231,6 +236,12 @@ private:
       return false;
     }
     return count_rope(changed);
+  }
+  // Friction that holds contacts gets its load anew.
+  void free_contacts() {
+    for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f)
+      if (state_.friction[f].phase == FrictionPhase::stick && !one_sided_row(*system_.frictions[f].friction) && is_of_contacts(f))
+        state_.friction[f].phase = FrictionPhase::free;
   }
   void put_on_rows() {
     Dynamics dynamics(system_);

@@ -2,6 +2,7 @@
 
 #include "mbd/io/units.h"
 #include "mbd/base/number_text.h"
+#include "mbd/model/field_units.h"
 #include "mbd/model/validate.h"
 
 #include <algorithm>
@@ -174,10 +175,19 @@ std::string report_unknown(const Node& child, const FieldTable& fields, const Ta
   return nearest_name(child.key, known);
 }
 
-GivenField read_field(const Node& child, const Field& field, void* object,
+// With the unit that the fields read before give it.
+FieldValue read_value(const Node& child, const FieldTable& fields, const Field& field, const void* object,
+                      const TableReading& reading) {
+  if (!hangs_on_others(field)) return ValueReader(field, reading).read(child);
+  Field own = field;
+  own.unit = unit_in(fields, field, object);
+  return ValueReader(own, reading).read(child);
+}
+
+GivenField read_field(const Node& child, const FieldTable& fields, const Field& field, void* object,
                       const TableReading& reading, std::vector<Diagnostic>& problems) {
   try {
-    field.set(object, ValueReader(field, reading).read(child));
+    field.set(object, read_value(child, fields, field, object, reading));
   } catch (const BadValue& bad) {
     problems.push_back(
         {bad.node->where(), "'" + field.name + "' of " + reading.subject + ": " + bad.message});
@@ -250,13 +260,18 @@ std::vector<GivenField> read_fields(const Node& table, const FieldTable& fields,
                                     std::vector<Diagnostic>& problems) {
   std::vector<GivenField> given;
   std::vector<std::string> misspelt;
+  std::vector<std::pair<const Node*, const Field*>> later; // whose units others give
   for (const Node& child : table.children) {
-    if (const Field* field = fields.find(child.key))
-      given.push_back(read_field(child, *field, object, reading, problems));
+    const Field* field = fields.find(child.key);
+    if (field && hangs_on_others(*field))
+      later.emplace_back(&child, field);
+    else if (field)
+      given.push_back(read_field(child, fields, *field, object, reading, problems));
     else if (std::find(reading.known_keys.begin(), reading.known_keys.end(), child.key) ==
              reading.known_keys.end())
       misspelt.push_back(report_unknown(child, fields, reading, problems));
   }
+  for (const auto& [child, field] : later) given.push_back(read_field(*child, fields, *field, object, reading, problems));
   report_missing(table, fields, reading, misspelt, given, problems);
   return given;
 }

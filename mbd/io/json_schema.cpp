@@ -1,6 +1,7 @@
 #include "mbd/io/json_schema.h"
 
 #include "mbd/io/described.h"
+#include "mbd/model/field_units.h"
 
 #include <nlohmann/json.hpp>
 
@@ -74,7 +75,7 @@ Json value_schema(const Field& field) {
 Json field_schema(const Described& kind, const Field& field) {
   Json schema = value_schema(field);
   std::string doc = field.doc;
-  if (!field.unit.empty() && field.unit != "*") doc += " [" + field.unit + "]";
+  if (!field.unit.empty() && field.unit != "*") doc += " [" + shown_unit(field) + "]";
   schema["description"] = doc;
   if (field.is_required) return schema;
   const std::string given = kind.default_text(field);
@@ -161,7 +162,7 @@ std::string json_schema(const Catalogue& catalogue) {
 
 std::string field_json_schema(const Field& field) {
   Json schema = value_schema(field);
-  schema["description"] = field.unit.empty() || field.unit == "*" ? field.doc : field.doc + " [" + field.unit + "]";
+  schema["description"] = field.unit.empty() || field.unit == "*" ? field.doc : field.doc + " [" + shown_unit(field) + "]";
   return schema.dump();
 }
 

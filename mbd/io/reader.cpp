@@ -2,7 +2,9 @@
 
 #include "mbd/base/shown_text.h"
 #include "mbd/io/field_reader.h"
+#include "mbd/io/signal_units.h"
 #include "mbd/model/completion.h"
+#include "mbd/model/field_units.h"
 #include "mbd/io/toml_writer.h"
 
 #include <algorithm>
@@ -66,6 +68,7 @@ public:
     read_signals();
     read_elements();
     read_tables();
+    check_signal_units();
     Model as_given = model_;
     complete_model();
     finish();
@@ -91,6 +94,7 @@ private:
   void read_signals();
   void read_elements();
   void read_tables();
+  void check_signal_units();
   std::string read_name(const Node& entry, const std::string& noun, std::vector<GivenField>& given);
   template <class Kind>
   const Kind* read_kind(const Node& entry, const std::string& noun,
@@ -322,6 +326,32 @@ void Reader::read_tables() {
           if (field.node) object->places[field.field->name] = field.node->where();
       model_.tables.emplace_back(kind, table);
     }
+  }
+}
+
+// A pulse of "0.5 gravity" is no force, one of "20 deg" no way.
+void Reader::check_signal_units() {
+  SignalUnits units;
+  for (std::size_t i = 0; i < model_.signals.size(); ++i)
+    units.enter(model_.signals[i].definition->name, model_.signals[i].kind->name, given(Section::signal)[i]);
+  const auto check = [&](const std::vector<GivenField>& fields, const FieldTable& table, const void* object,
+                         const std::string& subject) {
+    for (const GivenField& field : fields) {
+      if (!field.node || !field.is_usable || field.field->type != FieldType::signal) continue;
+      const std::string unit = unit_in(table, *field.field, object);
+      if (unit.empty()) continue;
+      const std::string misfit = units.misfit(field.node->text(), unit);
+      if (!misfit.empty()) add(field.node->where(), "'" + field.field->name + "' of " + subject + ": " + misfit);
+    }
+  };
+  for (std::size_t i = 0; i < model_.elements.size(); ++i) {
+    const ElementEntry& entry = model_.elements[i];
+    check(given(Section::element)[i], entry.kind->fields, entry.element.get(),
+          subject_text(entry.kind->name, entry.element->name));
+  }
+  for (std::size_t i = 0; i < model_.tables.size(); ++i) {
+    const TableEntry& entry = model_.tables[i];
+    check(tables_[i].given, entry.kind->fields, entry.table.get(), subject_text(entry.kind->name, entry.table->name));
   }
 }
 

@@ -4,6 +4,7 @@
 #include "mbd/io/described.h"
 #include "mbd/io/kind_channels.h"
 #include "mbd/base/number_text.h"
+#include "mbd/model/field_units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ std::string range_text(const Field& field) {
 std::string unit_text(const Field& field) {
   if (field.type == FieldType::quantity) return "the channel's";
   if (field.unit == "*") return "any unit";
-  return field.unit2.empty() ? field.unit : field.unit + ", " + field.unit2;
+  return field.unit2.empty() ? shown_unit(field) : field.unit + ", " + field.unit2;
 }
 
 std::string default_text(const Described& kind, const Field& field) {
@@ -141,7 +142,7 @@ std::string kind_text(const Catalogue& catalogue, const std::string& name) {
 std::string reference_markdown(const Catalogue& catalogue) {
   std::string text =
       "# Model reference\n\nGenerated from the field tables. Numbers are SI; a string "
-      "may carry a unit, as in \"47 t\".\n\nBelow the fields of a kind stand the channels of its elements (docs/channels.md): what a run "
+      "may carry a unit, as in \"47 t\". Signals, elements, channels, plots, criteria and cores have a unique `name` besides.\n\nBelow the fields of a kind stand the channels of its elements (docs/channels.md): what a run "
       "writes always, and what it writes if `also` of `[output]` asks for it.\n";
   for (const Described& kind : describe(catalogue)) {
     text += "\n## " + heading(kind) + "\n" + kind.doc + "\n\n" + markdown(rows_of(kind));

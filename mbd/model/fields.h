@@ -46,7 +46,7 @@ using FieldValue = std::variant<double, long, bool, std::string, Vec2, std::vect
 struct Field {
   std::string name;
   FieldType type = FieldType::number;
-  std::string unit;  ///< SI unit in UDUNITS spelling ("N/m"), "" = dimensionless
+  std::string unit;  ///< SI unit in UDUNITS spelling ("N/m"), "" = dimensionless; "N m|N": by other fields (field_units.h)
   std::string unit2; ///< second unit of a list of points
   std::string doc;   ///< one line
   bool is_required = false;

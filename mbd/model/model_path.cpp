@@ -1,6 +1,7 @@
 #include "mbd/model/model_path.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/model/field_units.h"
 #include "mbd/model/validate.h"
 
 #include <charconv>
@@ -18,6 +19,7 @@ namespace {
 struct Target {
   const void* object = nullptr;
   const Field* field = nullptr;
+  const FieldTable* fields = nullptr; ///< of the object, itself and what it hangs on
   std::string subject;
   std::vector<std::size_t> items; ///< one or two indices into what the field holds
 };
@@ -90,7 +92,7 @@ private:
   }
 
   Target field_of(const FieldTable& table, const FieldTable* common, const void* object, std::string subject, const std::string& name) {
-    Target target{object, table.find(name), std::move(subject), {}};
+    Target target{object, table.find(name), &table, std::move(subject), {}};
     if (!target.field && common) target.field = common->find(name);
     if (!target.field) complain(path_, "unknown key '" + name + "' in " + target.subject + did_you_mean(name, table.names()));
     while (!rest_.empty()) {
@@ -196,7 +198,7 @@ std::string unit_of(const Model& model, const std::string& path) {
   (void)number_of(model, path);
   const Target target = Resolver(model, path).resolve();
   const bool is_second = target.field->type == FieldType::points && target.items.back() == 1;
-  return is_second && !target.field->unit2.empty() ? target.field->unit2 : target.field->unit;
+  return is_second && !target.field->unit2.empty() ? target.field->unit2 : unit_in(*target.fields, *target.field, target.object);
 }
 
 } // namespace steplap

@@ -2,6 +2,7 @@
 
 #include "mbd/base/shown_text.h"
 #include "mbd/base/number_text.h"
+#include "mbd/model/field_units.h"
 #include "mbd/model/method.h"
 #include "mbd/model/signal_network.h"
 
@@ -24,7 +25,7 @@ std::string subject_text(const std::string& kind, const std::string& name) {
 
 std::string missing_field_message(const Field& field, const std::string& subject) {
   std::string text = subject + " needs '" + field.name + "' (" + field.doc;
-  if (!field.unit.empty() && field.unit != "*") text += "; in " + field.unit;
+  if (!field.unit.empty() && field.unit != "*") text += "; in " + shown_unit(field);
   return text + ")";
 }
 
@@ -47,7 +48,8 @@ std::string of(const Field& field, const std::string& subject) {
 }
 
 std::string with_unit(double value, const std::string& unit) {
-  return number_text(value) + (unit.empty() || unit == "*" ? "" : " " + unit);
+  const bool is_known = !unit.empty() && unit != "*" && unit.find('|') == std::string::npos;
+  return number_text(value) + (is_known ? " " + unit : "");
 }
 
 std::string reference_noun(FieldType type) {

@@ -131,6 +131,10 @@ inline const std::vector<ConformanceScene>& conformance_scenes() {
        "yoke = [[@-0.5, 0.3], [@+0.6, 0.3], [@+0.6, 0.9], [@-0.5, 0.9]]\n"
        "limb = [[@-0.4, -0.6], [@+0.3, -0.6], [@+0.3, 0.2], [@-0.4, 0.2]]\npressure = 1e9\n"
        "static_friction = 0.3\nclearance = 0.01\n"},
+      {"wound_rope", "a = \"A\"\nb = \"B\"\nradius_a = @+0.12\nradius_b = @-0.2\nstiffness = 800.0\ndamping = 30.0\npretension = 9.0\n"},
+      {"wound_rope", // crossed
+       "a = \"A\"\nb = \"B\"\nradius_a = @+0.1\nradius_b = @+0.1\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\n", false, true},
+      {"wound_rope", "a = \"A\"\nb = \"B\"\nradius_a = @-0.15\nstiffness = 800.0\n"},
       {"tie", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\n", false, true},
       {"tie", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\npreload = 9.0\nacts = \"both\"\nstrength = 1e6\n", false, true},
       {"tie", "a = \"A\"\nb = \"B\"\naxis = [@+0.6, 0.8]\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\nacts = \"both\"\ncount = 2\n"},

@@ -1,65 +1,16 @@
 // Machines that were tried from an empty file, as far as something was found on them: against closed forms.
-#include "tests/machines/machine.h"
+#include "tests/machines/written.h"
 #include "tests/physics/model_text.h"
-#include "tools/steplap/command_line.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <unistd.h>
 
 using namespace steplap;
 using namespace steplap::testing;
 
 namespace {
-
-constexpr double k_g = 9.81;
-
-std::string number(double value) {
-  std::ostringstream text;
-  text.precision(17);
-  text << value;
-  return text.str();
-}
-
-/// A model file for one test.
-struct Written {
-  std::filesystem::path file;
-  explicit Written(const std::string& text) : file(std::filesystem::temp_directory_path() / ("steplap_tried_" + std::to_string(::getpid()) + ".toml")) {
-    std::ofstream(file) << text;
-  }
-  Written(const Written&) = delete;
-  Written& operator=(const Written&) = delete;
-  ~Written() { std::filesystem::remove(file); }
-  [[nodiscard]] std::shared_ptr<const LoadedModel> loaded(const std::vector<std::string>& overrides = {}) const { return load_model(file.string(), overrides); }
-};
-
-struct Answer {
-  int code = 0;
-  std::string out, err;
-};
-
-Answer steplap_does(const std::vector<std::string>& arguments) {
-  std::ostringstream out, err;
-  const int code = run_command_line(arguments, out, err, false);
-  return {code, out.str(), err.str()};
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-double last(const Run& run, const std::string& channel) {
-  const auto& all = *run.result.trajectory;
-  return all.value(all.size() - 1, all.column(channel));
-}
-
-int count(const Run& run, const std::string& element, EventKind kind) {
-  return static_cast<int>(std::count_if(run.result.events.begin(), run.result.events.end(),
-                                        [&](const Event& event) { return event.element == element && event.kind == kind; }));
-}
 
 // A bed whose frame lies at its right end and whose centre of gravity in its middle; a crate on its right half.
 std::string bed(bool is_fixed, const std::string& cg) {

@@ -27,6 +27,7 @@ MACHINES = {
     "brick_wall": (3600.0, True, []),
     "pile": (3600.0, True, []),
     "jamming_slide": (0.1, True, []),
+    "hoist": (0.02, True, []),
 }
 
 

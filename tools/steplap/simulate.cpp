@@ -12,6 +12,7 @@
 #include "tools/steplap/report.h"
 #include "tools/steplap/result_files.h"
 #include "tools/steplap/run_screen.h"
+#include "tools/steplap/stepped_feet.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
@@ -120,6 +121,7 @@ void note_assembly(const LoadedModel& loaded) {
   auto moves = assembly_moves(system.initial_state(), loaded.assembled, k_noticeable);
   std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });
   if (moves.empty()) return;
+  for (const std::string& text : stepped_feet(loaded)) log_warning("'" + loaded.path + "': " + text);
   for (const std::string& text : far_joints(loaded)) log_warning("'" + loaded.path + "': " + text);
   log_info("'" + loaded.path + "': assembling the joints moved " + counted(moves.size(), "body", "bodies") +
            ", most of all '" + system.bodies[moves.front().body].name + "' by " +

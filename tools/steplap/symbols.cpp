@@ -1,5 +1,6 @@
 #include "tools/steplap/symbols.h"
 
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -32,6 +33,15 @@ void rope(Sketch& s) {
   for (const MarkerPlace& place : shape.at)
     s.note_place(place);
   s.draw(std::move(shape));
+}
+
+void wound_rope(Sketch& s) {
+  const auto a = s.place("a"), b = s.place("b");
+  if (!a || !b) return;
+  const double radius_a = s.number("radius_a"), radius_b = s.number("radius_b");
+  if (radius_a != 0.0) s.circle(*a, std::abs(radius_a));
+  if (radius_b != 0.0) s.circle(*b, std::abs(radius_b));
+  s.draw({"rope", "", "tension", {*a, *b}, {}, {radius_a, radius_b}});
 }
 
 void load(Sketch& s) {
@@ -133,7 +143,7 @@ using Symbol = void (*)(Sketch&);
 Symbol symbol_of(const std::string& kind) {
   static const std::map<std::string, Symbol> symbols{
       {"spring_damper", spring_damper}, {"rotational_spring_damper", rotational_spring_damper},
-      {"bushing", bushing}, {"tie", tie}, {"rope", rope}, {"load", load},
+      {"bushing", bushing}, {"tie", tie}, {"rope", rope}, {"wound_rope", wound_rope}, {"load", load},
       {"unilateral_contact", unilateral_contact}, {"polygon_contact", polygon_contact}, {"circle_contact", circle_contact},
       {"segment_contact", segment_contact}, {"coulomb_stick", friction},
       {"step_lap_joint", step_lap_joint}, {"step_lap_interface", nothing},

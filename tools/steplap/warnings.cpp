@@ -2,6 +2,7 @@
 
 #include "tools/steplap/far_joints.h"
 #include "tools/steplap/seams.h"
+#include "tools/steplap/stepped_feet.h"
 
 #include "mbd/analysis/assembly.h"
 #include "mbd/events/event_handler.h"
@@ -74,6 +75,27 @@ std::string list_of(const System& system, const std::vector<SharedReaction>& rea
   return shown < reactions.size()
              ? text + " and " + std::to_string(reactions.size() - shown) + " more"
              : text;
+}
+
+// Between two places of one body, or of two that do not move, nothing has an effect (joints and drives refuse it).
+void warn_of_idle_elements(const Model& model, std::vector<std::string>& warnings) {
+  std::unordered_map<std::string, std::string> body_of; // by marker and body; "" does not move
+  body_of["ground"] = "";
+  for (const Body& body : model.bodies) body_of[body.name] = body.fixed ? "" : body.name;
+  for (const Marker& marker : model.markers)
+    if (const auto found = body_of.find(marker.body); found != body_of.end()) body_of[marker.name] = std::string(found->second);
+  for (const ElementEntry& entry : model.elements) {
+    const auto text_of = [&entry](const char* name) {
+      const Field* const field = entry.kind->fields.find(name);
+      return field && field->type == FieldType::marker ? std::get<std::string>(field->get(entry.element.get())) : std::string();
+    };
+    const std::string a = text_of("a"), b = text_of("b");
+    const Field* const over = entry.kind->fields.find("over");
+    if (a.empty() || b.empty() || body_of.count(a) == 0 || body_of.count(b) == 0 || body_of[a] != body_of[b]) continue;
+    if (over && !std::get<std::vector<std::string>>(over->get(entry.element.get())).empty()) continue;
+    warnings.push_back(entry.kind->name + " '" + entry.element->name + "'" + place(entry.element->where) + " acts between two places " +
+                       (body_of[a].empty() ? "that do not move" : "of '" + body_of[a] + "'") + ": it moves nothing");
+  }
 }
 
 // Loads that constraints can share in more than one way.
@@ -156,7 +178,9 @@ std::vector<std::string> warnings_about(const LoadedModel& loaded) {
   if (s.step && !s.tolerance && !has_fixed_step(s.integrator))
     warnings.push_back("'step' of [simulation] is not used: '" + s.integrator +
                        "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"");
+  warn_of_idle_elements(model, warnings);
   for (std::string& message : far_joints(loaded)) warnings.push_back(std::move(message));
+  for (std::string& message : stepped_feet(loaded)) warnings.push_back(std::move(message));
   for (std::string& message : doubled_corners(loaded)) warnings.push_back(std::move(message));
   for (std::string& message : implausible_cores(model)) warnings.push_back(std::move(message));
   warn_of_shared_reactions(*loaded.system, warnings);

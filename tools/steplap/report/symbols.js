@@ -150,12 +150,21 @@ steplap.Symbols = (() => {
     rope(element, shape) {
       const line = this.piece(element, { class: 'symbol rope' }), tension = this.channel(element, shape), text = this.value(element);
       this.update((t, pose) => {
-        const points = shape.at.map((a) => this.screen(a, pose)), force = tension ? tension.at(t) : 1;
+        const centres = shape.at.map((a) => this.screen(a, pose)), force = tension ? tension.at(t) : 1;
+        const points = shape.sizes ? this.tangent(centres, shape.sizes) : centres;
         line.setAttribute('d', path(points));
         line.classList.toggle('slack', !(force > 0));
         this.showValue(text, tension ? steplap.data.quantity(force, tension.unit, 4) : '', along(points[0], points[1], 0.5), [1, 0]);
       });
       for (const pulley of shape.at.slice(1, -1)) this.dot(element, pulley, 'pulley', 0.6);
+    }
+
+    // Where a rope leaves two wheels; radii are positive where counter-clockwise winds it up (elements/wound_rope.h).
+    tangent([a, b], [ra, rb]) {
+      const d = scaled(flipped(minus(b, a)), 1 / this.scene.scale), square = dot(d, d), c = ra + rb, length = Math.sqrt(Math.max(0, square - c * c));
+      if (!(square > 0)) return [a, b];
+      const n = scaled([c * d[0] - length * d[1], c * d[1] + length * d[0]], this.scene.scale / square);
+      return [add(a, flipped(scaled(n, ra))), minus(b, flipped(scaled(n, rb)))];
     }
 
     // --- contacts ---------------------------------------------------------------------------------------------

@@ -1,0 +1,69 @@
+#include "mbd/io/signal_units.h"
+
+#include "mbd/io/units.h"
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_deepest = 100; // of signals made of others; what leads back to itself is said elsewhere
+
+bool has_unit(const std::string& text) {
+  return text.find_first_not_of("0123456789.+-eE \t\r\n") != std::string::npos;
+}
+
+std::string problem_of(const Node& node, const std::string& text, const std::string& unit) {
+  if (!has_unit(text)) return "";
+  const Quantity quantity = parse_quantity(text, unit);
+  return quantity.problem.empty() ? "" : "(line " + std::to_string(node.line) + "): " + quantity.problem;
+}
+
+// Of a value in any unit, or of each of a list.
+std::string problem_of(const Node& node, const std::string& unit) {
+  if (node.type == Node::Type::text) return problem_of(node, node.text(), unit);
+  std::string problem;
+  for (const Node& item : node.children)
+    if (problem.empty()) problem = problem_of(item, unit);
+  return problem;
+}
+
+bool is_factor(const GivenField& given) {
+  return given.field->name == "factor" || given.field->name == "factors";
+}
+
+} // namespace
+
+void SignalUnits::enter(const std::string& signal, const std::string& kind, const std::vector<GivenField>& given) {
+  signals_[signal] = {kind, &given};
+}
+
+std::string SignalUnits::misfit(const std::string& signal, const std::string& unit) const {
+  return misfit(signal, unit, 0);
+}
+
+std::string SignalUnits::misfit(const std::string& signal, const std::string& unit, int depth) const {
+  const auto found = signals_.find(signal);
+  if (found == signals_.end() || found->second.kind == "product" || depth > k_deepest) return "";
+  bool is_of_its_parts = true;
+  for (const GivenField& given : *found->second.given) {
+    if (!given.node || !given.is_usable) return "";
+    is_of_its_parts = is_of_its_parts && !is_factor(given);
+  }
+  for (const GivenField& given : *found->second.given) {
+    const Field& field = *given.field;
+    std::string problem;
+    if (field.unit == "*" && !is_factor(given)) problem = problem_of(*given.node, unit);
+    if (field.name == "unit" && field.type == FieldType::text && !given.node->text().empty()) // of a record's values
+      problem = problem_of(*given.node, "1 " + given.node->text(), unit);
+    if (!problem.empty()) return "its signal '" + signal + "' " + problem;
+    if (!is_of_its_parts) continue;
+    if (field.type == FieldType::signal) problem = misfit(given.node->text(), unit, depth + 1);
+    if (field.type == FieldType::signals)
+      for (const Node& part : given.node->children)
+        if (problem.empty()) problem = misfit(part.text(), unit, depth + 1);
+    if (!problem.empty()) return problem;
+  }
+  return "";
+}
+
+} // namespace steplap

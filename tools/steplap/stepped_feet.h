@@ -1,0 +1,12 @@
+// Contacts that share one friction, but touch on lines at different heights: friction acts at one of them, with a lever that is
+// wrong for the others.
+#pragma once
+
+#include "tools/steplap/run.h"
+
+namespace steplap {
+
+/// A sentence for each coulomb_stick of such contacts.
+[[nodiscard]] std::vector<std::string> stepped_feet(const LoadedModel& loaded);
+
+} // namespace steplap
