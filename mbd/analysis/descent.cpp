@@ -151,7 +151,12 @@ int Descent::looks_along(const VecX& step) const {
 // In a large scene what lands does so at once, each body where it touches. False if nothing lands.
 bool Descent::land(const std::vector<double>& from, VecX& step) {
   if (!is_sparse_ || system_.contact_count == 0) return false;
-  const bool is_cut = Landing(system_, statics_).cut(step, looks_along(step), [&](const VecX& way) {
+  std::vector<double> looks(system_.bodies.size(), 0.0);
+  for (int k = 0; k < n_; ++k) {
+    const double parts = (k % 3 < 2 ? 4.0 : 10.0) * std::abs(step[k]) * scale_[k - k % 3 + 2];
+    looks[k / 3 + 1] = std::max(looks[k / 3 + 1], std::min(std::ceil(parts), k_most_looks));
+  }
+  const bool is_cut = Landing(system_, statics_).cut(step, looks, [&](const VecX& way) {
     for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * way[k];
     statics_.evaluate(state_);
   });

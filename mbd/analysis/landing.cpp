@@ -57,23 +57,26 @@ int Landing::mover(const Pair& pair, const VecX& step) {
   return island(size(pair.a) >= size(pair.b) ? pair.a : pair.b);
 }
 
-bool Landing::cut(VecX& step, int looks, const Look& look) {
+bool Landing::cut(VecX& step, const std::vector<double>& looks, const Look& look) {
   if (open_.empty()) return false;
   const double* const force = statics_.evaluation().contact_force;
   std::vector<double> low(parent_.size(), 0.0), high(parent_.size(), 1.0), shares(parent_.size());
   std::vector<std::vector<int>> landed(parent_.size()); // contacts of each island that closed first
   bool is_any = false;
-  for (int i = 1; i <= looks; ++i) {
-    const double share = static_cast<double>(i) / looks;
+  for (double share = 0.0, before = 0.0; share < 1.0; before = share) {
+    double most = 1.0; // of what still moves
+    for (int body = 1; body < system_.body_count(); ++body)
+      if (high[island(body)] == 1.0) most = std::max(most, looks[body]);
+    share = std::min(1.0, share + 1.0 / most);
     for (std::size_t k = 0; k < shares.size(); ++k) shares[k] = std::min(share, high[k]);
     look(cut_step(step, shares));
     for (const Pair& pair : open_) {
       if (!(force[pair.contact] > 0.0)) continue;
-      const int island = mover(pair, step);
-      if (!landed[island].empty() && high[island] < share) continue; // it has stopped before
-      landed[island].push_back(pair.contact);
-      high[island] = share;
-      low[island] = static_cast<double>(i - 1) / looks;
+      const int moved = mover(pair, step);
+      if (!landed[moved].empty() && high[moved] < share) continue; // it has stopped before
+      landed[moved].push_back(pair.contact);
+      high[moved] = share;
+      low[moved] = before;
       is_any = true;
     }
   }

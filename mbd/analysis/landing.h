@@ -19,9 +19,9 @@ public:
 
   /// Evaluates the statics a step away from where it begins.
   using Look = std::function<void(const VecX& step)>;
-  /// Cuts the islands' parts of `step` where their first contact has just closed; `looks`: places along it where that is looked for.
-  /// False if none closes, or the one that moves is the only island: the step is as it was. The statics is left anywhere.
-  bool cut(VecX& step, int looks, const Look& look);
+  /// Cuts the islands' parts of `step` where their first contact has just closed. `looks`: of each body (0 of the ground), how
+  /// often the way it goes is to be looked at. False if none closes: the step is as it was. The statics is left anywhere.
+  bool cut(VecX& step, const std::vector<double>& looks, const Look& look);
 
 private:
   struct Pair {

@@ -286,3 +286,134 @@ TEST_CASE("dampers resist but do not hold") {
   REQUIRE(found.modes.size() == 3);
   for (int i = 0; i < 3; ++i) CHECK(std::abs(found.modes[i].eigenvalue + 5.0 * (i + 1)) < 1e-13);
 }
+
+// --- large scenes ---------------------------------------------------------------------------------------------------
+
+namespace {
+
+// n masses of 2.5 kg on guides between two walls, springs of 900 N/m between them.
+std::string long_chain(int n) {
+  std::string text = "gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n";
+  const auto link = [&text](int i, const std::string& a, const std::string& b) {
+    text += "[[element]]\nkind = \"spring_damper\"\nname = \"spring " + std::to_string(i) + "\"\na = " + a + "\nb = " + b +
+            "\naxis = [1.0, 0.0]\nstiffness = 900.0\n";
+  };
+  for (int i = 1; i <= n; ++i) {
+    const std::string name = "\"m" + std::to_string(i) + "\"";
+    text += "[[body]]\nname = " + name + "\nmass = 2.5\ninertia = 1.0\nposition = [" + std::to_string(i) + ".0, 0.0]\n";
+    text += "[[element]]\nkind = \"prismatic\"\nname = \"guide " + std::to_string(i) + "\"\na = " + name + "\n";
+    link(i, name, i == 1 ? "\"ground\"" : "\"m" + std::to_string(i - 1) + "\"");
+  }
+  link(n + 1, "\"m" + std::to_string(n) + "\"", "{ body = \"ground\", at = [" + std::to_string(n + 1) + ".0, 0.0] }");
+  return text;
+}
+double chain_rate(int n, int k) { return 2.0 * std::sqrt(900.0 / 2.5) * std::sin(k * std::numbers::pi / (2.0 * (n + 1))); }
+
+VibrationModes modes_of(const std::string& text, const WantedModes& wanted, ModesAlgebra algebra = ModesAlgebra::by_size) {
+  const auto system = compile(parse_model(text, "scene.toml", transformer_catalog()));
+  return vibration_modes(*system, find_equilibrium(*system, system->initial_state()).state, wanted, algebra);
+}
+
+// Masses that hang on springs of their own, `held` of one kind and `loose` without, beside each other.
+std::string apart(int held, int loose) {
+  std::string text = "gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n";
+  for (int i = 0; i < held + loose; ++i) {
+    const std::string name = "m" + std::to_string(i);
+    text += "[[body]]\nname = \"" + name + "\"\nmass = 4.0\ninertia = 1.0\nposition = [" + std::to_string(i) + ".0, 0.0]\n";
+    if (i < held)
+      text += "[[element]]\nkind = \"bushing\"\nname = \"spring " + std::to_string(i) + "\"\na = \"" + name + "\"\nb = { body = \"ground\", at = [" +
+              std::to_string(i) + ".0, 0.0] }\nstiffness = [400.0, 900.0]\nrotational_stiffness = 1600.0\n";
+  }
+  return text;
+}
+
+} // namespace
+
+// What rounding leaves of the slowest: its square is 2e-6 of the stiffest one's.
+TEST_CASE("the slowest modes of a chain of 700 masses, and those near a frequency") {
+  const int n = 700;
+  const auto system = compile(parse_model(long_chain(n), "scene.toml", transformer_catalog()));
+  const State rest = find_equilibrium(*system, system->initial_state()).state;
+  const VibrationModes slowest = vibration_modes(*system, rest);
+  REQUIRE(slowest.modes.size() == static_cast<std::size_t>(k_usual_modes));
+  CHECK_FALSE(slowest.is_all);
+  CHECK(slowest.is_counted);
+  CHECK(slowest.rigid_motions == 0);
+  for (int k = 1; k <= k_usual_modes; ++k) {
+    const VibrationMode& mode = slowest.modes[static_cast<std::size_t>(k - 1)];
+    CHECK(std::abs(size_of(mode.eigenvalue) / chain_rate(n, k) - 1.0) < k_digits);
+    CHECK(mode.residual < k_digits);
+    // sin(k π i/(n + 1)): the share of the largest, up to the residual over what parts neighbours, 2/k.
+    const std::complex<double> ratio = mode.shape[3 * 100] / mode.shape[3 * 1];
+    CHECK(std::abs(ratio - std::sin(100.0 * k * std::numbers::pi / (n + 1)) / std::sin(k * std::numbers::pi / (n + 1))) < 1e-5);
+  }
+  const double near = chain_rate(n, 300) / (2.0 * std::numbers::pi) + 1e-4;
+  const VibrationModes within = vibration_modes(*system, rest, {7, near});
+  REQUIRE(within.modes.size() == 7);
+  CHECK(within.is_counted);
+  for (int i = 0; i < 7; ++i) CHECK(std::abs(size_of(within.modes[static_cast<std::size_t>(i)].eigenvalue) / chain_rate(n, 297 + i) - 1.0) < k_digits);
+}
+
+// A chain of n rods, L long, hangs from its end: as n grows a heavy rope, ω_k = (j_k/2) √(g/L) with J₀(j_k) = 0. Rods bend at
+// their ends alone, which is off by a share of 1/n².
+TEST_CASE("a hanging chain's modes go to those of a rope as its rods become short") {
+  const double zeros[] = {2.404825557695773, 5.520078110286311, 8.653727912911013};
+  double off[2][3];
+  for (const int part : {0, 1}) {
+    const int n = part == 0 ? 300 : 600;
+    std::string text = "[simulation]\nstep = 1e-3\n";
+    for (int i = 0; i < n; ++i)
+      text += "[[body]]\nname = \"rod " + std::to_string(i) + "\"\nmass = 1.0\ninertia = 0.083333333333333333\n[[element]]\nkind = \"revolute\"\nname = \"pin " +
+              std::to_string(i) + "\"\na = { body = \"rod " + std::to_string(i) + "\", point = [-0.5, 0.0] }\nb = " +
+              (i > 0 ? "{ body = \"rod " + std::to_string(i - 1) + "\", point = [0.5, 0.0] }\nangle = 0.0\n" : std::string("\"ground\"\nangle = -1.5707963267948966\n"));
+    const VibrationModes found = modes_of(text, {3, std::nullopt}, ModesAlgebra::sparse);
+    REQUIRE(found.modes.size() == 3);
+    for (int k = 0; k < 3; ++k)
+      off[part][k] = size_of(found.modes[static_cast<std::size_t>(k)].eigenvalue) / (0.5 * zeros[k] * std::sqrt(9.81 / n)) - 1.0;
+  }
+  for (int k = 0; k < 3; ++k) {
+    CHECK(std::abs(off[1][k]) < 2e-5);
+    CHECK(off[0][k] / off[1][k] == doctest::Approx(4.0).epsilon(0.01)); // terms beyond are as 1/n⁴ and smaller
+  }
+}
+
+// Damped, constrained, with friction that sticks, with what is free.
+TEST_CASE("sparse algebra finds the modes that dense algebra finds") {
+  for (const char* name : {"paper/no_interference", "paper/interference", "machines/tank_with_lid", "machines/watt_linkage", "benchmarks/grid_5"}) {
+    CAPTURE(std::string(name));
+    const Model model = read_model(std::string(STEPLAP_MODELS) + "/" + name + ".toml", transformer_catalog());
+    const auto system = compile(model);
+    State rest = find_equilibrium(*system, system->initial_state()).state;
+    std::fill(rest.v.begin(), rest.v.end(), 0.0);
+    const VibrationModes all = vibration_modes(*system, rest, {}, ModesAlgebra::dense);
+    const double middle = all.modes[all.modes.size() / 2].natural_frequency();
+    for (const auto& near : {std::optional<double>(), std::optional<double>(middle)}) {
+      const WantedModes wanted{std::min(4, static_cast<int>(all.modes.size())), near};
+      const VibrationModes dense = vibration_modes(*system, rest, wanted, ModesAlgebra::dense);
+      const VibrationModes sparse = vibration_modes(*system, rest, wanted, ModesAlgebra::sparse);
+      CHECK(sparse.rigid_motions == all.rigid_motions);
+      REQUIRE(sparse.modes.size() == dense.modes.size());
+      for (std::size_t i = 0; i < dense.modes.size(); ++i) { // residuals are below 1e-9 of the eigenvalue's square
+        CHECK(size_of(sparse.modes[i].eigenvalue - dense.modes[i].eigenvalue) < 1e-7 * size_of(dense.modes[i].eigenvalue));
+        CHECK(sparse.modes[i].residual < 1e-8);
+      }
+    }
+  }
+}
+
+// As many of one frequency as there are masses, more than the space begins with; and what nothing holds beside them.
+TEST_CASE("modes of one frequency are found as often as they are there") {
+  const VibrationModes found = modes_of(apart(40, 3), {50, std::nullopt}, ModesAlgebra::sparse);
+  CHECK(found.rigid_motions == 9);
+  REQUIRE(found.modes.size() == 50);
+  CHECK(found.is_counted);
+  for (int i = 0; i < 50; ++i) // √(400/4) = 10, √(900/4) = 15
+    CHECK(size_of(found.modes[static_cast<std::size_t>(i)].eigenvalue) == doctest::Approx(i < 40 ? 10.0 : 15.0).epsilon(1e-12));
+}
+
+TEST_CASE("a large scene without vibrations has none, and says what moves freely") {
+  const VibrationModes found = modes_of(apart(0, 600), {});
+  CHECK(found.modes.empty());
+  CHECK(found.rigid_motions == 1800);
+  CHECK(found.is_all);
+}

@@ -9,6 +9,7 @@
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -23,7 +24,7 @@ using Align = TextTable::Align;
 struct ModesOptions {
   std::string model;
   std::vector<std::string> overrides;
-  std::optional<std::string> output, page;
+  std::optional<std::string> output, page, count, near;
   bool is_overwriting = false;
 };
 
@@ -60,7 +61,42 @@ std::string shape_text(const System& system, const VibrationMode& mode) {
   return text;
 }
 
-void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationModes& found) {
+WantedModes wanted_modes(const ModesOptions& options) {
+  WantedModes wanted;
+  const auto number = [](const char* option, const std::string& text, const char* what) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !(value > 0.0) || std::isinf(value))
+      throw UsageError(std::string(option) + ": '" + text + "' should be " + what);
+    return value;
+  };
+  if (options.count) {
+    const char* const what = "a whole number from 1 to 500";
+    const double count = number("--count", *options.count, what);
+    if (count != std::floor(count) || count > 500.0) throw UsageError("--count: '" + *options.count + "' should be " + what);
+    wanted.count = static_cast<int>(count);
+  }
+  if (options.near) wanted.near = number("--near", *options.near, "a frequency in Hz above zero");
+  return wanted;
+}
+
+// Which of them these are, and how far to be trusted, where they are not all.
+void print_choice(std::ostream& out, const VibrationModes& found, const WantedModes& wanted) {
+  if (found.is_all) return;
+  double worst = 0.0;
+  for (const VibrationMode& mode : found.modes) worst = std::max(worst, mode.residual);
+  out << "\nThe " << found.modes.size() << (wanted.near ? " nearest to " + fixed_text(*wanted.near, "%g Hz") : std::string(" slowest"))
+      << " (--count N: more of them). None is out of balance by more than " << fixed_text(worst, "%.1g") << " of its own acceleration; "
+      << (found.is_counted ? "that none is missing was counted" : "whether one is missing was not counted, since there is damping or a stiffness that is not symmetric")
+      << "\n";
+}
+
+// Why there is none.
+void print_none(std::ostream& out, const VibrationModes& found) {
+  out << "None: " << (found.rigid_motions > 0 ? "of what can move nothing is held" : "joints, drives and friction that sticks leave no motion free") << "\n";
+}
+
+void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationModes& found, const WantedModes& wanted) {
   out << loaded.name << ": small vibrations about equilibrium, closed contacts and sticking joints held\n\n";
   TextTable table({Align::right, Align::right, Align::right, Align::right, Align::left});
   table.add_row({"mode", "frequency", "damped", "damping", "what moves most (turning as at the radius of gyration)"});
@@ -72,7 +108,9 @@ void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationMo
                                      : fixed_text(mode.eigenvalue.real(), "%.4g /s"),
                    shape_text(*loaded.system, mode)});
   }
-  out << table;
+  if (found.modes.empty()) print_none(out, found);
+  else out << table;
+  print_choice(out, found, wanted);
   if (found.rigid_motions > 0)
     out << "\n" << (found.rigid_motions == 1 ? std::string("1 coordinate moves freely: nothing holds the scene along it")
                                             : std::to_string(found.rigid_motions) + " coordinates move freely: nothing holds the scene along them") << "\n";
@@ -80,7 +118,7 @@ void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationMo
 
 std::string modes_csv(const System& system, const VibrationModes& found) {
   std::vector<std::string> names{"natural frequency [Hz]", "frequency [Hz]", "damping ratio", "real part [1/s]",
-                                 "imaginary part [1/s]"};
+                                 "imaginary part [1/s]", "residual"};
   for (int i = 1; i < system.body_count(); ++i)
     for (const char* coordinate : {"x", "y", "theta"})
       for (const char* part : {"real", "imaginary"})
@@ -88,7 +126,7 @@ std::string modes_csv(const System& system, const VibrationModes& found) {
   CsvText csv(names);
   for (const VibrationMode& mode : found.modes) {
     std::vector<double> row{mode.natural_frequency(), mode.frequency(), mode.damping_ratio(), mode.eigenvalue.real(),
-                            mode.eigenvalue.imag()};
+                            mode.eigenvalue.imag(), mode.residual};
     for (std::size_t k = 3; k < mode.shape.size(); ++k) {
       row.push_back(mode.shape[k].real());
       row.push_back(mode.shape[k].imag());
@@ -106,16 +144,17 @@ std::string page_of(const LoadedModel& loaded, const Equilibrium& rest, const Vi
 }
 
 ExitCode modes(const ModesOptions& options, Console& console) {
+  const WantedModes wanted = wanted_modes(options);
   const auto loaded = load_model(options.model, options.overrides);
   try {
     const Equilibrium rest = equilibrium_of(*loaded);
     State state = rest.state;
     std::fill(state.v.begin(), state.v.end(), 0.0);
-    const VibrationModes found = vibration_modes(*loaded->system, state);
+    const VibrationModes found = vibration_modes(*loaded->system, state, wanted);
     const IfExists if_exists = options.is_overwriting ? IfExists::replace : IfExists::refuse;
     if (options.output) write_file(*options.output, modes_csv(*loaded->system, found), if_exists);
     if (options.page) write_file(*options.page, page_of(*loaded, rest, found), if_exists);
-    if (console.verbosity != Verbosity::quiet) print_modes(console.out, *loaded, found);
+    if (console.verbosity != Verbosity::quiet) print_modes(console.out, *loaded, found, wanted);
     for (const std::string& remark : remarks_on(*loaded->system, rest))
       log_warning("'" + loaded->path + "': " + remark);
   } catch (const NumericalFailure& failure) {
@@ -135,11 +174,15 @@ Command modes_command() {
   command.examples = R"(  steplap modes models/paper/no_interference.toml
   steplap modes my.toml -o modes.csv
   steplap modes my.toml --report modes.html
+  steplap modes large.toml --count 10 --near 12.5
+Of more than 1500 coordinates (three a body) the slowest 20 modes are found, or as many as --count says; of fewer all, unless asked otherwise.
 A mode that does not oscillate shows its rate of decay instead of a damping ratio.
 )";
   command.options = {{"MODEL", &o->model, "FILE", "model file (TOML)", true},
                      {"-o,--output", &o->output, "FILE", "also write frequencies and shapes as CSV"},
                      {"--report", &o->page, "FILE", "also write a page that shows each mode in motion"},
+                     {"--count", &o->count, "N", "only so many modes: the slowest, or the nearest to --near"},
+                     {"--near", &o->near, "HZ", "modes near this frequency instead of the slowest"},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite the file"}};
   command.run = [o](Console& console) { return modes(*o, console); };
