@@ -2,12 +2,13 @@
 
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/math/portable_math.h"
-#include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <memory>
 
 namespace steplap {
 
@@ -122,6 +123,45 @@ private:
   const std::vector<double>* given_ = nullptr;
 };
 
+// Rows between a light part and a heavy one are nearly dependent in the masses' metric: a projection damps its steps there, and gives up
+// far from the joints. The same rows among bodies that all weigh the same, and turn as heavily, depend on each other only where the
+// joints do.
+State closed_by_shape(const Model& model, const State& given, double tolerance) {
+  Model even = model;
+  double square = 0.0; // of the largest radius of gyration
+  for (const Body& body : even.bodies)
+    if (!body.fixed) square = std::max(square, body.inertia / body.mass);
+  for (Body& body : even.bodies) {
+    body.mass = 1.0;
+    body.inertia = square;
+  }
+  const std::unique_ptr<System> system = compile(even);
+  State state = given;
+  Dynamics dynamics(*system);
+  dynamics.set_state(state);
+  std::vector<double> y(dynamics.dimension());
+  dynamics.pack(state, y.data());
+  dynamics.project(state.t, y.data(), tolerance);
+  dynamics.unpack(state.t, y.data(), state);
+  state.v = given.v;
+  return state;
+}
+
+// Onto the joints; what fails is told as of the masses given.
+void close_joints(const Model& model, const State& state, Dynamics& dynamics, std::vector<double>& y) {
+  const double tolerance = model.simulation.projection_tolerance;
+  try {
+    dynamics.project(state.t, y.data(), tolerance);
+  } catch (const ConstraintFailure& failure) {
+    try {
+      dynamics.pack(closed_by_shape(model, state, tolerance), y.data());
+      dynamics.project(state.t, y.data(), tolerance);
+    } catch (const ConstraintFailure&) {
+      throw ConstraintFailure(failure);
+    }
+  }
+}
+
 } // namespace
 
 State assemble(const Model& model, const System& system) {
@@ -136,7 +176,7 @@ State assemble(const Model& model, const System& system) {
   const std::vector<double> given = y;
   const double tolerance = model.simulation.projection_tolerance;
   try {
-    dynamics.project(state.t, y.data(), tolerance);
+    close_joints(model, state, dynamics, y);
     LeastMotion(dynamics, state.t, tolerance).refine(y, given);
     std::copy(given.begin() + dynamics.coordinate_count(), given.end(), y.begin() + dynamics.coordinate_count());
     dynamics.project(state.t, y.data(), tolerance);
@@ -145,7 +185,7 @@ State assemble(const Model& model, const System& system) {
     throw ModelError(entry.element->where,
                      entry.kind->name + " '" + entry.element->name +
                          "' cannot be assembled: with the other joints met it stays " +
-                         number_text(std::abs(failure.residual)) + (failure.is_angle ? " rad" : " m") +
+                         rounded_text(std::abs(failure.residual)) + (failure.is_angle ? " rad" : " m") +
                          " off; move the bodies or change the joints");
   }
   dynamics.unpack(state.t, y.data(), state);

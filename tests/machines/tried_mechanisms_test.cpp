@@ -246,3 +246,19 @@ TEST_CASE("two sleds over a peak: no rest, and which one goes on") {
         1e-7); // 1e-9 a step, and the contacts' rounding
   CHECK(std::abs(last(run, "rope.tension") - 30.0 * (k_g * std::sin(left) - mu * k_g * std::cos(left) - a)) < 1e-4);
 }
+
+// The lever is pinned by its middle, given 0.1 m beside the pin: the heavy pan has to follow, turning by some 0.2 rad.
+TEST_CASE("a light lever under a heavy pan is assembled, whatever their masses") {
+  for (const double lighter : {1.0, 1e-2, 1e-3, 1e-5}) {
+    CAPTURE(lighter);
+    const std::string light = "mass = " + number(lighter) + "; inertia = " + number(lighter);
+    const Written model("[simulation]\nend = 0.1\n" + body("lever", light) + body("pan", "mass = 100.0; inertia = 1.0; position = [0.0, -0.5]") +
+                        element("revolute", "fulcrum", "a = 'lever'; b = { body = 'ground', at = [0.1, 0.0] }") +
+                        element("revolute", "hook", "a = { body = 'pan', at = [0.0, 0.0] }; b = { body = 'lever', at = [0.0, 0.0] }"));
+    const auto loaded = model.loaded();
+    const std::vector<double>& q = loaded->assembled.q; // three of the ground, of the lever, of the pan
+    CHECK(std::abs(q[3] - 0.1) < 1e-11);
+    CHECK(std::abs(q[6] - 0.5 * std::sin(q[8]) - 0.1) < 1e-11);
+    CHECK(std::abs(q[7] + 0.5 * std::cos(q[8])) < 1e-11);
+  }
+}
