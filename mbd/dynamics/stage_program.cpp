@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace steplap {
 
@@ -11,6 +12,27 @@ StageProgram::StageProgram(const Layout& layout, const State& state, StageCode c
       is_hopeless_(!MachineCode::is_available()) {
   inputs_.resize(2 * coordinate_count_ + time_count_);
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
+  kind_ = known_kind(key());
+  stages_ = kind_->made();
+  look_for_known();
+}
+
+// What tells layouts and modes apart, and scenes by their sizes.
+std::uint64_t StageProgram::key() const {
+  std::uint64_t hash = 14695981039346656037ULL;
+  const auto add = [&hash](std::uint64_t x) { hash = (hash ^ x ^ x >> 29U) * 1099511628211ULL; };
+  for (const std::size_t size : {coordinate_count_, time_count_, layout_->clusters.size(), layout_->placements.size(), layout_->active.size(),
+                                 layout_->links.size(), layout_->locks.size(), layout_->merged.size()})
+    add(size);
+  for (const std::uint64_t part : layout_->key) add(part);
+  for (const UnitMode mode : modes_) add(mode);
+  for (const Friction& f : frictions_)
+    add(static_cast<std::uint64_t>(f.foot) << 16U | static_cast<std::uint64_t>(f.phase) << 8U | static_cast<std::uint8_t>(f.sign));
+  return hash;
+}
+
+void StageProgram::look_for_known() {
+  if (choice_ == StageCode::when_it_pays && !stored_ && tapes_ == 0 && !is_hopeless_) known_ = kind_->coded();
 }
 
 bool StageProgram::is_of(const Layout& layout, const State& state) const {
@@ -35,15 +57,16 @@ void StageProgram::look_for_code() {
 void StageProgram::give_up() {
   code_ = nullptr;
   stored_.reset();
-  failures_ = stages_ = 0;
+  failures_ = 0;
+  stages_ = 0;
   is_hopeless_ = tapes_ >= k_most_tapes;
 }
 
-bool StageProgram::run(double t, const double* y, double* dy, double* watch, double* watch_rate) {
+bool StageProgram::run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all) {
   const std::size_t n = coordinate_count_, signals = traced_.signals.size();
   std::copy_n(y, 2 * n, inputs_.data());
   for (std::size_t i = 0; i < signals; ++i) inputs_[inputs_.size() - signals + i] = traced_.signals[i].at(t);
-  if (code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data()) == 0) {
+  if (code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data(), all) == 0) {
     if (++failures_ > k_most_failures) give_up();
     return false;
   }
@@ -58,6 +81,7 @@ bool StageProgram::run(double t, const double* y, double* dy, double* watch, dou
 
 void StageProgram::note_stage() {
   ++stages_;
+  kind_->note_made();
   if (!stored_) return;
   stored_->note_use(1);
   look_for_code();
@@ -94,13 +118,17 @@ bool StageProgram::has_found(const StageFound& found) const {
 }
 
 void StageProgram::take_down(const System& system, const State& state, double t, const double* y, const StageFound& found) {
-  is_hopeless_ = true; // unless it is found to be the same to the bit
   ++tapes_;
-  if (!trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_) || !has_found(found)) return;
-  is_hopeless_ = false;
+  const std::shared_ptr<StoredCode> known = std::exchange(known_, nullptr);
+  const bool is_traced = trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_,
+                                     known ? &known->tape() : nullptr);
+  if (known && !is_traced) return; // by chance of the same key, or on another branch: it will be written down if it lasts
+  is_hopeless_ = !is_traced || !has_found(found); // to the bit
+  if (is_hopeless_) return;
   inputs_.resize(2 * coordinate_count_ + time_count_ + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());
-  stored_ = stored_code(traced_.tape);
+  stored_ = known ? known : stored_code(traced_.tape);
+  if (!known) kind_->keep(stored_);
   if (choice_ == StageCode::at_once) stored_->make();
   look_for_code();
 }
@@ -111,6 +139,7 @@ void StagePrograms::enter(const Layout& layout, const State& state) {
   if (known != programs_.end()) {
     now_ = known->get();
     now_->look_for_code();
+    now_->look_for_known();
     return;
   }
   now_ = nullptr;

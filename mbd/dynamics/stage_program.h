@@ -43,7 +43,8 @@ public:
   void look_for_code();
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
   /// For accelerations, power and switching values at coordinates and rates y; false: evaluate as ever, nothing was changed.
-  [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate);
+  /// `all`: also what the two functions below ask for.
+  [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all);
   /// Can merged joints be looked at by what the last run() has found? Then: what they bear, into their slots.
   [[nodiscard]] bool can_look() const { return traced_.has_wrenches; }
   void put_wrenches(double* friction_force) const;
@@ -54,23 +55,27 @@ public:
 
   /// Have the modes lasted, so that the stage that follows is to be written down?
   [[nodiscard]] bool wants_stage() const {
-    return !is_hopeless_ && !stored_ && (stages_ >= k_settled || choice_ == StageCode::at_once);
+    return !is_hopeless_ && !stored_ && (known_ || stages_ >= k_settled || choice_ == StageCode::at_once);
   }
   /// After a stage that was evaluated as ever: counts it.
   void note_stage();
+  /// Where modes come back: was code made for such a tape since?
+  void look_for_known();
   /// Writes down the stage evaluated last, at t, y and these time_inputs(). The tape is held against what was found.
   void take_down(const System& system, const State& state, double t, const double* y, const StageFound& found);
 
 private:
   void give_up();
+  [[nodiscard]] std::uint64_t key() const;
   [[nodiscard]] bool has_found(const StageFound& found) const;
   [[nodiscard]] double smallest_pivot(const std::vector<double>& outputs) const;
 
   /// After so many failures in a row another branch is the usual one (angles that grow beyond the series of their sines): it is
   /// written down anew, but not for ever.
   static constexpr int k_most_failures = 16, k_most_tapes = 8;
-  /// Writing a stage down takes as long as code saves in so many.
-  static constexpr int k_settled = 120;
+  /// Writing a stage down for the first time takes as long as code saves in so many: in this run, or in others before it. Of a tape
+  /// that is known constants alone are gathered, which nearly all stretches between events are long enough for.
+  static constexpr long k_settled = 120;
 
   struct Friction {
     FrictionPhase phase;
@@ -83,11 +88,14 @@ private:
   std::vector<UnitMode> modes_;
   std::vector<Friction> frictions_;
   TracedRates traced_;
+  std::shared_ptr<KnownKind> kind_;
+  std::shared_ptr<StoredCode> known_;  ///< a tape that has code, which this one should be; null: none, or it was not
   std::shared_ptr<StoredCode> stored_; ///< null until it is written down
   const MachineCode* code_ = nullptr;
   std::vector<double> inputs_, outputs_;
   std::size_t coordinate_count_ = 0, time_count_ = 0;
-  int stages_ = 0, failures_ = 0, tapes_ = 0; ///< failures: since it last held
+  long stages_ = 0;              ///< as ever, in this run and those before it
+  int failures_ = 0, tapes_ = 0; ///< failures: since it last held
   StageCode choice_;
   bool is_hopeless_ = false;
 };

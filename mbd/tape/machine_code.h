@@ -44,8 +44,11 @@ public:
 
   /// Bit l of the result: the conditions hold in lane l. Arrays are [index][lane], as long as the tape says, aligned as doubles
   /// are, and `outputs` is apart from the others. With one lane and a condition that fails, outputs are untouched; with more, the
-  /// outputs of lanes that fail mean nothing and the others are right. Thread-safe. Precondition: not empty.
-  unsigned run(const double* inputs, const double* constants, double* outputs) const { return run_(inputs, constants, outputs); }
+  /// outputs of lanes that fail mean nothing and the others are right. Not `all`: the tape's usual outputs may be all that is
+  /// found. Thread-safe. Precondition: not empty.
+  unsigned run(const double* inputs, const double* constants, double* outputs, bool all = true) const {
+    return run_(inputs, constants, outputs, all ? 1 : 0);
+  }
 
   [[nodiscard]] int lanes() const { return lanes_; }
   /// Bytes of instructions, and how many there are.
@@ -53,7 +56,7 @@ public:
   [[nodiscard]] std::size_t instruction_count() const { return instruction_count_; }
 
 private:
-  using Run = unsigned (*)(const double*, const double*, double*);
+  using Run = unsigned (*)(const double*, const double*, double*, int);
 
   Run run_ = nullptr;
   void* memory_ = nullptr;      ///< where the system's pages begin
