@@ -241,13 +241,13 @@ void Dynamics::take_time_inputs(double t, double* into) {
   }
 }
 
-// Rates, power and watch values; false: as ever then, nothing was changed.
-bool Dynamics::run_code(double t, const double* y, double* dy) {
+// Rates, power and watch values, and if `all`, what look_by_code() and fall_behind() take; false: as ever then, nothing was changed.
+bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   StageProgram* const program = stage_programs_.now();
   if (!program || !program->is_ready() || !(layout_->smallest_pivot() >= k_traced_pivot)) return false;
   const double now = std::min(t, time_cap_);
   take_time_inputs(now, program->time_inputs());
-  if (!program->run(now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data())) return false;
+  if (!program->run(now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data(), all)) return false;
   ++evaluations_;
   ++coded_stages_;
   is_behind_ = false;
@@ -259,7 +259,7 @@ bool Dynamics::run_code(double t, const double* y, double* dy) {
 }
 
 void Dynamics::stage_rates(double t, const double* y, double* dy) {
-  if (run_code(t, y, dy)) return;
+  if (run_code(t, y, dy, false)) return;
   rates(t, y, dy);
   // A projection begins with the factors of the evaluation before it: results must not hang on which way that was made.
   if (layout_->smallest_pivot() >= k_traced_pivot) rows_.forget_factors();
@@ -270,7 +270,7 @@ void Dynamics::look_rates(double t, const double* y, double* dy, bool always) {
   if (!looks_at_merged(always)) {
     stage_rates(t, y, dy);
     watch_merged_if_near(dy, always);
-  } else if (may_look_by_code() && run_code(t, y, dy)) {
+  } else if (may_look_by_code() && run_code(t, y, dy, true)) {
     const StageProgram& program = *stage_programs_.now();
     fall_behind(program, program.last(), t, y);
     (void)look_by_code(program, program.last(), t);
@@ -282,7 +282,7 @@ void Dynamics::look_rates(double t, const double* y, double* dy, bool always) {
 }
 
 void Dynamics::end_rates(double t, const double* y, double* dy) {
-  if (!may_look_by_code() || !run_code(t, y, dy)) {
+  if (!may_look_by_code() || !run_code(t, y, dy, true)) {
     rates(t, y, dy);
     watch_merged(dy);
     return;

@@ -202,7 +202,7 @@ private:
   [[nodiscard]] bool watch_joints(const double* dy);
   [[nodiscard]] bool watch_wrenches();
   void take_time_inputs(double t, double* into);
-  [[nodiscard]] bool run_code(double t, const double* y, double* dy);
+  [[nodiscard]] bool run_code(double t, const double* y, double* dy, bool all);
   [[nodiscard]] bool may_look_by_code() const;
   [[nodiscard]] bool look_by_code(const StageProgram& program, const StageColumn& made, double t);
   void note_stage(double t, const double* y, const double* dy);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <utility>
 
 namespace steplap {
 
@@ -30,10 +31,30 @@ bool agrees_in_all_lanes(const MachineCode& code, const TracedRates& traced) {
 StageProgram::StageProgram(const Layout& layout, const State& state, StageCode choice)
     : layout_(&layout), modes_(state.mode.begin(), state.mode.end()),
       coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), time_count_(time_input_count(layout)), choice_(choice),
-      settled_(choice == StageCode::at_once ? 0 : choice == StageCode::of_ensemble ? k_settled_of_ensemble : k_settled),
       is_hopeless_(!MachineCode::is_available()) {
   inputs_.resize(2 * coordinate_count_ + time_count_);
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
+  kind_ = known_kind(key());
+  stages_ = kind_->made();
+  look_for_known();
+}
+
+// What tells layouts and modes apart, and scenes by their sizes.
+std::uint64_t StageProgram::key() const {
+  std::uint64_t hash = 14695981039346656037ULL;
+  const auto add = [&hash](std::uint64_t x) { hash = (hash ^ x ^ x >> 29U) * 1099511628211ULL; };
+  for (const std::size_t size : {coordinate_count_, time_count_, layout_->clusters.size(), layout_->placements.size(), layout_->active.size(),
+                                 layout_->links.size(), layout_->locks.size(), layout_->merged.size()})
+    add(size);
+  for (const std::uint64_t part : layout_->key) add(part);
+  for (const UnitMode mode : modes_) add(mode);
+  for (const Friction& f : frictions_)
+    add(static_cast<std::uint64_t>(f.foot) << 16U | static_cast<std::uint64_t>(f.phase) << 8U | static_cast<std::uint8_t>(f.sign));
+  return hash;
+}
+
+void StageProgram::look_for_known() {
+  if (choice_ == StageCode::when_it_pays && !stored_ && tapes_ == 0 && !is_hopeless_) known_ = kind_->coded();
 }
 
 bool StageProgram::is_of(const Layout& layout, const State& state) const {
@@ -85,15 +106,16 @@ void StageProgram::note_failure() {
 void StageProgram::give_up() {
   code_ = lane_code_ = nullptr;
   stored_.reset();
-  failures_ = stages_ = 0;
+  failures_ = 0;
+  stages_ = 0;
   is_hopeless_ = tapes_ >= k_most_tapes;
 }
 
-bool StageProgram::run(double t, const double* y, double* dy, double* watch, double* watch_rate) {
+bool StageProgram::run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all) {
   const std::size_t n = coordinate_count_, signals = traced_.signals.size();
   std::copy_n(y, 2 * n, inputs_.data());
   for (std::size_t i = 0; i < signals; ++i) inputs_[inputs_.size() - signals + i] = traced_.signals[i].at(t);
-  if (code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data()) == 0) {
+  if (code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data(), all) == 0) {
     note_failure();
     return false;
   }
@@ -108,6 +130,7 @@ bool StageProgram::run(double t, const double* y, double* dy, double* watch, dou
 
 void StageProgram::note_stage() {
   ++stages_;
+  kind_->note_made();
   if (!stored_) return;
   stored_->note_use(1);
   look_for_code();
@@ -144,8 +167,8 @@ bool StageProgram::has_found(const StageFound& found) const {
 }
 
 void StageProgram::take_down(const System& system, const State& state, double t, const double* y, const StageFound& found) {
-  is_hopeless_ = true; // unless it is found to be the same to the bit
   ++tapes_;
+  const std::shared_ptr<StoredCode> known = std::exchange(known_, nullptr);
   // Steps are kept by the store alone, and their memory for the next tape: a run has dozens of sets of modes.
   static thread_local std::vector<TapeStep> steps;
   traced_.tape.steps.swap(steps);
@@ -153,13 +176,17 @@ void StageProgram::take_down(const System& system, const State& state, double t,
     std::vector<TapeStep>& from;
     ~GiveBack() { from.swap(steps); }
   } const give_back{traced_.tape.steps};
-  if (!trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_) || !has_found(found)) return;
+  const bool is_traced = trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_,
+                                     known ? &known->tape() : nullptr);
+  if (known && !is_traced) return; // by chance of the same key, or on another branch: it will be written down if it lasts
+  is_hopeless_ = !is_traced || !has_found(found); // to the bit
+  if (is_hopeless_) return;
   static std::atomic<std::uint64_t> tapes{0};
   tape_number_ = ++tapes;
-  is_hopeless_ = false;
   inputs_.resize(2 * coordinate_count_ + time_count_ + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());
-  stored_ = stored_code(traced_.tape);
+  stored_ = known ? known : stored_code(traced_.tape);
+  if (!known) kind_->keep(stored_);
   if (choice_ == StageCode::at_once) stored_->make();
   look_for_code();
 }
@@ -170,6 +197,7 @@ void StagePrograms::enter(const Layout& layout, const State& state) {
   if (known != programs_.end()) {
     now_ = known->get();
     now_->look_for_code();
+    now_->look_for_known();
     return;
   }
   now_ = nullptr;

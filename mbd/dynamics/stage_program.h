@@ -24,7 +24,6 @@ enum class StageCode : std::uint8_t {
   never,
   when_it_pays, ///< once a set of modes has lasted, and code for its tape would have paid
   at_once,      ///< from the second stage on
-  of_ensemble,  ///< once a set of modes has lasted two tries of a step: other samples are in it as well
 };
 
 /// What an evaluation as ever has found.
@@ -54,7 +53,8 @@ public:
   void look_for_code();
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
   /// For accelerations, power and switching values at coordinates and rates y; false: evaluate as ever, nothing was changed.
-  [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate);
+  /// `all`: also what can_look(), put_wrenches() and smallest_pivot() are asked for.
+  [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all);
   /// That of the last run().
   [[nodiscard]] StageColumn last() const { return {inputs_.data(), outputs_.data(), 1}; }
   void put_watches(const StageColumn& made, double* watch) const;
@@ -91,23 +91,27 @@ public:
 
   /// Have the modes lasted, so that the stage that follows is to be written down?
   [[nodiscard]] bool wants_stage() const {
-    return !is_hopeless_ && !stored_ && stages_ >= settled_;
+    return !is_hopeless_ && !stored_ && (known_ || stages_ >= k_settled || choice_ == StageCode::at_once);
   }
   /// After a stage that was evaluated as ever: counts it.
   void note_stage();
+  /// Where modes come back: was code made for such a tape since?
+  void look_for_known();
   /// Writes down the stage evaluated last, at t, y and these time_inputs(). The tape is held against what was found.
   void take_down(const System& system, const State& state, double t, const double* y, const StageFound& found);
 
 private:
   void note_failure();
   void give_up();
+  [[nodiscard]] std::uint64_t key() const;
   [[nodiscard]] bool has_found(const StageFound& found) const;
 
   /// After so many failures in a row another branch is the usual one (angles that grow beyond the series of their sines): it is
   /// written down anew, but not for ever.
   static constexpr int k_most_failures = 16, k_most_tapes = 8;
-  /// Writing a stage down takes as long as code saves in so many; lanes save more, but are not sure to be filled.
-  static constexpr int k_settled = 120, k_settled_of_ensemble = 20;
+  /// Writing a stage down for the first time takes as long as code saves in so many: in this run, or in others before it. Of a tape
+  /// that is known constants alone are gathered, which nearly all stretches between events are long enough for.
+  static constexpr long k_settled = 120;
 
   struct Friction {
     FrictionPhase phase;
@@ -120,15 +124,17 @@ private:
   std::vector<UnitMode> modes_;
   std::vector<Friction> frictions_;
   TracedRates traced_;
+  std::shared_ptr<KnownKind> kind_;
+  std::shared_ptr<StoredCode> known_;  ///< a tape that has code, which this one should be; null: none, or it was not
   std::shared_ptr<StoredCode> stored_; ///< null until it is written down
   const MachineCode* code_ = nullptr;
   const MachineCode* lane_code_ = nullptr;
   std::uint64_t tape_number_ = 0;
   std::vector<double> inputs_, outputs_;
   std::size_t coordinate_count_ = 0, time_count_ = 0;
-  int stages_ = 0, failures_ = 0, tapes_ = 0; ///< failures: since it last held
+  long stages_ = 0;              ///< as ever, in this run and those before it
+  int failures_ = 0, tapes_ = 0; ///< failures: since it last held
   StageCode choice_;
-  int settled_; ///< stages after which it is written down
   bool is_hopeless_ = false;
 };
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace steplap {
 
@@ -24,14 +25,37 @@ bool is_plain(const System& system, const Layout& layout) {
                      [](const ActiveRow& row) { return row.pull != RowPullKind::other; });
 }
 
+/// What a trace works on, kept from one to the next: taking memory would take a tenth of its time.
+struct TracerMemory {
+  std::vector<Motion<Traced>> motion_;
+  std::vector<BodyForceOf<Traced>> force_, lack_;
+  std::vector<Traced> contact_force_, watch_, watch_rate_, friction_force_;
+  std::vector<Traced> q_, v_, time_, a_, multiplier_, cluster_a_;
+  std::vector<SchurRowOf<Traced>> rows_;
+  std::vector<EdgeGeometry> edges_;
+
+  static TracerMemory& kept() {
+    static thread_local TracerMemory memory;
+    return memory;
+  }
+};
+
 // In the order of Dynamics::rates_at and of the parts that it calls.
-class Tracer {
+class Tracer : private TracerMemory {
 public:
+  Tracer(const Tracer&) = delete;
+  Tracer& operator=(const Tracer&) = delete;
+  ~Tracer() { kept() = std::move(static_cast<TracerMemory&>(*this)); }
   Tracer(const System& system, const Layout& layout, const State& state)
-      : system_(system), layout_(layout), state_(state), motion_(system.bodies.size() + system.links.slot_count()),
-        force_(motion_.size()), contact_force_(system.contact_count, Traced(0.0)), watch_(system.watch_count, Traced(1.0)),
-        watch_rate_(system.watch_count, Traced(std::numeric_limits<double>::quiet_NaN())),
-        friction_force_(system.friction_row_count, Traced(0.0)) {
+      : TracerMemory(std::move(kept())), system_(system), layout_(layout), state_(state) {
+    motion_.assign(system.bodies.size() + system.links.slot_count(), {});
+    force_.assign(motion_.size(), {});
+    contact_force_.assign(system.contact_count, Traced(0.0));
+    watch_.assign(system.watch_count, Traced(1.0));
+    watch_rate_.assign(system.watch_count, Traced(std::numeric_limits<double>::quiet_NaN()));
+    friction_force_.assign(system.friction_row_count, Traced(0.0));
+    for (auto* const numbers : {&q_, &v_, &time_, &a_, &multiplier_, &cluster_a_}) numbers->clear();
+    rows_.clear();
     e_.motion = motion_.data();
     e_.link_motion = motion_.data();
     e_.force = force_.data();
@@ -55,6 +79,7 @@ public:
     find_power();
     watch_friction();
     put_out(traced);
+    Traced::end_usual_outputs();
     put_out_wrenches(traced);
     put_out_pivots(traced);
   }
@@ -236,17 +261,16 @@ private:
     traced.has_wrenches = !layout_.is_carried_by_pins; // forces of pins are not traced
     if (!traced.has_wrenches || !layout_.is_merged_watched) return;
     const Traced* const a = cluster_accelerations();
-    std::vector<BodyForceOf<Traced>> lack(system_.bodies.size());
+    lack_.assign(system_.bodies.size(), {});
     for (const RigidEdge& edge : layout_.edges) {
       const Placement& place = layout_.placements[edge.child];
-      lack[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity, motion_[layout_.clusters[place.cluster].motion],
-                                     a + 3 * place.cluster, force_[edge.child]);
+      lack_[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity,
+                                      motion_[layout_.clusters[place.cluster].motion], a + 3 * place.cluster, force_[edge.child]);
     }
     for (const int r : layout_.carried_rows)
-      take_carried(layout_, *layout_.active[r].spec, multiplier_[static_cast<std::size_t>(r)], motion_.data(), lack.data());
-    std::vector<EdgeGeometry> edges;
-    place_edges(system_, layout_, state_, edges);
-    hand_on_lack(layout_, edges, lack.data(), [&](const RigidEdge& edge, const Traced* along) {
+      take_carried(layout_, *layout_.active[r].spec, multiplier_[static_cast<std::size_t>(r)], motion_.data(), lack_.data());
+    place_edges(system_, layout_, state_, edges_);
+    hand_on_lack(layout_, edges_, lack_.data(), [&](const RigidEdge& edge, const Traced* along) {
       if (edge.friction < 0 || system_.frictions[edge.friction].friction->never_slips()) return;
       for (int r = 0; r < 3; ++r) {
         traced.wrenches.push_back(system_.frictions[edge.friction].row + r);
@@ -282,12 +306,7 @@ private:
   const System& system_;
   const Layout& layout_;
   const State& state_;
-  std::vector<Motion<Traced>> motion_;
-  std::vector<BodyForceOf<Traced>> force_;
-  std::vector<Traced> contact_force_, watch_, watch_rate_, friction_force_;
-  std::vector<Traced> q_, v_, time_, a_, multiplier_, cluster_a_;
   std::vector<TracedMechanism> mechanisms_;
-  std::vector<SchurRowOf<Traced>> rows_;
   std::vector<std::vector<TracedPivot>> pivots_; ///< of each solver
   TracedEvaluation e_;
 };
@@ -299,17 +318,16 @@ std::size_t time_input_count(const Layout& layout) {
 }
 
 bool trace_rates(const System& system, const Layout& layout, const State& state, double t, const double* y,
-                 std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
+                 std::span<const double> time_inputs, double least_pivot, TracedRates& traced, const Tape* known) {
   if (!is_plain(system, layout)) return false;
-  Traced::start();
+  Traced::start(known);
   try {
     Tracer(system, layout, state).trace(t, y, time_inputs, least_pivot, traced);
   } catch (const NotTraceable&) {
-    Traced::finish(nullptr);
+    (void)Traced::finish(nullptr);
     return false;
   }
-  Traced::finish(&traced.tape);
-  return true;
+  return Traced::finish(&traced.tape);
 }
 
 } // namespace steplap

@@ -9,7 +9,6 @@
 #include "mbd/dynamics/layout.h"
 #include "mbd/tape/tape.h"
 
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -28,8 +27,7 @@ struct TracedRates {
   std::vector<int> pivots;       ///< how many of the rows between absolute clusters, then of each mechanism
 
   /// Where in the outputs accelerations, watch values and their rates end.
-  [[nodiscard]] std::size_t usual_outputs() const { return outputs.size() - wrenches.size() - 2 * pivot_count(); }
-  [[nodiscard]] std::size_t pivot_count() const { return std::accumulate(pivots.begin(), pivots.end(), std::size_t{0}); }
+  [[nodiscard]] std::size_t usual_outputs() const { return tape.usual_outputs; }
   std::vector<double> inputs, outputs; ///< those traced
 };
 
@@ -38,8 +36,9 @@ struct TracedRates {
 [[nodiscard]] std::size_t time_input_count(const Layout& layout);
 
 /// At time t, coordinates and rates y and the layout's numbers of time. False if some part of the scene is not traced: elements with laws of
-/// their own, joint coordinates, more than a few rows, rows that depend on each other. `least_pivot`: the tape's condition.
+/// their own, joint coordinates, more than a few rows, rows that depend on each other. `least_pivot`: the tape's condition. `known`:
+/// a tape that this one should be, which then is not written once more (Traced::start); false, too, if it is another.
 [[nodiscard]] bool trace_rates(const System& system, const Layout& layout, const State& state, double t, const double* y,
-                               std::span<const double> time_inputs, double least_pivot, TracedRates& traced);
+                               std::span<const double> time_inputs, double least_pivot, TracedRates& traced, const Tape* known = nullptr);
 
 } // namespace steplap

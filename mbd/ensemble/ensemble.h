@@ -39,13 +39,10 @@ public:
   /// Lanes of a pass; 1 where no machine code is made.
   [[nodiscard]] int lanes() const;
 
-  /// Runs what `start` gives, until it gives null, each to its end. `start` makes the Simulation of the next sample, with
-  /// options.stage_code as lane_choice() says; what it throws is that sample's failure. `done` is called as samples end, in whatever
-  /// order that is; what it throws ends all.
+  /// Runs what `start` gives, until it gives null, each to its end. `start` makes the Simulation of the next sample; what it throws
+  /// is that sample's failure. `done` is called as samples end, in whatever order that is; what it throws ends all.
   void run(const std::function<std::unique_ptr<Simulation>()>& start, const std::function<void(Finished&&)>& done);
 
-  /// What samples ask of machine code.
-  [[nodiscard]] static StageCode lane_choice() { return StageCode::of_ensemble; }
   /// Of all runs so far.
   [[nodiscard]] const Statistics& statistics() const { return statistics_; }
 

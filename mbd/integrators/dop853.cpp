@@ -57,7 +57,9 @@ public:
   }
 
   [[nodiscard]] LaneTry* lane_try() override { return this; }
-  [[nodiscard]] Given given() const override { return {t0_, h_, n_, y0_.data(), k0_, weight_.data()}; }
+  [[nodiscard]] Given given(const Dynamics& dynamics) override {
+    return {t0_, h_, n_, y0_.data(), k0_, weight_.data(), stages_looked_at(dynamics)};
+  }
   void take(Dynamics& dynamics, const LaneColumns& made, int lane) override {
     is_dense_ready_ = false;
     const StageProgram& program = *dynamics.lane_program();
@@ -106,6 +108,18 @@ private:
 
   void gather(const double* column, int lanes, double* to) const {
     for (int i = 0; i < n_; ++i) to[i] = column[static_cast<std::ptrdiff_t>(i) * lanes];
+  }
+
+  // Bits of stages, as take_stage() will have it.
+  [[nodiscard]] unsigned stages_looked_at(const Dynamics& dynamics) {
+    unsigned looks = 0;
+    for (std::size_t s = 1; s <= k_lane_stages; ++s) {
+      const bool is_due = is_merged_look_due(dop853::c[s]);
+      if (is_due) last_merged_look_ = dop853::c[s];
+      if (dynamics.looks_at_merged(is_due)) looks |= 1U << s;
+    }
+    last_merged_look_ = 0.0;
+    return looks;
   }
 
   // As evaluate_stage(), of what was made elsewhere.

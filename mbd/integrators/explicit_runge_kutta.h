@@ -9,46 +9,59 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <utility>
 
 namespace steplap {
 
-/// out = y + h Σ_j coefficient_j k_j, zero coefficients dropped at compile time. Rows is a constexpr
-/// array of rows, Row and Count pick the first Count entries of one.
+/// Two neighbours in the two halves of a register that every x86-64 has: the operations of either, in their order.
+using TwoNumbers [[gnu::vector_size(16)]] = double;
+
+template <class S> STEPLAP_INLINE S numbers_at(const double* from) {
+  S numbers;
+  std::memcpy(&numbers, from, sizeof numbers);
+  return numbers;
+}
+
+/// Σ_j coefficient_j k_j, zero coefficients dropped at compile time.
+template <class S, auto Coefficient, std::size_t... J>
+STEPLAP_INLINE S sum_of_stages(const double* k, int stride, std::index_sequence<J...>) {
+  S sum{};
+  ((Coefficient(J) != 0.0 ? void(sum += Coefficient(J) * numbers_at<S>(k + static_cast<std::ptrdiff_t>(J) * stride)) : void()), ...);
+  return sum;
+}
+
+/// out[i] = f(i, Σ_j coefficient_j k_j[i]) for i < n, two at a time.
+template <auto Coefficient, std::size_t Count, class F>
+STEPLAP_INLINE void for_sums(const double* __restrict k, int stride, int n, double* __restrict out, const F& f) {
+  constexpr auto stages = std::make_index_sequence<Count>{};
+  int i = 0;
+  for (; i + 1 < n; i += 2) {
+    const TwoNumbers result = f(i, sum_of_stages<TwoNumbers, Coefficient>(k + i, stride, stages));
+    std::memcpy(out + i, &result, sizeof result);
+  }
+  if (i < n) out[i] = f(i, sum_of_stages<double, Coefficient>(k + i, stride, stages));
+}
+
+/// out = y + h Σ_j coefficient_j k_j. Rows is a constexpr array of rows, Row and Count pick the first Count entries of one.
 template <const auto& Rows, std::size_t Row, std::size_t Count>
 inline void combine(const double* __restrict y, double h, const double* __restrict k, int stride, int n,
                     double* __restrict out) {
-  [&]<std::size_t... J>(std::index_sequence<J...>) {
-    for (int i = 0; i < n; ++i) {
-      double sum = 0.0;
-      ((Rows[Row][J] != 0.0 ? void(sum += Rows[Row][J] * k[J * stride + i]) : void()), ...);
-      out[i] = y[i] + h * sum;
-    }
-  }(std::make_index_sequence<Count>{});
+  for_sums<[](std::size_t j) { return Rows[Row][j]; }, Count>(
+      k, stride, n, out, [=]<class S>(int i, S sum) { return S(numbers_at<S>(y + i) + h * sum); });
 }
 
 /// out = Σ_j w_j k_j
 template <const auto& Weights, std::size_t Count>
 inline void weighted_sum(const double* __restrict k, int stride, int n, double* __restrict out) {
-  [&]<std::size_t... J>(std::index_sequence<J...>) {
-    for (int i = 0; i < n; ++i) {
-      double sum = 0.0;
-      ((Weights[J] != 0.0 ? void(sum += Weights[J] * k[J * stride + i]) : void()), ...);
-      out[i] = sum;
-    }
-  }(std::make_index_sequence<Count>{});
+  for_sums<[](std::size_t j) { return Weights[j]; }, Count>(k, stride, n, out, []<class S>(int, S sum) { return sum; });
 }
 
 /// The same with one row of an array of rows (a part of an object as argument is more than clang 14 understands).
 template <const auto& Rows, std::size_t Row, std::size_t Count>
 inline void weighted_row(const double* __restrict k, int stride, int n, double* __restrict out) {
-  [&]<std::size_t... J>(std::index_sequence<J...>) {
-    for (int i = 0; i < n; ++i) {
-      double sum = 0.0;
-      ((Rows[Row][J] != 0.0 ? void(sum += Rows[Row][J] * k[J * stride + i]) : void()), ...);
-      out[i] = sum;
-    }
-  }(std::make_index_sequence<Count>{});
+  for_sums<[](std::size_t j) { return Rows[Row][j]; }, Count>(k, stride, n, out, []<class S>(int, S sum) { return sum; });
 }
 
 /// The adaptive loop around a pair: PI control after Hairer & Wanner, Solving ODEs II, IV.2.

@@ -41,6 +41,7 @@ void LaneColumns::begin(const StageProgram& program) {
 
 void LaneColumns::load(int lane, const LaneTry::Given& given, Dynamics& dynamics, const StageProgram& program) {
   h_[static_cast<std::size_t>(lane)] = given.h;
+  looks_ |= given.looks;
   scatter(given.y0, given.n, y0_.data() + lane, lanes_);
   scatter(given.weight, given.n, weight_.data() + lane, lanes_);
   scatter(given.k0, given.n, rates_.data() + lane, lanes_);
@@ -63,6 +64,8 @@ unsigned LaneColumns::run() {
   data.lock_count = static_cast<int>(lock_coordinates_.size());
   data.lock_coordinates = lock_coordinates_.data();
   data.code = code_->entry();
+  data.looks = looks_;
+  looks_ = 0;
   data.constants = constants_.data();
   data.h = h_.data();
   data.y0 = y0_.data();

@@ -25,8 +25,9 @@ public:
     const double* y0;     ///< n
     const double* k0;     ///< n, rates at t0
     const double* weight; ///< n, of the error norm
+    unsigned looks;       ///< bit s: merged joints are looked at after stage s
   };
-  [[nodiscard]] virtual Given given() const = 0;
+  [[nodiscard]] virtual Given given(const Dynamics& dynamics) = 0;
   /// Takes over what was made in this lane, as if it had made the try itself. std::logic_error if a stage that is evaluated
   /// as well has other bits.
   virtual void take(Dynamics& dynamics, const LaneColumns& made, int lane) = 0;
@@ -45,7 +46,7 @@ public:
   void begin(const StageProgram& program);
   /// Preconditions: begin() was called with a program of the same tape; program.lane_code(lanes()) is not null.
   void load(int lane, const LaneTry::Given& given, Dynamics& dynamics, const StageProgram& program);
-  /// Bit l: the try in lane l is right. Lanes that were not loaded mean nothing.
+  /// Bit l: the try in lane l is right. Lanes that were not loaded mean nothing. Then all are empty again.
   [[nodiscard]] unsigned run();
 
   // --- of a try that is right, stages 1 … k_lane_stages; each number lanes() places from the one before -------------------
@@ -69,6 +70,7 @@ private:
   int coordinates_ = 0, rate_rows_ = 0, input_rows_ = 0, time_rows_ = 0;
   std::shared_ptr<StoredCode> stored_; ///< whose code it is: the address is no other's as long as it is kept
   const MachineCode* code_ = nullptr;
+  unsigned looks_ = 0;
   std::vector<int> lock_coordinates_;
   std::vector<double> y0_, weight_, h_, inputs_, rates_, y1_, fifth_, third_, constants_, time_;
   std::vector<std::uint64_t> loaded_; ///< per lane: the tape whose constants are there

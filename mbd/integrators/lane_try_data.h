@@ -13,7 +13,8 @@ struct LaneTryData {
   int input_rows;              ///< of one stage in `inputs`: 2m, then numbers of time
   int lock_count;
   const int* lock_coordinates; ///< whose rate is the second of the lock's three numbers of time
-  unsigned (*code)(const double* inputs, const double* constants, double* outputs);
+  unsigned (*code)(const double* inputs, const double* constants, double* outputs, int all);
+  unsigned looks;              ///< bit s: of stage s more than the usual outputs is wanted, in some lane
   const double* constants;
   const double* h;             ///< 1 row
   const double *y0, *weight;   ///< n rows

@@ -48,7 +48,7 @@ struct LaneTryOf {
     for (std::size_t i = 0; i < m; ++i) store(load(y + (m + i) * lanes), k + i * lanes);
     for (int l = 0; l < d.lock_count; ++l)
       store(load(y + (2 * m + 3 * static_cast<std::size_t>(l) + 1) * lanes), k + d.lock_coordinates[l] * lanes);
-    return d.code(y, d.constants, k + m * lanes);
+    return d.code(y, d.constants, k + m * lanes, static_cast<int>(d.looks >> Stage & 1U));
   }
 
   template <std::size_t... I> static unsigned stages(const LaneTryData& d, std::index_sequence<I...>) {

@@ -328,7 +328,7 @@ bool Simulation::begin_advance() {
 void Simulation::load_try(LaneColumns& columns, int lane) {
   const StageProgram& program = *lane_program();
   columns.begin(program);
-  columns.load(lane, integrator_->lane_try()->given(), dynamics_, program);
+  columns.load(lane, integrator_->lane_try()->given(dynamics_), dynamics_, program);
 }
 
 void Simulation::take_try(const LaneColumns& columns, int lane) {

@@ -1,12 +1,13 @@
 #include "mbd/tape/code_store.h"
 
 #include <unordered_map>
+#include <utility>
 
 namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_most_tapes = 500;
+constexpr std::size_t k_most_tapes = 500, k_most_kinds = 4000;
 
 // FNV-1a, a step at a time.
 std::uint64_t hash_of(const Tape& tape) {
@@ -21,6 +22,7 @@ std::uint64_t hash_of(const Tape& tape) {
 struct Store {
   std::mutex mutex;
   std::unordered_multimap<std::uint64_t, std::shared_ptr<StoredCode>> codes;
+  std::unordered_map<std::uint64_t, std::shared_ptr<KnownKind>> kinds;
 };
 
 Store& store() {
@@ -34,17 +36,9 @@ void StoredCode::note_use(long evaluations) {
   if (evaluations_.fetch_add(evaluations) + evaluations >= k_enough) make();
 }
 
-Tape StoredCode::tape() const {
-  Tape tape;
-  tape.steps = steps_;
-  tape.outputs = outputs_;
-  tape.input_count = input_count_;
-  return simplified(tape);
-}
-
 void StoredCode::make() {
   std::call_once(is_made_, [this] {
-    made_ = MachineCode(tape());
+    made_ = MachineCode(simplified(tape_));
     if (made_) code_.store(&made_, std::memory_order_release);
   });
 }
@@ -52,8 +46,27 @@ void StoredCode::make() {
 const MachineCode* StoredCode::lane_code() { return evaluations_.load() >= k_enough ? make_lanes() : nullptr; }
 
 const MachineCode* StoredCode::make_lanes() {
-  std::call_once(are_lanes_made_, [this] { made_lanes_ = MachineCode(tape(), MachineCode::most_lanes()); });
+  std::call_once(are_lanes_made_, [this] { made_lanes_ = MachineCode(simplified(tape_), MachineCode::most_lanes()); });
   return made_lanes_ ? &made_lanes_ : nullptr;
+}
+
+std::shared_ptr<StoredCode> KnownKind::coded() const {
+  const std::scoped_lock lock(mutex_);
+  return stored_ && stored_->code() ? stored_ : nullptr;
+}
+
+void KnownKind::keep(std::shared_ptr<StoredCode> stored) {
+  const std::scoped_lock lock(mutex_);
+  stored_ = std::move(stored);
+}
+
+std::shared_ptr<KnownKind> known_kind(std::uint64_t key) {
+  Store& all = store();
+  const std::scoped_lock lock(all.mutex);
+  if (all.kinds.size() >= k_most_kinds && !all.kinds.contains(key)) all.kinds.clear();
+  std::shared_ptr<KnownKind>& kind = all.kinds[key];
+  if (!kind) kind = std::make_shared<KnownKind>();
+  return kind;
 }
 
 std::shared_ptr<StoredCode> stored_code(const Tape& tape) {

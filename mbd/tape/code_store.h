@@ -15,12 +15,15 @@ namespace steplap {
 class StoredCode {
 public:
   /// `tape`: its constants are not looked at.
-  explicit StoredCode(const Tape& tape) : steps_(tape.steps), outputs_(tape.outputs), input_count_(tape.input_count) {}
+  explicit StoredCode(const Tape& tape) : tape_{tape.steps, {}, tape.input_count, tape.outputs, tape.usual_outputs} {}
   [[nodiscard]] bool is_of(const Tape& tape) const {
     static_assert(std::has_unique_object_representations_v<TapeStep>);
-    return steps_.size() == tape.steps.size() && outputs_ == tape.outputs && input_count_ == tape.input_count &&
-           std::memcmp(steps_.data(), tape.steps.data(), steps_.size() * sizeof(TapeStep)) == 0;
+    return tape_.steps.size() == tape.steps.size() && tape_.outputs == tape.outputs && tape_.input_count == tape.input_count &&
+           tape_.usual_outputs == tape.usual_outputs &&
+           std::memcmp(tape_.steps.data(), tape.steps.data(), tape_.steps.size() * sizeof(TapeStep)) == 0;
   }
+  /// Without constants.
+  [[nodiscard]] const Tape& tape() const { return tape_; }
   /// Null where it is not made yet.
   [[nodiscard]] const MachineCode* code() const { return code_.load(std::memory_order_acquire); }
   /// So many evaluations were made that it could have made: it is made as soon as they are as many as would have paid for it.
@@ -36,9 +39,7 @@ private:
   /// Making code takes as long as some of these save.
   static constexpr long k_enough = 600;
 
-  std::vector<TapeStep> steps_;
-  std::vector<std::int32_t> outputs_;
-  int input_count_;
+  Tape tape_;
   std::atomic<long> evaluations_{0};
   [[nodiscard]] Tape tape() const;
 
@@ -46,6 +47,27 @@ private:
   MachineCode made_, made_lanes_;
   std::atomic<const MachineCode*> code_{nullptr};
 };
+
+/// What this process has met of one kind of computation, before and beside whoever asks: how often it was made, and the tape that
+/// was written down of it last, which another sample's is then compared with instead of being written. Thread-safe.
+class KnownKind {
+public:
+  /// Made once more, as ever.
+  void note_made() { made_.fetch_add(1, std::memory_order_relaxed); }
+  [[nodiscard]] long made() const { return made_.load(std::memory_order_relaxed); }
+  /// Null: none, or its code is not made.
+  [[nodiscard]] std::shared_ptr<StoredCode> coded() const;
+  void keep(std::shared_ptr<StoredCode> stored);
+
+private:
+  std::atomic<long> made_{0};
+  mutable std::mutex mutex_;
+  std::shared_ptr<StoredCode> stored_;
+};
+
+/// By a number that is different for what can be told to be another kind; of two that share one by chance nothing but time is lost.
+/// Thread-safe.
+[[nodiscard]] std::shared_ptr<KnownKind> known_kind(std::uint64_t key);
 
 /// That of an equal tape, whichever thread has asked first. Of some hundred tapes: the store is emptied when it is full, and who
 /// has one keeps it. Thread-safe.

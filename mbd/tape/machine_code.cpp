@@ -23,7 +23,7 @@ constexpr int k_most_frame = 1 << 18; ///< bytes of the stack
 constexpr int k_page = 4096;
 constexpr int k_masks_size = 128; ///< bytes before the first instruction: −0 and the bits besides its sign, eight times each
 // What the frame begins with where functions are called: the arguments and the lanes that hold.
-constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_lanes = 24, k_saved_size = 64;
+constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_lanes = 24, k_saved_wish = 32, k_saved_size = 64;
 
 InstructionSet find_best_instructions() {
   const auto& features = asmjit::CpuInfo::host().features().x86();
@@ -103,6 +103,7 @@ private:
     sign_bits_ = a_.newLabel();
     value_bits_ = a_.newLabel();
     failed_ = a_.newLabel();
+    done_ = a_.newLabel();
     a_.bind(sign_bits_);
     a_.embedUInt64(0x8000000000000000u, 8);
     a_.bind(value_bits_);
@@ -128,6 +129,7 @@ private:
       a_.mov(x86::ptr(x86::rsp, k_saved_inputs), x86::rdi);
       a_.mov(x86::ptr(x86::rsp, k_saved_constants), x86::rsi);
       a_.mov(x86::ptr(x86::rsp, k_saved_outputs), x86::rdx);
+      a_.mov(x86::ptr(x86::rsp, k_saved_wish), x86::ecx);
     }
     if (counts_lanes()) {
       a_.mov(x86::eax, all_lanes_);
@@ -136,6 +138,7 @@ private:
   }
 
   void end() {
+    a_.bind(done_);
     if (!counts_lanes())
       a_.mov(x86::eax, all_lanes_);
     else if (has_512())
@@ -188,6 +191,10 @@ private:
     case Kind::arithmetic: arithmetic(i); break;
     case Kind::condition: lanes_ == 1 ? condition(i) : conditions(i); break;
     case Kind::sin_cos: call(i); break;
+    case Kind::leave:
+      a_.test(x86::ecx, x86::ecx);
+      a_.jz(done_);
+      break;
     }
   }
 
@@ -237,12 +244,12 @@ private:
     }
     if (has_avx_) {
       a_.emit(names_.compare, reg(i.destination), reg(i.first), operand(i.second), asmjit::imm(predicate));
-      a_.emit(x86::Inst::kIdVmovmskpd, x86::ecx, reg(i.destination));
+      a_.emit(x86::Inst::kIdVmovmskpd, x86::r8d, reg(i.destination));
     } else {
       a_.emit(names_.compare, reg(i.destination), operand(i.second), asmjit::imm(predicate));
-      a_.emit(x86::Inst::kIdMovmskpd, x86::ecx, reg(i.destination));
+      a_.emit(x86::Inst::kIdMovmskpd, x86::r8d, reg(i.destination));
     }
-    a_.and_(x86::eax, x86::ecx);
+    a_.and_(x86::eax, x86::r8d);
   }
 
   void call(const PlannedInstruction& i) {
@@ -259,6 +266,7 @@ private:
     a_.mov(x86::rdi, x86::ptr(x86::rsp, k_saved_inputs));
     a_.mov(x86::rsi, x86::ptr(x86::rsp, k_saved_constants));
     a_.mov(x86::rdx, x86::ptr(x86::rsp, k_saved_outputs));
+    a_.mov(x86::ecx, x86::ptr(x86::rsp, k_saved_wish));
     if (counts_lanes()) {
       a_.mov(x86::eax, x86::ptr(x86::rsp, k_saved_lanes));
       if (has_512()) a_.kmovw(x86::k1, x86::eax);
@@ -272,7 +280,7 @@ private:
   const bool has_avx_;
   const InstructionNames names_;
   const std::uint32_t all_lanes_;
-  asmjit::Label sign_bits_, value_bits_, failed_;
+  asmjit::Label sign_bits_, value_bits_, failed_, done_;
 };
 
 // Pages are written first and executed then, never both at a time. Where the system lets no page be executed that could once be

@@ -44,11 +44,14 @@ public:
 
   /// Bit l of the result: the conditions hold in lane l. Arrays are [index][lane], as long as the tape says, aligned as doubles
   /// are, and `outputs` is apart from the others. With one lane and a condition that fails, outputs are untouched; with more, the
-  /// outputs of lanes that fail mean nothing and the others are right. Thread-safe. Precondition: not empty.
-  unsigned run(const double* inputs, const double* constants, double* outputs) const { return run_(inputs, constants, outputs); }
+  /// outputs of lanes that fail mean nothing and the others are right. Not `all`: the tape's usual outputs may be all that is
+  /// found. Thread-safe. Precondition: not empty.
+  unsigned run(const double* inputs, const double* constants, double* outputs, bool all = true) const {
+    return run_(inputs, constants, outputs, all ? 1 : 0);
+  }
 
   /// run() as a function of its own, good as long as this object.
-  using Run = unsigned (*)(const double* inputs, const double* constants, double* outputs);
+  using Run = unsigned (*)(const double* inputs, const double* constants, double* outputs, int all);
   [[nodiscard]] Run entry() const { return run_; }
 
   [[nodiscard]] int lanes() const { return lanes_; }

@@ -16,6 +16,7 @@ constexpr std::int32_t k_never = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t k_none = -1;
 constexpr std::int64_t k_worth_of_store = 100; ///< steps that a value which needs no store may be used sooner and leaves all the same
 constexpr std::int32_t k_store_outputs = -1; ///< in the order: outputs known so far are stored
+constexpr std::int32_t k_leave = -2;         ///< in the order: usual outputs are stored
 
 std::size_t at(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -37,6 +38,8 @@ public:
       busy_ = 0;
       if (order_[p] == k_store_outputs)
         store_outputs(p);
+      else if (order_[p] == k_leave)
+        plan(Kind::leave);
       else
         plan_step(p, tape_.steps[at(order_[p])]);
     }
@@ -68,6 +71,18 @@ private:
     order_.insert(order_.end(), order.begin() + static_cast<std::ptrdiff_t>(last), order.end());
     for (std::size_t p = 0; p < order_.size(); ++p)
       if (order_[p] >= 0) values_[at(order_[p])].position = static_cast<std::int32_t>(p);
+    if (tape_.usual_outputs > 0 && tape_.usual_outputs < tape_.outputs.size()) place_leave();
+  }
+
+  // Behind the last usual output and the last condition; and behind the place where outputs known so far are stored.
+  void place_leave() {
+    std::size_t last = stores_;
+    for (std::size_t p = stores_; p < order_.size(); ++p)
+      if (order_[p] >= 0 && is_condition(tape_.steps[at(order_[p])].operation)) last = p;
+    for (std::size_t k = 0; k < tape_.usual_outputs; ++k)
+      last = std::max(last, at(std::max(values_[at(tape_.outputs[k])].position, 0)));
+    order_.insert(order_.begin() + static_cast<std::ptrdiff_t>(last) + 1, k_leave);
+    for (std::size_t p = last + 2; p < order_.size(); ++p) ++values_[at(order_[p])].position;
   }
 
   void list_outputs() {
@@ -106,6 +121,7 @@ private:
           if (is_before(tape_.outputs[k], p)) output_next_[k] = std::exchange(values_[at(tape_.outputs[k])].next, here);
         continue;
       }
+      if (order_[p] == k_leave) continue;
       const TapeStep& s = tape_.steps[at(order_[p])];
       next_[p].result = values_[at(order_[p])].next;
       if (is_idle(p)) continue;
@@ -430,22 +446,27 @@ std::vector<std::int32_t> order_of_steps(const Tape& tape) {
   std::vector<std::int32_t> order;
   order.reserve(tape.steps.size());
   const auto is_call = [](const TapeStep& s) { return s.operation == sine || s.operation == cosine; };
-  if (std::none_of(tape.steps.begin(), tape.steps.end(), is_call)) {
+  const bool has_rest = tape.usual_outputs > 0 && tape.usual_outputs < tape.outputs.size();
+  if (!has_rest && std::none_of(tape.steps.begin(), tape.steps.end(), is_call)) {
     for (std::int32_t i = 0; i < n; ++i)
       if (!is_given(tape.steps[at(i)].operation)) order.push_back(i);
     return order;
   }
-  std::vector<char> is_first(tape.steps.size(), 0);
+  // What calls hang on, what conditions and usual outputs hang on, the rest.
+  std::vector<char> turn(tape.steps.size(), has_rest ? char{2} : char{1});
+  for (std::size_t k = 0; has_rest && k < tape.usual_outputs; ++k) turn[at(tape.outputs[k])] = 1;
   for (std::int32_t i = n; i-- > 0;) {
     const TapeStep& s = tape.steps[at(i)];
-    if (is_call(s)) is_first[at(i)] = 1;
-    if (is_first[at(i)] == 0 || is_given(s.operation)) continue;
-    is_first[at(s.a)] = 1;
-    if (takes_two(s.operation)) is_first[at(s.b)] = 1;
+    char& own = turn[at(i)];
+    if (is_condition(s.operation)) own = std::min<char>(own, 1);
+    if (is_call(s)) own = 0;
+    if (is_given(s.operation)) continue;
+    turn[at(s.a)] = std::min(turn[at(s.a)], own);
+    if (takes_two(s.operation)) turn[at(s.b)] = std::min(turn[at(s.b)], own);
   }
-  for (const bool is_turn : {true, false})
+  for (char now = 0; now <= 2; ++now)
     for (std::int32_t i = 0; i < n; ++i)
-      if ((is_first[at(i)] != 0) == is_turn && !is_given(tape.steps[at(i)].operation)) order.push_back(i);
+      if (turn[at(i)] == now && !is_given(tape.steps[at(i)].operation)) order.push_back(i);
   return order;
 }
 

@@ -38,6 +38,7 @@ struct PlannedInstruction {
                 ///< negate: first ^ second, sign_bits; absolute: first & second, value_bits; square_root: of first
     condition, ///< first operation second, as the tape has them, or, with `swaps_conditions`, b first and a second
     sin_cos,   ///< slots sine_slot and cosine_slot = of second, in memory; registers are lost
+    leave,     ///< the usual outputs are stored, and conditions looked at: here it ends if no more is wanted
   };
   TapeOperation operation = TapeOperation::constant;
   Kind kind = Kind::load;
@@ -64,7 +65,7 @@ struct RegisterPlan {
 };
 
 /// The steps of the tape without inputs and constants, in an order in which they can be done: what sines and cosines hang on
-/// first, so that little has to be kept while they are found, the rest as it stands.
+/// first, so that little has to be kept while they are found, what more is wanted than the usual outputs last, else as it stands.
 [[nodiscard]] std::vector<std::int32_t> order_of_steps(const Tape& tape);
 
 /// Steps that no output and no condition hangs on are left out of the plan.

@@ -151,7 +151,7 @@ private:
       number[static_cast<std::size_t>(s.a)] = 1;
       if (takes_two(s.operation)) number[static_cast<std::size_t>(s.b)] = 1;
     }
-    Tape result{{}, tape_.constants, tape_.input_count, std::move(outputs)};
+    Tape result{{}, tape_.constants, tape_.input_count, std::move(outputs), tape_.usual_outputs};
     result.steps.reserve(made_.size());
     for (std::size_t i = 0; i < made_.size(); ++i) {
       if (number[i] == 0) continue;

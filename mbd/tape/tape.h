@@ -58,6 +58,7 @@ struct Tape {
   std::vector<double> constants;     ///< those of the sample that was traced; another has others in the same places
   int input_count = 0;
   std::vector<std::int32_t> outputs; ///< the steps whose values are wanted
+  std::size_t usual_outputs = 0;     ///< so many, the first ones, may be wanted alone (MachineCode::run); 0: all or none
 };
 
 /// Without what no output and no condition hangs on, with steps that are equal made once, and with signs turned where that

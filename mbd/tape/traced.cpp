@@ -1,6 +1,7 @@
 #include "mbd/tape/traced.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace steplap {
 
@@ -16,36 +17,47 @@ TapeWriter& writer() {
 } // namespace
 
 void TapeWriter::grow() {
-  const auto written = step - first_step, known = constant - first_constant;
+  const std::size_t written = steps.empty() ? 0 : static_cast<std::size_t>(step - steps.data());
+  const std::size_t kept = constants.empty() ? 0 : static_cast<std::size_t>(constant - first_constant);
   const std::size_t size = std::max(k_first_size, 2 * steps.size());
   steps.resize(size);
   constants.resize(size);
-  first_step = steps.data();
-  step = first_step + written;
-  last_step = first_step + size;
+  step = steps.data() + written;
+  last_step = steps.data() + size;
   first_constant = constants.data();
-  constant = first_constant + known;
+  constant = first_constant + kept;
   last_constant = first_constant + size;
 }
 
-void Traced::start() {
+void Traced::start(const Tape* known) {
   TapeWriter& to = writer();
   if (to.steps.empty()) to.grow();
-  to.step = to.first_step;
+  to.step = to.steps.data();
   to.constant = to.first_constant;
+  to.known = known;
+  to.known_step = known ? known->steps.data() : nullptr;
+  to.last_known = known ? known->steps.data() + known->steps.size() : nullptr;
   to.outputs.clear();
-  to.input_count = 0;
+  to.count = to.input_count = 0;
+  to.difference = 0;
+  to.usual_outputs = 0;
   TapeWriter::now = &to;
 }
 
-void Traced::finish(Tape* tape) {
+bool Traced::finish(Tape* tape) {
   const TapeWriter& from = writer();
   TapeWriter::now = nullptr;
-  if (!tape) return;
-  tape->steps.assign(from.first_step, from.step);
+  if (!tape) return false;
   tape->constants.assign(from.first_constant, from.constant);
   tape->outputs = from.outputs;
+  tape->usual_outputs = from.usual_outputs;
   tape->input_count = from.input_count;
+  tape->steps.resize(static_cast<std::size_t>(from.step - from.steps.data()));
+  std::memcpy(tape->steps.data(), from.steps.data(), tape->steps.size() * sizeof(TapeStep));
+  const Tape* const known = from.known;
+  return !known || (from.difference == 0 && from.known_step == from.last_known && tape->steps.empty() &&
+                    tape->input_count == known->input_count && tape->outputs == known->outputs &&
+                    tape->usual_outputs == known->usual_outputs);
 }
 
 Traced Traced::input(double value) {

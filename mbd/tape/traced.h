@@ -19,19 +19,31 @@ namespace steplap {
 /// What is asked of the values at hand does not hold: no tape of them.
 struct NotTraceable {};
 
-/// Where a thread writes at present. Steps and constants are kept in memory that has grown to what tapes take.
+/// Where a thread writes at present. Steps and constants are kept in memory that has grown to what tapes take. Of a tape that is
+/// known, steps are compared and constants alone are kept.
 struct TapeWriter {
-  TapeStep *step = nullptr, *first_step = nullptr, *last_step = nullptr;
+  TapeStep *step = nullptr, *last_step = nullptr;
+  const TapeStep *known_step = nullptr, *last_known = nullptr; ///< null: none is known
   double *constant = nullptr, *first_constant = nullptr, *last_constant = nullptr;
+  std::int32_t count = 0;       ///< of steps
+  std::uint32_t difference = 0; ///< 0: none from the known tape
   std::vector<TapeStep> steps;
   std::vector<double> constants;
   std::vector<std::int32_t> outputs;
+  const Tape* known = nullptr;
+  std::size_t usual_outputs = 0;
   std::int32_t input_count = 0;
 
   std::int32_t put(TapeOperation operation, std::int32_t a, std::int32_t b) {
-    if (step == last_step) [[unlikely]] grow();
-    *step = {operation, a, b};
-    return static_cast<std::int32_t>(step++ - first_step);
+    if (known_step != last_known) {
+      const TapeStep& k = *known_step++;
+      difference |= (static_cast<std::uint32_t>(k.operation) ^ static_cast<std::uint32_t>(operation)) |
+                    static_cast<std::uint32_t>(k.a ^ a) | static_cast<std::uint32_t>(k.b ^ b);
+      return count++;
+    }
+    if (step == last_step) [[unlikely]] grow(); // a known tape is at its end: what follows is written, and differs
+    *step++ = {operation, a, b};
+    return count++;
   }
   std::int32_t put_constant(double value) {
     if (constant == last_constant) [[unlikely]] grow();
@@ -47,13 +59,17 @@ public:
   Traced() = default;
   Traced(double constant) : value_(constant) {} // NOLINT: a number of the file is a Traced
 
-  /// What this thread does from start() on is written down, until finish() has put it into `tape` or gives it up (null).
-  static void start();
-  static void finish(Tape* tape);
+  /// What this thread does from start() on is written down, until finish() has put it into `tape` or gives it up (null). With a
+  /// tape that is `known` its steps are not written once more: into `tape` go constants alone, and finish() tells whether all else is
+  /// as in the known one.
+  static void start(const Tape* known = nullptr);
+  static bool finish(Tape* tape);
   /// The next input; its value now.
   [[nodiscard]] static Traced input(double value);
   /// To be the next output.
   static void output(const Traced& x);
+  /// Those up to here are the usual ones (Tape::usual_outputs).
+  static void end_usual_outputs() { TapeWriter::now->usual_outputs = TapeWriter::now->outputs.size(); }
 
   /// Known whatever the inputs are?
   [[nodiscard]] bool is_constant() const { return step_ < 0; }

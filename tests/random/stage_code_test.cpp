@@ -133,3 +133,28 @@ TEST_CASE("stages at which merged joints are looked at are made by machine code 
   CHECK(run.steps > 100);
   CHECK(run.evaluations - run.coded_stages < 2 * run.steps);
 }
+
+// Tapes that runs before have written are not written once more: of another sample of the scene constants alone are gathered.
+TEST_CASE("what runs before have made known serves other samples, to the same bytes") {
+  if (!MachineCode::is_available()) return;
+  constexpr int k_rounds = 30; // in which modes that last for 25 stages have come often enough for code of their own
+  for (int round = 0; round < k_rounds; ++round)
+    for (const char* const file : {"/paper/no_interference.toml", "/paper/interference.toml"}) {
+      CAPTURE(round);
+      const Model model = read_model(STEPLAP_MODELS + std::string(file), transformer_catalog());
+      const auto system = compile(model); // each time another, as in a study
+      SimulationOptions options = options_of(model);
+      options.integrator = "dop853";
+      options.settings = {.tolerance = 1e-6};
+      options.has_extremes = false;
+      options.output_step = 0.05;
+      const State start = system->initial_state();
+      const Outcome plain = outcome(*system, start, options, StageCode::never);
+      const Outcome coded = outcome(*system, start, options, StageCode::when_it_pays);
+      CHECK(coded.bits == plain.bits);
+      CHECK(coded.events == plain.events);
+      CHECK(coded.failure == plain.failure);
+      CHECK(coded.evaluations == plain.evaluations);
+      if (round == k_rounds - 1) CHECK(coded.coded > coded.evaluations * 3 / 4);
+    }
+}

@@ -11,6 +11,7 @@
 #include <unistd.h>
 #endif
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 #include <utility>
@@ -135,6 +136,41 @@ TEST_CASE("random tapes, as they are and simplified") {
   }
   CHECK(held > 1000);
   CHECK(failed > 500);
+}
+
+TEST_CASE("the usual outputs alone, where no more is wanted") {
+  std::mt19937 random(21);
+  int left_out = 0;
+  for (int i = 0; i < 200; ++i) {
+    TapeShape shape;
+    shape.steps = 30 + i;
+    shape.reach = i % 2 == 0 ? 10 : 200;
+    shape.outputs = 2 + i % 30;
+    shape.conditions = i % 3 == 0 ? 0.02 : 0.0;
+    shape.calls = i % 5 == 0 ? 0.05 : 0.0;
+    Tape drawn = random_tape(random, shape);
+    std::sort(drawn.outputs.begin(), drawn.outputs.end()); // as they are in use: what is seldom wanted is found last
+    drawn.usual_outputs = 1 + static_cast<std::size_t>(i) % (drawn.outputs.size() - 1);
+    const Tape tape = simplified(drawn);
+    CHECK(tape.usual_outputs == drawn.usual_outputs);
+    const Samples samples = random_samples(random, tape, 8, true);
+    CAPTURE(i);
+    check_everywhere(tape, samples);
+    for (const Target& target : all_targets()) {
+      const MachineCode code(tape, target.lanes, target.instructions);
+      const auto lanes = static_cast<std::size_t>(target.lanes);
+      const auto inputs = in_lanes(samples.inputs, 0, target.lanes), constants = in_lanes(samples.constants, 0, target.lanes);
+      std::vector<double> outputs(tape.outputs.size() * lanes, k_untouched);
+      const unsigned held = code.run(inputs.data(), constants.data(), outputs.data(), false);
+      for (std::size_t l = 0; l < lanes; ++l) {
+        CHECK((held >> l & 1) == samples.holds[l]);
+        for (std::size_t k = 0; k < tape.usual_outputs && samples.holds[l]; ++k)
+          CHECK(are_same_bits(outputs[k * lanes + l], samples.outputs[l][k]));
+      }
+      if (lanes == 1 && samples.holds[0] && outputs.back() == k_untouched) ++left_out;
+    }
+  }
+  CHECK(left_out > 100); // something was saved
 }
 
 TEST_CASE("many more live values than registers") {

@@ -1,6 +1,6 @@
 // Tapes: replay against the same operations written out, and simplified tapes against those that they were made of.
 #include "mbd/math/portable_math.h"
-#include "mbd/tape/tape.h"
+#include "mbd/tape/traced.h"
 #include "random_tape.h"
 #include "same_bits.h"
 
@@ -158,4 +158,60 @@ TEST_CASE("a tape that takes what there is not is refused") {
                         {{{input, 0}}, {}, 1, {1}},
                         {{{input, 0}}, {}, 1, {-1}}};
   for (const Tape& tape : wrong) CHECK_THROWS_AS(static_cast<void>(simplified(tape)), std::logic_error);
+}
+
+namespace {
+
+// What another sample does, with another number of the file, on another branch, or with more of it.
+struct Written {
+  double number = 2.0, x = 0.5;
+  int turns = 3;
+
+  void write() const {
+    const Traced a = Traced::input(x), b = Traced::input(x + 1.0);
+    Traced sum(0.0);
+    for (int i = 0; i < turns; ++i) sum += number * a - b / (number + i);
+    if (sum < b) sum = sqrt(abs(sum));
+    Traced::output(sum);
+    Traced::end_usual_outputs();
+    Traced::output(sum * number);
+  }
+  [[nodiscard]] Tape tape() const {
+    Tape tape;
+    Traced::start();
+    write();
+    REQUIRE(Traced::finish(&tape));
+    return tape;
+  }
+  [[nodiscard]] bool is(const Tape& known, std::vector<double>& constants) const {
+    Tape tape;
+    Traced::start(&known);
+    write();
+    const bool is_same = Traced::finish(&tape);
+    constants = tape.constants;
+    return is_same;
+  }
+};
+
+} // namespace
+
+TEST_CASE("of a tape that is known only the constants are gathered, and what is another tape is told") {
+  const Tape known = Written{}.tape();
+  CHECK(known.usual_outputs == 1);
+  CHECK(known.outputs.size() == 2);
+  std::vector<double> constants;
+  CHECK(Written{}.is(known, constants));
+  CHECK(constants == known.constants);
+  const Written other{.number = 1.5};
+  CHECK(other.is(known, constants));
+  CHECK(constants == other.tape().constants); // as if it had been written
+  CHECK(other.tape().steps == known.steps);
+  CHECK_FALSE(Written{.x = 3.0}.is(known, constants)); // on the other branch
+  CHECK_FALSE(Written{.turns = 4}.is(known, constants));
+  CHECK_FALSE(Written{.turns = 2}.is(known, constants));
+  Tape others = known;
+  others.outputs.back() = known.outputs.front();
+  CHECK_FALSE(Written{}.is(others, constants));
+  CHECK_FALSE(Written{}.is(Tape{}, constants));
+  CHECK(Written{}.tape().steps == known.steps); // nothing of it is left behind
 }

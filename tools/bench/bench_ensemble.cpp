@@ -81,13 +81,11 @@ void compare(const Request& request) {
       for (std::size_t i = 0; i < request.samples; ++i) sums[i] = sum_of(simulate(*systems[i], starts[i], options).final_state);
     });
     time_way(together, [&](auto& sums) {
-      SimulationOptions of_ensemble = options;
-      of_ensemble.stage_code = Ensemble::lane_choice();
       std::size_t started = 0;
       const auto start = [&]() -> std::unique_ptr<Simulation> {
         if (started == request.samples) return nullptr;
         const std::size_t i = started++;
-        return std::make_unique<Simulation>(*systems[i], starts[i], of_ensemble);
+        return std::make_unique<Simulation>(*systems[i], starts[i], options);
       };
       ensemble.run(start, [&](Ensemble::Finished&& run) {
         if (run.failure) std::rethrow_exception(run.failure);
