@@ -113,12 +113,12 @@ std::unique_ptr<FrictionScratch> StepLapFriction::make_scratch() const {
   return scratch;
 }
 
-void StepLapFriction::set_scales(const Pose& reference, const BodyData& limb,
+void StepLapFriction::set_scales(const Pose& reference, Patch at_reference, const BodyData& limb,
                                  const BodyData& active_part) {
-  const Patch patch = patch_at(reference, GripLaw::holding);
-  if (patch.empty()) return;
+  if (at_reference.empty()) return;
   auto fit = std::make_shared<Fit>(); // of no acceleration across the sheets
-  fit->patch = patch;
+  fit->patch = std::move(at_reference);
+  const Patch& patch = fit->patch;
   fit->pose = reference;
   fit->is_valid = true;
   if (!never_slips()) fit->prepare();

@@ -61,8 +61,9 @@ public:
   [[nodiscard]] bool has_changing_pressure() const { return pressure_signal_ || acceleration_ || kept_ != 1.0; }
   /// Where linear pressures are what their interfaces say: at the middles of the overlaps at this pose.
   void centre_pressures(const Pose& reference);
-  /// To be called when the rows are complete: scales of lengths and accelerations at this pose.
-  void set_scales(const Pose& reference, const BodyData& limb, const BodyData& active_part);
+  /// To be called when the rows are complete: scales of lengths and accelerations at this pose, of which `at_reference` is
+  /// patch_at() for what holds.
+  void set_scales(const Pose& reference, Patch at_reference, const BodyData& limb, const BodyData& active_part);
 
   /// K about the limb's centre of gravity in the active part's axes; `inner`: first of three inner states, p; `unit`: of
   /// the force element that gives its wrench.

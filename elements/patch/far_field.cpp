@@ -53,15 +53,18 @@ constexpr auto k_root = [] {
   return b;
 }();
 
-/// 1, κ, κ² … with first and second derivatives.
-struct Powers {
-  std::array<double, FarField::k_order + 1> p{}, p1{}, p2{};
+/// 1, κ, κ² … with first and second derivatives, each twice: what they multiply are pairs. Beyond `order` nothing.
+template <bool WithCurvature> struct Powers {
+  using Pair = Eigen::Array2d;
+  std::array<Pair, FarField::k_order + 1> p, p1, p2;
   Powers(double kappa, int order) {
-    p[0] = 1;
+    p[0].setOnes();
+    p1[0].setZero();
+    p2[0].setZero();
     for (int n = 1; n <= order; ++n) {
       p[n] = p[n - 1] * kappa;
       p1[n] = n * p[n - 1];
-      p2[n] = n * p1[n - 1];
+      if constexpr (WithCurvature) p2[n] = n * p1[n - 1];
     }
   }
 };
@@ -137,7 +140,7 @@ PieceDissipation FarField::evaluate(const Vec2& v, double omega) const {
   const double kappa = omega * radius_ / speed;
   const int order = std::min(order_, needed_order(std::abs(kappa)));
 
-  const Powers power(kappa, order);
+  const Powers<WithCurvature> power(kappa, order);
 
   double g = 0, g_k = 0, g_p = 0, g_kk = 0, g_kp = 0, g_pp = 0;
   double ex = 1, ey = 0; // e^{−ilφ}

@@ -72,6 +72,8 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
   Vec3 residual = reduced(t.residual(w));
   out.converged = residual.norm() <= tolerance;
   for (int i = 0; i < k_max_newton && !out.converged; ++i) {
+    // Newton's steps square what is left, about: what is expected to be the last one is not asked for its curvature.
+    const bool is_likely_last = residual.squaredNorm() <= tolerance;
     Mat3 curvature = t.curvature();
     if (!whole) curvature = subspace * curvature * subspace + across;
     const Vec3 step = reduced(-(curvature.inverse() * residual));
@@ -79,7 +81,7 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
     Trial next;
     for (double s = 1; s > k_shortest_step; s *= 0.5) {
       next.y = t.y + s * step;
-      next.d = patch.evaluate(next.y);
+      next.d = is_likely_last ? patch.evaluate_gradient(next.y) : patch.evaluate(next.y);
       ++out.evaluations;
       if (is_acceptable(value0, slope0, next.value(w), reduced(next.residual(w)).dot(step), s))
         break;
@@ -87,6 +89,10 @@ Gauge find_gauge(const ScaledPatch& patch, const Vec3& w, const Vec3& warm, doub
     t = next;
     residual = reduced(t.residual(w));
     out.converged = residual.norm() <= tolerance;
+    if (is_likely_last && !out.converged) { // it was not
+      t.d = patch.evaluate(t.y);
+      ++out.evaluations;
+    }
   }
   out.residual = residual.norm();
   out.value = w.dot(t.y) / t.d.h;

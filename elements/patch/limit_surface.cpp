@@ -152,6 +152,7 @@ void Patch::clear(const Vec2& reference) {
   edges_.clear();
   far_.clear();
   groups_.clear();
+  are_groups_known_ = false;
   area_ = force_ = polar_ = 0;
   moment_.setZero();
 }
@@ -204,13 +205,15 @@ void Patch::add(const Polygon& polygon, const Traction& traction) {
   moment_ += moments.force * centre;
   if (!far_.empty()) far_.emplace_back(edges(piece), piece.edges, traction, piece.radius);
   groups_.clear();
+  are_groups_known_ = false;
   pieces_.push_back(piece);
 }
 
 void Patch::prepare() {
   for (std::size_t i = far_.size(); i < pieces_.size(); ++i)
     far_.emplace_back(edges(pieces_[i]), pieces_[i].edges, pieces_[i].traction, pieces_[i].radius);
-  if (groups_.empty()) group_pieces();
+  if (!are_groups_known_) group_pieces();
+  are_groups_known_ = true;
 }
 
 // About the largest piece that has no group yet, as long as there is one.

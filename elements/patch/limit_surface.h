@@ -85,6 +85,7 @@ private:
 
   std::vector<FarField> far_; // empty, or one per piece
   std::vector<Group> groups_; // of prepared patches, all pieces in one each; none if no two lie over each other
+  bool are_groups_known_ = false;
   std::vector<std::size_t> members_;
   std::vector<char> is_grouped_;
   double area_ = 0, force_ = 0;

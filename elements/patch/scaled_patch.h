@@ -32,17 +32,28 @@ public:
 
   [[nodiscard]] Dissipation evaluate(const Vec3& y) const {
     Dissipation d = evaluate_about(patch_, centre_, {y[0], y[1], y[2] / size_});
+    scale_gradient(d);
     const double f = 1 / force_, s = 1 / size_;
-    d.h *= f;
-    d.gradient *= f;
-    d.gradient[2] *= s;
     d.hessian *= f;
     d.hessian.row(2) *= s;
     d.hessian.col(2) *= s;
     return d;
   }
+  /// The same without the Hessian, which stays zero.
+  [[nodiscard]] Dissipation evaluate_gradient(const Vec3& y) const {
+    Dissipation d = evaluate_gradient_about(patch_, centre_, {y[0], y[1], y[2] / size_});
+    scale_gradient(d);
+    return d;
+  }
 
 private:
+  void scale_gradient(Dissipation& d) const {
+    const double f = 1 / force_, s = 1 / size_;
+    d.h *= f;
+    d.gradient *= f;
+    d.gradient[2] *= s;
+  }
+
   const Patch& patch_;
   Vec2 centre_;
   double force_, size_;

@@ -1,10 +1,13 @@
 #include "mbd/io/csv.h"
 
+#include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -164,6 +167,12 @@ std::string csv_field(const std::string& text) {
   return result + "\"";
 }
 
+namespace {
+
+constexpr std::size_t k_most = 25; // bytes of a number and its comma: -1.2345678901234567e-308,
+
+} // namespace
+
 CsvText::CsvText(std::span<const std::string> names, std::size_t rows) {
   constexpr std::size_t k_usual_length = 20; // of a number and its comma
   text_.reserve(rows * names.size() * k_usual_length);
@@ -172,19 +181,32 @@ CsvText::CsvText(std::span<const std::string> names, std::size_t rows) {
   text_ += '\n';
 }
 
-// Numbers are written where they stay: of a hundred thousand of them each copy counts.
+// Of a hundred thousand numbers each copy counts. Those that are what they were in the row before are copied from there: a mode, an
+// area, a body that is at rest.
 void CsvText::add_row(std::span<const double> values) {
-  constexpr std::size_t k_most = 25; // of a number and its comma: -1.2345678901234567e-308,
   const std::size_t before = text_.size();
-  text_.resize(before + std::max<std::size_t>(1, values.size() * k_most));
-  char* at = text_.data() + before;
-  for (const double value : values) {
-    at = std::to_chars(at, at + k_most, value).ptr;
-    *at++ = ',';
+  row_.resize(values.size() * k_most + k_number_room);
+  char* at = row_.data();
+  const bool has_last = last_.size() == values.size();
+  if (!has_last) last_.assign(values.size(), {});
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto bits = std::bit_cast<std::uint64_t>(values[i]);
+    Field& last = last_[i];
+    const char* const begin = at;
+    if (has_last && last.bits == bits) {
+      std::memcpy(at, text_.data() + last.start, last.length);
+      at += last.length;
+    } else {
+      at = write_number(at, values[i]);
+      *at++ = ',';
+      last.bits = bits;
+      last.length = static_cast<std::size_t>(at - begin);
+    }
+    last.start = before + static_cast<std::size_t>(begin - row_.data());
   }
-  if (!values.empty()) --at;
-  *at++ = '\n';
-  text_.resize(static_cast<std::size_t>(at - text_.data()));
+  if (!values.empty()) at[-1] = '\n';
+  else *at++ = '\n';
+  text_.append(row_.data(), at);
 }
 
 } // namespace steplap

@@ -8,6 +8,7 @@
 
 #include "mbd/base/diagnostics.h"
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -39,12 +40,21 @@ public:
   /// A line that readers skip; begins with #.
   void add_comment(const std::string& line) { text_ += line + "\n"; }
   /// After what there is has been written: more rows follow.
-  void clear() { text_.clear(); }
+  void clear() {
+    text_.clear();
+    last_.clear();
+  }
   [[nodiscard]] const std::string& text() const& { return text_; }
   [[nodiscard]] std::string text() && { return std::move(text_); }
 
 private:
+  struct Field { ///< of the row before
+    std::uint64_t bits = 0;
+    std::size_t start = 0, length = 0; ///< in the text, with what follows it
+  };
   std::string text_;
+  std::vector<char> row_;   ///< the one being written
+  std::vector<Field> last_; ///< none at first
 };
 
 /// A field as CSV wants it: quoted if it holds a comma, a quote or a line break.

@@ -53,10 +53,11 @@ public:
   Reader(Document document, const Catalogue& catalogue)
       : document_(std::move(document)), catalogue_(catalogue), names_(top_level_names(catalogue)) {}
 
-  /// The model as it is given, and completed.
-  std::pair<Model, Model> read(const std::vector<std::string>& overrides) {
+  /// The model as it is given, and completed; its text, if asked for.
+  std::pair<Model, Model> read(const std::vector<std::string>& overrides, std::string* effective_text = nullptr) {
     for (const std::string& text : overrides)
       apply_override(document_, text, names_);
+    if (effective_text) *effective_text = write_toml(document_.root);
     refuse_control_characters(document_);
     problems_ = std::move(document_.problems);
     read_header();
@@ -466,8 +467,8 @@ void Reader::finish() {
 } // namespace
 
 Model read_model(const std::string& path, const Catalogue& catalogue,
-                 const std::vector<std::string>& overrides) {
-  return Reader(load_document(path), catalogue).read(overrides).second;
+                 const std::vector<std::string>& overrides, std::string* text) {
+  return Reader(load_document(path), catalogue).read(overrides, text).second;
 }
 
 Model read_given_model(const std::string& path, const Catalogue& catalogue, const std::vector<std::string>& overrides) {

@@ -15,9 +15,10 @@
 
 namespace steplap {
 
-/// Reads the file, with "path=value" overrides (overrides.h). Throws ModelError.
+/// Reads the file, with "path=value" overrides (overrides.h). Throws ModelError. `text`, if not null, becomes what
+/// effective_model_text() gives, of the same reading of the file.
 [[nodiscard]] Model read_model(const std::string& path, const Catalogue& catalogue,
-                               const std::vector<std::string>& overrides = {});
+                               const std::vector<std::string>& overrides = {}, std::string* text = nullptr);
 
 /// The file with all that it extends and the overrides laid over it, as TOML that stands alone. Paths
 /// of other files in it stay relative to where they were. Throws ModelError.

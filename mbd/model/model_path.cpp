@@ -74,14 +74,14 @@ private:
 
   Target in_entry(const std::string& array) {
     Candidate best{};
-    std::vector<std::string> known;
     visit_entries(model_, array, [&](const Candidate& c) {
-      known.push_back(*c.name);
       const std::string& name = *c.name;
       const bool leads = !name.empty() && rest_.size() > name.size() && rest_.starts_with(name) && rest_[name.size()] == '.';
       if (leads && (!best.name || name.size() > best.name->size())) best = c;
     });
     if (!best.name) {
+      std::vector<std::string> known;
+      visit_entries(model_, array, [&](const Candidate& c) { known.push_back(*c.name); });
       const std::string wanted(rest_.substr(0, rest_.rfind('.')));
       for (const char* name : {"body", "marker", "signal", "element"})
         if (array == name || !known.empty()) complain(path_, "there is no " + array + " '" + wanted + "'" + did_you_mean(wanted, known));

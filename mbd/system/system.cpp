@@ -143,6 +143,7 @@ void SystemBuilder::compile_bodies() {
     }
     return marker;
   };
+  marker_index_.reserve(body_index_.size() + model_.markers.size());
   for (const auto& [name, index] : body_index_)
     marker_index_[name] = compiled(name, std::nullopt, std::nullopt, 0.0);
   for (const Marker& marker : model_.markers)
@@ -150,6 +151,9 @@ void SystemBuilder::compile_bodies() {
 }
 
 void SystemBuilder::compile_elements(RequestedChannels& requested) {
+  element_index_.reserve(model_.elements.size());
+  system_->element_names.reserve(model_.elements.size());
+  system_->element_kinds.reserve(model_.elements.size());
   for (std::size_t i = 0; i < model_.elements.size(); ++i) {
     const Element& element = *model_.elements[i].element;
     element_index_[element.name] = i;

@@ -243,6 +243,7 @@ private:
   friend class RequestedChannels;
   enum class Use { none, operand, channel };
   struct GroupType { ///< what to do with a group of a type known where it was made
+    const std::type_info* type;
     std::size_t (*count)(const ForceGroup& group);
     std::unique_ptr<ForceGroup> (*share)(const ForceGroup& group, std::size_t first, std::size_t count);
     bool does_work;
@@ -266,7 +267,6 @@ private:
   std::unordered_map<std::string, const Signal*> signal_index_;
   std::unordered_map<std::string, std::size_t> element_index_;
   std::unordered_map<std::string, ContactIndex> contact_index_;
-  std::map<std::string, std::size_t> group_index_;
   std::vector<Diagnostic> errors_;
   int element_ = -1;
   const std::vector<std::string>* wanted_;
@@ -282,18 +282,20 @@ private:
 // ---------------------------------------------------------------------------------------------
 
 template <class Group> Group& SystemBuilder::group() {
-  const auto [it, is_new] = group_index_.try_emplace(typeid(Group).name(), system_->groups.size());
-  if (is_new) {
+  std::size_t i = 0; // a dozen at most
+  while (i < group_types_.size() && *group_types_[i].type != typeid(Group)) ++i;
+  if (i == group_types_.size()) {
     system_->groups.push_back(std::make_unique<Group>());
     group_types_.push_back(type_of<Group>());
   }
-  return static_cast<Group&>(*system_->groups[it->second]);
+  return static_cast<Group&>(*system_->groups[i]);
 }
 
 // A copy of some entries keeps their places among modes, watches and links. Work is done by groups that say so, with
 // k_does_work; all others dissipate and store.
 template <class Group> SystemBuilder::GroupType SystemBuilder::type_of() {
   GroupType type{};
+  type.type = &typeid(Group);
   type.count = [](const ForceGroup& group) { return static_cast<const Group&>(group).entries.size(); };
   type.share = [](const ForceGroup& group, std::size_t first, std::size_t count) -> std::unique_ptr<ForceGroup> {
     const auto begin = static_cast<const Group&>(group).entries.begin() + static_cast<std::ptrdiff_t>(first);

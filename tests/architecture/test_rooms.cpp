@@ -21,7 +21,7 @@ const std::vector<std::string> k_rooms = {
     "tools"};
 
 // Headers of libraries, of which one file of the product knows.
-const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/"};
+const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/", "fmt/"};
 
 struct Source {
   std::string path;

@@ -1,9 +1,11 @@
 // Step-lap joints in the paper's transformer: the pressure it takes, and what happens with less.
 #include "elements/step_lap_joint.h"
 #include "tests/elements/step_lap_scene.h"
+#include "tests/sanitized.h"
 
 #include <algorithm>
 #include <doctest/doctest.h>
+#include <optional>
 
 using namespace step_lap_scene;
 
@@ -59,7 +61,9 @@ TEST_CASE("a monitor reports more than the joint could bear") {
 TEST_CASE("weak clamping: both joints slide and hold again, with the tank bottom; methods agree") {
   const Run tsit5 = run_file("paper/weak_clamping.toml", {"simulation.integrator=tsit5", "simulation.tolerance=1e-10"});
   const Run dop853 = run_file("paper/weak_clamping.toml", {"simulation.tolerance=1e-10"});
-  const Run rk4 = run_file("paper/weak_clamping.toml", {"simulation.integrator=rk4", "simulation.step=1e-5"});
+  std::optional<Run> fixed; // a hundred thousand evaluations; under the sanitizers step_lap_rest_test.cpp has a fixed step through a slip
+  if (!steplap::testing::k_is_sanitized) fixed = run_file("paper/weak_clamping.toml", {"simulation.integrator=rk4", "simulation.step=1e-5"});
+  const Run& rk4 = fixed ? *fixed : dop853;
   const auto told = story(tsit5);
   REQUIRE(told.size() == 8);
   CHECK(story(dop853) == told);
@@ -81,7 +85,7 @@ TEST_CASE("weak clamping: both joints slide and hold again, with the tank bottom
     }
   }
   for (const Run* r : {&tsit5, &dop853, &rk4}) {
-    CHECK(r->relative_energy_residual() < (r == &rk4 ? 1e-7 : 1e-10));
+    CHECK(r->relative_energy_residual() < (fixed && r == &*fixed ? 1e-7 : 1e-10));
     for (const std::string joint : {"front joint", "back joint"}) {
       const auto u = r->series(joint + ".u"), mode = r->series(joint + ".mode"), area = r->series(joint + ".area");
       for (std::size_t i = 0; i < u.size(); ++i) {

@@ -77,7 +77,8 @@ std::string tolerance(const std::string& value) {
 
 TEST_CASE(
     "a slip begins and ends once, whatever the tolerance, and at the same time for every method") {
-  const Stop exact = stop_of(stopped_base(with("dop853", tolerance("1e-12"))));
+  // Far finer than what it is compared with.
+  const Stop exact = stop_of(stopped_base(with("dop853", tolerance(steplap::testing::k_is_sanitized ? "1e-9" : "1e-12"))));
   REQUIRE(exact.slips == 1);
   REQUIRE(exact.sticks == 1);
   const double slip = exact.rest - exact.onset;
@@ -107,6 +108,7 @@ TEST_CASE(
 
 TEST_CASE("the mass of a base whose motion is given has no part in when a slip ends") {
   for (const bool has_bottom : {true, false}) {
+    if (steplap::testing::k_is_sanitized && !has_bottom) continue; // the same with fewer elements
     const double pressure = has_bottom ? 0.03e6 : 0.15e6;
     const Stop light =
         stop_of(stopped_base(with("dop853", tolerance("1e-12")), pressure, 1e3, has_bottom));

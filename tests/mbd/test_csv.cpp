@@ -1,17 +1,25 @@
 // Records in, histories out, and files that are written as a whole or not at all.
+#include "mbd/base/number_text.h"
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/csv.h"
+#include "tests/sanitized.h"
 
 #include <doctest/doctest.h>
 
 #include <sys/resource.h>
 
+#include <bit>
+#include <charconv>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <limits>
+#include <random>
 #include <sstream>
 
 using namespace steplap;
+using steplap::testing::k_is_sanitized;
 namespace fs = std::filesystem;
 
 namespace {
@@ -78,6 +86,69 @@ TEST_CASE("written numbers read back as the same doubles") {
   const CsvTable table = parse_csv(csv.text(), "x.csv");
   CHECK(table.columns[1] == std::vector<double>{row[1], tiny[1]});
   CHECK(table.columns[0] == std::vector<double>{row[0], tiny[0]});
+}
+
+// The C++ library's own way is the reference: it finds the digits otherwise (Ryu), and chooses the notation by itself.
+TEST_CASE("numbers are the text that the C++ library makes of them") {
+  const auto reference = [](double value) {
+    char buffer[400];
+    return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+  };
+  int wrong = 0;
+  const auto compare = [&](double value) {
+    for (const double x : {value, -value})
+      if (number_text(x) != reference(x) && ++wrong < 10) CHECK(number_text(x) == reference(x));
+  };
+  for (const double value : {0.0, 1.0, 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308, 9007199254740993.0, 1e22, 1e23, 123456e5, 1e5, 1e4,
+                             99999.0, 100000.0, 0.001, 0.0001, 0.00012, 1e-5, 2e-4, 4.35, 0.3, std::numeric_limits<double>::infinity(),
+                             std::numeric_limits<double>::quiet_NaN()})
+    compare(value);
+  for (int exponent = -1074; exponent < 1024; ++exponent) // the interval of a power of two reaches less far down
+    for (const double factor : {1.0, std::nextafter(1.0, 0.0), std::nextafter(1.0, 2.0)}) compare(factor * std::ldexp(1.0, exponent));
+  std::mt19937_64 random(1);
+  const int count = k_is_sanitized ? 20000 : 500000;
+  for (int i = 0; i < count; ++i) {
+    const auto bits = random();
+    compare(std::bit_cast<double>(bits)); // of all sizes
+    const double of_one = static_cast<double>(bits >> 11) * 0x1p-53;
+    compare((of_one - 0.5) * 1e3); // as results are
+    const auto digits = static_cast<int>(bits % 17); // with few digits, and whole numbers
+    const double power = std::pow(10.0, digits);
+    compare(std::round(of_one * power) / power);
+    compare(std::round(of_one * power) * 100.0);
+  }
+  CHECK(wrong == 0);
+}
+
+// Fields that repeat are copied from the row before, also behind a comment and where a part of the text was taken away.
+TEST_CASE("a row is the same text wherever it stands") {
+  const std::vector<std::string> names{"a", "b", "c"};
+  std::mt19937 random(2);
+  const std::vector<double> values{0.0, -0.0, 1.0, -1.0 / 3.0, -1.2345678901234567e-308, std::numeric_limits<double>::quiet_NaN()};
+  CsvText whole(names);
+  std::string expected = whole.text(), parts = whole.text();
+  CsvText part(names);
+  part.clear();
+  for (int i = 0; i < 300; ++i) {
+    std::vector<double> row;
+    for (int k = 0; k < 3; ++k) row.push_back(values[random() % values.size()]);
+    expected += number_text(row[0]) + "," + number_text(row[1]) + "," + number_text(row[2]) + "\n";
+    whole.add_row(row);
+    part.add_row(row);
+    if (i % 7 == 0) {
+      whole.add_comment("# and");
+      part.add_comment("# and");
+      expected += "# and\n";
+    }
+    if (i % 11 != 0) continue;
+    parts += part.text();
+    part.clear();
+  }
+  CHECK(whole.text() == expected);
+  CHECK(parts + part.text() == expected);
+  CsvText narrow({});
+  narrow.add_row({});
+  CHECK(narrow.text() == "\n\n");
 }
 
 TEST_CASE("files are whole or absent") {

@@ -60,8 +60,7 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path,
   loaded->path = path;
   loaded->name = name_of_model(path);
   loaded->overrides = overrides;
-  loaded->model = read_model(path, program_catalogue(), overrides);
-  loaded->text = effective_model_text(path, program_catalogue(), overrides);
+  loaded->model = read_model(path, program_catalogue(), overrides, &loaded->text);
   loaded->system = compile(loaded->model);
   refuse_endless_output(loaded->model, *loaded->system);
   loaded->plots_left_out = check_presentation(loaded->model, *loaded->system);
