@@ -60,10 +60,10 @@ protected:
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       (stage<a, I + 1>(dynamics, c[I + 1]), ...);
     }(std::make_index_sequence<11>{});
-    combine<a, 12, 12>(y0_.data(), h_, k_.data(), stride_, n_, y1_.data());
-    weighted_sum<e5, 12>(k_.data(), stride_, n_, scratch_.data());
+    add_stages<a, 12, 12>(y1_.data());
+    sum_stages<e5, 12>(scratch_.data());
     const double fifth = projected_error_norm(dynamics, scratch_.data());
-    weighted_sum<e3, 12>(k_.data(), stride_, n_, scratch_.data());
+    sum_stages<e3, 12>(scratch_.data());
     const double third = projected_error_norm(dynamics, scratch_.data());
     const double denominator = std::sqrt(fifth * fifth + 0.01 * third * third);
     return denominator > 0.0 ? h_ * fifth * fifth / denominator : h_ * fifth;
