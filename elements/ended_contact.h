@@ -35,16 +35,12 @@ public:
   std::vector<Entry> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const Entry& entry : entries) {
-      const Motion<double>& a = e.link_motion[entry.link];
-      const auto m = entry.gap.template at<false, double>(a, Origin{});
-      const UnitMode mode = e.mode[entry.unit], of_law = law_mode(mode);
-      watch(entry, m, along(entry, a, Origin{}), mode, e.watch + entry.watch, e.watch_rate + entry.watch);
-      const double f = entry.law.force(m.value, m.rate, of_law);
-      e.contact_force[entry.contact] = f;
-      if (f != 0.0) apply_force(e.link_force[entry.link], m, f);
-      e.dissipation += (entry.law.elastic_force(m.value, of_law) - f) * m.rate;
-    }
+    for (const Entry& entry : entries) add_force(entry, e);
+  }
+  [[nodiscard]] int divisible_count() const override { return static_cast<int>(entries.size()); }
+  [[nodiscard]] Link link_of(int element) const override { return {entries[element].a, entries[element].b}; }
+  void add_forces_of(std::span<const int> elements, Evaluation& e) const override {
+    for (const int i : elements) add_force(entries[i], e);
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override {
@@ -105,6 +101,16 @@ public:
   }
 
 private:
+  static void add_force(const Entry& entry, Evaluation& e) {
+    const Motion<double>& a = e.link_motion[entry.link];
+    const auto m = entry.gap.template at<false, double>(a, Origin{});
+    const UnitMode mode = e.mode[entry.unit], of_law = law_mode(mode);
+    watch(entry, m, along(entry, a, Origin{}), mode, e.watch + entry.watch, e.watch_rate + entry.watch);
+    const double f = entry.law.force(m.value, m.rate, of_law);
+    e.contact_force[entry.contact] = f;
+    if (f != 0.0) apply_force(e.link_force[entry.link], m, f);
+    e.dissipation += (entry.law.elastic_force(m.value, of_law) - f) * m.rate;
+  }
   static UnitMode law_mode(UnitMode mode) { return mode == k_contact_off ? k_contact_open : mode; }
   static MeasureValue<double> gap(const Entry& entry, const Motion<double>* motion) {
     return entry.gap.template at<false, double>(motion[entry.a], motion[entry.b]);

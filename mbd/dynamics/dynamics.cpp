@@ -1,6 +1,7 @@
 #include "mbd/dynamics/dynamics.h"
 
 #include "mbd/dynamics/carriage.h"
+#include "mbd/dynamics/parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +16,9 @@ constexpr double k_placed_pivot = 1e-4;
 
 } // namespace
 
-Dynamics::Dynamics(const System& system)
-    : system_(system), force_(system.bodies.size() + system.links.slot_count()), kinematics_(system),
-      rows_(kinematics_), reactions_(system, kinematics_, force_.data()), motion_(kinematics_.motion().data()),
+Dynamics::Dynamics(const System& system, int threads)
+    : system_(system), team_(threads), force_(system.bodies.size() + system.links.slot_count()), kinematics_(system, team_),
+      rows_(kinematics_, team_), reactions_(system, kinematics_, force_.data()), motion_(kinematics_.motion().data()),
       friction_force_(reactions_.friction_force().data()) {
   contact_force_.assign(system.contact_count, 0.0);
   watch_.assign(system.watch_count, 1.0);
@@ -65,6 +66,7 @@ void Dynamics::set_state(const State& state) {
     if (kept_.size() < layout_->active.size()) kept_.resize(layout_->active.size());
   }
   if (layout_->has_joint_coordinates()) cluster_a_.resize(3 * layout_->clusters.size());
+  if (layout_->division) part_power_.resize(layout_->division->parts.size());
   decide_rank();
 }
 
@@ -79,31 +81,42 @@ void Dynamics::set_time_limit(double limit) {
   time_cap_ = std::nextafter(limit, -std::numeric_limits<double>::infinity());
 }
 
+// What is written down is the sums of a layout in one piece.
+void Dynamics::begin_stages() {
+  if (layout_->division) stage_programs_.leave();
+  else stage_programs_.enter(*layout_, *state_);
+}
+
 // --- one evaluation -----------------------------------------------------------------------------
 
 void Dynamics::take_inner(const double* inner) { std::copy_n(inner, inner_count(), inner_.begin()); }
 
-void Dynamics::apply_sliding() {
-  for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
-    const int f = layout_->sliding[i], link = layout_->sliding_link[i];
-    const FrictionUnit& unit = system_.frictions[f];
-    const FrictionState& friction = state_->friction[f];
-    const RowSpec* rows = unit.friction->rows(friction);
-    const int n = unit.friction->dimension();
-    MeasureValue<double> m[3];
-    double rate[3], wrench[3];
-    for (int r = 0; r < n; ++r) {
-      m[r] = evaluate_row<false>(rows[r], motion_[link], Origin{});
-      rate[r] = m[r].rate;
-    }
-    unit.friction->slip_wrench(evaluation_, friction, rate, wrench);
-    for (int r = 0; r < n; ++r) {
-      apply_force(force_[link], m[r], wrench[r]);
-      evaluation_.dissipation -= wrench[r] * rate[r];
-      friction_force_[unit.row + r] = wrench[r];
-    }
-    unit.friction->watch_slip(evaluation_, friction, rate, &watch_[unit.watch]);
+STEPLAP_INLINE void Dynamics::apply_sliding(std::size_t i, Evaluation& e) {
+  const int f = layout_->sliding[i], link = layout_->sliding_link[i];
+  const FrictionUnit& unit = system_.frictions[f];
+  const FrictionState& friction = state_->friction[f];
+  const RowSpec* rows = unit.friction->rows(friction);
+  const int n = unit.friction->dimension();
+  MeasureValue<double> m[3];
+  double rate[3], wrench[3];
+  for (int r = 0; r < n; ++r) {
+    m[r] = evaluate_row<false>(rows[r], motion_[link], Origin{});
+    rate[r] = m[r].rate;
   }
+  unit.friction->slip_wrench(e, friction, rate, wrench);
+  for (int r = 0; r < n; ++r) {
+    apply_force(force_[link], m[r], wrench[r]);
+    e.dissipation -= wrench[r] * rate[r];
+    friction_force_[unit.row + r] = wrench[r];
+  }
+  unit.friction->watch_slip(e, friction, rate, &watch_[unit.watch]);
+}
+
+void Dynamics::apply_sliding_of(int p) {
+  Evaluation e = evaluation_;
+  e.dissipation = 0.0;
+  for (const int i : layout_->division->sliding[p]) apply_sliding(i, e);
+  part_power_[p].dissipation += e.dissipation;
 }
 
 // Forces of all elements, on clusters and on the bodies that ride on them.
@@ -116,7 +129,7 @@ void Dynamics::apply_forces() {
   for (const ActiveLink& link : layout.links) force[link.slot] = {};
   for (const int i : layout.riding) force[i] = {};
   for (const auto& group : system_.groups) group->add_forces(evaluation_);
-  if (!layout.sliding.empty()) apply_sliding();
+  for (std::size_t i = 0; i < layout.sliding.size(); ++i) apply_sliding(i, evaluation_);
   const Motion<double>* const motion = motion_;
   for (const ActiveLink& link : layout.links) {
     const BodyForce& f = force[link.slot];
@@ -145,17 +158,24 @@ void Dynamics::finish_watches() {
     is_rank_new_ = false;
   }
   const LoadSharing* const shared = sharing(); // elements that share a load are watched at a step's ends
-  for (const int f : layout.holding) {
+  const auto watch_place = [this](int f) {
+    const FrictionUnit& unit = system_.frictions[f];
+    watch_[unit.watch + 2] = unit.friction->watch_place(evaluation_, state_->friction[f]);
+  };
+  const auto watch = [&](int f) {
     const FrictionUnit& unit = system_.frictions[f];
     if (!shared || shared->group_of(f) < 0) [[likely]]
       unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row],
                                  &watch_[unit.watch]);
-    watch_[unit.watch + 2] = unit.friction->watch_place(evaluation_, state_->friction[f]);
+    watch_place(f);
+  };
+  if (!layout.division) {
+    for (const int f : layout.holding) watch(f);
+    for (const int f : layout.sliding) watch_place(f);
+    return;
   }
-  for (const int f : layout.sliding) {
-    const FrictionUnit& unit = system_.frictions[f];
-    watch_[unit.watch + 2] = unit.friction->watch_place(evaluation_, state_->friction[f]);
-  }
+  team_.each(static_cast<int>(layout.holding.size()), [&](int i) { watch(layout.holding[i]); });
+  team_.each(static_cast<int>(layout.sliding.size()), [&](int i) { watch_place(layout.sliding[i]); });
 }
 
 void Dynamics::rates(double t, const double* y, double* dy) {
@@ -167,21 +187,40 @@ void Dynamics::rates(double t, const double* y, double* dy) {
     rates_nearby(t, y, dy);
 }
 
-void Dynamics::rates_at(double t, const double* y, double* dy) {
-  const Layout& layout = *layout_;
+STEPLAP_INLINE void Dynamics::finish_rates(const double* y, double* dy) {
+  const int n = coordinate_count();
+  finish_power(dy + n);
+  finish_watches();
+  double* const power = dy + 2 * n + inner_count();
+  std::copy_n(y + 2 * n + inner_count(), 2, booked_);
+  power[0] = evaluation_.dissipation;
+  power[1] = evaluation_.work;
+}
+
+void Dynamics::finish_divided_rates(const double* y, double* dy) { finish_rates(y, dy); }
+
+STEPLAP_INLINE void Dynamics::begin_rates(double t, const double* y, double* dy) {
   const int n = coordinate_count();
   ++evaluations_;
   is_behind_ = false;
-  t = std::min(t, time_cap_);
   evaluation_.t = t;
   evaluation_.dissipation = 0.0;
   evaluation_.work = 0.0;
-  kinematics_.place(t, y, y + n);
   if (inner_count() > 0) {
     take_inner(y + 2 * n);
     evaluation_.inner_rate = dy + 2 * n;
     std::fill_n(evaluation_.inner_rate, inner_count(), 0.0);
   }
+}
+
+void Dynamics::rates_at(double t, const double* y, double* dy) {
+  const Layout& layout = *layout_;
+  const int n = coordinate_count();
+  t = std::min(t, time_cap_);
+  begin_rates(t, y, dy);
+  if (layout.division) [[unlikely]]
+    return rates_in_parts(t, y, dy);
+  kinematics_.place(t, y, y + n);
   rows_.prepare();
   apply_forces();
 
@@ -218,12 +257,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   } else {
     rows_.solve(t, force_.data(), a);
   }
-  finish_power(a);
-  finish_watches();
-  double* const power = dy + 2 * n + inner_count();
-  std::copy_n(y + 2 * n + inner_count(), 2, booked_);
-  power[0] = evaluation_.dissipation;
-  power[1] = evaluation_.work;
+  finish_rates(y, dy);
 }
 
 void Dynamics::take_time_inputs(double t, double* into) {
@@ -366,6 +400,7 @@ double Dynamics::mechanical_energy(double t, const double* y) {
   t = std::min(t, time_cap_);
   if (!kinematics_.is_placed(t, y)) kinematics_.place(t, y, y + coordinate_count());
   double kinetic = 0.0, potential = 0.0;
+  if (layout_->division) return energy_in_parts(y);
   for (const Cluster& c : layout_->clusters) {
     const Motion<double>& m = motion_[c.motion];
     kinetic += 0.5 * c.mass * (m.vx * m.vx + m.vy * m.vy) + 0.5 * c.inertia * m.omega * m.omega;

@@ -32,7 +32,8 @@ struct ConstraintFailure : NumericalFailure {
 
 class Dynamics {
 public:
-  explicit Dynamics(const System& system);
+  /// `threads` share the evaluation of scenes that are large enough (parts.h); their number changes no result.
+  explicit Dynamics(const System& system, int threads = 1);
   Dynamics(const Dynamics&) = delete; // what it evaluates points into it
   Dynamics& operator=(const Dynamics&) = delete;
 
@@ -92,7 +93,7 @@ public:
   /// `made`, what follows is taken from here.
   void take_look(const StageProgram& program, const StageColumn& made, double t, const double* y);
   /// From here on stages are made in the modes that state() has now.
-  void begin_stages() { stage_programs_.enter(*layout_, *state_); }
+  void begin_stages();
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
   /// residuals found before. Stops at `tolerance`, 0: where rounding sets an end to it; throws ConstraintFailure
   /// if that cannot be reached.
@@ -171,6 +172,8 @@ public:
   };
   void respond(Candidates& candidates, const double* dy);
 
+  /// Shares work between this object's threads; not while it evaluates.
+  [[nodiscard]] Team& team() const { return team_; }
   [[nodiscard]] long evaluations() const { return evaluations_; }
   [[nodiscard]] const System& system() const { return system_; }
 
@@ -178,9 +181,19 @@ private:
   void take_inner(const double* inner);
   Residual project_rows(double t, double* y, double tolerance);
   void settle_inner(double t, double* y);
-  void apply_sliding();
+  void apply_sliding(std::size_t i, Evaluation& e);
   void sliding_rates(std::size_t i, double* rate) const;
   void apply_forces();
+  void begin_rates(double t, const double* y, double* dy);
+  void finish_rates(const double* y, double* dy);
+  void rates_in_parts(double t, const double* y, double* dy);
+  void finish_divided_rates(const double* y, double* dy);
+  void apply_sliding_of(int part);
+  void apply_forces_of(int part);
+  void collect_forces_of(int part);
+  void add_links_inside(int part);
+  void accelerate_part(int part, const double* y, double* dy);
+  [[nodiscard]] double energy_in_parts(const double* y);
   void finish_power(const double* a);
   void finish_watches();
   Residual constraint_values(double t, const double* y);
@@ -218,7 +231,14 @@ private:
   static constexpr double k_near_limit = 0.5;
   static constexpr double k_bound_slack = 1e-13; ///< as in coulomb_stick.cpp
 
+  /// What the elements of one part do, in whole lines of the cache.
+  struct alignas(64) PartPower {
+    double dissipation = 0.0, work = 0.0;
+  };
+
   const System& system_;
+  mutable Team team_;
+  std::vector<PartPower> part_power_;
   const State* state_ = nullptr;
   std::vector<std::unique_ptr<Layout>> layouts_;
   LayoutKey key_; ///< of the present one

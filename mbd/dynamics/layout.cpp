@@ -1,6 +1,7 @@
 #include "mbd/dynamics/layout.h"
 
 #include "mbd/dynamics/carriage_layout.h"
+#include "mbd/dynamics/parts.h"
 #include "mbd/math/portable_math.h"
 
 #include <algorithm>
@@ -217,13 +218,12 @@ void add_rows(const System& system, std::vector<ActiveRow> wanted, Layout& layou
           {static_cast<int>(layout.active.size()), system.frictions[row.friction].row + row.friction_row});
     add_active(layout, row);
   }
-  const auto is_of = [&place_of](const Mechanism& m) {
-    return [&m, &place_of](const ActiveRow& row) { return place_of(row) == m.first_cluster; };
-  };
-  for (Mechanism& m : layout.mechanisms) {
-    const auto first = std::find_if(layout.active.begin(), layout.active.end(), is_of(m));
-    m.first_row = static_cast<int>(first - layout.active.begin());
-    m.row_count = static_cast<int>(std::count_if(first, layout.active.end(), is_of(m)));
+  auto row = layout.active.begin();
+  while (layout.has_mechanisms() && row != layout.active.end() && place_of(*row) < 0) ++row;
+  for (Mechanism& m : layout.mechanisms) { // in the order of their clusters, as the rows are
+    m.first_row = static_cast<int>(row - layout.active.begin());
+    while (row != layout.active.end() && place_of(*row) == m.first_cluster) ++row;
+    m.row_count = static_cast<int>(row - layout.active.begin()) - m.first_row;
   }
 }
 
@@ -244,11 +244,15 @@ void add_parts(Layout& layout) {
 // Clusters of mechanisms behind the others, each mechanism's together, then carriages.
 void take_joint_coordinates(JointCoordinates found, std::unique_ptr<Carriages> carriages, Layout& layout) {
   std::vector<int> order, place(layout.clusters.size());
-  for (int in = -1; in < static_cast<int>(found.mechanisms.size()); ++in) {
-    if (in >= 0) found.mechanisms[in].first_cluster = static_cast<int>(order.size());
-    for (int k = 0; k < layout.cluster_count(); ++k)
-      if (found.mechanism_of[k] == in) order.push_back(k);
-    if (in < 0) layout.absolute_count = static_cast<int>(order.size());
+  const int mechanisms = static_cast<int>(found.mechanisms.size());
+  for (int k = 0; k < layout.cluster_count(); ++k)
+    if (found.mechanism_of[k] < mechanisms) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(), [&found](int a, int b) { return found.mechanism_of[a] < found.mechanism_of[b]; });
+  layout.absolute_count = 0;
+  for (int i = static_cast<int>(order.size()) - 1; i >= 0; --i) {
+    const int in = found.mechanism_of[order[i]];
+    if (in >= 0) found.mechanisms[in].first_cluster = i;
+    else if (layout.absolute_count == 0) layout.absolute_count = i + 1;
   }
   if (carriages)
     for (const Carriage& k : carriages->carriages) order.push_back(k.cluster);
@@ -461,7 +465,9 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());
   int absolute_rows = static_cast<int>(layout.active.size());
   for (const Mechanism& m : layout.mechanisms) absolute_rows -= m.row_count;
-  layout.schur.analyze(layout.schur_rows, absolute_rows, layout.parts);
+  layout.division = make_parts(system, layout, absolute_rows);
+  if (layout.division) layout.pivots.resize(layout.division->parts.size());
+  layout.schur.analyze(layout.schur_rows, absolute_rows, layout.parts, layout.division ? layout.division->of_row : std::vector<int>{});
   return layout;
 }
 

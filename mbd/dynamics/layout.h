@@ -15,12 +15,14 @@
 #include "mbd/system/system.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <vector>
 
 namespace steplap {
 
 class Carriages;
+struct Parts;
 
 /// What describes islands for which there is a choice; `automatic`: joint coordinates where they pay.
 enum class Coordinates : unsigned char { automatic, joint, absolute };
@@ -149,6 +151,12 @@ struct Layout {
   std::vector<SchurRow> schur_rows;  ///< per active row, then per part: bodies filled in, numbers are scratch
   std::vector<SchurPart> parts;      ///< of rows over more than two bodies; those are between absolute clusters
   std::vector<const RowSpec*> part_specs; ///< of each of those
+  std::unique_ptr<Parts> division;   ///< null: it is evaluated in one piece
+  struct Pivots {
+    double smallest = 1.0;
+    bool is_singular = false;
+  };
+  std::vector<Pivots> pivots; ///< of mechanisms, in each part of the division; noted where these are factored
 
   [[nodiscard]] int cluster_count() const { return static_cast<int>(clusters.size()); }
   /// Some rows that hold are over more than two bodies.
@@ -158,23 +166,27 @@ struct Layout {
   [[nodiscard]] bool has_joint_coordinates() const { return !mechanisms.empty() || carriages; }
   /// The mechanism of a cluster or row that is not absolute.
   [[nodiscard]] const Mechanism& mechanism_of_cluster(int cluster) const {
-    return *std::find_if(mechanisms.rbegin(), mechanisms.rend(),
-                         [cluster](const Mechanism& m) { return m.first_cluster <= cluster; });
+    return *std::prev(std::upper_bound(mechanisms.begin(), mechanisms.end(), cluster,
+                                       [](int k, const Mechanism& m) { return k < m.first_cluster; }));
   }
   [[nodiscard]] const Mechanism& mechanism_of_row(int row) const {
-    return *std::find_if(mechanisms.rbegin(), mechanisms.rend(),
-                         [row](const Mechanism& m) { return m.row_count > 0 && m.first_row <= row; });
+    return *std::prev(std::upper_bound(mechanisms.begin(), mechanisms.end(), row,
+                                       [](int r, const Mechanism& m) { return r < m.first_row; }));
   }
 
   // Of all constraint equations, as SchurSolver says of its own.
   [[nodiscard]] bool is_singular() const {
     bool is_any = schur.is_singular();
-    for (const Mechanism& m : mechanisms) is_any = is_any || m.is_singular();
+    for (const Pivots& part : pivots) is_any = is_any || part.is_singular;
+    if (pivots.empty())
+      for (const Mechanism& m : mechanisms) is_any = is_any || m.is_singular();
     return is_any;
   }
   [[nodiscard]] double smallest_pivot() const {
     double least = schur.smallest_pivot();
-    for (const Mechanism& m : mechanisms) least = std::min(least, m.smallest_pivot());
+    for (const Pivots& part : pivots) least = std::min(least, part.smallest);
+    if (pivots.empty())
+      for (const Mechanism& m : mechanisms) least = std::min(least, m.smallest_pivot());
     return least;
   }
   [[nodiscard]] bool is_dependent(int row) const {

@@ -82,7 +82,7 @@ protected:
     [&]<std::size_t... I>(std::index_sequence<I...>) {
       (stage<a, I + 1>(dynamics, c[I + 1]), ...);
     }(std::make_index_sequence<11>{});
-    combine<a, 12, 12>(y0_.data(), h_, k_.data(), stride_, n_, y1_.data());
+    add_stages<a, 12, 12>(y1_.data());
     return error_of_stages(dynamics);
   }
 
@@ -96,9 +96,9 @@ protected:
 private:
   [[nodiscard]] double error_of_stages(Dynamics& dynamics) {
     using namespace dop853;
-    weighted_sum<e5, 12>(k_.data(), stride_, n_, scratch_.data());
+    sum_stages<e5, 12>(scratch_.data());
     const double fifth = projected_error_norm(dynamics, scratch_.data());
-    weighted_sum<e3, 12>(k_.data(), stride_, n_, scratch_.data());
+    sum_stages<e3, 12>(scratch_.data());
     return error_of(fifth, projected_error_norm(dynamics, scratch_.data()));
   }
   [[nodiscard]] double error_of(double fifth, double third) const {

@@ -1,5 +1,6 @@
 #include "mbd/integrators/integrator.h"
 
+#include "mbd/dynamics/parts.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/system/element_failure.h"
 
@@ -23,11 +24,13 @@ constexpr double k_shortest_try = 1e-12;
 // Errors of velocity stay below this share of what a slip law turns with, whatever the tolerance: where a slip
 // begins and ends, |ν| → 0, an error of the tolerance's size would give the friction any direction.
 constexpr double k_slip_share = 5e-4;
+// Numbers of a state of which sums are made in pieces.
+constexpr int k_long_state = 6 * Parts::k_least_clusters;
 
 } // namespace
 
 Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
-    : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0),
+    : system_(dynamics.system()), team_(dynamics.team()), settings_(settings), y0_(max_dimension, 0.0),
       y1_(max_dimension, 0.0), weight_(max_dimension, 0.0), scratch_(3 * max_dimension, 0.0),
       watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_rate0_(watch0_),
       watch_rate1_(watch0_), nodes_(system_.watch_count), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_) {
@@ -111,7 +114,7 @@ SingularCrossing::Step Integrator::crossing_step(Dynamics& dynamics) {
 void Integrator::accept() {
   t0_ = t1_;
   std::swap(y0_, y1_);
-  std::copy(k1_, k1_ + n_, k0_);
+  team_.stretches(n_, [this](int from, int to) { std::copy(k1_ + from, k1_ + to, k0_ + from); });
   std::swap(watch0_, watch1_);
   std::swap(watch_rate0_, watch_rate1_);
   std::swap(slip_scale0_, slip_scale1_);
@@ -170,7 +173,7 @@ void Integrator::update_weights(Dynamics& dynamics) {
   const Layout& layout = dynamics.layout();
   const int m = dynamics.coordinate_count();
   const double tolerance = settings_.tolerance;
-  for (int i = 0; i < m; ++i) {
+  const auto weigh = [&](int i) {
     const CoordinateScale& scale = layout.scales[i];
     const bool is_locked = layout.inverse_mass[i] == 0.0;
     double size = scale.is_place ? k_displacement_floor * length_scale_ : k_displacement_floor;
@@ -181,7 +184,10 @@ void Integrator::update_weights(Dynamics& dynamics) {
     weight_[i] = is_locked ? 0.0 : 1.0 / (tolerance * (size + displacement));
     weight_[m + i] =
         is_locked ? 0.0 : 1.0 / (tolerance * (k_rate_floor * size + std::abs(y0_[m + i])));
-  }
+  };
+  team_.stretches(m, [&](int from, int to) {
+    for (int i = from; i < to; ++i) weigh(i);
+  });
   if (has_slip_scale0_)
     for (int i = 0; i < m; ++i)
       if (weight_[m + i] > 0.0) weight_[m + i] = std::max(weight_[m + i], 1.0 / (k_slip_share * slip_scale0_[i]));
@@ -201,12 +207,15 @@ void Integrator::update_weights(Dynamics& dynamics) {
 }
 
 double Integrator::error_norm(const double* error) const {
-  double sum = 0.0;
-  for (int i = 0; i < n_; ++i) {
-    const double e = error[i] * weight_[i];
-    sum += e * e;
-  }
-  return std::sqrt(sum / n_);
+  const double all = ordered_sum<double>(team_, n_, k_long_state, [&](int from, int to) {
+    double sum = 0.0;
+    for (int i = from; i < to; ++i) {
+      const double e = error[i] * weight_[i];
+      sum += e * e;
+    }
+    return sum;
+  });
+  return std::sqrt(all / n_);
 }
 
 double Integrator::projected_error_norm(Dynamics& dynamics, double* error) const {

@@ -45,11 +45,11 @@ protected:
     stage<a, 3>(dynamics, c[3]);
     stage<a, 4>(dynamics, c[4]);
     stage<a, 5>(dynamics, c[5]);
-    combine<a, 6, 6>(y0_.data(), h_, k_.data(), stride_, n_, y1_.data());
+    add_stages<a, 6, 6>(y1_.data());
     // The estimate counts the rates at the end: taken before projection, which moves far less.
     dynamics.stage_rates(t0_ + h_, y1_.data(), k(6));
     std::copy(y1_.begin(), y1_.begin() + n_, raw_.begin());
-    weighted_sum<e, 7>(k_.data(), stride_, n_, scratch_.data());
+    sum_stages<e, 7>(scratch_.data());
     return h_ * projected_error_norm(dynamics, scratch_.data());
   }
 

@@ -1,6 +1,7 @@
 #include "mbd/simulation/energy_account.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/dynamics/parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,28 +25,42 @@ constexpr double k_floor_rate = 0.06;
 constexpr double k_least_rate = 0.2;
 
 struct Kinetic {
+  double mass = 0.0, px = 0.0, py = 0.0; ///< kg, kg m/s
   double total = 0.0, about_centre = 0.0;
   double of_floor = 0.0; ///< T₀ of the motion to which tolerances are absolute
   double least = 0.0;    ///< of the motion that a whole run's balance is measured against at least
+
+  Kinetic& operator+=(const Kinetic& other) {
+    for (double Kinetic::*const term : {&Kinetic::mass, &Kinetic::px, &Kinetic::py, &Kinetic::total, &Kinetic::of_floor, &Kinetic::least})
+      this->*term += other.*term;
+    return *this;
+  }
 };
+
+/// Of some clusters, all but about_centre; `v`: 3 numbers of each.
+Kinetic kinetic_sum(const Layout& layout, int begin, int end, const double* v, double size) {
+  Kinetic sum;
+  for (int k = begin; k < end; ++k) {
+    const Cluster& c = layout.clusters[k];
+    const double *const u = v + 3 * static_cast<std::ptrdiff_t>(k);
+    sum.total += 0.5 * c.mass * (u[0] * u[0] + u[1] * u[1]) + 0.5 * c.inertia * u[2] * u[2];
+    sum.of_floor += 0.5 * k_floor_rate * k_floor_rate * (2.0 * c.mass * size * size + c.inertia);
+    sum.least += 0.5 * c.inertia * k_least_rate * k_least_rate;
+    sum.mass += c.mass;
+    sum.px += c.mass * u[0];
+    sum.py += c.mass * u[1];
+  }
+  return sum;
+}
 
 /// `size`: L, the largest radius of gyration, m.
 Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
   const Layout& layout = dynamics.layout();
-  const double* v = dynamics.cluster_rates(y);
-  Kinetic sum;
-  double mass = 0.0, px = 0.0, py = 0.0;
-  for (int k = 0; k < layout.cluster_count(); ++k, v += 3) {
-    const Cluster& c = layout.clusters[k];
-    sum.total += 0.5 * c.mass * (v[0] * v[0] + v[1] * v[1]) + 0.5 * c.inertia * v[2] * v[2];
-    sum.of_floor += 0.5 * k_floor_rate * k_floor_rate * (2.0 * c.mass * size * size + c.inertia);
-    sum.least += 0.5 * c.inertia * k_least_rate * k_least_rate;
-    mass += c.mass;
-    px += c.mass * v[0];
-    py += c.mass * v[1];
-  }
+  const double* const v = dynamics.cluster_rates(y);
+  Kinetic sum = ordered_sum<Kinetic>(dynamics.team(), layout.cluster_count(), Parts::k_least_clusters,
+                                     [&](int begin, int end) { return kinetic_sum(layout, begin, end, v, size); });
   sum.about_centre = sum.total;
-  if (mass > 0.0) sum.about_centre -= 0.5 * (px * px + py * py) / mass;
+  if (sum.mass > 0.0) sum.about_centre -= 0.5 * (sum.px * sum.px + sum.py * sum.py) / sum.mass;
   return sum;
 }
 

@@ -1,6 +1,7 @@
 #include "mbd/simulation/simulation.h"
 
 #include "mbd/base/shown_text.h"
+#include "mbd/dynamics/parts.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
 #include "mbd/base/number_text.h"
@@ -52,8 +53,14 @@ SimulationOptions options_of(const Model& model) {
   return options;
 }
 
+// One for each part at most.
+static int threads_worth_while(const System& system, int threads) {
+  if (system.body_count() <= Parts::k_least_clusters) return 1;
+  return std::clamp(threads, 1, system.body_count() / Parts::k_clusters);
+}
+
 Simulation::Simulation(const System& system, const State& initial, SimulationOptions options)
-    : system_(system), options_(std::move(options)), state_(initial), dynamics_(system),
+    : system_(system), options_(std::move(options)), state_(initial), dynamics_(system, threads_worth_while(system, options_.threads)),
       handler_(system, dynamics_), finder_(system, system.largest_dimension()),
       y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   cpu_start_ = thread_cpu_seconds();

@@ -79,11 +79,26 @@ public:
     return TraceableLaw<Law>;
   }
 
+  [[nodiscard]] int divisible_count() const override { return static_cast<int>(entries.size()); }
+  [[nodiscard]] Link link_of(int element) const override { return {entries[element].a, entries[element].b}; }
+  void add_forces_of(std::span<const int> elements, Evaluation& e) const override {
+    constexpr int k_ahead = 12; // entries: memory is asked for them while those before are evaluated
+    double dissipation = 0.0;
+    for (const int i : elements) {
+      __builtin_prefetch(entries.data() + i + k_ahead);
+      dissipation += add_force_to(entries[i], static_cast<Evaluated<double>&>(e));
+    }
+    e.dissipation += dissipation;
+  }
+  [[nodiscard]] double potential_of(std::span<const int> elements, const Motion<double>* motion) const override {
+    double sum = 0.0;
+    for (const int i : elements) sum += energy_of(entries[i], motion);
+    return sum;
+  }
+
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
-    for (const Entry& entry : entries)
-      sum += entry.law.energy(
-          entry.measure.template at<false, double>(motion[entry.a], motion[entry.b]).value);
+    for (const Entry& entry : entries) sum += energy_of(entry, motion);
     return sum;
   }
 
@@ -140,17 +155,24 @@ public:
 private:
   template <class S> STEPLAP_INLINE void add_forces_to(Evaluated<S>& e) const {
     S dissipation{0.0}; // in a register: a sum in memory would chain the elements to each other
-    for (const Entry& entry : entries) {
-      const auto m = entry.measure.template at<false, S>(e.link_motion[entry.link], Origin{});
-      const S f = entry.law.force(m.value, m.rate, mode_of(entry, e));
-      if constexpr (Law::k_is_contact) e.contact_force[entry.contact] = f;
-      if constexpr (Law::k_watches > 0)
-        entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch,
-                        e.watch_rate + entry.watch);
-      if (!is_surely_zero(f)) apply_force(e.link_force[entry.link], m, f);
-      dissipation += (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
-    }
+    for (const Entry& entry : entries) dissipation += add_force_to(entry, e);
     e.dissipation += dissipation;
+  }
+
+  /// Returns what it dissipates.
+  template <class S> STEPLAP_INLINE static S add_force_to(const Entry& entry, Evaluated<S>& e) {
+    const auto m = entry.measure.template at<false, S>(e.link_motion[entry.link], Origin{});
+    const S f = entry.law.force(m.value, m.rate, mode_of(entry, e));
+    if constexpr (Law::k_is_contact) e.contact_force[entry.contact] = f;
+    if constexpr (Law::k_watches > 0)
+      entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch,
+                      e.watch_rate + entry.watch);
+    if (!is_surely_zero(f)) apply_force(e.link_force[entry.link], m, f);
+    return (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
+  }
+
+  static double energy_of(const Entry& entry, const Motion<double>* motion) {
+    return entry.law.energy(entry.measure.template at<false, double>(motion[entry.a], motion[entry.b]).value);
   }
 
   template <class S> static UnitMode mode_of(const Entry& entry, const Evaluated<S>& e) {

@@ -1,7 +1,8 @@
 // What a body costs in scenes of 10 to 100 000 of them: reading, compiling, starting, a step of rk4, memory.
-// Chains of pendulums (two constraint rows a body: sparse constraint algebra) and square grids of masses on
-// springs (no constraints). Linear cost shows as columns that do not change with n.
-//   bench_scaling [largest number of bodies, default 100000]
+// Chains of pendulums (two constraint rows a body: sparse constraint algebra), square grids of masses on
+// springs (no constraints), and four-bar linkages side by side (islands). Linear cost shows as columns that do not change with n.
+//   bench_scaling [largest number of bodies, default 100000] [threads, default 1] [smallest number, default 10] [scene]
+// The step's time is CPU time of the calling thread, and by the clock.
 #include "elements/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
@@ -9,6 +10,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -21,7 +23,7 @@ using namespace steplap;
 
 namespace {
 
-constexpr int k_batches = 3;
+constexpr int k_batches = 5;
 
 const char* const k_header = "gravity = [0.0, -9.81]\n[simulation]\nend = 10.0\nintegrator = \"rk4\"\nstep = 1e-4\n";
 
@@ -67,9 +69,38 @@ std::string grid(int n) {
   return text.str();
 }
 
+// Linkages of crank, coupler and rocker, 4 m apart, that fall by their weight.
+std::string linkages(int n) {
+  std::ostringstream text;
+  text << k_header;
+  const auto body = [&](const std::string& name, double x, double y, double inertia) {
+    text << "[[body]]\nname = \"" << name << "\"\nmass = 1.0\ninertia = " << inertia << "\nposition = [" << x << ", " << y << "]\n";
+  };
+  const auto pin = [&](const std::string& a, const std::string& b, double x, double y) {
+    text << "[[element]]\nkind = \"revolute\"\nname = \"" << a << " on " << b << "\"\na = { body = \"" << a << "\", at = [" << x
+         << ", " << y << "] }\nb = { body = \"" << b << "\", at = [" << x << ", " << y << "] }\n";
+  };
+  for (int i = 0; i < std::max(1, n / 3); ++i) {
+    const double x = 4.0 * i;
+    const std::string name = std::to_string(i);
+    body("crank " + name, x + 0.25, 0.5, 0.1);
+    body("coupler " + name, x + 1.5, 1.25, 0.4);
+    body("rocker " + name, x + 2.25, 0.75, 0.2);
+    pin("crank " + name, "ground", x, 0.0);
+    pin("coupler " + name, "crank " + name, x + 0.5, 1.0);
+    pin("rocker " + name, "coupler " + name, x + 2.5, 1.5);
+    pin("rocker " + name, "ground", x + 2.0, 0.0);
+  }
+  return text.str();
+}
+
+double clock_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 double allocated() { return static_cast<double>(mallinfo2().uordblks); }
 
-void measure(const char* scene, const std::string& text) {
+void measure(const char* scene, const std::string& text, int threads, bool is_absolute = false) {
   const double empty = allocated();
   const double start = thread_cpu_seconds();
   const Model model = parse_model(text, scene, element_catalog());
@@ -79,22 +110,25 @@ void measure(const char* scene, const std::string& text) {
   const double n = system->body_count() - 1.0;
   SimulationOptions options = options_of(model);
   options.output_step = 0.0;
+  options.threads = threads;
+  if (is_absolute) options.coordinates = Coordinates::absolute;
   options.has_extremes = false; // a search of its own, over all channels
   Simulation simulation(*system, system->initial_state(), options);
   const double started = thread_cpu_seconds();
   const double memory = allocated() - empty;
   const int steps = std::max(3, static_cast<int>(20000 / n));
-  double best = std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity(), by_clock = best;
   const long evaluated = simulation.statistics().evaluations;
   for (int batch = 0; batch < k_batches; ++batch) {
-    const double begin = thread_cpu_seconds();
+    const double begin = thread_cpu_seconds(), begin_by_clock = clock_seconds();
     for (int i = 0; i < steps; ++i) simulation.advance();
     best = std::min(best, (thread_cpu_seconds() - begin) / steps);
+    by_clock = std::min(by_clock, (clock_seconds() - begin_by_clock) / steps);
   }
   const double evaluations = static_cast<double>(simulation.statistics().evaluations - evaluated) / (k_batches * steps);
-  std::printf("%-6s %7.0f %10.1f %10.2f %10.2f %10.3f %13.4f %10.2f\n", scene, n, 1e6 * (read - start) / n,
-              1e6 * (compiled - read) / n, 1e6 * (started - compiled) / n, 1e6 * best / n, 1e6 * best / n / evaluations,
-              memory / n / 1024.0);
+  std::printf("%-10s %7.0f %10.1f %10.2f %10.2f %10.3f %10.3f %13.4f %10.2f\n", scene, n, 1e6 * (read - start) / n,
+              1e6 * (compiled - read) / n, 1e6 * (started - compiled) / n, 1e6 * best / n, 1e6 * by_clock / n,
+              1e6 * best / n / evaluations, memory / n / 1024.0);
   std::fflush(stdout);
 }
 
@@ -102,11 +136,19 @@ void measure(const char* scene, const std::string& text) {
 
 int main(int argc, char** argv) {
   const int largest = argc > 1 ? std::atoi(argv[1]) : 100000;
-  std::printf("per body, µs: %15s %10s %10s %10s %13s   kB\n", "read", "compile", "start", "step (rk4)",
+  const int threads = argc > 2 ? std::atoi(argv[2]) : 1;
+  const int smallest = argc > 3 ? std::atoi(argv[3]) : 10;
+  const std::string only = argc > 4 ? argv[4] : "";
+  std::printf("per body, µs: %19s %10s %10s %10s %10s %13s   kB\n", "read", "compile", "start", "step (rk4)", "by clock",
               "an evaluation");
+  const auto is_wanted = [&only](const char* scene) { return only.empty() || only == scene; };
   try {
-    for (int n = 10; n <= largest; n *= 10) measure("chain", chain(n));
-    for (int n = 10; n <= largest; n *= 10) measure("grid", grid(n));
+    for (int n = smallest; n <= largest; n *= 10) {
+      if (is_wanted("chain")) measure("chain", chain(n), threads);
+      if (is_wanted("grid")) measure("grid", grid(n), threads);
+      if (is_wanted("linkages")) measure("linkages", linkages(n), threads);
+      if (is_wanted("absolute")) measure("absolute", linkages(n), threads, true);
+    }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 4;

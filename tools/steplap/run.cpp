@@ -121,8 +121,9 @@ State initial_state_of(const LoadedModel& loaded) {
   return placed(loaded, [&] { return start_of(loaded.model, *loaded.system, loaded.assembled); });
 }
 
-Run run_model(std::shared_ptr<const LoadedModel> loaded, std::function<void(double t)> progress) {
+Run run_model(std::shared_ptr<const LoadedModel> loaded, std::function<void(double t)> progress, int threads) {
   SimulationOptions options = options_of(loaded->model);
+  options.threads = threads;
   bool is_over = false; // the last state is sampled after a failure, too
   options.progress = [&is_over, progress = std::move(progress)](double t) {
     if (progress) progress(t);

@@ -47,8 +47,9 @@ struct Run {
   std::string failure; ///< what stopped the run; empty: it reached its end
 };
 
-/// Runs to the end, or to a NumericalFailure, which is kept. Throws it only if nothing could be run.
+/// Runs to the end, or to a NumericalFailure, which is kept. Throws it only if nothing could be run. `threads`:
+/// SimulationOptions::threads.
 [[nodiscard]] Run run_model(std::shared_ptr<const LoadedModel> loaded,
-                            std::function<void(double t)> progress = {});
+                            std::function<void(double t)> progress = {}, int threads = 1);
 
 } // namespace steplap

@@ -2,6 +2,7 @@
 
 #include "mbd/analysis/assembly.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/base/team.h"
 #include "mbd/model/validate.h"
 #include "tools/steplap/edges.h"
 #include "tools/steplap/far_joints.h"
@@ -16,11 +17,14 @@
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <set>
+#include <string>
 
 namespace steplap {
 
@@ -30,7 +34,7 @@ struct SimulateOptions {
   std::vector<std::string> models;
   std::vector<std::string> overrides;
   std::string output = "out";
-  std::optional<std::string> end, step, integrator, tolerance;
+  std::optional<std::string> end, step, integrator, tolerance, threads;
   bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false,
        is_hold_required = false;
 
@@ -42,6 +46,18 @@ struct SimulateOptions {
     if (integrator) all.push_back("simulation.integrator=" + *integrator);
     if (tolerance) all.push_back("simulation.tolerance=" + *tolerance);
     return all;
+  }
+
+  /// As asked for, or by OMP_NUM_THREADS, or those of all processors; scenes that are too small for them do without.
+  [[nodiscard]] int thread_count() const {
+    constexpr int k_most = 1024;
+    if (!threads) return std::min(Team::usual_size(), k_most);
+    int count = 0;
+    const char* const end_of_text = threads->data() + threads->size();
+    const auto [last, error] = std::from_chars(threads->data(), end_of_text, count);
+    if (error != std::errc() || last != end_of_text || count < 1 || count > k_most)
+      throw UsageError("--threads takes a whole number from 1 to " + std::to_string(k_most) + ", not '" + *threads + "'");
+    return count;
   }
 
   [[nodiscard]] std::string folder_of(const LoadedModel& loaded) const {
@@ -73,11 +89,12 @@ void check_folders(const SimulateOptions& options, const Models& models) {
 }
 
 // From finer runs; where one fails the run stands, but nothing of it can be called known.
-void make_estimate(FinishedRun& finished) {
+void make_estimate(FinishedRun& finished, int threads) {
   const LoadedModel& loaded = *finished.run.loaded;
   const RunResult& result = finished.run.result;
   SimulationOptions as_run = options_of(loaded.model);
   as_run.progress = stop_if_interrupted;
+  as_run.threads = threads;
   try {
     finished.summary.global_error = estimate_global_error(*loaded.system, initial_state_of(loaded), as_run, result, is_main_event);
     weigh_errors(finished.summary.judgement, loaded.model, *loaded.system, result, *finished.summary.global_error);
@@ -105,7 +122,7 @@ void estimate_error(const SimulateOptions& options, FinishedRun& finished) {
   const RunStatistics& statistics = finished.run.result.statistics;
   const double times = times_of_finer_runs(*loaded.system, options_of(loaded.model));
   if (times * parts_evaluated(*loaded.system, statistics) < k_little || options.is_error_estimated) {
-    make_estimate(finished);
+    make_estimate(finished, options.thread_count());
     return;
   }
   finished.summary.estimate_cost = times * statistics.cpu_seconds;
@@ -145,7 +162,7 @@ FinishedRun run_one(const SimulateOptions& options,
   FinishedRun finished;
   {
     Progress progress(console, loaded->name, loaded->model.simulation.end);
-    finished.run = run_model(loaded, std::ref(progress));
+    finished.run = run_model(loaded, std::ref(progress), options.thread_count());
   }
   for (const std::string& text : feet_beyond_edges(*loaded, finished.run.result.final_state))
     log_warning("'" + loaded->path + "': at the end " + text);
@@ -177,6 +194,7 @@ void check_step(const SimulateOptions& options, const Models& models) {
 ExitCode simulate(const SimulateOptions& options, Console& console) {
   if (options.is_error_estimated && options.is_estimate_left_out)
     throw UsageError("--estimate-error and --no-estimate exclude each other");
+  (void)options.thread_count(); // wrong ones are told before anything is read
   const Models models = load_models(options.models, options.all_overrides());
   check_step(options, models);
   check_folders(options, models);
@@ -244,6 +262,9 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
       {"--tolerance", &o->tolerance, "TOL",
        "relative tolerance of an adaptive integrator, for each step; the estimated error tells what "
        "it comes to"},
+      {"--threads", &o->threads, "N",
+       "threads that share the work of a scene of some thousand bodies (default: OMP_NUM_THREADS, or all processors); "
+       "results are the same for any number"},
       {"--estimate-error", &o->is_error_estimated, "",
        "estimate the error of all numbers, from runs at a finer tolerance or step, however long they take; without "
        "it, where they take about a second"},

@@ -1,0 +1,295 @@
+// Scenes that are evaluated in parts (mbd/dynamics/parts.h): the same bytes for every number of threads, and what mechanics says of
+// them, which shows whether every force between two parts acts on both.
+#include "mbd/base/team.h"
+#include "mbd/dynamics/parts.h"
+#include "tests/physics/scene.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+constexpr int k_bodies = 4200; // more than one piece has at most, and several parts
+
+const char* const k_header = "gravity = [0.0, -9.81]\n[simulation]\nend = 1.0\n";
+
+std::string body(const std::string& name, double x, double y, const std::string& more = "") {
+  std::ostringstream text;
+  text << "[[body]]\nname = \"" << name << "\"\nmass = 1.0\ninertia = 0.1\nposition = [" << x << ", " << y << "]\n" << more;
+  return text.str();
+}
+
+std::string spring(const std::string& name, const std::string& a, const std::string& b) {
+  return "[[element]]\nkind = \"spring_damper\"\nname = \"" + name + "\"\na = " + a + "\nb = " + b + "\nstiffness = 1e4\ndamping = 5.0\n";
+}
+
+std::string at(const std::string& name, double x, double y) {
+  std::ostringstream text;
+  text << "{ body = \"" << name << "\", at = [" << x << ", " << y << "] }";
+  return text.str();
+}
+
+std::string pin(const std::string& a, const std::string& b, double x, double y) {
+  return "[[element]]\nkind = \"revolute\"\nname = \"" + a + " on " + b + "\"\na = " + at(a, x, y) + "\nb = " + at(b, x, y) + "\n";
+}
+
+// A net of masses, its springs fixed off the masses' centres, so that it turns them; it hangs or flies.
+std::string grid(bool hangs, const std::string& more = "") {
+  const int side = 66;
+  std::string text = k_header;
+  const auto name = [&](int row, int column) { return "m" + std::to_string(row * side + column); };
+  for (int r = 0; r < side; ++r)
+    for (int c = 0; c < side; ++c) text += body(name(r, c), c, -r, r == 0 && c == 3 ? "velocity = [3.0, 1.0]\nangular_velocity = 2.0\n" : "");
+  for (int r = 0; r < side; ++r)
+    for (int c = 0; c < side; ++c) {
+      const std::string here = at(name(r, c), c + 0.1, -r + 0.05);
+      if (r > 0) text += spring("v" + name(r, c), here, at(name(r - 1, c), c - 0.1, -r + 1.0));
+      else if (hangs) text += spring("g" + name(r, c), here, at("ground", c, 1.0));
+      if (c > 0) text += spring("h" + name(r, c), here, at(name(r, c - 1), c - 1, -r - 0.1));
+    }
+  return text + more;
+}
+
+// Masses on axle: what acts in a large scene beside springs and pins. Parts begin and end among the masses of the grid.
+const char* const k_extras = R"(
+[[signal]]
+name = "shaking"
+kind = "harmonics"
+amplitudes = [0.01]
+frequencies = [5.0]
+[[element]]
+kind = "prescribed_motion"
+name = "drive"
+a = "m10"
+coordinate = "x"
+signal = "shaking"
+[[element]]
+kind = "load"
+name = "pull"
+at = "m2000"
+force = [100.0, 50.0]
+[[element]]
+kind = "weld"
+name = "weld"
+a = { body = "m700", at = [40.0, -10.0] }
+b = { body = "m701", at = [40.0, -10.0] }
+[[element]]
+kind = "rope"
+name = "rope"
+a = "m5"
+over = ["m1500"]
+b = "m4000"
+length = 60.0
+stiffness = 1e3
+)";
+
+std::string chain() {
+  std::string text = k_header;
+  const auto name = [](int i) { return "b" + std::to_string(i); };
+  for (int i = 0; i < k_bodies; ++i) text += body(name(i), i + 0.5, 0.0);
+  for (int i = 0; i < k_bodies; ++i) text += pin(name(i), i == 0 ? "ground" : name(i - 1), i, 0.0);
+  return text;
+}
+
+std::string linkage(int i) {
+  const std::string n = std::to_string(i);
+  const double x = 4.0 * i;
+  return body("crank" + n, x + 0.25, 0.5) + body("coupler" + n, x + 1.5, 1.25) + body("rocker" + n, x + 2.25, 0.75) +
+         pin("crank" + n, "ground", x, 0.0) + pin("coupler" + n, "crank" + n, x + 0.5, 1.0) +
+         pin("rocker" + n, "coupler" + n, x + 2.5, 1.5) + pin("rocker" + n, "ground", x + 2.0, 0.0);
+}
+
+std::string linkages(int count) {
+  std::string text = k_header;
+  for (int i = 0; i < count; ++i) text += linkage(i);
+  return text;
+}
+
+// Blocks on the floor among them: one slides on, one comes to rest, one sticks, one falls and lands.
+std::string blocks_among_linkages(int count) {
+  std::string text = linkages(count);
+  for (int i = 0; i < 8; ++i) {
+    const std::string n = "block" + std::to_string(i);
+    std::ostringstream velocity;
+    velocity << "velocity = [" << (i % 4 == 0 ? 3.0 : i % 4 == 1 ? 0.002 * (i + 1) : 0.0) << ", 0.0]\n";
+    text += body(n, -5.0 * i, i % 4 == 3 ? 2e-4 * i : 0.0, velocity.str());
+    text += "[[element]]\nkind = \"unilateral_contact\"\nname = \"sole" + n + "\"\na = \"" + n + "\"\nstiffness = 1e6\npreload = " +
+            (i % 4 == 3 ? "0.0" : "9.81") + "\n[[element]]\nkind = \"coulomb_stick\"\nname = \"friction" + n + "\"\ncontacts = [\"sole" + n +
+            "\"]\nstatic_friction = 0.4\n";
+  }
+  return text;
+}
+
+struct Case {
+  std::string name, text;
+  Settings settings;
+  Coordinates coordinates = Coordinates::automatic;
+};
+
+std::vector<Case> cases() {
+  return {{"grid, fixed steps", grid(true), {"rk4", 1e-3, 5e-3}},
+          {"grid with all else, chosen steps", grid(true, k_extras), {"dop853", 1e-6, 2e-2}},
+          {"chain", chain(), {"rk4", 1e-3, 3e-3}},
+          {"linkages, by their joints", linkages(k_bodies / 3), {"tsit5", 1e-6, 2e-2}},
+          {"linkages, absolute", linkages(k_bodies / 3), {"rk4", 1e-3, 5e-3}, Coordinates::absolute},
+          {"blocks among linkages", blocks_among_linkages(k_bodies / 3), {"dop853", 1e-6, 1e-2}},
+          {"blocks among linkages, absolute", blocks_among_linkages(k_bodies / 3), {"tsit5", 1e-6, 6e-3}, Coordinates::absolute}};
+}
+
+RunResult run_in_threads(const System& system, const Case& c, int threads) {
+  SimulationOptions o = options(c.settings);
+  o.coordinates = c.coordinates;
+  o.threads = threads;
+  return simulate(system, system.initial_state(), o);
+}
+
+} // namespace
+
+TEST_CASE("the same bytes for any number of threads") {
+  for (const Case& c : cases()) {
+    CAPTURE(c.name);
+    const auto system = compile(scene(c.text));
+    REQUIRE(system->body_count() > Parts::k_least_clusters);
+    const RunResult one = run_in_threads(*system, c, 1);
+    CHECK(one.statistics.steps > 1);
+    for (const int threads : {2, 3, 4}) {
+      CAPTURE(threads);
+      const RunResult more = run_in_threads(*system, c, threads);
+      CHECK(more.final_state.q == one.final_state.q);
+      CHECK(more.final_state.v == one.final_state.v);
+      CHECK(more.final_state.dissipated == one.final_state.dissipated);
+      CHECK(more.final_state.work == one.final_state.work);
+      CHECK(more.statistics.energy_residual == one.statistics.energy_residual);
+      CHECK(more.statistics.evaluations == one.statistics.evaluations);
+      REQUIRE(more.events.size() == one.events.size());
+      for (std::size_t i = 0; i < one.events.size(); ++i) {
+        CHECK(more.events[i].t == one.events[i].t);
+        CHECK(more.events[i].element == one.events[i].element);
+      }
+    }
+  }
+}
+
+// Forces between masses cancel in the sums of momentum and of moment of momentum, if what acts on one acts on the other.
+TEST_CASE("a net that flies keeps its momentum, and the moment of it about what falls") {
+  const auto system = compile(scene(grid(false)));
+  const State start = system->initial_state();
+  const double t = 0.02;
+  const RunResult result = run_in_threads(*system, {"", "", {"rk4", 1e-3, t}}, 2);
+  struct Momentum {
+    double x = 0.0, y = 0.0, moment = 0.0, mass = 0.0, at_x = 0.0, at_y = 0.0;
+  };
+  const auto momentum = [&](const State& s) {
+    Momentum p;
+    for (int i = 1; i < system->body_count(); ++i) {
+      const BodyData& b = system->bodies[i];
+      const double *q = &s.q[3 * i], *v = &s.v[3 * i];
+      p.mass += b.mass;
+      p.x += b.mass * v[0];
+      p.y += b.mass * v[1];
+      p.at_x += b.mass * q[0];
+      p.at_y += b.mass * q[1];
+      p.moment += b.mass * (q[0] * v[1] - q[1] * v[0]) + b.inertia * v[2];
+    }
+    p.moment -= (p.at_x * p.y - p.at_y * p.x) / p.mass; // about the centre of gravity
+    return p;
+  };
+  const Momentum before = momentum(start), after = momentum(result.final_state);
+  const double scale = before.mass * 9.81 * t;
+  // Rounding of four thousand terms. RK4 keeps what is linear in the velocities; the moment, which is not, to its error of order 4:
+  // (ω h)⁴ with ω = √(8 k/m), 0.28 rad/s·ms, a share of the moment of what moves, 3 kg m/s 30 m away.
+  CHECK(std::abs(after.x - before.x) < 1e-12 * scale);
+  CHECK(std::abs(after.y - before.y + scale) < 1e-12 * scale);
+  CHECK(std::abs(after.moment - before.moment) < 1e-3 * std::abs(before.moment));
+  CHECK(std::abs(before.moment) > 10.0);
+}
+
+// An island knows nothing of the others: in joint coordinates nothing that it is summed from differs from the scene of it alone.
+// Fixed steps; projection is made for all of them if one asks for it, and moves by less than its tolerance of 1e-12.
+TEST_CASE("a linkage among hundreds moves as it does alone") {
+  for (const Coordinates coordinates : {Coordinates::automatic, Coordinates::absolute}) {
+    const Case c{"", "", {"rk4", 1e-3, 1e-2}, coordinates};
+    const auto many = compile(scene(linkages(k_bodies / 3)));
+    const auto alone = compile(scene(std::string(k_header) + linkage(0)));
+    const State last = run_in_threads(*many, c, 3).final_state, expected = run_in_threads(*alone, c, 1).final_state;
+    double largest = 0.0;
+    for (int i = 0; i < k_bodies / 3; ++i)
+      for (int k = 0; k < 9; ++k) {
+        const double moved = last.q[9 * i + 3 + k] - (k % 3 == 0 ? 4.0 * i : 0.0);
+        // Places 5600 m from the origin are known to their rounding, 1e-12 m.
+        largest = std::max(largest, std::abs(moved - expected.q[3 + k]) - 1e-11);
+        largest = std::max(largest, std::abs(last.v[9 * i + 3 + k] - expected.v[3 + k]) - 1e-9);
+      }
+    CHECK(largest <= 0.0);
+    CHECK(std::abs(expected.v[5]) > 1e-3); // it has begun to turn
+  }
+}
+
+TEST_CASE("parts hold every cluster, link, row and element once") {
+  for (const Case& c : cases()) {
+    CAPTURE(c.name);
+    const auto system = compile(scene(c.text));
+    const Layout layout = make_layout(*system, system->initial_state(), c.coordinates);
+    REQUIRE(layout.division != nullptr);
+    const Parts& division = *layout.division;
+    REQUIRE(division.count() > 2);
+    std::vector<int> clusters(layout.clusters.size(), 0), rows(layout.schur.size(), 0), links(layout.links.size(), 0);
+    int coordinates = 0;
+    std::vector<std::size_t> elements(system->groups.size(), 0);
+    for (int p = 0; p < division.count(); ++p) {
+      const Part& part = division.parts[p];
+      for (int k = part.clusters; k < part.clusters_end; ++k) ++clusters[k];
+      for (int i = part.mechanisms; i < part.mechanisms_end; ++i)
+        for (int k = 0; k < layout.mechanisms[i].cluster_count(); ++k) ++clusters[layout.mechanisms[i].first_cluster + k];
+      for (int i = part.links; i < part.links_end; ++i) ++links[i];
+      for (const int r : division.rows[p]) ++rows[r];
+      coordinates += part.coordinates_end - part.coordinates;
+      for (std::size_t g = 0; g < elements.size(); ++g) elements[g] += division.elements[g][p].size();
+    }
+    const auto are_once = [](const std::vector<int>& counts) {
+      return std::all_of(counts.begin(), counts.end(), [](int count) { return count == 1; });
+    };
+    CHECK(are_once(clusters));
+    CHECK(are_once(rows));
+    CHECK(are_once(links));
+    CHECK(coordinates == layout.coordinate_count);
+    for (std::size_t g = 0; g < elements.size(); ++g) CHECK(elements[g] == static_cast<std::size_t>(system->groups[g]->divisible_count()));
+    CHECK(division.are_separate == (c.name.find("linkages") != std::string::npos));
+  }
+}
+
+TEST_CASE("a team does every piece of work once and passes on the first failure") {
+  for (const int threads : {1, 2, 5}) {
+    Team team(threads);
+    std::vector<int> done(1000, 0);
+    for (int round = 0; round < 200; ++round) team.each(1000, [&](int i) { ++done[i]; });
+    CHECK(std::all_of(done.begin(), done.end(), [](int count) { return count == 200; }));
+    std::vector<int> touched(100000, 0);
+    team.stretches(100000, [&](int from, int to) {
+      for (int i = from; i < to; ++i) ++touched[i];
+    });
+    CHECK(std::accumulate(touched.begin(), touched.end(), 0) == 100000);
+    const auto fail = [](int i) {
+      if (i % 300 == 299) throw std::runtime_error(std::to_string(i));
+    };
+    CHECK_THROWS_WITH_AS(team.each(1000, fail), "299", std::runtime_error);
+    team.each(10, [&](int i) { ++done[i]; }); // and goes on
+    CHECK(done[9] == 201);
+    const double sum = ordered_sum<double>(team, 10000, 100, [](int from, int to) {
+      double part = 0.0;
+      for (int i = from; i < to; ++i) part += 1.0 / (i + 1.0);
+      return part;
+    });
+    static double first = 0.0;
+    if (threads == 1) first = sum;
+    CHECK(sum == first);
+    CHECK(sum == doctest::Approx(std::log(10000.0) + 0.57721566490153286 + 0.5e-4).epsilon(1e-9)); // harmonic number, to 1/(12 n²)
+  }
+}
