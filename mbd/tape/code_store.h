@@ -41,8 +41,6 @@ private:
 
   Tape tape_;
   std::atomic<long> evaluations_{0};
-  [[nodiscard]] Tape tape() const;
-
   std::once_flag is_made_, are_lanes_made_;
   MachineCode made_, made_lanes_;
   std::atomic<const MachineCode*> code_{nullptr};
