@@ -76,11 +76,11 @@ public:
   /// by-products may be those of the evaluation before, and factors are forgotten. Near a singular position (k_traced_pivot) it
   /// is rates().
   void stage_rates(double t, const double* y, double* dy);
-  /// The same with the watch values of joints that are merged and of groups that share a load, where some are near their limit,
-  /// or `always`; as of rates() and watch_merged_if_near().
+  /// The same with the watch values of joints that are merged and of groups that share a load, where some are near their
+  /// limit, or `always`; as of rates() and watch_merged_if_near().
   void look_rates(double t, const double* y, double* dy, bool always);
-  /// rates() and watch_merged() at the end of a step, of which nobody may ask more than rates and watch values: by-products are
-  /// found when somebody does.
+  /// rates() and watch_merged() at the end of a step, of which nobody may ask more than rates and watch values: by-products
+  /// are found when somebody does.
   void end_rates(double t, const double* y, double* dy);
   /// From here on stages are made in the modes that state() has now.
   void begin_stages() { stage_programs_.enter(*layout_, *state_); }
