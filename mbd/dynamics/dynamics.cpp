@@ -275,7 +275,8 @@ void Dynamics::take_time_inputs(double t, double* into) {
   }
 }
 
-// Rates, power and watch values, and if `all`, what look_by_code() and fall_behind() take; false: as ever then, nothing was changed.
+// Rates, power and watch values, and if `all`, what look_by_code() and fall_behind() take; false: as ever then, nothing was
+// changed.
 bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   StageProgram* const program = stage_programs_.now();
   if (!program || !program->is_ready() || !(layout_->smallest_pivot() >= k_traced_pivot)) return false;
@@ -335,7 +336,8 @@ bool Dynamics::may_look_by_code() const {
 
 // After a stage made by code: the watch values of merged joints. Is any near its limit?
 bool Dynamics::look_by_code(const StageProgram& program, const StageColumn& made, double t) {
-  evaluation_.t = std::min(t, time_cap_); // what holds in a cluster is judged by its wrench, the time and what is remembered
+  // What holds in a cluster is judged by its wrench, the time and what is remembered.
+  evaluation_.t = std::min(t, time_cap_);
   program.put_wrenches(made, friction_force_);
   return watch_wrenches();
 }
@@ -349,8 +351,8 @@ void Dynamics::note_stage(double t, const double* y, const double* dy) {
   const double now = std::min(t, time_cap_);
   take_time_inputs(now, program->time_inputs());
   reactions_.find_joints(cluster_accelerations(dy), multipliers().data());
-  program->take_down(system_, *state_, now, y,
-                     {dy + coordinate_count(), watch_.data(), watch_rate_.data(), friction_force_, layout_->smallest_pivot()});
+  const StageFound found{dy + coordinate_count(), watch_.data(), watch_rate_.data(), friction_force_, layout_->smallest_pivot()};
+  program->take_down(system_, *state_, now, y, found);
 }
 
 void Dynamics::fall_behind(const StageProgram& program, const StageColumn& made, double t, const double* y) {

@@ -77,11 +77,11 @@ public:
   /// by-products may be those of the evaluation before, and factors are forgotten. Near a singular position (k_traced_pivot) it
   /// is rates().
   void stage_rates(double t, const double* y, double* dy);
-  /// The same with the watch values of joints that are merged and of groups that share a load, where some are near their limit,
-  /// or `always`; as of rates() and watch_merged_if_near().
+  /// The same with the watch values of joints that are merged and of groups that share a load, where some are near their
+  /// limit, or `always`; as of rates() and watch_merged_if_near().
   void look_rates(double t, const double* y, double* dy, bool always);
-  /// rates() and watch_merged() at the end of a step, of which nobody may ask more than rates and watch values: by-products are
-  /// found when somebody does.
+  /// rates() and watch_merged() at the end of a step, of which nobody may ask more than rates and watch values: by-products
+  /// are found when somebody does.
   void end_rates(double t, const double* y, double* dy);
   /// What makes stages of several samples side by side; null: nothing does, here and now.
   [[nodiscard]] StageProgram* lane_program();

@@ -98,7 +98,8 @@ void Dynamics::fail_velocities(double t) const {
 }
 
 bool Dynamics::is_near_singular() const {
-  return !layout_->active.empty() && rows_.is_factored() && layout_->smallest_pivot() < k_removal_pivot; // code is not made so near
+  // Not after an evaluation by code, which has no factors: none is made so near.
+  return !layout_->active.empty() && rows_.is_factored() && layout_->smallest_pivot() < k_removal_pivot;
 }
 
 void Dynamics::keep_allowed(double* change) {

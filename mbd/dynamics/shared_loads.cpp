@@ -20,7 +20,8 @@ void Dynamics::find_sharing() {
 
 const LoadSharing* Dynamics::sharing() const {
   const Layout& layout = *layout_;
-  return layout.sharing && !is_behind_ && layout.is_singular() ? layout.sharing.get() : nullptr; // code holds for rows that do not
+  // Code holds where no rows depend on each other.
+  return layout.sharing && !is_behind_ && layout.is_singular() ? layout.sharing.get() : nullptr;
 }
 
 bool Dynamics::is_shared(int friction) const {

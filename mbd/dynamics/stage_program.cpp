@@ -43,13 +43,15 @@ StageProgram::StageProgram(const Layout& layout, const State& state, StageCode c
 std::uint64_t StageProgram::key() const {
   std::uint64_t hash = 14695981039346656037ULL;
   const auto add = [&hash](std::uint64_t x) { hash = (hash ^ x ^ x >> 29U) * 1099511628211ULL; };
-  for (const std::size_t size : {coordinate_count_, time_count_, layout_->clusters.size(), layout_->placements.size(), layout_->active.size(),
-                                 layout_->links.size(), layout_->locks.size(), layout_->merged.size()})
+  const Layout& l = *layout_;
+  for (const std::size_t size : {coordinate_count_, time_count_, l.clusters.size(), l.placements.size(), l.active.size(),
+                                 l.links.size(), l.locks.size(), l.merged.size()})
     add(size);
-  for (const std::uint64_t part : layout_->key) add(part);
+  for (const std::uint64_t part : l.key) add(part);
   for (const UnitMode mode : modes_) add(mode);
   for (const Friction& f : frictions_)
-    add(static_cast<std::uint64_t>(f.foot) << 16U | static_cast<std::uint64_t>(f.phase) << 8U | static_cast<std::uint8_t>(f.sign));
+    add(static_cast<std::uint64_t>(f.foot) << 16U | static_cast<std::uint64_t>(f.phase) << 8U |
+        static_cast<std::uint8_t>(f.sign));
   return hash;
 }
 
@@ -166,7 +168,8 @@ bool StageProgram::has_found(const StageFound& found) const {
          smallest_pivot({nullptr, traced_.outputs.data(), 1}) == found.smallest_pivot;
 }
 
-void StageProgram::take_down(const System& system, const State& state, double t, const double* y, const StageFound& found) {
+void StageProgram::take_down(const System& system, const State& state, double t, const double* y,
+                             const StageFound& found) {
   ++tapes_;
   const std::shared_ptr<StoredCode> known = std::exchange(known_, nullptr);
   // Steps are kept by the store alone, and their memory for the next tape: a run has dozens of sets of modes.
@@ -176,9 +179,10 @@ void StageProgram::take_down(const System& system, const State& state, double t,
     std::vector<TapeStep>& from;
     ~GiveBack() { from.swap(steps); }
   } const give_back{traced_.tape.steps};
-  const bool is_traced = trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot, traced_,
-                                     known ? &known->tape() : nullptr);
-  if (known && !is_traced) return; // by chance of the same key, or on another branch: it will be written down if it lasts
+  const bool is_traced = trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot,
+                                     traced_, known ? &known->tape() : nullptr);
+  // By chance of the same key, or on another branch: it will be written down if it lasts.
+  if (known && !is_traced) return;
   is_hopeless_ = !is_traced || !has_found(found); // to the bit
   if (is_hopeless_) return;
   static std::atomic<std::uint64_t> tapes{0};

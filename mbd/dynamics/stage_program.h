@@ -109,8 +109,8 @@ private:
   /// After so many failures in a row another branch is the usual one (angles that grow beyond the series of their sines): it is
   /// written down anew, but not for ever.
   static constexpr int k_most_failures = 16, k_most_tapes = 8;
-  /// Writing a stage down for the first time takes as long as code saves in so many: in this run, or in others before it. Of a tape
-  /// that is known constants alone are gathered, which nearly all stretches between events are long enough for.
+  /// Writing a stage down for the first time takes as long as code saves in so many: in this run, or in others before it.
+  /// Of a tape that is known constants alone are gathered, which most stretches between events are long enough for.
   static constexpr long k_settled = 120;
 
   struct Friction {

@@ -264,11 +264,13 @@ private:
     lack_.assign(system_.bodies.size(), {});
     for (const RigidEdge& edge : layout_.edges) {
       const Placement& place = layout_.placements[edge.child];
-      lack_[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity,
-                                      motion_[layout_.clusters[place.cluster].motion], a + 3 * place.cluster, force_[edge.child]);
+      const Motion<Traced>& k = motion_[layout_.clusters[place.cluster].motion];
+      lack_[edge.child] = member_lack(system_.bodies[edge.child], place, system_.gravity, k, a + 3 * place.cluster,
+                                      force_[edge.child]);
     }
     for (const int r : layout_.carried_rows)
-      take_carried(layout_, *layout_.active[r].spec, multiplier_[static_cast<std::size_t>(r)], motion_.data(), lack_.data());
+      take_carried(layout_, *layout_.active[r].spec, multiplier_[static_cast<std::size_t>(r)], motion_.data(),
+                   lack_.data());
     place_edges(system_, layout_, state_, edges_);
     hand_on_lack(layout_, edges_, lack_.data(), [&](const RigidEdge& edge, const Traced* along) {
       if (edge.friction < 0 || system_.frictions[edge.friction].friction->never_slips()) return;
@@ -283,7 +285,8 @@ private:
     if (mechanisms_.empty()) return a_.data();
     cluster_a_.resize(3 * layout_.clusters.size());
     std::copy_n(a_.begin(), 3 * absolute_count(), cluster_a_.begin());
-    for (TracedMechanism& m : mechanisms_) m.expand(&a_[static_cast<std::size_t>(m.constants().first_coordinate)], cluster_a_.data());
+    for (TracedMechanism& m : mechanisms_)
+      m.expand(&a_[static_cast<std::size_t>(m.constants().first_coordinate)], cluster_a_.data());
     return cluster_a_.data();
   }
 

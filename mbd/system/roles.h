@@ -221,8 +221,8 @@ public:
     normal[0] = wrench[0] < 0.0 ? -1.0 / capacity : 1.0 / capacity;
     return normal[0] * wrench[0];
   }
-  /// Watch values while sticking with `wrench`: admissible while both are ≥ 0. A rigid element judges by `wrench`, the time, what
-  /// the state remembers and its scratch alone: motions, forces and modes need not be those at which `wrench` was found.
+  /// Watch values while sticking with `wrench`: admissible while both are ≥ 0. A rigid element judges by `wrench`, the time,
+  /// what the state remembers and its scratch alone: motions, forces and modes may be others than at which it was found.
   virtual void watch_stick(const Evaluation& e, const FrictionState& state, const double* wrench,
                            double* watch) const = 0;
   /// At the onset of slip, when `wrench` has reached the bound: sets sign or direction.

@@ -22,8 +22,9 @@ using Kind = PlannedInstruction::Kind;
 constexpr int k_most_frame = 1 << 18; ///< bytes of the stack
 constexpr int k_page = 4096;
 constexpr int k_masks_size = 128; ///< bytes before the first instruction: −0 and the bits besides its sign, eight times each
-// What the frame begins with where functions are called: the arguments and the lanes that hold.
-constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_lanes = 24, k_saved_wish = 32, k_saved_size = 64;
+// What the frame begins with where functions are called: the arguments, the lanes that hold, and whether all is wanted.
+constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_lanes = 24, k_saved_wish = 32;
+constexpr int k_saved_size = 64;
 
 InstructionSet find_best_instructions() {
   const auto& features = asmjit::CpuInfo::host().features().x86();
