@@ -15,6 +15,8 @@ const std::string k_prefix = "audit: ";
 constexpr double k_still = 1e-6;
 const char* const k_pushes = ".pushes";
 const char* const k_overload = ".overload";
+const char* const k_shares = ".shares";
+constexpr double k_one_line = 1e-9; // of the bodies' size, rad
 
 double pushing_power(const Snapshot& s, const System& system, std::size_t f) {
   const FrictionUnit& unit = system.frictions[f];
@@ -61,6 +63,72 @@ bool ends_with(const std::string& text, const std::string& end) {
 std::string element_of(const Channel& channel) {
   const std::size_t end = channel.name.rfind('.');
   return channel.name.substr(k_prefix.size(), end - k_prefix.size());
+}
+
+// Frictions of one dimension that act on the same two bodies along one line, as given.
+std::vector<std::vector<std::size_t>> frictions_on_one_line(const System& system) {
+  const State start = system.initial_state();
+  std::vector<Motion<double>> motion;
+  place_bodies(start.q, start.v, motion);
+  const auto is_one_line = [&](std::size_t f, std::size_t g) {
+    const RowSpec &one = *system.frictions[f].friction->rows(start.friction[f]),
+                  &other = *system.frictions[g].friction->rows(start.friction[g]);
+    if (one.a != other.a || one.b != other.b || one.next || other.next) return false;
+    const auto m = evaluate_row<false>(one, motion.data()), n = evaluate_row<false>(other, motion.data());
+    const Pair<double> along_a = n.lever_a - m.lever_a, along_b = n.lever_b - m.lever_b;
+    const double size =
+        k_one_line * (1.0 + portable::hypot(m.lever_a.x, m.lever_a.y) + portable::hypot(n.lever_a.x, n.lever_a.y));
+    return std::abs(cross(m.direction, n.direction)) <= k_one_line && std::abs(cross(along_a, m.direction)) <= size &&
+           std::abs(cross(along_b, m.direction)) <= size && std::abs(m.couple) + std::abs(n.couple) == 0.0;
+  };
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const FrictionElement& friction = *system.frictions[f].friction;
+    if (friction.dimension() != 1 || friction.never_slips()) continue;
+    const auto known =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return is_one_line(group.front(), f); });
+    if (known == groups.end()) groups.push_back({f});
+    else known->push_back(f);
+  }
+  std::erase_if(groups, [](const auto& group) { return group.size() < 2; });
+  return groups;
+}
+
+double shares_of(const Snapshot& s, const std::vector<std::size_t>& group) {
+  int loaded = 0, forward = 0, backward = 0;
+  for (const std::size_t f : group) {
+    const FrictionState& state = s.evaluation->friction[f];
+    if (state.phase != FrictionPhase::stick && state.phase != FrictionPhase::slip) continue;
+    ++loaded;
+    if (state.phase == FrictionPhase::slip) ++(state.sign > 0 ? forward : backward);
+  }
+  return loaded < 2 || forward == loaded || backward == loaded ? 0.0 : 1.0;
+}
+
+double borne_together(const Snapshot& s, const System& system, const std::vector<std::size_t>& group) {
+  const auto direction = [&](std::size_t f) {
+    return evaluate_row<false>(*system.frictions[f].friction->rows(s.evaluation->friction[f]), s.motion).direction;
+  };
+  const Pair<double> along = direction(group.front());
+  double sum = 0.0;
+  for (const std::size_t f : group) sum += s.friction_force[system.frictions[f].row] * dot(along, direction(f));
+  return sum;
+}
+
+// Each share tells when it is one; the sum is a channel like others.
+void add_shared_channels(System& system) {
+  const System* const self = &system;
+  for (const std::vector<std::size_t>& group : frictions_on_one_line(system)) {
+    std::string names;
+    for (const std::size_t f : group) {
+      const std::string& name = system.element_names[system.frictions[f].element];
+      names += (names.empty() ? "shared: " : " + ") + name;
+      system.channels.push_back({k_prefix + name + k_shares, "", "1: what it bears is a share",
+                                 [group](const Snapshot& s) { return shares_of(s, group); }});
+    }
+    system.channels.push_back({names, "N", "what frictions along one line bear together",
+                               [self, group](const Snapshot& s) { return borne_together(s, *self, group); }});
+  }
 }
 
 void keep_worst(std::vector<AuditFinding>& list, const AuditFinding& finding) {
@@ -121,6 +189,7 @@ void add_audit_channels(System& system, const Model& model) {
     system.channels.push_back({name + k_overload, "", "share of its bound that friction takes, less 1",
                                [self, f](const Snapshot& s) { return overload_of(s, *self, f); }});
   }
+  add_shared_channels(system);
   if (may_pull(model)) return;
   system.channels.push_back({k_prefix + "contacts.pull", "", "largest tension in a contact, N", [self](const Snapshot& s) {
                                return largest_pull(s, self->contact_count);
@@ -128,6 +197,7 @@ void add_audit_channels(System& system, const Model& model) {
 }
 
 std::string pushes_channel(const std::string& element) { return k_prefix + element + k_pushes; }
+std::string shares_channel(const std::string& element) { return k_prefix + element + k_shares; }
 
 bool is_audit_channel(const Channel& channel) { return channel.name.compare(0, k_prefix.size(), k_prefix) == 0; }
 
@@ -163,7 +233,7 @@ std::vector<AuditFinding> audit(const System& system, const RunResult& run, doub
   const double power = energy_scale(system, run) / duration + 1e-300, force = largest_force(run) + 1e-300;
   for (std::size_t c = 0; c < t.channels().size(); ++c) {
     const Channel& channel = *t.channels()[c];
-    if (!is_audit_channel(channel)) continue;
+    if (!is_audit_channel(channel) || ends_with(channel.name, k_shares)) continue;
     AuditFinding finding{"a contact pulls", element_of(channel), 0.0, 0.0, share * force};
     if (ends_with(channel.name, k_pushes)) finding = {"friction does positive work", element_of(channel), 0.0, 0.0, share * power};
     if (ends_with(channel.name, k_overload)) finding = {"friction exceeds its bound", element_of(channel), 0.0, 0.0, share};

@@ -5,6 +5,11 @@
 //              power that its bound would take at the rate it moves with, which must be zero
 //   overload   share of its bound that the wrench takes, less 1; an unloaded element must bear nothing
 //   pull       N: the largest tension in any contact of the scene
+//   shares     1 where several frictions act on the same two bodies along one line (feet on a floor) and some of them
+//              hold, or slide against each other: then the laws of friction say what they bear together, and not who
+//              bears what of it
+//
+// With these goes a channel of what such frictions bear together, "shared: one + other", a force like others.
 #pragma once
 
 #include "mbd/simulation/simulation.h"
@@ -20,6 +25,8 @@ void add_audit_channels(System& system, const Model& model);
 [[nodiscard]] bool is_audit_channel(const Channel& channel);
 /// Name of a friction element's channel of power.
 [[nodiscard]] std::string pushes_channel(const std::string& element);
+/// Of the channel that tells whether it shares what it bears.
+[[nodiscard]] std::string shares_channel(const std::string& element);
 
 struct AuditFinding {
   std::string what;   ///< "friction does positive work"

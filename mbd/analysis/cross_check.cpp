@@ -224,6 +224,7 @@ private:
       const ComparedChannel& channel = channels_[c];
       const double floor = (channel.kind == ErrorKind::reaction ? k_reaction_floor : k_floor) * channel.scale;
       for (std::size_t row = 0; row < rows && x.run().trajectory->times()[row] <= until; ++row) {
+        if (is_share(channel, *x.run().trajectory, row) || is_share(channel, *y.run().trajectory, row)) continue;
         const double distance = distance_at(channel, *x.run().trajectory, *y.run().trajectory, row,
                                             k_margin * (x.slack(row) + y.slack(row)));
         const double allowed = k_margin * (x.estimate(c, row) + y.estimate(c, row)) + floor;

@@ -19,6 +19,11 @@
 // for events: `moreau` is compared with all, and an adaptive method that knows its own answer less well than
 // time stepping does is doubted for that alone.
 //
+// What several frictions bear along one line, feet of one body on a floor, is compared by its sum where some of them hold
+// or slide against each other (audit.h, "shares"). Who bears what of it moves nothing, and is not unique: feet slide
+// against each other by what the body turns, less than any velocity is known to, and with static friction above the
+// kinetic one or another foot may be the one that holds. Each share has to obey the law of friction for itself.
+//
 // Where estimates are as large as the motion (chaos, events that hang on tiny differences) nothing can be told,
 // and that is said: known_until.
 //

@@ -69,6 +69,16 @@ std::vector<int> mechanisms_of(const System& system) {
   return number;
 }
 
+// Of "one.friction" the column that tells where it is a share.
+int share_column(const std::vector<const Channel*>& channels, const Channel& channel) {
+  const std::size_t dot = channel.name.rfind('.');
+  if (dot == std::string::npos || channel.name.substr(dot) != ".friction") return -1;
+  const std::string wanted = shares_channel(channel.name.substr(0, dot));
+  const auto found =
+      std::find_if(channels.begin(), channels.end(), [&](const Channel* c) { return c->name == wanted; });
+  return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+}
+
 // Of all bodies, or the force that accelerates them by `acceleration`.
 double weight_of(const System& system, double acceleration) {
   double mass = 0.0;
@@ -140,6 +150,7 @@ std::vector<ComparedChannel> compared_channels(const System& system, const std::
     const std::optional<ErrorKind> kind = kind_of(*channels[column], bodies);
     if (!kind) continue;
     ComparedChannel c{channels[column], column, *kind, arm_of(*channels[column], size), 0.0, 0.0, 0, 0};
+    c.shares = share_column(channels, *channels[column]);
     if (*kind != ErrorKind::reaction) {
       c.body = body_index.at(channels[column]->name.substr(0, channels[column]->name.rfind('.')));
       c.mechanism = mechanism[c.body];

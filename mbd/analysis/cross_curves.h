@@ -19,7 +19,13 @@ struct ComparedChannel {
   double scale = 1.0; ///< its range over the run, or a part of the largest range of its kind; in its own unit
   double wide_scale = 1.0; ///< a greater part: what a motion is lost by
   int body = 0, mechanism = 0; ///< of a body's channel: bodies that act on each other have the same mechanism
+  int shares = -1; ///< of a friction's force: column that tells where it is only a share (audit.h); -1: nowhere
 };
+
+/// At the sample, is it a force that friction laws leave open?
+[[nodiscard]] inline bool is_share(const ComparedChannel& channel, const Trajectory& run, std::size_t row) {
+  return channel.shares >= 0 && run.value(row, static_cast<std::size_t>(channel.shares)) != 0.0;
+}
 
 /// Ranges are the middle ones of those of all runs: a single one that has gone astray does not set the scale.
 [[nodiscard]] std::vector<ComparedChannel> compared_channels(const System& system,

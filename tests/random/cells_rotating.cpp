@@ -141,13 +141,8 @@ std::vector<std::string> driven_wheel(SceneWriter& w, At place) {
   const Wheel a = wheel(w, place, false);
   const bool is_position = w.r.chance(0.3);
   const std::string s = w.signal(is_position ? 0.5 : w.r.decades(-0.3, 0.7) / w.duration, true);
-  // Phases are written to seven digits: a cosine that is to begin at zero begins beside it.
-  SceneWriter::Fields drive{{"a", quoted(a.name)},
-                            {"coordinate", "\"angle\""},
-                            {"signal", quoted(s)},
-                            {"as", is_position ? "\"position\"" : "\"velocity\""}};
-  if (is_position) drive.push_back({"zero", "\"reference\""});
-  w.element("prescribed_motion", drive, {a.name, s});
+  w.element("prescribed_motion", {{"a", quoted(a.name)}, {"coordinate", "\"angle\""}, {"signal", quoted(s)},
+                                  {"as", is_position ? "\"position\"" : "\"velocity\""}}, {a.name, s});
   if (w.r.chance(0.7)) bearing(w, a);
   const Wheel b = wheel(w, {place.x, place.y + w.size}, false);
   turn_spring(w, b.name, a.name, b.inertia);

@@ -28,6 +28,9 @@ std::string marker(const std::string& body, At at) {
 
 namespace {
 
+// A phase with which a cosine begins at zero: to all its digits, for a drive has to begin where its body is.
+const char* const k_from_zero = "-1.5707963267948966";
+
 std::string lines(const SceneWriter::Fields& fields) {
   std::string text;
   for (const auto& [key, value] : fields)
@@ -82,7 +85,7 @@ std::string SceneWriter::signal(double peak, bool is_smooth) {
       const std::string comma = i > 0 ? ", " : "";
       amplitudes += comma + number(peak * r.either(0.2, 1.0) / std::sqrt(count));
       frequencies += comma + number((is_smooth ? r.decades(-0.3, 0.6) : r.decades(-0.3, 1.6)) / duration);
-      phases += comma + number(is_smooth ? -0.5 * std::numbers::pi : r.between(-3.1, 3.1));
+      phases += comma + (is_smooth ? k_from_zero : number(r.between(-3.1, 3.1)));
     }
     block.fields = lines({{"amplitudes", "[" + amplitudes + "]"}, {"frequencies", "[" + frequencies + "]"},
                           {"phases", "[" + phases + "]"}});

@@ -1,7 +1,6 @@
 #include "tools/steplap/tipping_hung.h"
 
 #include "elements/joints.h"
-#include "elements/load.h"
 #include "elements/polygon_contact.h"
 #include "elements/rope.h"
 #include "elements/round_contacts.h"
@@ -91,7 +90,7 @@ private:
     if (tie.bodies.size() == 1) tie.bodies.push_back(k_ground); // a load: it does not hang freely
     const auto* const spring = dynamic_cast<const SpringDamper*>(&element);
     const bool only_pulls =
-        entry.kind->name == "revolute" || entry.kind->name == "distance" || (spring && !spring->axis);
+        entry.kind == &revolute_kind() || entry.kind == &distance_kind() || (spring && !spring->axis);
     if (!only_pulls) tie.points.clear();
     return tie;
   }
