@@ -24,6 +24,7 @@ constexpr double k_turned_against = 0.5; // of the work along the tangent
 constexpr double k_far = 1e4;         // lengths of the scene
 constexpr double k_many_turns = 40.0 * std::numbers::pi;
 constexpr double k_most_looks = 1000.0; // along a step
+constexpr double k_touch = 64.0; // roundings of the largest coordinate, by which a body that lands presses
 constexpr int k_most_trials = 44, k_most_corrections = 4, k_most_projections = 25, k_most_polishing = 4;
 constexpr int k_most_dense = 90; // coordinates: beyond, sparse algebra is faster
 
@@ -156,7 +157,7 @@ bool Descent::land(const std::vector<double>& from, VecX& step) {
     const double parts = (k % 3 < 2 ? 4.0 : 10.0) * std::abs(step[k]) * scale_[k - k % 3 + 2];
     looks[k / 3 + 1] = std::max(looks[k / 3 + 1], std::min(std::ceil(parts), k_most_looks));
   }
-  const bool is_cut = Landing(system_, statics_).cut(step, looks, [&](const VecX& way) {
+  const bool is_cut = Landing(system_, statics_).cut(step, looks, k_touch * k_epsilon * reach_, [&](const VecX& way) {
     for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * way[k];
     statics_.evaluate(state_);
   });
@@ -246,7 +247,8 @@ bool Descent::advance(VecX step) {
     bool is_too_far = !move_to(from, factor * step);
     if (!is_too_far) {
       slope = slope_along(step);
-      if (slope > -k_turned_against * start || state_.mode != modes) slope = correct(factor * step, from, slope);
+      // What lands stays where it touches: there friction is to hold it.
+      if (!has_landed && (slope > -k_turned_against * start || state_.mode != modes)) slope = correct(factor * step, from, slope);
       is_too_far = !(slope <= -k_turned_against * start);
       is_taken = !is_too_far && (factor == whole || slope >= k_turned_against * start);
     }

@@ -22,6 +22,7 @@ using ComplexVector = Eigen::VectorXcd;
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 constexpr double k_new = 1e-9;        // of its length: what a vector has beyond those before, to be a direction of its own
 constexpr double k_residual = 1e-9;   // of a mode's own acceleration
+constexpr double k_out_of_balance = 1e-4; // the same, of modes of a whole scene, which dense algebra has to find
 constexpr double k_rounding = 32.0;   // epsilons of the terms that a residual is the sum of
 constexpr double k_same = 1e-6;       // squares of frequencies that are not told apart
 constexpr double k_well_below = 1.0 / 64.0; // σ² of the square of the first frequency
@@ -39,12 +40,15 @@ public:
 
   [[nodiscard]] auto directions() const { return w_.leftCols(size_); }
   [[nodiscard]] int size() const { return size_; }
-  void set_rate(double rate) { rate_ = rate; }
 
-  // Displacements that forces which hang on nothing cause. False if there are no more directions.
+  // Displacements that forces cause which hang on nothing and do no work on W: else what is known would hide what is not. False if
+  // there are no more directions.
   bool add_start() {
-    VecX f = spread_.vector(scene_.coordinates());
-    for (Eigen::Index i = 0; i < f.size(); ++i) f[i] = scene_.bare()[static_cast<std::size_t>(i)] != 0 ? 0.0 : f[i] * std::sqrt(scene_.mass()[i]);
+    VecX x = spread_.vector(scene_.coordinates()).cwiseQuotient(scene_.mass().cwiseSqrt());
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (scene_.bare()[static_cast<std::size_t>(i)] != 0) x[i] = 0.0;
+    for (int round = 0; round < 2; ++round) x -= w_.leftCols(size_) * (w_.leftCols(size_).transpose() * scene_.mass().cwiseProduct(x));
+    const VecX f = scene_.mass().cwiseProduct(x);
     const int before = size_;
     ComplexVector g = ComplexVector::Zero(most_);
     take(response_.solve(f.cast<Complex>()), g);
@@ -142,11 +146,11 @@ public:
     for (int i = 0; i < k_starts + rigid_ && space.add_start(); ++i) {
     }
     for (int wanted = std::min(most, 3 * wanted_.count + 2 * rigid_ + 20);; wanted = std::min(most, wanted + wanted / 2)) {
-      bool is_whole = false;
-      while (!space.grow(wanted) && !is_whole) is_whole = !space.add_start();
-      is_whole = is_whole || space.size() == directions_;
-      if (look(space) || is_whole) return finished(is_whole);
-      if (space.size() >= most) fail();
+      while (!space.grow(wanted) && space.add_start()) {
+      }
+      const bool is_whole = space.size() == directions_, is_found = look(space);
+      if (is_found || (is_whole && worst_ < k_out_of_balance)) return finished(is_whole);
+      if (is_whole || space.size() < wanted || space.size() >= most) fail();
       for (int i = 0; i < k_starts && space.add_start(); ++i) { // of one frequency there may be more than starts
       }
     }
@@ -158,7 +162,7 @@ private:
     return std::move(found_);
   }
   SparseModes finished(bool is_whole) {
-    found_.is_all = is_whole;
+    found_.is_all = is_whole && !has_more_;
     found_.is_counted = is_whole || found_.is_counted;
     return std::move(found_);
   }
@@ -188,6 +192,7 @@ private:
       return wanted_.distance(one.eigenvalue) < wanted_.distance(other.eigenvalue);
     });
     const auto count = std::min(modes.size(), static_cast<std::size_t>(wanted_.count));
+    has_more_ = modes.size() > count;
     found_.modes.clear();
     unsure_ = 0;
     worst_ = 0.0;
@@ -268,10 +273,11 @@ private:
 
   SparseVibration scene_;
   const WantedModes& wanted_;
-  int directions_ = 0; ///< that are neither bare nor held by rows
-  int rigid_ = 0;      ///< of them those that nothing holds
-  int unsure_ = 0;
-  double worst_ = 0.0;
+  int directions_ = 0;   ///< that are neither bare nor held by rows
+  int rigid_ = 0;        ///< of them those that nothing holds
+  int unsure_ = 0;       ///< modes that are not known well enough
+  double worst_ = 0.0;   ///< residual
+  bool has_more_ = false; ///< than are wanted
   SparseModes found_;
 };
 

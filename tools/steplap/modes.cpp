@@ -81,14 +81,12 @@ WantedModes wanted_modes(const ModesOptions& options) {
 }
 
 // Which of them these are, and how far to be trusted, where they are not all.
-void print_choice(std::ostream& out, const VibrationModes& found, const WantedModes& wanted) {
-  if (found.is_all) return;
+std::string choice_text(const VibrationModes& found, const WantedModes& wanted) {
   double worst = 0.0;
   for (const VibrationMode& mode : found.modes) worst = std::max(worst, mode.residual);
-  out << "\nThe " << found.modes.size() << (wanted.near ? " nearest to " + fixed_text(*wanted.near, "%g Hz") : std::string(" slowest"))
-      << " (--count N: more of them). None is out of balance by more than " << fixed_text(worst, "%.1g") << " of its own acceleration; "
-      << (found.is_counted ? "that none is missing was counted" : "whether one is missing was not counted, since there is damping or a stiffness that is not symmetric")
-      << "\n";
+  return "The " + std::to_string(found.modes.size()) + (wanted.near ? " nearest to " + fixed_text(*wanted.near, "%g Hz") : std::string(" slowest")) +
+         " (--count N: more of them). None is out of balance by more than " + fixed_text(worst, "%.1g") + " of its own acceleration; " +
+         (found.is_counted ? "that none is missing was counted" : "whether one is missing was not counted, since there is damping or a stiffness that is not symmetric");
 }
 
 // Why there is none.
@@ -110,7 +108,7 @@ void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationMo
   }
   if (found.modes.empty()) print_none(out, found);
   else out << table;
-  print_choice(out, found, wanted);
+  if (!found.is_all) out << "\n" << choice_text(found, wanted) << "\n";
   if (found.rigid_motions > 0)
     out << "\n" << (found.rigid_motions == 1 ? std::string("1 coordinate moves freely: nothing holds the scene along it")
                                             : std::to_string(found.rigid_motions) + " coordinates move freely: nothing holds the scene along them") << "\n";
@@ -136,11 +134,13 @@ std::string modes_csv(const System& system, const VibrationModes& found) {
   return csv.text();
 }
 
-std::string page_of(const LoadedModel& loaded, const Equilibrium& rest, const VibrationModes& found) {
+std::string page_of(const LoadedModel& loaded, const Equilibrium& rest, const VibrationModes& found, const WantedModes& wanted) {
   std::vector<std::string> moves_most;
   for (const VibrationMode& mode : found.modes)
     moves_most.push_back(shape_text(*loaded.system, mode));
-  return modes_page(loaded, rest, found, moves_most, remarks_on(*loaded.system, rest));
+  std::vector<std::string> remarks = remarks_on(*loaded.system, rest);
+  if (!found.is_all) remarks.push_back(choice_text(found, wanted));
+  return modes_page(loaded, rest, found, moves_most, remarks);
 }
 
 ExitCode modes(const ModesOptions& options, Console& console) {
@@ -153,7 +153,7 @@ ExitCode modes(const ModesOptions& options, Console& console) {
     const VibrationModes found = vibration_modes(*loaded->system, state, wanted);
     const IfExists if_exists = options.is_overwriting ? IfExists::replace : IfExists::refuse;
     if (options.output) write_file(*options.output, modes_csv(*loaded->system, found), if_exists);
-    if (options.page) write_file(*options.page, page_of(*loaded, rest, found), if_exists);
+    if (options.page) write_file(*options.page, page_of(*loaded, rest, found, wanted), if_exists);
     if (console.verbosity != Verbosity::quiet) print_modes(console.out, *loaded, found, wanted);
     for (const std::string& remark : remarks_on(*loaded->system, rest))
       log_warning("'" + loaded->path + "': " + remark);
