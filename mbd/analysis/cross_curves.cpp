@@ -104,6 +104,15 @@ double middle_range(const std::vector<const RunResult*>& runs, std::size_t colum
   return ranges.empty() ? 0.0 : ranges[ranges.size() / 2];
 }
 
+// Do most runs exchange no more energy than is rounding? Then what moves has no range; the scene itself is the scale.
+bool is_at_rest(const System& system, const std::vector<const RunResult*>& runs) {
+  const auto rests = [&system](const RunResult* run) {
+    const RunStatistics& s = run->statistics;
+    return s.energy_exchanged <= s.energy_rounding && system.kinetic_energy(run->final_state) <= s.energy_rounding;
+  };
+  return 2 * std::count_if(runs.begin(), runs.end(), rests) > static_cast<std::ptrdiff_t>(runs.size());
+}
+
 using Key = std::tuple<std::string, EventKind, bool>; // the last: at the start?
 using Times = std::map<Key, std::vector<double>>;
 
@@ -143,8 +152,10 @@ std::vector<ComparedChannel> compared_channels(const System& system, const std::
   std::vector<ComparedChannel> list;
   const std::vector<double>& times = runs.front()->trajectory->times();
   const double duration = times.size() > 1 ? times.back() - times.front() : 1.0;
-  std::map<ErrorKind, double> largest{{ErrorKind::position, k_still * size}, {ErrorKind::velocity, k_still * size / duration},
-                                     {ErrorKind::reaction, k_still * weight_of(system, size / (duration * duration))}};
+  const bool rests = is_at_rest(system, runs);
+  const double still = rests ? 1.0 : k_still, least_part = rests ? 1.0 : k_least_part;
+  std::map<ErrorKind, double> largest{{ErrorKind::position, still * size}, {ErrorKind::velocity, still * size / duration},
+                                     {ErrorKind::reaction, still * weight_of(system, size / (duration * duration))}};
   const auto& channels = runs.front()->trajectory->channels();
   for (std::size_t column = 0; column < channels.size(); ++column) {
     const std::optional<ErrorKind> kind = kind_of(*channels[column], bodies);
@@ -162,7 +173,7 @@ std::vector<ComparedChannel> compared_channels(const System& system, const std::
   for (ComparedChannel& c : list) {
     const double of_kind = (largest[c.kind] > 0.0 ? largest[c.kind] : 1.0) / c.arm;
     c.wide_scale = std::max(c.scale, k_wide_part * of_kind);
-    c.scale = std::max(c.scale, k_least_part * of_kind);
+    c.scale = std::max(c.scale, least_part * of_kind);
   }
   return list;
 }
