@@ -67,8 +67,10 @@ struct VerbosityFlags {
   }
 };
 
-void bind(CLI::App& app, const Command& command, VerbosityFlags& flags) {
+// `is_meant`: its options are made, which takes longer than all else that a short command does; the others are there to be listed.
+void bind(CLI::App& app, const Command& command, bool is_meant, VerbosityFlags& flags) {
   CLI::App* sub = app.add_subcommand(command.name, command.summary);
+  if (!is_meant) return;
   if (!command.examples.empty()) sub->footer("Examples:\n" + command.examples);
   for (const Option& option : command.options)
     std::visit(BindOption{*sub, option}, option.target)->required(option.is_required);
@@ -128,7 +130,7 @@ int run_program(const Program& program, const std::vector<std::string>& argument
   app.require_subcommand(1);
   app.footer(std::string(k_exit_codes) + (program.name == "steplap" ? k_examples : ""));
   for (const Command& command : commands)
-    bind(app, command, flags);
+    bind(app, command, std::find(arguments.begin(), arguments.end(), command.name) != arguments.end(), flags);
   try {
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
     app.parse(reversed);
