@@ -1,5 +1,5 @@
-// The text is that of std::to_chars: of fixed and scientific notation the shorter, fixed if both are as long. Its digits come
-// from fmt's shortest digits (Dragonbox), which take a third of the instructions.
+// The text is that of std::to_chars: of fixed and scientific notation the shorter, fixed if both are as long. Its
+// digits are fmt's shortest (Dragonbox), which take a third of the instructions.
 #include "mbd/base/number_text.h"
 
 #define FMT_HEADER_ONLY // its shared object would be loaded at every start
@@ -27,11 +27,12 @@ constexpr auto k_powers = [] {
   return powers;
 }();
 
-/// The characters of eight digits, with zeros before the first, all at once: two numbers of four in one word, four of two, eight of
-/// one. The first is in the lowest byte.
+/// The characters of eight digits, with zeros before the first, all at once: two numbers of four in one word, four of
+/// two, eight of one. The first is in the lowest byte.
 std::uint64_t eight(std::uint64_t value) {
   const std::uint64_t high = value / 10000, fours = high | (value - high * 10000) << 32;
-  const std::uint64_t hundreds = (fours * 10486 >> 20) & 0x0000007f0000007f, twos = hundreds | (fours - hundreds * 100) << 16;
+  const std::uint64_t hundreds = (fours * 10486 >> 20) & 0x0000007f0000007f; // of each four, two digits
+  const std::uint64_t twos = hundreds | (fours - hundreds * 100) << 16;
   const std::uint64_t tens = (twos * 103 >> 10) & 0x000f000f000f000f, ones = tens | (twos - tens * 10) << 8;
   return ones + 0x3030303030303030;
 }
@@ -46,8 +47,8 @@ int digit_count(std::uint64_t value) {
 static_assert(std::endian::native == std::endian::little, "characters are put together in words");
 __extension__ typedef unsigned __int128 Sixteen;
 
-/// The digits of a number, the first in the lowest byte, and the seventeenth, beyond which no double needs any. They are put in
-/// their places by stores alone: loading again what was just stored in other pieces would wait for it.
+/// The digits of a number, the first in the lowest byte, and the seventeenth, beyond which no double needs any. They
+/// are put in their places by stores alone: loading again what was just stored in other pieces would wait for it.
 class Digits {
 public:
   Digits(std::uint64_t value, int count) : count_(count) {

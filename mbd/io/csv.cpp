@@ -181,8 +181,8 @@ CsvText::CsvText(std::span<const std::string> names, std::size_t rows) {
   text_ += '\n';
 }
 
-// Of a hundred thousand numbers each copy counts. Those that are what they were in the row before are copied from there: a mode, an
-// area, a body that is at rest.
+// Of a hundred thousand numbers each copy counts. Those that are what they were in the row before are copied from
+// there: a mode, an area, a body that is at rest.
 void CsvText::add_row(std::span<const double> values) {
   const std::size_t before = text_.size();
   row_.resize(values.size() * k_most + k_number_room);

@@ -67,7 +67,8 @@ struct VerbosityFlags {
   }
 };
 
-// `is_meant`: its options are made, which takes longer than all else that a short command does; the others are there to be listed.
+// `is_meant`: its options are made, which takes longer than all else that a short command does; the others are there
+// to be listed.
 void bind(CLI::App& app, const Command& command, bool is_meant, VerbosityFlags& flags) {
   CLI::App* sub = app.add_subcommand(command.name, command.summary);
   if (!is_meant) return;
