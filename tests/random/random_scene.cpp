@@ -30,7 +30,9 @@ void hold(SceneWriter& w, RandomNumber own, const std::string& body) {
   if (own.chance(0.5)) {
     fields.push_back({"b", marker("ground", {aside, length})});
     if (own.chance(0.5)) fields.push_back({"slack", number(0.05 * w.size)});
-    w.element("rope", fields, {body});
+    const bool is_wound = own.chance(0.25); // on a drum that stands still
+    if (is_wound) fields.push_back({"radius_b", number((own.chance(0.5) ? 0.2 : -0.2) * w.size)});
+    w.element(is_wound ? "wound_rope" : "rope", fields, {body});
   } else {
     fields.push_back({"b", marker("ground", {aside, -length})});
     fields.push_back({"acts", quoted(own.one_of<std::string>({"tension", "compression", "both"}))});
