@@ -15,6 +15,7 @@ namespace {
 
 // Looks before a thread sleeps, some tens of microseconds; none where there are more threads than processors.
 constexpr int k_looks = 2000;
+constexpr int k_looks_between_offers = 100;
 
 void rest_a_moment() {
 #if defined(__x86_64__)
@@ -43,8 +44,12 @@ struct Team::Threads {
   // By functions of their own, which the tests for data races know by name: a value that is late here costs time alone.
   [[gnu::noinline]] static void hint(std::atomic<long>& at, long value) { at.store(value, std::memory_order_release); }
   [[gnu::noinline]] static bool is_hinted(const std::atomic<long>& at, long value) { return at.load(std::memory_order_acquire) >= value; }
+  // Whom it waits for may be without a processor: now and then it offers its own.
   void look_for(const std::atomic<long>& at, long value) const {
-    for (int i = 0; i < looks && !is_hinted(at, value); ++i) rest_a_moment();
+    for (int i = 1; i <= looks && !is_hinted(at, value); ++i) {
+      if (i % k_looks_between_offers == 0) std::this_thread::yield();
+      else rest_a_moment();
+    }
   }
 
   void take_stretch(int thread, int all, Work do_work, const void* of) {
@@ -74,11 +79,10 @@ struct Team::Threads {
       lock.unlock();
       take_stretch(thread, all, do_work, of);
       lock.lock();
-      const bool is_last = --busy == 0;
-      lock.unlock();
-      if (!is_last) continue;
-      hint(done_hint, seen);
+      if (--busy > 0) continue;
       done.notify_one();
+      lock.unlock();
+      hint(done_hint, seen);
     }
   }
 };
@@ -98,9 +102,9 @@ Team::~Team() {
   {
     const std::lock_guard lock(threads_->mutex);
     threads_->is_over = true;
+    threads_->begun.notify_all();
   }
   Threads::hint(threads_->round_hint, threads_->round + 1);
-  threads_->begun.notify_all();
   for (std::thread& other : threads_->others) other.join();
 }
 
@@ -115,9 +119,9 @@ void Team::share(int count, Work work, const void* job) {
     t.busy = size_ - 1;
     t.failure = nullptr;
     round = ++t.round;
+    t.begun.notify_all(); // costs next to nothing where none sleeps
   }
   Threads::hint(t.round_hint, round);
-  t.begun.notify_all(); // costs next to nothing where none sleeps
   t.take_stretch(0, count, work, job);
   t.look_for(t.done_hint, round);
   std::unique_lock lock(t.mutex);

@@ -19,10 +19,7 @@ void Dynamics::apply_forces_of(int p) {
     for (int k = m.first_cluster; k < m.first_cluster + m.cluster_count(); ++k) force[layout.slots[k]] = {};
   }
   for (const int i : division.riding[p]) force[i] = {};
-  for (int i = part.links; i < part.links_end; ++i) {
-    fetch_ahead(force + layout.links[i].slot);
-    force[layout.links[i].slot] = {};
-  }
+  for (int i = part.links; i < part.links_end; ++i) force[layout.links[i].slot] = {};
   Evaluation e = evaluation_; // what is summed in it is the part's
   for (std::size_t g = 0; g < division.elements.size(); ++g)
     if (const auto elements = division.elements[g][p]; !elements.empty()) system_.groups[g]->add_forces_of(elements, e);
@@ -67,9 +64,6 @@ void Dynamics::accelerate_part(int p, const double* y, double* dy) {
   const double* const w = layout.inverse_mass.data();
   for (int k = part.clusters; k < part.clusters_end; ++k) {
     const BodyForce& f = force_[layout.slots[k]];
-    fetch_ahead(&f);
-    for (const double* const array : {weight, w, static_cast<const double*>(a), static_cast<const double*>(dy)}) fetch_ahead(array + 3 * k);
-    fetch_ahead(y + n + 3 * k);
     a[3 * k] = w[3 * k] * (weight[3 * k] + f.fx);
     a[3 * k + 1] = w[3 * k + 1] * (weight[3 * k + 1] + f.fy);
     a[3 * k + 2] = w[3 * k + 2] * (weight[3 * k + 2] + f.m);

@@ -50,12 +50,7 @@ void Kinematics::place_part(int p, const double* q, const double* v) {
     m.place(q + m.first_coordinate, v + m.first_coordinate, motion);
   }
   const int* const slots = layout_->slots.data();
-  for (int k = part.clusters; k < part.clusters_end; ++k) {
-    fetch_ahead(q + 3 * k);
-    fetch_ahead(v + 3 * k);
-    fetch_ahead(motion + slots[k]);
-    place_cluster(q + 3 * k, v + 3 * k, motion[slots[k]]);
-  }
+  for (int k = part.clusters; k < part.clusters_end; ++k) place_cluster(q + 3 * k, v + 3 * k, motion[slots[k]]);
   for (const int i : division.locks[p]) place_lock(i);
   for (const int i : division.riding[p]) place_member(i);
 }
@@ -64,10 +59,8 @@ void Kinematics::place_links(int p) {
   const Part& part = layout_->division->parts[p];
   Motion<double>* const motion = motion_.data();
   const ActiveLink* const links = layout_->links.data();
-  for (const ActiveLink *link = links + part.links, *const end = links + part.links_end; link != end; ++link) {
-    fetch_ahead(motion + link->slot);
+  for (const ActiveLink *link = links + part.links, *const end = links + part.links_end; link != end; ++link)
     motion[link->slot] = seen_from(motion[link->a], motion[link->b]);
-  }
 }
 
 void Kinematics::place(double t, const double* q, const double* v) {

@@ -1,4 +1,4 @@
-// A large scene in parts: stretches of some thousand clusters each, with the links, rows and elements that belong to them.
+// A large scene in parts: stretches of some hundred clusters each, with the links, rows and elements that belong to them.
 //
 // A part is evaluated in one go while its bodies and links are in the processor's cache, and several by several threads. Parts
 // follow from the layout alone, never from the number of threads, and so does the order in which forces on a body are added up:
@@ -20,12 +20,6 @@ namespace steplap {
 
 struct Layout;
 struct ActiveLink;
-
-/// Asks for what an array has behind `at`: the processor's own foresight ends with a page of memory, and a part goes through many.
-inline void fetch_ahead(const void* at) {
-  constexpr std::size_t k_ahead = 1024; // bytes
-  __builtin_prefetch(static_cast<const char*>(at) + k_ahead, 1);
-}
 
 /// Lists of indices, one for each part.
 class PartLists {
@@ -53,7 +47,7 @@ struct Parts {
   /// Layouts of fewer clusters are evaluated in one piece.
   static constexpr int k_least_clusters = 4000;
   /// In a part: bodies, links and forces of so many, half a kilobyte each, fit the caches of one processor.
-  static constexpr int k_clusters = 1024;
+  static constexpr int k_clusters = 512;
 
   std::vector<Part> parts;
   bool are_separate = true;      ///< no link and no row is between two of them

@@ -82,12 +82,8 @@ public:
   [[nodiscard]] int divisible_count() const override { return static_cast<int>(entries.size()); }
   [[nodiscard]] Link link_of(int element) const override { return {entries[element].a, entries[element].b}; }
   void add_forces_of(std::span<const int> elements, Evaluation& e) const override {
-    constexpr int k_ahead = 12; // entries: memory is asked for them while those before are evaluated
     double dissipation = 0.0;
-    for (const int i : elements) {
-      __builtin_prefetch(entries.data() + i + k_ahead);
-      dissipation += add_force_to(entries[i], static_cast<Evaluated<double>&>(e));
-    }
+    for (const int i : elements) dissipation += add_force_to(entries[i], static_cast<Evaluated<double>&>(e));
     e.dissipation += dissipation;
   }
   [[nodiscard]] double potential_of(std::span<const int> elements, const Motion<double>* motion) const override {
