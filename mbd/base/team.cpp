@@ -1,11 +1,13 @@
 #include "mbd/base/team.h"
 
-#include <omp.h>
-
+#include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <condition_variable>
+#include <cstdlib>
 #include <exception>
 #include <mutex>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -87,7 +89,15 @@ struct Team::Threads {
   }
 };
 
-int Team::usual_size() { return omp_get_max_threads(); }
+// As OpenMP has it; of a list the number for the outermost level, and what is no number is passed over.
+int Team::usual_size() {
+  const char* const given = std::getenv("OMP_NUM_THREADS");
+  const std::string_view wanted = given ? given : "";
+  int threads = 0;
+  std::from_chars(wanted.data(), wanted.data() + wanted.size(), threads);
+  if (threads > 0) return threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
 
 Team::Team(int threads) : size_(threads) {
   if (threads < 2) return;
