@@ -36,17 +36,24 @@ void StoredCode::note_use(long evaluations) {
   if (evaluations_.fetch_add(evaluations) + evaluations >= k_enough) make();
 }
 
+const MachineCode* StoredCode::code() const {
+  const std::scoped_lock lock(mutex_);
+  return made_ ? &made_ : nullptr;
+}
+
 void StoredCode::make() {
-  std::call_once(is_made_, [this] {
-    made_ = MachineCode(simplified(tape_));
-    if (made_) code_.store(&made_, std::memory_order_release);
-  });
+  const std::scoped_lock lock(mutex_);
+  if (is_made_) return;
+  is_made_ = true;
+  made_ = MachineCode(simplified(tape_));
 }
 
 const MachineCode* StoredCode::lane_code() { return evaluations_.load() >= k_enough ? make_lanes() : nullptr; }
 
 const MachineCode* StoredCode::make_lanes() {
-  std::call_once(are_lanes_made_, [this] { made_lanes_ = MachineCode(simplified(tape_), MachineCode::most_lanes()); });
+  const std::scoped_lock lock(mutex_);
+  if (!are_lanes_made_) made_lanes_ = MachineCode(simplified(tape_), MachineCode::most_lanes());
+  are_lanes_made_ = true;
   return made_lanes_ ? &made_lanes_ : nullptr;
 }
 

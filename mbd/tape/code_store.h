@@ -25,7 +25,7 @@ public:
   /// Without constants.
   [[nodiscard]] const Tape& tape() const { return tape_; }
   /// Null where it is not made yet.
-  [[nodiscard]] const MachineCode* code() const { return code_.load(std::memory_order_acquire); }
+  [[nodiscard]] const MachineCode* code() const;
   /// So many evaluations were made that it could have made: it is made as soon as they are as many as would have paid for it.
   void note_use(long evaluations);
   void make();
@@ -41,9 +41,9 @@ private:
 
   Tape tape_;
   std::atomic<long> evaluations_{0};
-  std::once_flag is_made_, are_lanes_made_;
+  mutable std::mutex mutex_; ///< of those below: asked for until there is code, which helgrind follows, unlike an atomic pointer
+  bool is_made_ = false, are_lanes_made_ = false;
   MachineCode made_, made_lanes_;
-  std::atomic<const MachineCode*> code_{nullptr};
 };
 
 /// What this process has met of one kind of computation, before and beside whoever asks: how often it was made, and the tape that
