@@ -1,7 +1,6 @@
 #include "mbd/tape/traced.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace steplap {
 
@@ -52,8 +51,7 @@ bool Traced::finish(Tape* tape) {
   tape->outputs = from.outputs;
   tape->usual_outputs = from.usual_outputs;
   tape->input_count = from.input_count;
-  tape->steps.resize(static_cast<std::size_t>(from.step - from.steps.data()));
-  std::memcpy(tape->steps.data(), from.steps.data(), tape->steps.size() * sizeof(TapeStep));
+  tape->steps.assign(from.steps.data(), static_cast<const TapeStep*>(from.step)); // none, of a tape that is known
   const Tape* const known = from.known;
   return !known || (from.difference == 0 && from.known_step == from.last_known && tape->steps.empty() &&
                     tape->input_count == known->input_count && tape->outputs == known->outputs &&

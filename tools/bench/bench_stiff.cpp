@@ -27,6 +27,7 @@ struct Entry {
 
 RunResult run(const System& system, const Model& model, const std::string& method, double tolerance, bool is_sampled) {
   SimulationOptions options = options_of(model);
+  options.has_extremes = false; // which take as long again, and nobody asks for them here
   options.integrator = method;
   options.settings.tolerance = tolerance;
   options.output_step = is_sampled ? 1e-3 : 0.0;
