@@ -25,10 +25,7 @@ struct Store {
   std::unordered_map<std::uint64_t, std::shared_ptr<KnownKind>> kinds;
 };
 
-Store& store() {
-  static Store all;
-  return all;
-}
+Store all_code; // made before main(): threads use it
 
 } // namespace
 
@@ -68,7 +65,7 @@ void KnownKind::keep(std::shared_ptr<StoredCode> stored) {
 }
 
 std::shared_ptr<KnownKind> known_kind(std::uint64_t key) {
-  Store& all = store();
+  Store& all = all_code;
   const std::scoped_lock lock(all.mutex);
   if (all.kinds.size() >= k_most_kinds && !all.kinds.contains(key)) all.kinds.clear();
   std::shared_ptr<KnownKind>& kind = all.kinds[key];
@@ -78,7 +75,7 @@ std::shared_ptr<KnownKind> known_kind(std::uint64_t key) {
 
 std::shared_ptr<StoredCode> stored_code(const Tape& tape) {
   const std::uint64_t hash = hash_of(tape);
-  Store& all = store();
+  Store& all = all_code;
   const std::scoped_lock lock(all.mutex);
   const auto [begin, end] = all.codes.equal_range(hash);
   for (auto at = begin; at != end; ++at)

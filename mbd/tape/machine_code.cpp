@@ -33,6 +33,9 @@ InstructionSet find_best_instructions() {
   return has_512 ? InstructionSet::avx512 : InstructionSet::avx2;
 }
 
+// Before main(): threads that meet it first would need a lock.
+const InstructionSet k_best_instructions = find_best_instructions();
+
 void sin_cos_of_one(const double* x, double* sine, double* cosine) {
   const portable::SinCos of = portable::sin_cos(*x);
   *sine = of.sin;
@@ -309,10 +312,7 @@ bool MachineCode::is_available() {
   return true;
 }
 
-InstructionSet MachineCode::best_instructions() {
-  static const InstructionSet best = find_best_instructions();
-  return best;
-}
+InstructionSet MachineCode::best_instructions() { return k_best_instructions; }
 
 int MachineCode::most_lanes(InstructionSet instructions) {
   return instructions == InstructionSet::sse2 ? 2 : instructions == InstructionSet::avx2 ? 4 : 8;
