@@ -56,8 +56,12 @@ void Ensemble::make_alone(Sample& sample) {
 }
 
 void Ensemble::make_in_lanes() {
-  for (int lane = 0; lane < lanes(); ++lane)
-    if (Sample* const sample = in_lane_[static_cast<std::size_t>(lane)]) sample->run.simulation->load_try(*columns_, lane);
+  for (int lane = 0; lane < lanes(); ++lane) {
+    Sample*& sample = in_lane_[static_cast<std::size_t>(lane)];
+    if (!sample) continue;
+    guarded(*sample, [&](Simulation& simulation) { simulation.load_try(*columns_, lane); }); // asks signals, which may fail
+    if (sample->is_finished) sample = nullptr;
+  }
   const unsigned holds = columns_->run();
   ++statistics_.lane_passes;
   for (int lane = 0; lane < lanes(); ++lane) {

@@ -109,9 +109,10 @@ b = { body = "ground", at = [0.0, 0.0] }
   CHECK(std::abs(found.modes[0].damping_ratio()) < 1e-12);
 }
 
-// n masses between two walls: ω_k = 2 √(k/m) sin(kπ/(2(n+1))).
-TEST_CASE("a chain of masses and springs between two walls") {
-  constexpr int n = 12;
+namespace {
+
+// n masses of 2.5 kg on guides between two walls, springs of 900 N/m between them.
+std::string long_chain(int n) {
   std::string text = "gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n";
   const auto link = [&text](int i, const std::string& a, const std::string& b) {
     text += "[[element]]\nkind = \"spring_damper\"\nname = \"spring " + std::to_string(i) + "\"\na = " + a + "\nb = " + b +
@@ -123,11 +124,20 @@ TEST_CASE("a chain of masses and springs between two walls") {
     text += "[[element]]\nkind = \"prismatic\"\nname = \"guide " + std::to_string(i) + "\"\na = " + name + "\n";
     link(i, name, i == 1 ? "\"ground\"" : "\"m" + std::to_string(i - 1) + "\"");
   }
-  link(n + 1, "\"m12\"", "{ body = \"ground\", at = [13.0, 0.0] }");
-  const VibrationModes found = modes_of(text);
+  link(n + 1, "\"m" + std::to_string(n) + "\"", "{ body = \"ground\", at = [" + std::to_string(n + 1) + ".0, 0.0] }");
+  return text;
+}
+double chain_rate(int n, int k) { return 2.0 * std::sqrt(900.0 / 2.5) * std::sin(k * std::numbers::pi / (2.0 * (n + 1))); }
+
+} // namespace
+
+// n masses between two walls: ω_k = 2 √(k/m) sin(kπ/(2(n+1))).
+TEST_CASE("a chain of masses and springs between two walls") {
+  constexpr int n = 12;
+  const VibrationModes found = modes_of(long_chain(n));
   REQUIRE(found.modes.size() == n);
   for (int k = 1; k <= n; ++k) {
-    const double omega = 2.0 * std::sqrt(900.0 / 2.5) * std::sin(k * std::numbers::pi / (2.0 * (n + 1)));
+    const double omega = chain_rate(n, k);
     CHECK(std::abs(2.0 * std::numbers::pi * found.modes[k - 1].natural_frequency() / omega - 1.0) < k_digits);
   }
 }
@@ -291,23 +301,6 @@ TEST_CASE("dampers resist but do not hold") {
 
 namespace {
 
-// n masses of 2.5 kg on guides between two walls, springs of 900 N/m between them.
-std::string long_chain(int n) {
-  std::string text = "gravity = [0.0, 0.0]\n[simulation]\nstep = 1e-3\n";
-  const auto link = [&text](int i, const std::string& a, const std::string& b) {
-    text += "[[element]]\nkind = \"spring_damper\"\nname = \"spring " + std::to_string(i) + "\"\na = " + a + "\nb = " + b +
-            "\naxis = [1.0, 0.0]\nstiffness = 900.0\n";
-  };
-  for (int i = 1; i <= n; ++i) {
-    const std::string name = "\"m" + std::to_string(i) + "\"";
-    text += "[[body]]\nname = " + name + "\nmass = 2.5\ninertia = 1.0\nposition = [" + std::to_string(i) + ".0, 0.0]\n";
-    text += "[[element]]\nkind = \"prismatic\"\nname = \"guide " + std::to_string(i) + "\"\na = " + name + "\n";
-    link(i, name, i == 1 ? "\"ground\"" : "\"m" + std::to_string(i - 1) + "\"");
-  }
-  link(n + 1, "\"m" + std::to_string(n) + "\"", "{ body = \"ground\", at = [" + std::to_string(n + 1) + ".0, 0.0] }");
-  return text;
-}
-double chain_rate(int n, int k) { return 2.0 * std::sqrt(900.0 / 2.5) * std::sin(k * std::numbers::pi / (2.0 * (n + 1))); }
 
 VibrationModes modes_of(const std::string& text, const WantedModes& wanted, ModesAlgebra algebra = ModesAlgebra::by_size) {
   const auto system = compile(parse_model(text, "scene.toml", transformer_catalog()));
