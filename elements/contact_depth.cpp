@@ -14,18 +14,6 @@ namespace {
 
 constexpr double k_endless = std::numeric_limits<double>::infinity();
 
-// The least distance of two parallel lines that have the outline between them.
-double width_of(const ConvexOutline& outline) {
-  double width = k_endless;
-  for (int edge = 0; edge < outline.edge_count(); ++edge) {
-    double deepest = 0.0;
-    for (const Vec2& corner : outline.corners)
-      deepest = std::max(deepest, outline.offsets[edge] - outline.normals[edge].dot(corner));
-    width = std::min(width, deepest);
-  }
-  return width;
-}
-
 // Endless where there is no outline: a half-plane.
 double width_of(const std::vector<Vec2>& given, const std::string& marker, const Model& model) {
   if (!given.empty()) return width_of(convex_outline(given, CompiledMarker{}));

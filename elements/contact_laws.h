@@ -1,4 +1,8 @@
 // Normal laws of unilateral contacts for LawGroup. Modes: open, pressed, released (closed, force zero).
+//
+// A spring whose damper holds back is left behind by what it pressed, δ = −c δ̇/k deep: released is what is certain to be that
+// deep, by the law and as measured. With less, down to no damping at all, the contact opens where its force ends, and
+// whatever rounding and the joints' residuals leave of the gap there is no time in which it is released.
 #pragma once
 
 #include "mbd/system/law_group.h"
@@ -48,11 +52,20 @@ struct KelvinVoigtContact {
     }
   }
   // What closes presses: where it does, rounding leaves a gap of either sign, and a force of −kδ − cδ̇ of either, if nothing damps.
-  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate) const {
-    if (mode == k_contact_open) return rate <= 0.0 || raw(value, rate) >= 0.0 ? k_contact_pressed : k_contact_released;
-    if (mode == k_contact_pressed) return value - offset < 0.0 ? k_contact_released : k_contact_open;
+  // `rounding`: of the value.
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double rounding) const {
+    const bool is_closed = is_surely_closed(value, rounding);
+    if (mode == k_contact_open) {
+      if (rate <= 0.0 || raw(value, rate) >= 0.0) return k_contact_pressed;
+      return is_closed ? k_contact_released : k_contact_open;
+    }
+    if (mode == k_contact_pressed) return is_closed && c * rate > k * rounding ? k_contact_released : k_contact_open;
     return slot == 0 ? k_contact_open : k_contact_pressed;
   }
+  [[nodiscard]] bool is_surely_positive(UnitMode mode, int slot, double value, double rounding) const {
+    return mode == k_contact_released && slot == 0 && is_surely_closed(value, rounding);
+  }
+  [[nodiscard]] bool is_surely_closed(double value, double rounding) const { return offset - value > rounding; }
   static EventKind transition(UnitMode from, UnitMode to) {
     if (to == k_contact_open) return EventKind::opens;
     if (from == k_contact_open) return EventKind::closes;
@@ -84,7 +97,7 @@ struct LiteralContact {
     watch[0] = sign * (value - offset);
     watch_rate[0] = sign * rate;
   }
-  [[nodiscard]] UnitMode next_mode(UnitMode mode, int, double, double) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int, double, double, double) const {
     return mode == k_contact_open ? k_contact_pressed : k_contact_open;
   }
   static EventKind transition(UnitMode, UnitMode to) {
@@ -123,7 +136,7 @@ struct HuntCrossleyContact {
     watch_rate[0] = sign * rate;
     watch[1] = mode == k_contact_open ? 1.0 : (mode == k_contact_pressed ? 1.0 : -1.0) * (1.0 - alpha * rate);
   }
-  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double, double rate) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double, double rate, double) const {
     if (mode == k_contact_open) return alpha * rate <= 1.0 ? k_contact_pressed : k_contact_released;
     if (slot == 0) return k_contact_open;
     return mode == k_contact_pressed ? k_contact_released : k_contact_pressed;

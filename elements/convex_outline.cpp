@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 
 namespace steplap {
@@ -83,6 +84,22 @@ ConvexOutline half_plane(const Vec2& normal, const CompiledMarker& frame) {
   outline.normals.push_back(rotated(Vec2(normal.normalized()), frame.angle));
   outline.offsets.push_back(outline.normals[0].dot(frame.point));
   return outline;
+}
+
+double width_of(const ConvexOutline& outline) {
+  double width = std::numeric_limits<double>::infinity();
+  for (int edge = 0; edge < outline.edge_count() && !outline.corners.empty(); ++edge) {
+    double deepest = 0.0;
+    for (const Vec2& corner : outline.corners) deepest = std::max(deepest, outline.offsets[edge] - outline.normals[edge].dot(corner));
+    width = std::min(width, deepest);
+  }
+  return width;
+}
+
+double reach_of(const ConvexOutline& outline) {
+  double reach = 0.0;
+  for (const Vec2& corner : outline.corners) reach = std::max(reach, corner.norm());
+  return reach;
 }
 
 std::string body_of(const std::string& marker, const SystemBuilder& builder) {

@@ -22,6 +22,11 @@ struct OutlineError : std::runtime_error {
 /// What lies behind the line through the frame's origin; `normal` in its axes, away from it.
 [[nodiscard]] ConvexOutline half_plane(const Vec2& normal, const CompiledMarker& frame);
 
+/// The least distance of two parallel lines that have the outline between them; of a half-plane infinite.
+[[nodiscard]] double width_of(const ConvexOutline& outline);
+/// The largest distance of a corner from the body's centre of gravity.
+[[nodiscard]] double reach_of(const ConvexOutline& outline);
+
 /// Name of the body that a marker, or a body, belongs to.
 [[nodiscard]] std::string body_of(const std::string& marker, const SystemBuilder& builder);
 /// Corners that the model gives this body, in the body's axes; empty if none.

@@ -14,7 +14,7 @@ namespace steplap {
 
 inline constexpr UnitMode k_contact_off = 3;
 
-template <class Law> class EndedContactGroup final : public ForceGroup {
+template <class Law> class EndedContactGroup final : public ForceGroup, public GapSource {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -74,6 +74,13 @@ public:
   void enter_links(LinkTable& links) override {
     for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
+  void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override {
+    for (const Entry& entry : entries) {
+      out.push_back(gap_bounds(entry.gap, entry.law.offset, motion[entry.a], motion[entry.b]));
+      out.back().a = entry.a;
+      out.back().b = entry.b;
+    }
+  }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     const auto m = measured(element, e);
     return closed_mode(element, e, entries[element].law.mode_at(m.value, m.rate));
@@ -82,8 +89,13 @@ public:
     if (mode == k_contact_off) return k_contact_open;
     if (slot == Law::k_watches) return k_contact_off;
     const auto m = measured(element, e);
-    const UnitMode next = entries[element].law.next_mode(mode, slot, m.value, m.rate);
+    const UnitMode next = entries[element].law.next_mode(mode, slot, m.value, m.rate, rounding_of(element, m, e));
     return mode == k_contact_open ? closed_mode(element, e, next) : next;
+  }
+  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    if (mode == k_contact_off || slot == Law::k_watches) return false;
+    const auto m = measured(element, e);
+    return steplap::is_surely_positive(entries[element].law, mode, slot, m.value, rounding_of(element, m, e));
   }
   [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
     const UnitMode was = law_mode(from), is = law_mode(to);
@@ -101,6 +113,9 @@ public:
   }
 
 private:
+  [[nodiscard]] double rounding_of(int element, const MeasureValue<double>& m, const Evaluation& e) const {
+    return value_rounding(m, e.motion[entries[element].a], e.motion[entries[element].b]);
+  }
   static void add_force(const Entry& entry, Evaluation& e) {
     const Motion<double>& a = e.link_motion[entry.link];
     const auto m = entry.gap.template at<false, double>(a, Origin{});

@@ -53,11 +53,15 @@ struct StopsLaw {
     watch[1] = -value - upper.offset;
     watch_rate[1] = -rate;
   }
-  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double rounding) const {
     const bool is_up = mode == k_between ? slot == 1 : is_upper(mode);
     const KelvinVoigtContact& stop = is_up ? upper : lower;
     const double v = is_up ? -value : value, r = is_up ? -rate : rate;
-    return stop_mode(stop.next_mode(contact_mode(mode), mode == k_between ? 0 : slot, v, r), is_up);
+    return stop_mode(stop.next_mode(contact_mode(mode), mode == k_between ? 0 : slot, v, r, rounding), is_up);
+  }
+  [[nodiscard]] bool is_surely_positive(UnitMode mode, int slot, double value, double rounding) const {
+    const bool is_up = is_upper(mode);
+    return mode != k_between && (is_up ? upper : lower).is_surely_positive(contact_mode(mode), slot, is_up ? -value : value, rounding);
   }
   static EventKind transition(UnitMode from, UnitMode to) {
     if (to == k_between) return EventKind::leaves_stop;

@@ -36,8 +36,8 @@ AppliedLoad<S> load_by(const LoadEntry& entry, const Motion<S>& body, const Valu
   return load;
 }
 
-AppliedLoad<double> load_at(const LoadEntry& entry, const Motion<double>& body, double t) {
-  return load_by(entry, body, [t](const Signal* signal) { return signal->value(t); });
+AppliedLoad<double> load_at(const LoadEntry& entry, const Evaluation& e) {
+  return load_by(entry, e.motion[entry.body], [&e](const Signal* signal) { return e.force_of(*signal); });
 }
 
 class LoadGroup final : public ForceGroup {
@@ -46,7 +46,7 @@ public:
   std::vector<LoadEntry> entries;
 
   void add_forces(Evaluation& e) const override {
-    for (const LoadEntry& entry : entries) add(entry, load_at(entry, e.motion[entry.body], e.t), e);
+    for (const LoadEntry& entry : entries) add(entry, load_at(entry, e), e);
   }
   [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
     for (const LoadEntry& entry : entries)
@@ -56,13 +56,13 @@ public:
   [[nodiscard]] int divisible_count() const override { return static_cast<int>(entries.size()); }
   [[nodiscard]] Link link_of(int element) const override { return {entries[element].body, k_ground}; }
   void add_forces_of(std::span<const int> elements, Evaluation& e) const override {
-    for (const int i : elements) add(entries[i], load_at(entries[i], e.motion[entries[i].body], e.t), e);
+    for (const int i : elements) add(entries[i], load_at(entries[i], e), e);
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
 
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const LoadEntry& entry : entries) {
-      const AppliedLoad<double> load = load_at(entry, e.motion[entry.body], e.t);
+      const AppliedLoad<double> load = load_at(entry, e);
       PairJacobian& j = out.emplace_back();
       j.a = entry.body;
       j.b = k_ground;
@@ -100,12 +100,12 @@ void compile_load(const Element& element, SystemBuilder& builder) {
   if (marker.body == k_ground) return builder.error("acts on the ground or a fixed body, which it cannot move");
   LoadGroup& group = builder.group<LoadGroup>();
   group.entries.push_back({marker.body, marker.point, e.force, e.couple, marker.angle,
-                           builder.signal(e.force_x), builder.signal(e.force_y), builder.signal(e.torque),
+                           builder.signal(e.force_x, SignalUse::force), builder.signal(e.force_y, SignalUse::force), builder.signal(e.torque, SignalUse::force),
                            e.frame == "body"});
   const auto* entries = &group.entries;
   const std::size_t i = group.entries.size() - 1;
   const auto load = [entries, i](const Snapshot& s) {
-    return load_at((*entries)[i], s.motion[(*entries)[i].body], s.t);
+    return load_at((*entries)[i], *s.evaluation);
   };
   builder.add_channel("force_x", "N", {"its force", "along x of the ground axes"}, [load](const Snapshot& s) { return load(s).force.x; });
   builder.add_channel("force_y", "N", {"its force", "along y of the ground axes"}, [load](const Snapshot& s) { return load(s).force.y; });

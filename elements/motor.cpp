@@ -7,17 +7,32 @@ namespace steplap {
 
 namespace {
 
+/// What signals are in an evaluation: of an effort the force, of a target what it is at the time.
+struct InputsOf {
+  const Evaluation& e;
+
+  double operator()(const Signal& effort) const { return e.force_of(effort); }
+  double operator()(const TimeInput& target) const { return target.at(e.t); }
+};
+
+struct TracedInputsOf {
+  TracedEvaluation& e;
+
+  Traced operator()(const Signal& effort) const { return e.of_time({&effort}); }
+  Traced operator()(const TimeInput& target) const { return e.of_time(target); }
+};
+
 struct MotorLaw {
   const Signal *effort = nullptr, *target = nullptr;
   double constant_effort = 0.0, droop = 0.0; ///< 1/no-load speed
   double proportional = 0.0, derivative = 0.0, start = 0.0;
 
-  template <class S> [[nodiscard]] S force(const S& value, const S& rate, double t) const {
-    return force_by(value, rate, [t](const TimeInput& input) { return input.at(t); });
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, const Evaluation& e) const {
+    return force_by(value, rate, InputsOf{e});
   }
   // `at_time`: what a signal is at the time.
   template <class S, class AtTime> [[nodiscard]] S force_by(const S& value, const S& rate, const AtTime& at_time) const {
-    const auto stall = constant_effort + (effort ? at_time(TimeInput{effort}) : 0.0);
+    const auto stall = constant_effort + (effort ? at_time(*effort) : 0.0);
     const bool is_reverse = droop != 0.0 && stall < 0.0; // its no-load speed is on the other side
     S f = S(stall) * (is_reverse ? S(1) + S(droop) * rate : S(1) - S(droop) * rate);
     if (proportional == 0.0 && derivative == 0.0) return f;
@@ -39,17 +54,17 @@ public:
   static constexpr bool k_does_work = true;
 
   void add_forces(Evaluation& e) const override {
-    add_forces_to(e, [&e](const TimeInput& input) { return input.at(e.t); });
+    add_forces_to(e, InputsOf{e});
   }
   [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
-    add_forces_to<Traced>(e, [&e](const TimeInput& input) { return e.of_time(input); });
+    add_forces_to<Traced>(e, TracedInputsOf{e});
     return true;
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {
     for (const Entry& entry : entries)
       add_pair_jacobian(entry.a, entry.b, entry.measure, e,
-                        [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, e.t); }, out);
+                        [&](const Dual<12>& value, const Dual<12>& rate) { return entry.law.force(value, rate, e); }, out);
   }
   void mark_bodies(std::vector<char>& is_used) const override {
     for (const Entry& entry : entries) is_used[entry.a] = is_used[entry.b] = 1;
@@ -82,11 +97,11 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, MotorLaw 
   builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", {"what it acts with on a along the coordinate", "positive: towards larger values of the coordinate"},
                       [&group, i](const Snapshot& s) {
                         const auto m = group.measured(i, *s.evaluation);
-                        return group.entries[i].law.force(m.value, m.rate, s.t);
+                        return group.entries[i].law.force(m.value, m.rate, *s.evaluation);
                       });
   builder.add_channel("power", "W", {"power that it gives", "negative while it brakes"}, [&group, i](const Snapshot& s) {
     const auto m = group.measured(i, *s.evaluation);
-    return m.rate * group.entries[i].law.force(m.value, m.rate, s.t);
+    return m.rate * group.entries[i].law.force(m.value, m.rate, *s.evaluation);
   });
   builder.offer_channel(is_angle ? "angle" : "displacement", is_angle ? "rad" : "m", {"its coordinate, since the reference pose", "as the coordinate counts"},
                         [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.start; });
@@ -116,7 +131,7 @@ bool check(const Motor& e, const Signal* target, SystemBuilder& builder) {
 void compile_motor(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const Motor&>(element);
   MotorLaw law;
-  law.effort = builder.signal(e.effort);
+  law.effort = builder.signal(e.effort, e.no_load_speed ? SignalUse::motion : SignalUse::force);
   law.target = builder.signal(e.target);
   if (!check(e, law.target, builder)) return;
   law.constant_effort = e.constant_effort;

@@ -18,6 +18,8 @@ using D12 = Dual<12>;
 
 struct Outlines {
   ConvexOutline a, b;
+  double reach_a = 0.0, reach_b = 0.0; ///< of their corners from the centres of gravity
+  double through = 0.0;                ///< GapBounds
 };
 
 template <class S, class B> struct Placed {
@@ -30,7 +32,7 @@ template <class S, class B> struct Placed {
   }
 };
 
-class PolygonGroup final : public ForceGroup {
+class PolygonGroup final : public ForceGroup, public GapSource {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -110,6 +112,22 @@ public:
     for (Entry& entry : entries) {
       entry.link = links.add(entry.a, entry.b);
       if (entry.has_friction && entry.a != k_ground) (void)links.add(entry.b, entry.a);
+    }
+  }
+  // Faces that have all of the other body before them keep it off by that much: no distance is less. A half-plane has no
+  // corners, and is reached where the other body is.
+  void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const override {
+    for (const Entry& entry : entries) {
+      const Placed<double, Motion<double>> placed(*entry.outlines, motion[entry.a], motion[entry.b]);
+      GapBounds& bounds = out.emplace_back();
+      bounds.a = entry.a;
+      bounds.b = entry.b;
+      const Approach now = approach(placed, RelativeVelocity<double>{});
+      bounds.gap = now.gap;
+      bounds.normal = now.normal;
+      bounds.reach_a = entry.outlines->reach_a;
+      bounds.reach_b = entry.outlines->b.corners.empty() ? size_of(placed.centre) + bounds.reach_a + std::max(0.0, bounds.gap) : entry.outlines->reach_b;
+      bounds.through = entry.outlines->through;
     }
   }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
@@ -194,9 +212,7 @@ public:
           feet.push_back(row_of(places.back(), memory));
         }
     }
-    lever = 0.0;
-    for (const ConvexOutline* outline : {&outlines->a, &outlines->b})
-      for (const Vec2& corner : outline->corners) lever = std::max(lever, corner.norm());
+    lever = std::max(outlines->reach_a, outlines->reach_b);
   }
 
   void mark_bodies(std::vector<char>& is_used) const override { is_used[a] = is_used[b] = 1; }
@@ -376,7 +392,8 @@ void compile_polygon(const Element& element, SystemBuilder& builder) {
   PolygonGroup::Entry entry;
   entry.a = builder.marker(e.a).body;
   entry.b = builder.marker(e.b).body;
-  entry.outlines = std::make_shared<const Outlines>(Outlines{*a, *b});
+  const double through = is_plane ? std::numeric_limits<double>::infinity() : 0.5 * std::min(width_of(*a), width_of(*b));
+  entry.outlines = std::make_shared<const Outlines>(Outlines{*a, *b, reach_of(*a), reach_of(*b), through});
   entry.stiffness = e.stiffness;
   entry.dissipation = e.dissipation;
   entry.has_friction = e.static_friction.has_value() && !is_plane;

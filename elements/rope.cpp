@@ -61,6 +61,15 @@ public:
     }
     return way;
   }
+  /// Of the length: that of all parts.
+  static double rounding_of(const Entry& entry, const Motion<double>* motion) {
+    double sum = k_rounded_sum * entry.fixed_length;
+    for (const RopePart& part : entry.parts) {
+      const Motion<double>&a = motion[part.a], &b = motion[part.b];
+      sum += value_rounding(part.measure.at<false, double>(a, b), a, b);
+    }
+    return sum;
+  }
   /// Of the part that is nearest to having run onto its pulley.
   static Left least_left(const Entry& entry, double stretch, const Motion<double>* motion) {
     Left least;
@@ -139,7 +148,11 @@ public:
       const RopePart& part = *least_left(entry, way.length + entry.law.offset, e.motion).part;
       throw rope_has_run_in(e.t, entry.name, part.name_a, part.name_b);
     }
-    return entry.law.next_mode(mode, slot, -way.length, -way.rate);
+    return entry.law.next_mode(mode, slot, -way.length, -way.rate, rounding_of(entry, e.motion));
+  }
+  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    const Entry& entry = entries[element];
+    return entry.law.is_surely_positive(mode, slot, -way_of(entry, e.motion).length, rounding_of(entry, e.motion));
   }
   [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
     if (to == k_contact_open) return EventKind::enters_gap;

@@ -5,7 +5,7 @@
 // by the whole radius.
 #pragma once
 
-#include "mbd/system/measure.h"
+#include "mbd/system/gap_source.h"
 
 namespace steplap {
 
@@ -61,5 +61,26 @@ struct SegmentMeasure {
     return DistanceMeasure{point_a, to()}.at<false, S>(a, b);
   }
 };
+
+/// A circle inside a ring has nowhere to go through.
+inline GapBounds gap_bounds(const InsideMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
+  GapBounds bounds = gap_bounds(DistanceMeasure{measure.point_a, measure.point_b}, 0.0, a, b);
+  bounds.gap = -bounds.gap - offset;
+  bounds.normal = -1.0 * bounds.normal;
+  bounds.through = std::numeric_limits<double>::infinity();
+  return bounds;
+}
+
+/// `offset` is what circle and segment are thick together, from the middle of each.
+inline GapBounds gap_bounds(const SegmentMeasure& measure, double offset, const Motion<double>& a, const Motion<double>& b) {
+  const auto m = measure.at<false, double>(a, b);
+  GapBounds bounds;
+  bounds.gap = m.value - offset;
+  bounds.normal = m.direction;
+  bounds.reach_a = measure.point_a.norm();
+  bounds.reach_b = std::max(measure.from.norm(), measure.to().norm());
+  bounds.through = offset;
+  return bounds;
+}
 
 } // namespace steplap

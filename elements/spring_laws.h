@@ -57,7 +57,7 @@ struct GapSpring {
     watch[1] = mode == 1 ? high : S(1.0);
     watch_rate[1] = mode == 1 ? -rate : S(0.0);
   }
-  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double, double) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double, double, double) const {
     if (mode != 1) return 1;
     return slot == 0 ? 0 : 2;
   }
@@ -123,9 +123,12 @@ private:
 };
 
 /// f = −T(value − free) − D(rate) with tables T, D; the mode is the pair of segments. Only the ends of the present
-/// segments are watched, so that a step costs the same however long the tables are.
+/// segments are watched, so that a step costs the same however long the tables are. A segment goes on beyond its ends by what
+/// value and rate are not known to: between bodies that joints hold to each other they are rounding, and where that lies at
+/// a kink it would be passed without end.
 struct TabulatedSpring {
   static constexpr int k_watches = 4;
+  static constexpr bool k_watches_beyond_rounding = true;
   static constexpr bool k_is_contact = false;
   PiecewiseLinear spring, damper;
   double free = 0.0, count = 1.0;
@@ -147,17 +150,19 @@ struct TabulatedSpring {
   [[nodiscard]] UnitMode mode_at(double value, double rate) const {
     return mode_of(spring.segment_at(value - free), damper.segment_at(rate));
   }
-  template <class S> void watch(const S& value, const S& rate, UnitMode mode, S* watch, S* watch_rate) const {
+  static WatchKind watch_kind(int slot) { return slot < 2 ? WatchKind::place : WatchKind::rate; }
+  template <class S>
+  void watch(const S& value, const S& rate, UnitMode mode, const S& value_known_to, const S& rate_known_to, S* watch, S* watch_rate) const {
     const int s = spring_segment(mode), d = damper_segment(mode);
     const S e = value - free;
-    watch[0] = e - spring.low(s);
-    watch[1] = spring.high(s) - e;
-    watch[2] = rate - damper.low(d);
-    watch[3] = damper.high(d) - rate;
+    watch[0] = e - spring.low(s) + value_known_to;
+    watch[1] = spring.high(s) - e + value_known_to;
+    watch[2] = rate - damper.low(d) + rate_known_to;
+    watch[3] = damper.high(d) - rate + rate_known_to;
     watch_rate[0] = rate;
     watch_rate[1] = -rate;
   }
-  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double) const {
     const int s = spring_segment(mode), d = damper_segment(mode);
     const bool is_above = slot == 1 || slot == 3;
     return slot < 2 ? mode_of(spring.segment_beyond(s, is_above, value - free), d)

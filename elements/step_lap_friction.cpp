@@ -484,7 +484,8 @@ void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state
 SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const {
   SlipScale scale;
   scale.lever = portable::hypot(gyration_, arm_.norm());
-  scale.speed = scaled(law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).norm();
+  // Below the speed of rest there is nothing left to be known.
+  scale.speed = std::max(scaled(law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).norm(), end_speed(e));
   return scale;
 }
 

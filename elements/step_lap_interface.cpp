@@ -107,6 +107,7 @@ void compile_interface(const Element& element, SystemBuilder& builder) {
     return builder.error("'kinetic_friction' must not exceed 'static_friction'");
   if (!(e.yoke_holes.empty() && e.limb_holes.empty()) && !(e.hole_diameter > 0.0))
     return builder.error("has holes: 'hole_diameter' must be more than 0 m");
+  if (!e.part.empty() && !(e.part_share > 0.0)) return builder.error("names a 'part': give its 'part_share' of the limb's weight, too");
   if (e.across && !(e.across->norm() > 0.0)) return builder.error("'across' must not be [0, 0]");
   // Each on its own, so that the message can say which of the two.
   for (const bool is_yoke : {true, false}) try {
@@ -182,6 +183,8 @@ const ElementKind& step_lap_interface_kind() {
     f.add("static_friction", &T::static_friction).positive().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).positive().doc("mu_k; default: mu_s");
     f.add("count", &T::count).positive().doc("number of equal interfaces in the stack");
+    f.add("part", &T::part).doc("name of the packet of the limb's sheets that it holds, if packets are to be judged one by one");
+    f.add("part_share", &T::part_share).not_negative().at_most(1.0).doc("share of the limb's weight that this packet has; needed with part");
     f.add("clearance", &T::clearance).in("m").not_negative().doc(
         "by which the limb may move towards the yoke, across the overlap, before the sheets of a layer butt; not given: "
         "not known, and not looked at");

@@ -27,6 +27,8 @@ struct StepLapInterface : Element {
   double static_friction = 0.0;
   std::optional<double> kinetic_friction;
   double count = 1.0;             ///< of equal interfaces
+  std::string part;               ///< name of the packet of the limb's sheets that it holds; empty: none is told apart
+  double part_share = 0.0;        ///< of the limb's weight that this packet has
   std::optional<double> clearance; ///< m, by which the limb may move towards the yoke before sheets butt
   std::optional<Vec2> across; ///< direction from the yoke to the limb, as `frame`; none: between the sheets' middles
 };

@@ -5,6 +5,7 @@
 #include "elements/step_lap_elastic.h"
 #include "elements/step_lap_friction.h"
 #include "elements/step_lap_interface.h"
+#include "elements/step_lap_shares.h"
 
 #include <algorithm>
 #include <limits>
@@ -33,12 +34,12 @@ void add_wrench_channels(SystemBuilder& builder, const StepLapFriction& friction
                       [self](const Snapshot& s) { return self->wrench(s)[2]; });
 }
 
-// Signals that the pressures follow. They may not jump: what held would have to let go within no time.
+// Signals that the pressures follow. They may not jump during a run: what held would have to let go within no time.
 const Signal* steady_signal(SystemBuilder& builder, const std::string& name, const char* field) {
   const Signal* signal = builder.signal(name);
   if (!signal) return nullptr;
   for (std::size_t k = 0; k < signal->breakpoints().size(); ++k)
-    if (signal->jumps_at(k)) {
+    if (signal->breakpoints()[k] > 0.0 && signal->jumps_at(k)) {
       builder.error("'" + std::string(field) + "': signal '" + name +
                     "' jumps at t = " + rounded_text(signal->breakpoints()[k]) +
                     " s; a clamping pressure changes within some time: a trapezoid, or a record between lines");
@@ -367,6 +368,7 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   add_wrench_channels(builder, *friction);
   if (friction->has_sheets()) {
     add_usage_channels(builder, *friction, *interfaces.front());
+    add_share_channels(builder, *friction, interfaces, mass_of(e.limb, builder).mass * builder.model().header.gravity.norm());
     add_loss_channels(builder, *friction, std::any_of(interfaces.begin(), interfaces.end(), [](const auto* i) {
                         return i->clearance.has_value();
                       }));
@@ -394,6 +396,18 @@ yoke = [[-1.0, -0.5], [1.0, -0.5], [1.0, 0.2], [-1.0, 0.2]]
 limb = [[-0.3, 0.0], [0.3, 0.0], [0.3, 1.0], [-0.3, 1.0]]
 pressure = 1e6
 static_friction = 0.3
+part = 'one packet'
+part_share = 0.5
+[[element]]
+name = 'sheets below'
+kind = 'step_lap_interface'
+joint = 'stiff'
+yoke = [[-1.0, -2.5], [1.0, -2.5], [1.0, -2.0], [-1.0, -2.0]]
+limb = [[-0.3, -2.1], [0.3, -2.1], [0.3, -1.0], [-0.3, -1.0]]
+pressure = 1e6
+static_friction = 0.3
+part = 'another packet'
+part_share = 0.5
 [[element]]
 name = 'soft'
 kind = 'step_lap_joint'

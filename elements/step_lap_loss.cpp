@@ -88,7 +88,10 @@ OverlapLoss OverlapReference::loss_at(const std::vector<SheetPair>& sheets, cons
                                       OverlapWorkspace& workspace, Region& region) const {
   OverlapLoss loss;
   for (std::size_t corner = 0; corner < corner_area_.size(); ++corner) {
-    if (!(corner_area_[corner] > 0.0)) continue;
+    if (!(corner_area_[corner] > 0.0)) {
+      loss.overlap_left = 0.0;
+      continue;
+    }
     double left = 0.0;
     for (std::size_t i = 0; i < sheets.size(); ++i) {
       const Overlap& o = overlaps_[i];

@@ -16,7 +16,7 @@ namespace steplap {
 
 struct OverlapLoss {
   double area_lost = 0.0;    ///< m², of the interfaces that lost some, each times its number
-  double overlap_left = 1.0; ///< share that is left to the corner that has lost most; 0: wholly parted
+  double overlap_left = 1.0; ///< share that is left to the corner that has lost most; 0: wholly parted, or without overlap from the start
   double slid_share = 0.0;   ///< largest displacement of a corner, of the width of its overlap
   double clearance_left = std::numeric_limits<double>::infinity(); ///< m, the least; of interfaces that state theirs
 };
@@ -30,6 +30,9 @@ public:
                                     OverlapWorkspace& workspace, Region& region) const;
   [[nodiscard]] std::size_t corner_count() const { return corner_area_.size(); }
   [[nodiscard]] std::size_t corner_of(std::size_t sheets) const { return overlaps_[sheets].corner; }
+  [[nodiscard]] double area_of(std::size_t sheets) const { return overlaps_[sheets].area; } ///< m², of one interface
+  /// Of its overlap, in the active part's axes.
+  [[nodiscard]] const std::vector<Vec2>& vertices_of(std::size_t sheets) const { return overlaps_[sheets].in_part; }
 
 private:
   struct Overlap {

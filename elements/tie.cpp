@@ -69,14 +69,19 @@ struct TieLaw {
       push.watch(d, rate, contact_mode(mode), watch, watch_rate);
     }
   }
-  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate) const {
+  [[nodiscard]] UnitMode next_mode(UnitMode mode, int slot, double value, double rate, double rounding) const {
     const double d = value - free;
     if (slot == 2) return k_broken;
     if (mode == k_slack)
-      return slot == 0 ? tie_mode(pull.next_mode(k_contact_open, 0, -d, -rate), k_pulls)
-                       : tie_mode(push.next_mode(k_contact_open, 0, d, rate), k_presses);
-    if (is_pull(mode)) return tie_mode(pull.next_mode(contact_mode(mode), slot, -d, -rate), k_pulls);
-    return is_push(mode) ? tie_mode(push.next_mode(contact_mode(mode), slot, d, rate), k_presses) : mode;
+      return slot == 0 ? tie_mode(pull.next_mode(k_contact_open, 0, -d, -rate, rounding), k_pulls)
+                       : tie_mode(push.next_mode(k_contact_open, 0, d, rate, rounding), k_presses);
+    if (is_pull(mode)) return tie_mode(pull.next_mode(contact_mode(mode), slot, -d, -rate, rounding), k_pulls);
+    return is_push(mode) ? tie_mode(push.next_mode(contact_mode(mode), slot, d, rate, rounding), k_presses) : mode;
+  }
+  [[nodiscard]] bool is_surely_positive(UnitMode mode, int slot, double value, double rounding) const {
+    const double d = value - free;
+    if (is_pull(mode)) return pull.is_surely_positive(contact_mode(mode), slot, -d, rounding);
+    return is_push(mode) && push.is_surely_positive(contact_mode(mode), slot, d, rounding);
   }
 };
 
@@ -145,7 +150,11 @@ public:
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     const auto m = measured(element, e);
-    return entries[element].law.next_mode(mode, slot, m.value, m.rate);
+    return entries[element].law.next_mode(mode, slot, m.value, m.rate, rounding_of(element, m, e));
+  }
+  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    const auto m = measured(element, e);
+    return entries[element].law.is_surely_positive(mode, slot, m.value, rounding_of(element, m, e));
   }
   [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
     if (to == k_broken) return EventKind::breaks;
@@ -164,6 +173,9 @@ public:
   }
 
 private:
+  [[nodiscard]] double rounding_of(int element, const MeasureValue<double>& m, const Evaluation& e) const {
+    return value_rounding(m, e.motion[entries[element].a], e.motion[entries[element].b]);
+  }
   static double value(const Entry& entry, const Motion<double>* motion) {
     return entry.measure.template at<false, double>(motion[entry.a], motion[entry.b]).value;
   }
@@ -260,6 +272,9 @@ const ElementKind& tie_kind() {
         .positive()
         .doc("size of the force at which one breaks; not given: it does not");
     f.add("on_break", &T::on_break).one_of({"continue", "stop"}).doc("whether the run goes on without it");
+    f.add("consequence", &T::consequence)
+        .one_of({"reject", "inspect", "none"})
+        .doc("what its breaking means for the verdict; none: it is meant to give way first, such as resin");
     k.holds<T>();
     k.compile = compile_tie;
     return k;

@@ -22,6 +22,7 @@ struct Tie : Element {
   std::optional<double> preload;     ///< N, tension positive, of all in the reference pose
   std::optional<double> strength;    ///< N, of one
   std::string on_break = "continue"; ///< or "stop"
+  std::string consequence = "reject"; ///< of its breaking, for the verdict: "reject", "inspect", or "none": it is meant to go first
   long count = 1;
 };
 

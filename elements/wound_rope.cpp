@@ -114,8 +114,14 @@ public:
     return entries[element].law.mode_at(m.value, m.rate);
   }
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
-    const auto m = measured(entries[element], e.motion);
-    return entries[element].law.next_mode(mode, slot, m.value, m.rate);
+    const Entry& entry = entries[element];
+    const auto m = measured(entry, e.motion);
+    return entry.law.next_mode(mode, slot, m.value, m.rate, rounding_of(entry, m, e));
+  }
+  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    const Entry& entry = entries[element];
+    const auto m = measured(entry, e.motion);
+    return entry.law.is_surely_positive(mode, slot, m.value, rounding_of(entry, m, e));
   }
   [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
     if (to == k_contact_open) return EventKind::enters_gap;
@@ -123,6 +129,12 @@ public:
   }
 
 private:
+  // What is wound on the wheels is in the value, beside what the measure's terms are.
+  static double rounding_of(const Entry& entry, const MeasureValue<double>& m, const Evaluation& e) {
+    const Motion<double>&a = e.motion[entry.a], &b = e.motion[entry.b];
+    const double wound = std::abs(entry.measure.taken) + std::abs(entry.measure.radius_a * a.theta) + std::abs(entry.measure.radius_b * b.theta);
+    return value_rounding(m, a, b) + k_rounded_sum * wound;
+  }
   static void add_at(BodyForce& sum, const Pair<double>& lever, const Pair<double>& force) {
     sum.fx += force.x;
     sum.fy += force.y;

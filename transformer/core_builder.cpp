@@ -71,6 +71,7 @@ private:
   void add_joint(std::size_t i, const CoreGeometry& geometry);
   void give_settings(StepLapJoint& joint, const CoreGeometry& geometry) const;
   void add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry);
+  void find_parts(std::size_t i, const CoreGeometry& geometry);
   void press(StepLapInterface& face, std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry);
   void refuse_repetition(const StepLapInterface& face);
   void give_steel(std::size_t i, const CoreGeometry& geometry);
@@ -84,6 +85,7 @@ private:
   const Core& core_;
   Model& model_;
   std::vector<std::string> limbs_; ///< outer ones, then middle ones
+  std::vector<double> part_shares_; ///< of the limb at hand; empty: packets are not told apart
   std::vector<Diagnostic> problems_;
 };
 
@@ -195,9 +197,19 @@ void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
     model_.elements.push_back({&step_lap_joint_kind(), joint});
   }
   const double reach = std::abs(middle_of_limb(core_, limb(i), active_part()).x());
+  find_parts(i, geometry);
   for (const CoreCorner& corner :
        geometry.corners(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()), reach))
     for (const Lap& lap : corner.laps) add_interface(i, corner, lap, geometry);
+}
+
+// Which packets the interfaces of a joint hold: where there is more than one, each has to be held by itself. Of a limb that several
+// tables share, the shares in all of its steel are not known here.
+void CoreBuilder::find_parts(std::size_t i, const CoreGeometry& geometry) {
+  part_shares_.clear();
+  if (count_cores_of(model_, limbs_[i]) > 1) return;
+  part_shares_ = geometry.packet_shares(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()));
+  if (std::count_if(part_shares_.begin(), part_shares_.end(), [](double share) { return share > 0.0; }) < 2) part_shares_.clear();
 }
 
 void CoreBuilder::give_settings(StepLapJoint& joint, const CoreGeometry& geometry) const {
@@ -256,6 +268,11 @@ void CoreBuilder::add_interface(std::size_t i, const CoreCorner& corner, const L
                                      : core_.bottom_static_friction.value_or(core_.static_friction);
   e->kinetic_friction = !corner.is_top && core_.bottom_kinetic_friction ? core_.bottom_kinetic_friction
                                                                         : core_.kinetic_friction;
+  if (!part_shares_.empty()) {
+    const std::size_t packet = geometry.packet_of(lap);
+    e->part = "packet " + std::to_string(packet + 1);
+    e->part_share = part_shares_[packet];
+  }
   refuse_repetition(*e);
   model_.elements.push_back({&step_lap_interface_kind(), e});
 }

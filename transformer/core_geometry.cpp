@@ -11,6 +11,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <set>
 
 namespace steplap {
@@ -324,6 +325,27 @@ LimbSteel CoreGeometry::limb_steel(bool is_middle, double side) const {
   steel.mass = surface * sum.area;
   steel.inertia = surface * (sum.second - sum.area * steel.centre.squaredNorm());
   return steel;
+}
+
+std::vector<double> CoreGeometry::packet_shares(bool is_middle, double side) const {
+  if (core_.is_counted()) return {};
+  const std::size_t count = stack_.packets.size();
+  std::vector<double> alike(count, 0.0), shares(count, 0.0), sheets(count, 0.0);
+  for (const LayerCount& layer : layer_counts(stack_)) {
+    const Mitre m = mitre(layer.shape.packet, is_middle);
+    const double q = line(layer.shape, is_middle) + 0.5 * stack_.book.clearance;
+    Moments one;
+    one.add(punched(is_middle ? whole_pointed_limb(m, q) : whole_limb(m, side, q), is_middle ? 1.0 : side, {1.0, -1.0}), 1.0);
+    alike[layer.shape.packet] += static_cast<double>(layer.sheets) * one.area;
+  }
+  const double all = std::accumulate(alike.begin(), alike.end(), 0.0);
+  for (std::size_t p = 0; p < count; ++p) sheets[likeness(stack_, p)] += static_cast<double>(sheets_in(stack_, stack_.packets[p]));
+  for (std::size_t p = 0; p < count; ++p) {
+    const std::size_t like = likeness(stack_, p);
+    if (stack_.is_by_place) shares[p] = alike[like] / all * static_cast<double>(sheets_in(stack_, stack_.packets[p])) / sheets[like];
+    else if (like == p) shares[p] = alike[p] / all;
+  }
+  return shares;
 }
 
 double CoreGeometry::yoke_strip(const LimbPlace& outer) const {

@@ -79,6 +79,13 @@ public:
   /// bolt hole cuts a sheet in two.
   [[nodiscard]] std::vector<CoreCorner> corners(bool is_middle, double side, double reach) const;
   [[nodiscard]] LimbSteel limb_steel(bool is_middle, double side) const;
+  /// Of a limb's steel, the share that each packet has; of a stack that is not by place, packets alike count as their first one,
+  /// and the others have none. Empty where the stack is not known.
+  [[nodiscard]] std::vector<double> packet_shares(bool is_middle, double side) const;
+  /// The packet whose share a lap holds.
+  [[nodiscard]] std::size_t packet_of(const Lap& lap) const {
+    return stack_.is_by_place ? lap.zone / static_cast<std::size_t>(stack_.slices) : lap.packet;
+  }
   /// Of both yokes from x = 0 to the outer face of an outer limb, as if no limb stood there, kg; negative where that face
   /// lies behind x = 0 as seen from its side. Zero where the stack is not known (overlaps counted).
   [[nodiscard]] double yoke_strip(const LimbPlace& outer) const;

@@ -35,6 +35,10 @@ void read_extremes(const RunResult& result, JointAssessment& a) {
   a.time_of_largest = pressure.t;
   a.smallest_margin = margin.value;
   a.time_of_smallest = margin.t;
+  a.least_pressure = extreme(".least_pressure", &ChannelRange::low);
+  a.corner_margin = extreme(".corner_margin", &ChannelRange::low);
+  a.part_margin = extreme(".part_margin", &ChannelRange::low);
+  a.largest_demand = extreme(".demand", &ChannelRange::high).value;
   a.slid_share = extreme(".slid_share", &ChannelRange::high);
   a.overlap_left = extreme(".overlap_left", &ChannelRange::low);
   a.edge_share = extreme(".edge_share", &ChannelRange::high);
@@ -57,6 +61,19 @@ void read_events(const std::vector<Event>& events, JointAssessment& result) {
       if (!result.first_slip) result.first_slip = event.t;
     }
     if (event.kind == EventKind::comes_apart) result.has_come_apart = true;
+  }
+}
+
+// Beyond this share of the limb's weight a change of the force on it is a load, and not what the machine settles by.
+constexpr double k_least_load = 1e-3;
+
+// Has anything been asked of the joint but to bear what it bears at rest?
+void read_load(const RunResult& result, const Model& model, const StepLapJoint& joint, JointAssessment& a) {
+  const Body* const limb = model.find_body(joint.limb);
+  a.weight = limb ? limb->mass * model.header.gravity.norm() : 0.0;
+  for (const char* const part : {".fx", ".fy"}) {
+    const ChannelRange* const range = find_range(result, a.joint + part);
+    if (range && range->high.value - range->low.value > k_least_load * a.weight) a.is_loaded = true;
   }
 }
 
@@ -100,12 +117,14 @@ JointVerdict verdict_of(const JointAssessment& a, bool has_interfaces) {
   if (!has_interfaces) return JointVerdict::not_assessed;
   if (a.has_come_apart) return JointVerdict::came_apart;
   if (a.has_parted()) return JointVerdict::corner_parted;
+  if (a.is_unpressed()) return JointVerdict::unpressed;
   if (a.has_slid_too_far()) return JointVerdict::slid_too_far;
   if (a.has_crushed_edges()) return JointVerdict::crushed_edges;
   if (a.has_left_range()) return JointVerdict::closed_clearance;
   if (a.has_slipped) return JointVerdict::slipped;
   if (!a.is_known()) return JointVerdict::not_known;
   if (a.is_monitored && a.smallest_margin < 1.0) return JointVerdict::would_slip;
+  if (a.has_weak_part()) return JointVerdict::weak_part;
   return a.smallest_margin < a.least_margin ? JointVerdict::little_reserve : JointVerdict::holds;
 }
 
@@ -116,12 +135,14 @@ const char* words_of(JointVerdict verdict) {
   case JointVerdict::not_assessed: return "not assessed";
   case JointVerdict::came_apart: return "came apart";
   case JointVerdict::corner_parted: return "a corner parted";
+  case JointVerdict::unpressed: return "not pressed everywhere";
   case JointVerdict::slid_too_far: return "slid too far";
   case JointVerdict::crushed_edges: return "crushed its edges";
   case JointVerdict::closed_clearance: return "closed its clearance";
   case JointVerdict::slipped: return "slipped";
   case JointVerdict::not_known: return "not known";
   case JointVerdict::would_slip: return "would slip";
+  case JointVerdict::weak_part: return "a corner or packet too weak";
   case JointVerdict::little_reserve: return "little reserve";
   case JointVerdict::holds: break;
   }
@@ -147,6 +168,7 @@ std::vector<JointAssessment> assess_joints(const Model& model, const RunResult& 
     read_extremes(result, a);
     read_events(result.events, a);
     read_modes(result, a);
+    read_load(result, model, *joint, a);
     const bool has_interfaces =
         std::any_of(model.elements.begin(), model.elements.end(), [&](const ElementEntry& other) {
           const auto* face = dynamic_cast<const StepLapInterface*>(other.element.get());

@@ -17,12 +17,14 @@ enum class JointVerdict : std::uint8_t {
   not_assessed,       ///< a joint without interfaces, which holds whatever it takes
   came_apart,
   corner_parted,
+  unpressed,          ///< nothing presses some interface, or a corner or packet has nothing to hold by
   slid_too_far,
   crushed_edges,
   closed_clearance,
   slipped,
   not_known,          ///< no figures
   would_slip,         ///< a monitored joint beyond its limit
+  weak_part,          ///< a corner or a packet of sheets cannot hold its share of the weight
   little_reserve,     ///< less margin than the model asks for
   holds
 };
@@ -48,6 +50,11 @@ struct JointAssessment {
   double smallest_margin = 0.0;            ///< capacity over demand; below 1: it slips, or would
   double time_of_smallest = 0.0;           ///< s
   double least_margin = 1.0;               ///< that the model asks for
+  Extreme least_pressure;                  ///< Pa, of any interface at any time
+  Extreme corner_margin, part_margin;      ///< the least that a corner or a packet had by itself; not-a-number where there is but one
+  double largest_demand = 0.0;             ///< N, the largest force on the limb
+  double weight = 0.0;                     ///< N, of the limb
+  bool is_loaded = false;                  ///< the force on it changed by more than rounding of its weight
   double slid_x = 0.0, slid_y = 0.0;       ///< m, at the end, in the active part's axes
   double slid_angle = 0.0;                 ///< rad, θ_acc at the end
   double area_lost = 0.0;                  ///< m², at the end: of interfaces that lost some, times their number
@@ -66,6 +73,9 @@ struct JointAssessment {
   bool is_monitored = false;
 
   [[nodiscard]] bool has_parted() const { return overlap_left.value <= 0.0; } ///< a whole corner
+  /// Something of it holds by nothing.
+  [[nodiscard]] bool is_unpressed() const { return least_pressure.value <= 0.0 || corner_margin.value <= 0.0 || part_margin.value <= 0.0; }
+  [[nodiscard]] bool has_weak_part() const { return corner_margin.value < 1.0 || part_margin.value < 1.0; }
   [[nodiscard]] bool has_slid_too_far() const { return slid_share.value > most_slide; }
   [[nodiscard]] bool has_crushed_edges() const { return edge_share.value > 1.0; }
   /// Allowed line load over the largest; infinite if no edge bore. Not-a-number without an allowed one.

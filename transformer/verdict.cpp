@@ -130,10 +130,35 @@ CriterionResult judge_holding(const JointAssessment& joint) {
     result.t = joint.time_of_smallest;
   }
   if (joint.first_slip) result.t = joint.first_slip;
+  if (joint.has_slipped) result.reserve.reset(); // that it slipped is no matter of digits
   if (joint.verdict == JointVerdict::not_assessed || joint.verdict == JointVerdict::not_known) result.outcome = Verdict::open;
-  else if (joint.verdict != JointVerdict::holds) result.outcome = Verdict::inspect;
+  else if (joint.has_slipped || joint.smallest_margin < joint.least_margin) result.outcome = Verdict::inspect;
   if (joint.has_come_apart) result.consequence = result.outcome = Verdict::reject;
   return result;
+}
+
+void judge_least(const JointAssessment& joint, const Extreme& least, const char* channel, const std::string& text, double limit,
+                 Verdict below, std::vector<CriterionResult>& criteria) {
+  if (std::isnan(least.value)) return; // there is but one corner, or one packet
+  CriterionResult result = joint_result(joint, text);
+  result.value = least.value;
+  result.limit = limit;
+  result.t = least.t;
+  result.channel = joint.joint + channel;
+  result.reserve = least.value - limit;
+  result.consequence = least.value <= 0.0 ? Verdict::reject : below;
+  if (least.value <= 0.0 || least.value < limit) result.outcome = result.consequence;
+  criteria.push_back(result);
+}
+
+// Each corner and packet by itself: what one of them lacks is not made good by the others.
+void judge_shares(const JointAssessment& joint, std::vector<CriterionResult>& criteria) {
+  if (joint.verdict == JointVerdict::not_assessed) return;
+  judge_least(joint, joint.least_pressure, ".least_pressure", "every interface is pressed: pressure > 0 Pa", 0.0, Verdict::reject, criteria);
+  if (!std::isnan(joint.least_pressure.value)) criteria.back().unit = "Pa";
+  judge_least(joint, joint.corner_margin, ".corner_margin", "each corner holds its share of the limb's weight: margin >= 1", 1.0, Verdict::inspect, criteria);
+  judge_least(joint, joint.part_margin, ".part_margin", "each packet of sheets holds its own weight: margin >= 1", 1.0,
+              Verdict::inspect, criteria);
 }
 
 // Only of a joint whose sheets are known.
@@ -237,6 +262,9 @@ std::string distrust_of(const Model& model, const System& system, const RunResul
            " m only: let the scene begin and stay near the origin, and take common velocities away";
   if (s.max_position_residual > k_open_share * size)
     return "a step left joints open by " + limit_text(s.max_position_residual) + " m or rad: " + remedy(model.simulation);
+  if (s.passed_pulse)
+    return "time stepping passed over a part of a load at t = " + limit_text(*s.passed_pulse) +
+           " s that is far shorter than its steps: bodies have its impulse, but no force or acceleration shows it: " + remedy(model.simulation);
   if (s.energy_residual > EnergyAccount::k_untrusted * s.energy_scale && s.energy_residual > s.energy_rounding)
     return "the energy balance is off by " + limit_text(s.energy_residual) + " J of " + limit_text(s.energy_scale) +
            " J turned over: " + remedy(model.simulation);
@@ -266,6 +294,7 @@ Verdict outcome_of(JointVerdict verdict) {
   case JointVerdict::not_known: return Verdict::open;
   case JointVerdict::came_apart:
   case JointVerdict::corner_parted:
+  case JointVerdict::unpressed:
   case JointVerdict::crushed_edges:
   case JointVerdict::slid_too_far: return Verdict::reject;
   default: return Verdict::inspect;
@@ -279,7 +308,7 @@ void judge_tie(const Tie& tie, const RunResult& run, std::vector<CriterionResult
   CriterionResult result;
   result.name = result.where = tie.name;
   result.text = "the tie does not break: its force, of its strength < 1";
-  result.consequence = Verdict::reject;
+  result.consequence = tie.consequence == "inspect" ? Verdict::inspect : Verdict::reject;
   result.outcome = Verdict::open;
   result.limit = 1.0;
   for (const ChannelRange& range : run.ranges) {
@@ -292,7 +321,7 @@ void judge_tie(const Tie& tie, const RunResult& run, std::vector<CriterionResult
   }
   for (const Event& event : run.events)
     if (event.kind == EventKind::breaks && event.element == tie.name) {
-      result.outcome = Verdict::reject;
+      result.outcome = result.consequence;
       result.t = event.t;
       result.reserve.reset(); // that it broke is no matter of digits
     }
@@ -306,13 +335,17 @@ Judgement judge(const Model& model, const System& system, const RunResult& resul
   const std::vector<JointAssessment> joints = assess_joints(model, result);
   for (const JointAssessment& joint : joints) {
     judgement.criteria.push_back(judge_holding(joint));
+    judge_shares(joint, judgement.criteria);
     judge_overlap(joint, judgement.criteria);
   }
   for (const ElementEntry& entry : model.elements)
-    if (const auto* tie = dynamic_cast<const Tie*>(entry.element.get()); tie && tie->strength) judge_tie(*tie, result, judgement.criteria);
+    if (const auto* tie = dynamic_cast<const Tie*>(entry.element.get()); tie && tie->strength && tie->consequence != "none") judge_tie(*tie, result, judgement.criteria);
   for (const Criterion& c : model.criteria)
     judgement.criteria.push_back(c.event.empty() ? judge_channel(c, result.ranges) : judge_event(c, result));
   judgement.has_criteria = !judgement.criteria.empty();
+  for (const JointAssessment& joint : joints)
+    if (joint.is_known() && !joint.is_loaded)
+      add_cap(judgement, "nothing loaded '" + joint.joint + "' but its limb's weight: a run that asks nothing of a joint does not show that it holds");
   judgement.so_far = judgement.has_criteria ? Verdict::hold : Verdict::open;
   for (const CriterionResult& c : judgement.criteria)
     judgement.so_far = std::max(judgement.so_far, c.outcome);
@@ -321,7 +354,13 @@ Judgement judge(const Model& model, const System& system, const RunResult& resul
     add_distrust(judgement, contradiction_of(model, joints));
   }
   judgement.verdict = failure.empty() && judgement.distrust.empty() ? judgement.so_far : Verdict::open;
+  if (!judgement.caps.empty()) judgement.verdict = std::max(judgement.verdict, Verdict::open);
   return judgement;
+}
+
+void add_cap(Judgement& judgement, const std::string& why) {
+  judgement.caps.push_back(why);
+  judgement.verdict = std::max(judgement.verdict, Verdict::open);
 }
 
 } // namespace steplap

@@ -43,8 +43,12 @@ struct Judgement {
   Verdict so_far = Verdict::hold; ///< of what was computed: the verdict itself, but for a run that broke off
   bool has_criteria = false;
   std::string distrust; ///< not empty: why the run itself is not to be trusted, and what to try; its verdict is then open
+  std::vector<std::string> caps; ///< why the run cannot mean "hold", whatever it meets: what is unusual in the model, what it was not asked
   std::vector<CriterionResult> criteria;
 };
+
+/// The verdict is "open" at best from now on. No reason to inspect a machine, and none to sign that it holds.
+void add_cap(Judgement& judgement, const std::string& why);
 
 /// `failure`: what stopped the run, empty if it reached its end.
 [[nodiscard]] Judgement judge(const Model& model, const System& system, const RunResult& result,

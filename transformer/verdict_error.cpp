@@ -137,12 +137,6 @@ std::string doubt_about_slips(const Judgement& judgement, const Judgement& finer
   return "";
 }
 
-void distrust(Judgement& judgement, const std::string& why) {
-  if (why.empty()) return;
-  judgement.distrust += (judgement.distrust.empty() ? "" : "; ") + why;
-  judgement.verdict = Verdict::open;
-}
-
 void take_over_open(Judgement& judgement) {
   for (const CriterionResult& c : judgement.criteria) {
     judgement.so_far = std::max(judgement.so_far, c.outcome);
@@ -157,6 +151,12 @@ std::string share_text(double share) {
 }
 
 } // namespace
+
+void distrust(Judgement& judgement, const std::string& why) {
+  if (why.empty()) return;
+  judgement.distrust += (judgement.distrust.empty() ? "" : "; ") + why;
+  judgement.verdict = Verdict::open;
+}
 
 JointErrors joint_errors(const JointAssessment& joint, const System& system, const RunResult& run,
                          const GlobalErrorEstimate& estimate) {
@@ -205,6 +205,7 @@ void weigh_errors(Judgement& judgement, const Model& model, const System& system
   }
   take_over_open(judgement);
   distrust(judgement, of_slips);
+  if (!estimate.unknown_because.empty()) return leave_open(judgement, estimate.unknown_because);
   const WorstError& worst = estimate.error.of(ErrorKind::position);
   if (worst.value <= k_most_trusted_error) return;
   distrust(judgement, "the estimated error of '" + worst.where + "' is " + share_text(worst.value) +

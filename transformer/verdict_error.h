@@ -30,4 +30,7 @@ void weigh_errors(Judgement& judgement, const Model& model, const System& system
 /// Of a run whose error should have been estimated and could not: no criterion can be called met.
 void leave_open(Judgement& judgement, const std::string& why);
 
+/// The run is not to be trusted: its verdict is open.
+void distrust(Judgement& judgement, const std::string& why);
+
 } // namespace steplap

@@ -2,6 +2,7 @@
 
 #include "mbd/analysis/cross_curves.h"
 #include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
 #include "mbd/model/method.h"
 
 #include <algorithm>
@@ -25,12 +26,14 @@ constexpr int k_persistent = 4; // samples: time stepping's forces at an instant
 constexpr double k_brief_steps = 20.0; // what changes back within so many fixed steps is not missed
 constexpr double k_own_doubt = 1e-3;            // an adaptive method's estimate beyond it is looked at
 constexpr double k_momentum_allowed = 1e-6;
-constexpr long k_steps_between_looks = 256;
+constexpr long k_steps_between_looks = 8; // a step of time stepping may take milliseconds
 constexpr double k_closer = 0.25; // steps and samples of a closer look
 
 constexpr double k_moreau_steps = 2000, k_rk4_steps = 4000; // of the coarsest level, in a run
 
-RunResult run_within(const System& system, const State& initial, const SimulationOptions& options, const CrossCheckOptions& limits) {
+// `cpu_limit`: s, of this run.
+RunResult run_within(const System& system, const State& initial, const SimulationOptions& options, const CrossCheckOptions& limits,
+                     double cpu_limit) {
   const double start = thread_cpu_seconds();
   Simulation simulation(system, initial, options);
   const auto stop = [&simulation](const std::string& what) {
@@ -38,7 +41,7 @@ RunResult run_within(const System& system, const State& initial, const Simulatio
   };
   for (long steps = 0; simulation.advance(); ++steps) {
     if (steps % k_steps_between_looks != 0) continue;
-    if (thread_cpu_seconds() - start > limits.cpu_limit) stop(number_text(limits.cpu_limit) + " s of CPU time");
+    if (thread_cpu_seconds() - start > cpu_limit) stop(rounded_text(cpu_limit, 2) + " s of CPU time, its part of what all may take");
     if (simulation.statistics().evaluations > limits.evaluation_limit) stop(std::to_string(limits.evaluation_limit) + " evaluations");
   }
   return std::move(simulation).result();
@@ -68,7 +71,7 @@ public:
 
   CrossCheck made() {
     for (const CrossMethod& method : options_.methods)
-      run(method);
+      run(method, static_cast<double>(options_.methods.size() - check_.runs.size()));
     make_curves();
     for (std::size_t i = 0; i < curves_.size(); ++i)
       check_laws(i);
@@ -88,17 +91,20 @@ private:
     bool is_adaptive = true;
   };
 
-  void run(const CrossMethod& method) {
+  // The levels of a method within an even part of what is left: `methods_left`, this one among them.
+  void run(const CrossMethod& method, double methods_left) {
     CrossRun made;
     Method levels;
     made.setting = method.levels.back();
     levels.run = check_.runs.size();
     levels.is_adaptive = !made.setting.is_step;
     const double start = thread_cpu_seconds();
+    const double granted = (options_.cpu_limit - (start - start_)) / methods_left;
     try {
       for (const MethodSetting& level : method.levels) {
         if (options_.progress) options_.progress(level.text());
-        RunResult result = run_within(system_, initial_, level.applied_to(base_), options_);
+        RunResult result = run_within(system_, initial_, level.applied_to(base_), options_, granted - (thread_cpu_seconds() - start));
+        if (options_.note_level) options_.note_level(level, result);
         if (&level == &method.levels.back()) made.result = std::move(result);
         else levels.coarser.push_back(std::move(result));
       }
@@ -168,23 +174,36 @@ private:
     const bool is_shrinking = !methods_[i].is_adaptive &&
                               residual < k_shrinking * methods_[i].coarser.back().statistics.energy_residual;
     // One that does not is a step too coarse for the scene: such a run has no opinion.
-    if (!methods_[i].is_adaptive && !is_shrinking && residual > allowed) {
-      curves_[i]->distrust();
-      run_of(i).known_until = 0.0;
-    }
+    if (!methods_[i].is_adaptive && !is_shrinking && residual > allowed) dismiss(i);
     if (exchanged > 0.0 && methods_[i].is_adaptive)
       note({Doubt::energy, name_of_run(i), "", "", base_.end, residual / allowed,
             number_text(residual) + " J of " + number_text(exchanged) + " J"});
     const bool is_stepping = method(r.setting.integrator).is_time_stepping;
     const double share = methods_[i].is_adaptive ? k_law_share : k_stepped_law_share;
-    for (const AuditFinding& f : audit(system_, r.result, share, is_stepping ? k_persistent : 1))
-      note({Doubt::law, name_of_run(i), "", "'" + f.where + "' " + f.what, f.t, f.ratio(),
-            number_text(f.value) + ", allowed " + number_text(f.bound)});
+    const int persistent = is_stepping ? k_persistent : 1;
+    for (const AuditFinding& f : audit(system_, r.result, share, persistent)) {
+      if (!is_stepping)
+        note({Doubt::law, name_of_run(i), "", "'" + f.where + "' " + f.what, f.t, f.ratio(),
+              number_text(f.value) + ", allowed " + number_text(f.bound)});
+      else if (f.ratio() > 1.0 && !is_smaller_than_before(f, audit(system_, methods_[i].coarser.back(), share, persistent)))
+        dismiss(i);
+    }
     if (options_.free_groups.empty()) return;
     const AuditFinding change = momentum_change(system_, options_.free_groups, r.result);
     const double bound = methods_[i].is_adaptive ? k_momentum_allowed : k_stepped_law_share;
     note({Doubt::momentum, name_of_run(i), "", "group of '" + change.where + "'", change.t, change.value / bound,
           number_text(change.value) + " of its own"});
+  }
+
+  // Such a run has no opinion.
+  void dismiss(std::size_t i) {
+    curves_[i]->distrust();
+    run_of(i).known_until = 0.0;
+  }
+
+  // The same breach at twice the step, anywhere: a share of it is left where it is the steps' own error.
+  static bool is_smaller_than_before(const AuditFinding& now, const std::vector<AuditFinding>& before) {
+    return std::any_of(before.begin(), before.end(), [&](const AuditFinding& f) { return f.what == now.what && now.ratio() < k_shrinking * f.ratio(); });
   }
 
   // A method of high order that knows its own answer less well than time stepping does.
@@ -311,6 +330,7 @@ private:
   const State& initial_;
   const SimulationOptions& base_;
   const CrossCheckOptions& options_;
+  double start_ = thread_cpu_seconds(); ///< s
   CrossCheck check_;
   std::set<std::string> friction_names_;
   EventFilter is_counted_;
@@ -367,11 +387,16 @@ std::vector<CrossMethod> usual_methods(double end, double tolerance, double step
 
 CrossCheck cross_check(const System& system, const State& initial, const SimulationOptions& base,
                        const CrossCheckOptions& options) {
+  const double start = thread_cpu_seconds();
   CrossCheckOptions used = options;
   if (used.methods.empty()) used.methods = usual_methods(base.end, base.settings.tolerance, base.settings.step);
   SimulationOptions sampling = base;
   CrossCheck check = Checker(system, initial, sampling, used).made();
+  double last = thread_cpu_seconds() - start;
   for (int look = 1; look <= options.closer_looks && is_worth_a_closer_look(check); ++look) {
+    const double begin = thread_cpu_seconds();
+    used.cpu_limit = options.cpu_limit - (begin - start);
+    if (last / k_closer > used.cpu_limit) break; // it would not come to its end
     sampling.output_step *= k_closer;
     for (CrossMethod& method : used.methods)
       for (MethodSetting& level : method.levels)
@@ -383,6 +408,7 @@ CrossCheck cross_check(const System& system, const State& initial, const Simulat
     if (stops(closer) > stops(check)) break; // more than there is time for
     check = std::move(closer);
     check.closer_looks = look;
+    last = thread_cpu_seconds() - begin;
   }
   return check;
 }

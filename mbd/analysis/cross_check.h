@@ -30,6 +30,9 @@
 // Three steps may show too small a change by chance, and samples leave out the side of a jump that another run's hit.
 // So a run of fixed steps that disagrees is looked at again, all with a quarter of its steps and of the samples' spacing:
 // what is wrong stays, and stands out by smaller estimates.
+//
+// Laws that a run of fixed steps breaks by its own error, which smaller steps make smaller, are no evidence against anybody. If
+// they do not, that run is worth nothing, and has no opinion; of a method that locates events it is a fault all the same.
 #pragma once
 
 #include "mbd/analysis/accuracy_study.h"
@@ -50,12 +53,13 @@ struct CrossMethod {
 
 struct CrossCheckOptions {
   std::vector<CrossMethod> methods; ///< empty: usual_methods()
-  double cpu_limit = 60.0;          ///< s, of one run
+  double cpu_limit = 60.0;          ///< s, of all runs together; each method may take an even part of what is left of it
   long evaluation_limit = std::numeric_limits<long>::max(); ///< of one run: the same on every machine
   int closer_looks = 2;             ///< at most, at fixed steps that disagree
   EventFilter is_event_counted;     ///< of those of friction elements; empty: all
   /// What the run comes to, in a word; empty: not compared.
   std::function<std::string(const RunResult& run)> verdict;
+  std::function<void(const MethodSetting& level, const RunResult& run)> note_level; ///< told of every run, if given
   std::vector<std::vector<int>> free_groups; ///< whose momentum is looked at
   std::function<void(const std::string& text)> progress;
 };

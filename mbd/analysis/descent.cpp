@@ -2,6 +2,7 @@
 
 #include "mbd/analysis/finite_forces.h"
 #include "mbd/analysis/landing.h"
+#include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,8 @@ constexpr double k_nudge = 1e-3;      // of the length, rad
 constexpr double k_turned_against = 0.5; // of the work along the tangent
 constexpr double k_far = 1e4;         // lengths of the scene
 constexpr double k_many_turns = 40.0 * std::numbers::pi;
-constexpr double k_most_looks = 1000.0; // along a step
+constexpr int k_most_looks = 1000; // along a step
+constexpr int k_most_halved_looks = 40;
 constexpr double k_touch = 64.0; // roundings of the largest coordinate, by which a body that lands presses
 constexpr int k_most_trials = 44, k_most_corrections = 4, k_most_projections = 25, k_most_polishing = 4;
 constexpr int k_most_dense = 90; // coordinates: beyond, sparse algebra is faster
@@ -48,6 +50,7 @@ Descent::Descent(const System& system, State& state, RestAlgebra algebra)
   is_sparse_ = algebra == RestAlgebra::sparse || (algebra == RestAlgebra::by_size && n_ > k_most_dense);
   const Landscape::Scene scene{system_, statics_, scale_, mass_, length_};
   landscape_ = is_sparse_ ? sparse_landscape(scene) : dense_landscape(scene);
+  clearance_ = std::make_unique<Clearance>(system_, k_touch * k_epsilon * reach_);
   radius_ = k_first_radius * length_;
   turn_ = k_first_turn;
 }
@@ -66,7 +69,7 @@ void Descent::measure_scene() {
 
 void Descent::linearise() {
   statics_.evaluate(state_);
-  statics_.collect_rows(state_);
+  statics_.collect_rows(state_, left_out_);
   landscape_->linearise(state_);
   if (!landscape_->acceleration().allFinite()) throw no_direction(system_, statics_);
 }
@@ -133,7 +136,9 @@ double Descent::correct(const VecX& step, const std::vector<double>& from, doubl
     is_better = true;
     before = after;
   }
-  if (is_better && (now < slope || now < 0.0)) return now;
+  clearance_->look(first);
+  clearance_->look(state_.q);
+  if (is_better && (now < slope || now < 0.0) && clearance_->keeps_sides(way_from(first))) return now;
   state_.q = first;
   statics_.evaluate(state_);
   return slope;
@@ -146,7 +151,7 @@ int Descent::looks_along(const VecX& step) const {
     const double inverse_size = scale_[k - k % 3 + 2];
     parts = std::max(parts, (k % 3 < 2 ? 4.0 : 10.0) * std::abs(step[k]) * inverse_size);
   }
-  return static_cast<int>(std::clamp(std::ceil(parts), 1.0, k_most_looks));
+  return static_cast<int>(std::clamp(std::ceil(parts), 1.0, 1.0 * k_most_looks));
 }
 
 // In a large scene what lands does so at once, each body where it touches. False if nothing lands.
@@ -155,32 +160,57 @@ bool Descent::land(const std::vector<double>& from, VecX& step) {
   std::vector<double> looks(system_.bodies.size(), 0.0);
   for (int k = 0; k < n_; ++k) {
     const double parts = (k % 3 < 2 ? 4.0 : 10.0) * std::abs(step[k]) * scale_[k - k % 3 + 2];
-    looks[k / 3 + 1] = std::max(looks[k / 3 + 1], std::min(std::ceil(parts), k_most_looks));
+    looks[k / 3 + 1] = std::max(looks[k / 3 + 1], std::min(std::ceil(parts), 1.0 * k_most_looks));
   }
-  const bool is_cut = Landing(system_, statics_).cut(step, looks, k_touch * k_epsilon * reach_, [&](const VecX& way) {
+  const auto look = [&](const VecX& way) {
     for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * way[k];
     statics_.evaluate(state_);
-  });
+  };
+  const auto room = [&](const VecX& way) {
+    clearance_->look(state_.q);
+    return clearance_->share(scale_.cwiseProduct(way));
+  };
+  const bool is_cut = Landing(system_, statics_).cut(step, looks, k_touch * k_epsilon * reach_, {look, room});
   state_.q = from;
   statics_.evaluate(state_);
   return is_cut;
 }
 
-// The share of a long step at which a contact first closes that its end may have passed through.
+VecX Descent::way_from(const std::vector<double>& from) const {
+  VecX way(n_);
+  for (int k = 0; k < n_; ++k) way[k] = state_.q[k + 3] - from[k + 3];
+  return way;
+}
+
+// To `share` of a step on the rows, or so much less that the way from `before`, looked at last, has no room for a contact that
+// closes and opens again.
+void Descent::look_on(const std::vector<double>& from, const VecX& step, double before, double& share) {
+  const std::vector<double> last = state_.q;
+  const bool is_on_rows = !is_sparse_ && !statics_.rows().empty();
+  for (int i = 0; i < k_most_halved_looks; ++i) {
+    if (!is_on_rows || !move_to(from, share * step))
+      for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * step[k] * share;
+    clearance_->look(state_.q, i > 0);
+    if (clearance_->keeps_sides(way_from(last))) return;
+    share = 0.5 * (before + share);
+  }
+}
+
+// The share of a step at which a contact first closes that its end may have passed through.
 double Descent::first_contact(const std::vector<double>& from, const VecX& step) {
-  const int count = looks_along(step);
-  if (system_.contact_count == 0 || count <= 1) return 1.0;
-  const double* const force = statics_.evaluation().contact_force;
-  const std::vector<double> open(force, force + system_.contact_count);
-  double first = 1.0;
-  for (int j = 1; j < count && first == 1.0; ++j) {
-    for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * step[k] * j / count;
-    statics_.evaluate(state_);
-    for (int c = 0; c < system_.contact_count; ++c)
-      if (open[c] <= 0.0 && force[c] > 0.0) first = static_cast<double>(j) / count;
+  if (clearance_->is_endless()) return 1.0;
+  const double look = 1.0 / looks_along(step);
+  const VecX way = scale_.cwiseProduct(step);
+  clearance_->look(from);
+  double share = 0.0;
+  for (int i = 0; i < k_most_looks && share < 1.0; ++i) {
+    const double before = share;
+    share = std::min(1.0, before + std::min(look, clearance_->share(way)));
+    look_on(from, step, before, share);
+    if (clearance_->has_met()) break;
   }
   state_.q = from;
-  return first;
+  return share;
 }
 
 bool Descent::loads_friction() const {
@@ -277,7 +307,7 @@ bool Descent::advance(VecX step) {
 // Friction that gets its load holds where it is, friction that is turned back, too; without load there is none.
 void Descent::follow_friction(const std::vector<double>& from) {
   statics_.evaluate(state_);
-  bool is_changed = false;
+  bool is_changed = false, is_moved = false;
   std::vector<Motion<double>> before_it;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     FrictionState& friction = state_.friction[f];
@@ -303,11 +333,34 @@ void Descent::follow_friction(const std::vector<double>& from) {
       friction.phase = FrictionPhase::stick;
       if (is_displaced || hold_[f] != Hold::sticks) anchor_friction(system_, state_, f, statics_.motion().data());
       hold_[f] = Hold::sticks;
+      is_moved = is_moved || is_displaced;
     }
     is_changed = is_changed || friction.phase != before;
   }
   if (is_changed) statics_.evaluate(state_);
-  statics_.collect_rows(state_);
+  if (is_changed || is_moved || left_out_.empty()) find_dependent_friction();
+  statics_.collect_rows(state_, left_out_);
+}
+
+// Feet of one body pair hold it once: the rows that the equations of motion leave out for that, where they begin to hold, stay out
+// here too. Together they would hold it against tilting, too, since the distance of two feet on the ground is another then,
+// however little.
+void Descent::find_dependent_friction() {
+  left_out_.assign(static_cast<std::size_t>(system_.friction_row_count) + 1, 0);
+  const auto is_bounded = [this](std::size_t f) {
+    return state_.friction[f].phase == FrictionPhase::stick && !system_.frictions[f].friction->never_slips();
+  };
+  bool is_any = false;
+  for (std::size_t f = 0; f < state_.friction.size(); ++f) is_any = is_any || is_bounded(f);
+  if (!is_any) return;
+  Dynamics dynamics(system_);
+  dynamics.set_state(state_);
+  std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
+  dynamics.pack(state_, y.data());
+  dynamics.rates(state_.t, y.data(), dy.data());
+  for (std::size_t r = 0; r < dynamics.layout().active.size(); ++r)
+    if (const ActiveRow& row = dynamics.layout().active[r]; row.friction >= 0 && dynamics.layout().is_left_out(static_cast<int>(r)))
+      left_out_[system_.frictions[row.friction].row + row.friction_row] = 1;
 }
 
 bool Descent::has_run_away() {
@@ -381,6 +434,10 @@ void Descent::finish() {
   yielding_ = landscape_->count_yielding();
   residual_ = landscape_->acceleration().cwiseProduct(scale_).cwiseAbs().maxCoeff();
   indifferent_ = landscape_->indifferent(more_indifferent_);
+  // What was not asked for holds where it is.
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f)
+    if (const int row = system_.frictions[f].row; state_.friction[f].phase == FrictionPhase::stick && left_out_[row] != 0)
+      anchor_friction(system_, state_, static_cast<int>(f), statics_.motion().data());
 }
 
 DescentEnd Descent::run() {

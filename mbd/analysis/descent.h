@@ -5,12 +5,14 @@
 // shares gᵢ of the force give the step Σ wᵢ gᵢ/(λᵢ + σ) (landscape.h; in large scenes without asking for each of them). σ keeps it within a trust
 // region and downhill where λᵢ ≤ 0; for large σ it is the way of the masses under the forces, that which a strongly
 // damped machine takes. A step is projected onto the rows; it is taken as long as the work along its tangent has not
-// turned against it; what projection or a contact does not let through is tried at half its length.
+// turned against it; what projection or a contact does not let through is tried at half its length. On its way no gap may close
+// unseen (clearance.h): a thin plank is not stepped through.
 //
 // Nothing absolute is in it: lengths are measured by the scene (its extent, and for an angle the radius at which a
 // body's rows and its mass lie), forces by what rounding of poses, stiffness and reactions leaves of them.
 #pragma once
 
+#include "mbd/analysis/clearance.h"
 #include "mbd/analysis/landscape.h"
 
 namespace steplap {
@@ -62,11 +64,14 @@ private:
   bool land(const std::vector<double>& from, VecX& step);
   [[nodiscard]] double slope_along(const VecX& step) const;
   [[nodiscard]] double first_contact(const std::vector<double>& from, const VecX& step);
+  void look_on(const std::vector<double>& from, const VecX& step, double before, double& share);
+  [[nodiscard]] VecX way_from(const std::vector<double>& from) const;
   void adapt_region(double factor, const VecX& step, bool is_straight);
   [[nodiscard]] double correct(const VecX& step, const std::vector<double>& from, double slope);
   [[nodiscard]] bool loads_friction() const;
   [[nodiscard]] double first_load(const std::vector<double>& from, const VecX& step, double low, double high);
   void follow_friction(const std::vector<double>& from);
+  void find_dependent_friction();
   [[nodiscard]] bool has_run_away();
   bool polish();
   void finish();
@@ -82,9 +87,11 @@ private:
   VecX scale_;  ///< per coordinate: 1, or one over the body's radius
   VecX mass_;   ///< of the scaled coordinates
   std::unique_ptr<Landscape> landscape_;
+  std::unique_ptr<Clearance> clearance_;
   std::vector<double> start_;
   double residual_ = 0.0;
   std::vector<Hold> hold_; ///< per friction element
+  std::vector<char> left_out_; ///< per row of friction: it depends on others that hold, and is not asked for
   std::vector<MotionPart> indifferent_, left_;
   MotionPart runaway_;
   double driving_force_ = 0.0;

@@ -2,6 +2,7 @@
 
 #include "mbd/analysis/admissible_rest.h"
 #include "mbd/analysis/indifference.h"
+#include "mbd/analysis/settling.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/events/blow.h"
 #include "mbd/system/element_failure.h"
@@ -48,6 +49,19 @@ struct Slip {
   bool gives_way = false; ///< nothing but its friction resisted it
 };
 
+// Friction that held contacts gave way.
+class SlidAway : public ElementFailure {
+public:
+  SlidAway(const std::string& message, std::vector<std::string> names, const Slip& slip)
+      : ElementFailure(message, std::move(names)), friction_(slip.friction), from_(slip.from) {}
+  [[nodiscard]] int friction() const { return friction_; }
+  [[nodiscard]] double from() const { return from_; } ///< its row's value when it first gave way
+
+private:
+  int friction_ = 0;
+  double from_ = 0.0;
+};
+
 std::string unstable_text(const System& system, const MotionPart& nudge) {
   return "a pose on the way balances, but not stably: a nudge of " + part_text(system, nudge) + " leaves it";
 }
@@ -65,6 +79,54 @@ public:
 
   Equilibrium run() {
     if (system_.body_count() <= 1) return at_rest();
+    try {
+      return search();
+    } catch (const ElementFailure& none) {
+      if (system_.units.empty() && system_.frictions.empty()) throw;
+      return settled(none);
+    }
+  }
+
+private:
+  // From what the damped machine comes to; `none`: what the search from the start found.
+  Equilibrium settled(const ElementFailure& none) {
+    state_ = start_;
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
+    start_drives(system_, state_);
+    const Settling settling = settle_in_time(system_, with_drives_held());
+    if (!settling.is_tried) throw ElementFailure(std::string(none.what()) + "; the scene is too large to be let go and damped", none.elements());
+    const std::string tried = std::string(none.what()) + "; let go and strongly damped, it does not come to rest either (" +
+                              std::to_string(settling.steps) + " time steps)";
+    if (!settling.rest) throw ElementFailure(tried, none.elements());
+    const int iterations = result_.iterations;
+    State rest = *settling.rest;
+    rest.memory = held_memory(rest);
+    state_ = rest;
+    // What slid away from where it stood does not stand, wherever it comes to lie.
+    if (const auto* const slid = dynamic_cast<const SlidAway*>(&none);
+        slid && std::abs(row_value(slid->friction()) - slid->from()) > k_stands * length_)
+      throw ElementFailure(none.what(), none.elements());
+    result_ = {};
+    slips_.clear();
+    result_.iterations = iterations;
+    result_.settling_steps = settling.steps;
+    result_.is_settled = true;
+    try {
+      return search();
+    } catch (const ElementFailure&) {
+      throw ElementFailure(tried, none.elements());
+    }
+  }
+  // Drives are no longer held: their rows are as they were, those of friction as it came to hold.
+  [[nodiscard]] std::vector<double> held_memory(const State& rest) const {
+    std::vector<double> memory = rest.memory;
+    for (const RowSpec& row : system_.rows)
+      if (row.drive)
+        for (int k = 0; k < 2; ++k) memory[row.memory + k] = state_.memory[row.memory + k];
+    return memory;
+  }
+
+  Equilibrium search() {
     while (true) {
       Descent descent(system_, state_, algebra_);
       const DescentEnd end = descent.run();
@@ -84,13 +146,12 @@ public:
       find_margins(descent);
       if (change_ropes()) continue;
       if (overloads_.empty()) break;
-      if (!share_anew(descent)) let_go();
+      if (result_.is_settled || !share_anew(descent)) let_go(); // what settled has shared its load on the way
     }
     check_slides();
     return at_rest();
   }
 
-private:
   Equilibrium at_rest() {
     for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f) {
       if (state_.friction[f].phase != FrictionPhase::slip || one_sided_row(*system_.frictions[f].friction)) continue;
@@ -98,6 +159,7 @@ private:
       anchor_friction(system_, state_, f);
     }
     for (const Slip& slip : slips_) result_.slid.push_back(slip.friction);
+    result_.hangs_on_way = result_.is_settled && !result_.margins.empty();
     note_drives();
     result_.state = state_;
     result_.state.v = start_.v;
@@ -342,8 +404,8 @@ private:
   [[noreturn]] void fail_sliding(const Slip& slip) const {
     const RowSpec& row = *system_.frictions[slip.friction].friction->rows(state_.friction[slip.friction]);
     const int body = row.a == k_ground ? row.b : row.a;
-    throw ElementFailure("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name + "' slides",
-                         {name_of(slip.friction), system_.bodies[body].name});
+    throw SlidAway("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name + "' slides",
+                   {name_of(slip.friction), system_.bodies[body].name}, slip);
   }
   [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
     const MotionPart& part = descent.runaway();
@@ -439,6 +501,9 @@ std::string part_text(const System& system, const MotionPart& part) {
 
 std::vector<std::string> remarks_on(const System& system, const Equilibrium& found) {
   std::vector<std::string> remarks;
+  if (found.hangs_on_way)
+    remarks.push_back("friction holds it where it came to when it was let go from the pose given, strongly damped: this rest is one of many, "
+                      "and which one hangs on the way to it");
   for (const MotionPart& nudge : found.left)
     remarks.push_back(unstable_text(system, nudge) + ", and so did the search");
   for (std::string& text : indifference_texts(system, found.indifferent)) remarks.push_back(std::move(text));

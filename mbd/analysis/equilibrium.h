@@ -5,8 +5,10 @@
 // would have to hold more than it can, it slides at its bound until it holds. Among several rests this is the nearest
 // downhill. A pose that balances but would run away at a nudge is left.
 //
-// There is none where a body would go on without end, where friction between touching bodies gives way (a ladder that
-// slides down may come to rest somewhere, but it does not stand), or where a joint's friction is overloaded.
+// That finds none where a body would go on without end, where friction between touching bodies gives way (a ladder that
+// slides down may come to rest somewhere, but it does not stand), or where a joint's friction is overloaded. Before it is said
+// that there is none, a machine with contacts or friction is let go and damped (settling.h): what it comes to is searched anew
+// from there. Where friction holds such a rest is one of many, and which one hangs on the way.
 #pragma once
 
 #include "mbd/analysis/descent.h"
@@ -28,6 +30,9 @@ struct Equilibrium {
   double residual = 0.0;        ///< largest acceleration left, m/s² or rad/s²
   double moved = 0.0;           ///< largest displacement from the start, m
   int iterations = 0;
+  bool is_settled = false;      ///< found by letting the damped machine settle in time from the start
+  int settling_steps = 0;       ///< that this took
+  bool hangs_on_way = false;    ///< settled, and friction holds it: one rest of many
   std::vector<FrictionMargin> margins; ///< of those that hold
   std::vector<MotionPart> indifferent; ///< directions along which nothing holds it, by their largest parts
   int more_indifferent = 0;            ///< and how many more, where they are too many to be named

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t k_most_cells = 4000000; // of one table; lists beyond that are not paired at all
 constexpr double k_as_good_as_at = 1e-12;     // s, and of t
+constexpr double k_furthest = 10.0; // of the time to what the element did before or next: what is further off was another time
 
 using Places = std::vector<std::size_t>;
 
@@ -77,11 +78,48 @@ void pair_up(const Places& mine, const Places& theirs, const std::vector<Event>&
     if (!is_paired[i]) alone.push_back(many[i]);
 }
 
+// Of every event the time to the nearest other one of its element, of any kind and not at the same instant, s.
+std::vector<double> times_to_neighbours(const std::vector<Event>& events) {
+  std::vector<double> times(events.size(), std::numeric_limits<double>::infinity());
+  std::map<std::string, Places> of_element;
+  for (std::size_t i = 0; i < events.size(); ++i) of_element[events[i].element].push_back(i);
+  for (const auto& [element, places] : of_element) {
+    std::size_t before = 0; // the first at the instant of the last one
+    for (std::size_t k = 1; k < places.size(); ++k) {
+      const double passed = events[places[k]].t - events[places[before]].t;
+      if (passed <= k_as_good_as_at * std::max(1.0, events[places[k]].t)) continue;
+      for (std::size_t i = before; i < k; ++i) times[places[i]] = std::min(times[places[i]], passed);
+      std::size_t last = k;
+      while (last + 1 < places.size() && events[places[last + 1]].t - events[places[k]].t <= k_as_good_as_at * std::max(1.0, events[places[k]].t)) ++last;
+      for (std::size_t i = k; i <= last; ++i) times[places[i]] = passed;
+      before = k;
+      k = last;
+    }
+  }
+  return times;
+}
+
+// Of the least sum, but not of the same thing: a bounce of a microsecond that the other run has a tenth of a second later.
+void part_strangers(const std::vector<Event>& mine, const std::vector<Event>& reference, EventMatch& match) {
+  const std::vector<double> my_times = times_to_neighbours(mine), their_times = times_to_neighbours(reference);
+  const auto is_strange = [&](const EventPair& pair) {
+    const double apart = std::abs(mine[pair.mine].t - reference[pair.reference].t);
+    return apart > k_furthest * std::max(my_times[pair.mine], their_times[pair.reference]);
+  };
+  for (const EventPair& pair : match.pairs) {
+    if (!is_strange(pair)) continue;
+    match.only_mine.push_back(pair.mine);
+    match.only_reference.push_back(pair.reference);
+  }
+  std::erase_if(match.pairs, is_strange);
+}
+
 } // namespace
 
 EventMatch match_events(const std::vector<Event>& mine, const std::vector<Event>& reference) {
   EventMatch match;
   for (const auto& [key, lists] : by_key(mine, reference)) pair_up(lists.first, lists.second, mine, reference, match);
+  part_strangers(mine, reference, match);
   std::sort(match.only_mine.begin(), match.only_mine.end());
   std::sort(match.only_reference.begin(), match.only_reference.end());
   return match;

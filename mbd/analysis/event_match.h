@@ -2,7 +2,8 @@
 //
 // Events pair if the same thing happened to the same element. Of each such list the shorter is laid against the longer
 // in order, so that the times differ by the least in total; what is left over has no partner. What slides from the start
-// does so in both runs, or in one of them only: no slip that begins later is its partner.
+// does so in both runs, or in one of them only: no slip that begins later is its partner. Nor are two events partners that lie
+// apart by many times what either lasts or was waited for: then each run has another event, and its time is unknown.
 #pragma once
 
 #include "mbd/events/event_handler.h"

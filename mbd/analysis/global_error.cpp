@@ -1,7 +1,9 @@
 #include "mbd/analysis/global_error.h"
 
 #include "mbd/analysis/event_match.h"
+#include "mbd/base/number_text.h"
 #include "mbd/model/method.h"
+#include "mbd/system/formula_channel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,21 +16,32 @@ namespace {
 
 constexpr double k_finer_tolerance = 0.01;
 constexpr double k_least_tolerance = 1e-14; // below it rounding makes the steps
-constexpr double k_finer_step = 0.5;
+constexpr int k_division = 2;
+constexpr double k_finer_step = 1.0 / k_division;
 constexpr double k_finer_cost = 3.0;     // of a hundredth of the tolerance: order 5 takes 2.5 times the steps
 constexpr double k_rounding = 1e-14;     // of a channel's largest value, and of times
 constexpr double k_first_order = 0.5;    // what half the step leaves
 constexpr double k_safety = 1.5;
+constexpr long k_steps_between_looks = 64; // at the evaluations made
+constexpr double k_most_left = 0.9;      // of the error, by a finer run: its difference is the rest, a tenth of the error
 constexpr double k_stepping_safety = 3.0; // where nothing is located
+// Of an extreme beside a singular position (within 1e-5 rad): a force that goes with one over the distance is larger by far than
+// away from it, and runs that come to other distances do not agree on it.
+constexpr double k_disagreed = 0.01, k_grown = 1e3;
 
 bool locates_events(const SimulationOptions& options) { return !method(options.integrator).is_time_stepping; }
 
-// Error over difference.
-double factor_for(const SimulationOptions& coarse, const SimulationOptions& fine, bool has_storm) {
-  if (fine.settings.step != coarse.settings.step)
-    return (locates_events(coarse) ? 1.0 : k_stepping_safety) / (1.0 - fine.settings.step / coarse.settings.step);
+// Error over difference; unknown where the finer run was none. What it leaves of the error is told by the steps that were
+// taken, not by those that were asked for.
+double factor_for(const SimulationOptions& coarse, const RunStatistics& run, const SimulationOptions& fine,
+                  const RunStatistics& finer, bool has_storm) {
+  if (fine.settings.step != coarse.settings.step) {
+    const double part = std::max(fine.settings.step / coarse.settings.step, static_cast<double>(run.steps) / static_cast<double>(finer.steps));
+    return part > k_most_left ? k_unknown_error : (locates_events(coarse) ? 1.0 : k_stepping_safety) / (1.0 - part);
+  }
   const double part = has_storm ? k_first_order : fine.settings.tolerance / coarse.settings.tolerance;
-  return k_safety / (1.0 - std::min(k_first_order, part));
+  const bool is_same = finer.steps <= run.steps && finer.evaluations <= run.evaluations;
+  return part > k_most_left || is_same ? k_unknown_error : k_safety / (1.0 - std::min(k_first_order, part));
 }
 
 double difference(double a, double b) {
@@ -141,6 +154,17 @@ bool is_exact(const ChannelRange& a, const ChannelRange& b) {
   return a.low.value == a.high.value && b.low.value == a.low.value && b.high.value == a.high.value;
 }
 
+bool diverges(const ChannelRange& range, const Extreme& extreme, double error) {
+  const double size = std::abs(extreme.value);
+  return !(error <= k_disagreed * size) && size > k_grown * std::max(std::abs(range.first), std::abs(range.final));
+}
+
+// A formula whose bounds could not be closed may go beyond what both runs found, however well they agree.
+bool is_located(const ChannelRange& range, const Kind& kind) {
+  const double size = std::max({kind.range, kind.largest, range.channel->unit.empty() ? 1.0 : 0.0});
+  return !formula_of(*range.channel) || range.resolution <= ExtremeFinder::k_resolution * size;
+}
+
 // What the finest run does not know itself.
 void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate& estimate) {
   const SimulationOptions& options = estimate.finer.back();
@@ -152,15 +176,18 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
   std::map<std::string, Kind> kinds = kinds_of(run.ranges, estimate.channels);
   for (std::size_t c = 0; c < run.ranges.size(); ++c) {
     const ChannelRange& range = run.ranges[c];
-    if (is_exact(range, estimate.finest.ranges[c])) continue;
-    ChannelError& error = estimate.channels[c];
     const Kind& kind = kinds[range.channel->unit];
+    if (is_located(range, kind) && is_exact(range, estimate.finest.ranges[c])) continue;
+    ChannelError& error = estimate.channels[c];
     const double floor = tolerance * kind.range + k_rounding * kind.largest;
     const double spread = spread_of(range);
     // Where blows fall in a step is chance, and so is what one extreme shows of it.
     const double least = !has_located_events && std::isfinite(spread) ? kind.typical_error * spread : 0.0;
-    error.low = larger_error(error.low, least) + floor + range.resolution;
-    error.high = larger_error(error.high, least) + floor + range.resolution;
+    const double resolution = std::isinf(range.resolution) ? k_unknown_error : range.resolution;
+    error.low = larger_error(error.low, least) + floor + resolution;
+    error.high = larger_error(error.high, least) + floor + resolution;
+    if (range.is_low_singular && diverges(range, range.low, error.low)) error.low = k_unknown_error;
+    if (range.is_high_singular && diverges(range, range.high, error.high)) error.high = k_unknown_error;
     error.final += floor;
     error.curve += floor;
     error.t_low += time;
@@ -172,6 +199,20 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
   const RunStatistics& s = run.statistics;
   if (s.dissipated != 0.0) estimate.dissipated += tolerance * s.energy_scale + k_rounding * std::abs(s.dissipated);
   if (s.work != 0.0) estimate.work += tolerance * s.energy_scale + k_rounding * std::abs(s.work);
+}
+
+// No finer run was one. What is the same throughout is known all the same, and so is when the run begins.
+void forget(const RunResult& run, GlobalErrorEstimate& estimate) {
+  constexpr double unknown = k_unknown_error;
+  for (std::size_t c = 0; c < run.ranges.size(); ++c)
+    if (!is_exact(run.ranges[c], estimate.finest.ranges[c]))
+      estimate.channels[c] = {unknown, unknown, unknown, unknown, unknown, unknown, unknown, true};
+  for (std::size_t i = 0; i < run.events.size(); ++i)
+    if (!run.events[i].is_at_start()) estimate.event_times[i] = unknown;
+  if (run.statistics.dissipated != 0.0) estimate.dissipated = unknown;
+  if (run.statistics.work != 0.0) estimate.work = unknown;
+  estimate.error.worst.fill({unknown, "", 0.0});
+  estimate.unknown_because = "no finer run took shorter steps, so that none tells an error";
 }
 
 // An event without partner has no time that could be called known.
@@ -201,6 +242,17 @@ void add_cost(RunStatistics& sum, const RunStatistics& run) {
   sum.cpu_seconds += run.cpu_seconds;
 }
 
+// Within what is left of the evaluations, for which a computer may be fast or slow.
+RunResult simulate_within(const System& system, const State& initial, const SimulationOptions& options, const RunStatistics& spent,
+                          double most_evaluations) {
+  Simulation simulation(system, initial, options);
+  for (long steps = 0; simulation.advance(); ++steps)
+    if (steps % k_steps_between_looks == 0 && static_cast<double>(spent.evaluations + simulation.statistics().evaluations) > most_evaluations)
+      throw EstimateTooDear("given up after " + number_text(most_evaluations) + " evaluations, at t = " +
+                            number_text(simulation.state().t) + " s of a finer run");
+  return std::move(simulation).result();
+}
+
 } // namespace
 
 double larger_error(double a, double b) {
@@ -222,6 +274,7 @@ bool is_adaptive(const System& system, const std::string& integrator) {
 
 std::vector<SimulationOptions> finer_options(const System& system, const SimulationOptions& options) {
   SimulationOptions finer = options;
+  finer.settings.division = k_division * options.settings.division;
   finer.storm_step = k_finer_step * options.storm_step;
   if (is_adaptive(system, options.integrator)) {
     finer.settings.tolerance = std::max(k_least_tolerance, k_finer_tolerance * options.settings.tolerance);
@@ -230,6 +283,7 @@ std::vector<SimulationOptions> finer_options(const System& system, const Simulat
   finer.settings.step = k_finer_step * options.settings.step;
   SimulationOptions finest = finer;
   finest.settings.step *= k_finer_step;
+  finest.settings.division *= k_division;
   return {finer, finest};
 }
 
@@ -245,22 +299,26 @@ double parts_evaluated(const System& system, const RunStatistics& run) {
 }
 
 GlobalErrorEstimate estimate_global_error(const System& system, const State& initial, const SimulationOptions& options,
-                                          const RunResult& run, const EventFilter& is_counted) {
+                                          const RunResult& run, const EventFilter& is_counted, double most_evaluations) {
   GlobalErrorEstimate estimate;
   estimate.channels.resize(system.channels.size());
   estimate.event_times.resize(run.events.size());
   estimate.finer = finer_options(system, options);
-  bool has_storm = run.statistics.storms > 0;
+  bool has_storm = run.statistics.storms > 0, is_any_finer = false;
   for (const SimulationOptions& finer : estimate.finer) {
-    RunResult fine = simulate(system, initial, finer);
+    RunResult fine = simulate_within(system, initial, finer, estimate.cost, most_evaluations);
     has_storm = has_storm || fine.statistics.storms > 0;
-    const double factor = factor_for(options, finer, has_storm);
-    Comparison(system, run, fine, factor).add_to(estimate);
-    keep_worst(estimate.error, compare_runs(system, run, fine, is_counted), factor);
+    const double factor = factor_for(options, run.statistics, finer, fine.statistics, has_storm);
+    if (!std::isnan(factor)) {
+      is_any_finer = true;
+      Comparison(system, run, fine, factor).add_to(estimate);
+      keep_worst(estimate.error, compare_runs(system, run, fine, is_counted), factor);
+    }
     add_cost(estimate.cost, fine.statistics);
     estimate.finest = std::move(fine);
   }
-  add_floors(system, run, estimate);
+  if (is_any_finer) add_floors(system, run, estimate);
+  else forget(run, estimate);
   note_unmatched(estimate, run, is_counted);
   estimate.finest.trajectory.reset();
   return estimate;

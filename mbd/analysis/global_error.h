@@ -8,6 +8,11 @@
 // rk4, which order 1 does enough wrong. Of several differences the largest counts, for one may be small by chance.
 // Stretches that time stepping goes over in storms of events are halved, too, and count as of order 1.
 //
+// Steps are cut by more than tolerance or step: by breakpoints, harmonics, slips that end. A finer run divides these steps,
+// too (IntegratorSettings::division), or it would take the same ones, and their difference would be zero. Of fixed steps the
+// part is that of the steps taken, if it is larger than that of the steps asked for. A finer run whose part is beyond nine
+// tenths, or that took no more steps than the run, is no estimate; without another one all errors are unknown.
+//
 // To this comes what the finer runs themselves do not know: their tolerance, of the largest range of channels in the
 // same unit; rounding; the resolution of located extremes (mbd/simulation/extremes.h); the step, of times that a method without
 // located events tells. What is the same throughout both runs, and in both, is exact.
@@ -15,7 +20,7 @@
 // The time of an extreme is *a* time at which it was reached: where another peak comes within the error, it may be that.
 //
 // A number that only one of the runs has (an event without partner, a channel that had no value in one of them) has an
-// unknown error: not-a-number, never a small one. Not seen: an error that all runs share.
+// unknown error: not-a-number, never a small one; so has the extreme of a reaction that diverges at a singular position. Not seen: an error that all runs share.
 #pragma once
 
 #include "mbd/analysis/run_comparison.h"
@@ -44,6 +49,7 @@ struct GlobalErrorEstimate {
   std::vector<double> event_times;    ///< s, of every event of the run
   double dissipated = 0.0, work = 0.0; ///< J
   std::vector<SimulationOptions> finer; ///< how the finer runs were made, the finest last
+  std::string unknown_because;        ///< not empty: no difference is an estimate, and all errors are unknown
   RunResult finest;                   ///< without its samples
   RunStatistics cost;                 ///< of the finer runs together
 };
@@ -57,11 +63,17 @@ struct GlobalErrorEstimate {
 /// Of a run: its evaluations times the bodies and elements that each of them goes through. The same on every computer.
 [[nodiscard]] double parts_evaluated(const System& system, const RunStatistics& run);
 
+/// The finer runs would take more evaluations than were granted.
+struct EstimateTooDear : NumericalFailure {
+  using NumericalFailure::NumericalFailure;
+};
+
 /// `run` was made from `initial` with `options`, which ask for samples and extremes. Throws NumericalFailure if a finer
-/// run cannot be finished.
+/// run cannot be finished, EstimateTooDear if all of them together take more than `most_evaluations`.
 [[nodiscard]] GlobalErrorEstimate estimate_global_error(const System& system, const State& initial,
                                                         const SimulationOptions& options, const RunResult& run,
-                                                        const EventFilter& is_counted = {});
+                                                        const EventFilter& is_counted = {},
+                                                        double most_evaluations = std::numeric_limits<double>::infinity());
 
 /// Does the method choose its steps by the tolerance? False for fixed steps.
 [[nodiscard]] bool is_adaptive(const System& system, const std::string& integrator);

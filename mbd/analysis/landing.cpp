@@ -10,6 +10,7 @@ namespace {
 
 constexpr double k_same_share = 1e-12;
 constexpr int k_most_halvings = 60;
+constexpr double k_least_look = 1e-3; // of a step: a thousand looks at most, as along a small scene's
 
 } // namespace
 
@@ -67,6 +68,19 @@ int Landing::lander(const Pair& pair, const VecX& step) {
 
 bool Landing::has_stopped(int island, double share) const { return !landed_[island].empty() && high_[island] < share; }
 
+// From a look at `share` on: as far as what still moves has been given looks, and has room.
+double Landing::next_share(const VecX& step, const std::vector<double>& looks, const Look& look, double share) {
+  double most = 1.0;
+  std::vector<double> moving(parent_.size(), 0.0);
+  for (int body = 1; body < system_.body_count(); ++body) {
+    if (!landed_[island(body)].empty()) continue;
+    most = std::max(most, looks[body]);
+    moving[island(body)] = 1.0;
+  }
+  const double room = std::max(look.room(cut_step(step, moving)), k_least_look);
+  return std::min(1.0, share + std::min(1.0 / most, room));
+}
+
 // Look by look, as many as what still moves takes. False if a contact closes at which nothing lands, or none at all.
 bool Landing::find_first(const VecX& step, const std::vector<double>& looks, const Look& look) {
   const double* const force = statics_.evaluation().contact_force;
@@ -74,12 +88,9 @@ bool Landing::find_first(const VecX& step, const std::vector<double>& looks, con
   std::vector<char> is_known(open_.size(), 0);
   bool is_any = false;
   for (double share = 0.0, before = 0.0; share < 1.0; before = share) {
-    double most = 1.0;
-    for (int body = 1; body < system_.body_count(); ++body)
-      if (landed_[island(body)].empty()) most = std::max(most, looks[body]);
-    share = std::min(1.0, share + 1.0 / most);
+    share = next_share(step, looks, look, share);
     for (std::size_t k = 0; k < shares.size(); ++k) shares[k] = std::min(share, high_[k]);
-    look(cut_step(step, shares));
+    look.at(cut_step(step, shares));
     for (std::size_t p = 0; p < open_.size(); ++p) {
       if (is_known[p] != 0 || !(force[open_[p].contact] > 0.0)) continue;
       is_known[p] = 1;
@@ -110,7 +121,7 @@ void Landing::close_in(const VecX& step, const Look& look) {
       is_open = is_open || !is_known;
     }
     if (!is_open) return;
-    look(cut_step(step, shares));
+    look.at(cut_step(step, shares));
     for (std::size_t k = 0; k < shares.size(); ++k) {
       if (shares[k] == high_[k]) continue;
       const bool is_closed = std::any_of(landed_[k].begin(), landed_[k].end(), [force](int contact) { return force[contact] > 0.0; });

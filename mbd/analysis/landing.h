@@ -17,8 +17,10 @@ public:
   /// At the last evaluation of `statics`.
   Landing(const System& system, const Statics& statics);
 
-  /// Evaluates the statics a step away from where it begins.
-  using Look = std::function<void(const VecX& step)>;
+  struct Look {
+    std::function<void(const VecX& step)> at;     ///< evaluates the statics a step away from where it begins
+    std::function<double(const VecX& step)> room; ///< the share of a step from there that may be gone before the next look
+  };
   /// Cuts the islands' parts of `step` where their first contact has just closed. `looks`: of each body (0 of the ground), how
   /// often the way it goes is to be looked at; `touch`, m: how far beyond the first contact an island goes, so that rounding does
   /// not open it again. False, and the step is as it was, if none closes or some within an island or between two that are carried
@@ -33,6 +35,7 @@ private:
   [[nodiscard]] int island(int body);
   [[nodiscard]] VecX cut_step(const VecX& step, const std::vector<double>& shares);
   [[nodiscard]] int lander(const Pair& pair, const VecX& step);
+  [[nodiscard]] double next_share(const VecX& step, const std::vector<double>& looks, const Look& look, double share);
   [[nodiscard]] bool has_stopped(int island, double share) const;
   [[nodiscard]] bool find_first(const VecX& step, const std::vector<double>& looks, const Look& look);
   void close_in(const VecX& step, const Look& look);

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double k_least_range = 1e-3; // of the largest range among channels of one kind
 constexpr double k_is_constant = 1e-9; // a range below this part of the value is rounding
+// Of the largest value of its kind, as in mbd/simulation/extremes.h: a channel whose whole range is less shows rounding only.
+constexpr double k_rounding = 1e-12;
 
 struct Compared {
   const Channel* channel = nullptr;
@@ -94,15 +96,19 @@ std::vector<Compared> compared_channels(const System& system, const RunResult& r
   return list;
 }
 
-// By kind: the largest range, or the largest value where nothing moves; of a translation or force.
+// By kind, of a translation or force.
 using Scales = std::map<ErrorKind, double>;
 
+Scales sizes_of(const std::vector<Compared>& channels) {
+  Scales size;
+  for (const Compared& c : channels) size[c.kind] = std::max(size[c.kind], c.arm * c.size);
+  return size;
+}
+
+// The largest range, or the largest value where nothing moves.
 Scales scales_of(const std::vector<Compared>& channels) {
-  Scales range, size;
-  for (const Compared& c : channels) {
-    range[c.kind] = std::max(range[c.kind], c.arm * c.range());
-    size[c.kind] = std::max(size[c.kind], c.arm * c.size);
-  }
+  Scales range, size = sizes_of(channels);
+  for (const Compared& c : channels) range[c.kind] = std::max(range[c.kind], c.arm * c.range());
   for (auto& [kind, value] : range) {
     if (value <= k_is_constant * size[kind]) value = size[kind];
     if (value == 0.0) value = 1.0; // zero throughout: the error as it is
@@ -133,12 +139,14 @@ double difference(double a, double b) {
 std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std::vector<Compared>& channels, const Trajectory& mine,
                                                                       const Trajectory& theirs, std::size_t rows,
                                                                       const BetweenEvents& between) {
-  const Scales scales = scales_of(channels);
+  const Scales scales = scales_of(channels), sizes = sizes_of(channels);
   std::vector<std::pair<const Compared*, WorstError>> list;
-  std::vector<double> scale;
+  std::vector<double> scale, rounding; // rounding: of a channel that does nothing else; 0 of all others
   for (const Compared& c : channels) {
     list.push_back({&c, {}});
     scale.push_back(std::max(c.range(), k_least_range * scales.at(c.kind) / c.arm));
+    const double least = k_rounding * sizes.at(c.kind) / c.arm;
+    rounding.push_back(c.range() <= least ? least : 0.0);
   }
   for (std::size_t row = 0; row < rows; ++row) {
     const std::span<const double> a = mine.row(row), b = theirs.row(row);
@@ -146,7 +154,8 @@ std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std:
     for (std::size_t i = 0; i < list.size(); ++i) {
       const Compared& c = *list[i].first;
       if (c.kind == ErrorKind::reaction && is_jump) continue;
-      keep_worst(list[i].second, difference(a[c.column + 1], b[c.column + 1]) / scale[i], b[0]);
+      const double off = difference(a[c.column + 1], b[c.column + 1]);
+      if (!(off <= rounding[i])) keep_worst(list[i].second, off / scale[i], b[0]);
     }
   }
   return list;

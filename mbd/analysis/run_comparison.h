@@ -4,8 +4,8 @@
 // reference: over the whole run where its extremes were looked for, over the samples else; a channel that hardly moves is divided by a thousandth of the largest range of its
 // kind instead, so that rounding in it does not pass for an error; for this, angles count as
 // lengths and couples as forces at the largest radius of gyration. Where nothing of a kind moves,
-// as at rest, the size of the largest value takes the place of the range. Event times are divided
-// by the duration.
+// as at rest, the size of the largest value takes the place of the range. What a channel does whose whole range is rounding of
+// the largest value of its kind counts only where it differs by more than that. Event times are divided by the duration.
 //
 // Reactions jump at events. A sample that lies between an event and the same event of the other run
 // shows the jump, not an error of the reaction: such samples are left out there, the time of the

@@ -66,7 +66,9 @@ void SparseRows::find_dependent(const Statics& statics) {
     rank_ = {};
     rank_.analyze(rows, static_cast<int>(rows_.size()), parts);
   }
-  rank_.decide_rank(is_friction);
+  std::vector<char> was_out(rows_.size(), 0);
+  for (std::size_t r = 0; r < rows_.size(); ++r) was_out[r] = rank_.is_left_out(static_cast<int>(r)) ? 1 : 0;
+  rank_.decide_rank(is_friction, was_out);
   rank_.factor(rows);
   for (std::size_t r = 0; r < rows_.size(); ++r) is_dependent_[r] = rank_.is_dependent(static_cast<int>(r)) ? 1 : 0;
 }

@@ -166,7 +166,7 @@ void Statics::add_sliding_forces() {
   }
 }
 
-void Statics::collect_rows(const State& state) {
+void Statics::collect_rows(const State& state, const std::vector<char>& left_out) {
   rows_.clear();
   for (int r = 0; r < static_cast<int>(system_.rows.size()); ++r) rows_.push_back({&system_.rows[r], r, -1, 0});
   bilateral_count_ = static_cast<int>(rows_.size());
@@ -174,7 +174,7 @@ void Statics::collect_rows(const State& state) {
     if (state.friction[f].phase != FrictionPhase::stick) continue;
     const FrictionUnit& unit = system_.frictions[f];
     for (int r = 0; r < unit.friction->dimension(); ++r)
-      rows_.push_back({unit.friction->rows(state.friction[f]) + r, -1, f, unit.row + r});
+      if (left_out.empty() || left_out[unit.row + r] == 0) rows_.push_back({unit.friction->rows(state.friction[f]) + r, -1, f, unit.row + r});
   }
 }
 

@@ -30,8 +30,9 @@ public:
 
   /// Forces at `state`: poses, time, friction and memory are read; modes are set in it from the poses.
   void evaluate(State& state);
-  /// The rows that hold in `state`, as of the last collect_rows(); bilateral ones first.
-  void collect_rows(const State& state);
+  /// The rows that hold in `state`, as of the last collect_rows(); bilateral ones first. `left_out`: per slot of
+  /// Snapshot::friction_force, a row of friction that stays out, since it depends on others; empty: none.
+  void collect_rows(const State& state, const std::vector<char>& left_out = {});
   [[nodiscard]] const std::vector<StaticRow>& rows() const { return rows_; }
   [[nodiscard]] int bilateral_count() const { return bilateral_count_; }
 

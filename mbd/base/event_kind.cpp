@@ -35,7 +35,7 @@ constexpr std::array<Entry, k_event_kinds> k_table{{
     {EventKind::changes_foot, "changes foot", "friction acts at another of its contacts"},
     {EventKind::loses_interface, "loses an interface", "the sheets of a step-lap interface have parted"},
     {EventKind::meets_interface, "meets at an interface again", "the sheets of a step-lap interface overlap again"},
-    {EventKind::storm, "changes 50 times within 1 ms: time stepping", "events crowd: time stepping goes over the interval that follows"},
+    {EventKind::storm, "changes too often to be followed: time stepping", "events crowd: time stepping goes over the interval that follows"},
     {EventKind::storm_over, "is followed event by event again", "the end of such an interval"},
     {EventKind::breaks, "breaks", "a tie's force has reached its strength: it bears nothing for good"},
     {EventKind::comes_apart, "comes apart", "a step-lap joint has no overlap left: no friction for good"},

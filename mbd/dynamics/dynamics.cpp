@@ -17,7 +17,7 @@ constexpr double k_placed_pivot = 1e-4;
 } // namespace
 
 Dynamics::Dynamics(const System& system, int threads)
-    : system_(system), team_(threads), force_(system.bodies.size() + system.links.slot_count()), kinematics_(system, team_),
+    : system_(system), team_(threads), layouts_(system), force_(system.bodies.size() + system.links.slot_count()), kinematics_(system, team_),
       rows_(kinematics_, team_), reactions_(system, kinematics_, force_.data()), motion_(kinematics_.motion().data()),
       friction_force_(reactions_.friction_force().data()) {
   contact_force_.assign(system.contact_count, 0.0);
@@ -48,12 +48,10 @@ void Dynamics::set_state(const State& state) {
   stage_programs_.leave();
   std::fill(watch_.begin(), watch_.end(), 1.0);
   std::fill(force_.begin(), force_.end(), BodyForce{}); // of bodies that none acts on in the new layout
-  layout_key(state, choice_, key_);
-  // In the order of their keys: a run through thousands of sets of modes looks for one at every event.
-  auto known = std::lower_bound(layouts_.begin(), layouts_.end(), key_, [](const auto& layout, const LayoutKey& key) { return layout->key < key; });
-  const bool is_new = known == layouts_.end() || (*known)->key != key_;
-  if (is_new) known = layouts_.insert(known, std::make_unique<Layout>(make_layout(system_, state, choice_)));
-  layout_ = known->get();
+  const auto [layout, is_new] = layouts_.at(state, choice_);
+  // A layout that comes back may have been given up in between: it remembers nothing of the last time.
+  if (layout_ != &layout) layout.forget_sharing();
+  layout_ = &layout;
   kinematics_.use(*layout_, state);
   rows_.use(*layout_, state);
   reactions_.use(*layout_, state);
@@ -73,8 +71,25 @@ void Dynamics::set_state(const State& state) {
 void Dynamics::decide_rank() {
   is_rank_new_ = !layout_->held_rows.empty();
   if (!is_rank_new_) return;
-  layout_->schur.decide_rank(layout_->is_friction_row);
-  for (Mechanism& m : layout_->mechanisms) m.decide_rank(layout_->is_friction_row.data() + m.first_row);
+  was_out_.assign(layout_->active.size(), 0);
+  for (std::size_t r = 0; r < was_out_.size(); ++r)
+    if (const ActiveRow& row = layout_->active[r]; row.friction >= 0)
+      was_out_[r] = static_cast<char>(state_->friction[row.friction].left_out >> static_cast<unsigned>(row.friction_row) & 1U);
+  layout_->schur.decide_rank(layout_->is_friction_row, was_out_);
+  for (Mechanism& m : layout_->mechanisms) m.decide_rank(layout_->is_friction_row.data() + m.first_row, was_out_.data() + m.first_row);
+}
+
+// Rows whose rank was not asked for since set_state() are as they were.
+void Dynamics::record_rank(State& state) const {
+  if (layout_->held_rows.empty()) return;
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) {
+    const ActiveRow& row = layout_->active[r];
+    if (row.friction < 0 || layout_->is_rank_open(static_cast<int>(r))) continue;
+    std::uint8_t& left_out = state.friction[row.friction].left_out;
+    const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(row.friction_row));
+    if (layout_->is_left_out(static_cast<int>(r))) left_out |= bit;
+    else left_out &= static_cast<std::uint8_t>(~bit);
+  }
 }
 
 void Dynamics::set_time_limit(double limit) {
@@ -84,7 +99,7 @@ void Dynamics::set_time_limit(double limit) {
 // What is written down is the sums of a layout in one piece.
 void Dynamics::begin_stages() {
   if (layout_->division) stage_programs_.leave();
-  else stage_programs_.enter(*layout_, *state_);
+  else stage_programs_.enter(*layout_, *state_, layouts_);
 }
 
 // --- one evaluation -----------------------------------------------------------------------------
@@ -179,12 +194,14 @@ void Dynamics::finish_watches() {
 }
 
 void Dynamics::rates(double t, const double* y, double* dy) {
-  rates_at(t, y, dy);
-  if (layout_->active.empty()) return;
-  const double pivot = layout_->smallest_pivot();
-  lowest_pivot_ = std::min(lowest_pivot_, pivot);
-  if (pivot < k_placed_pivot) [[unlikely]]
+  rates_as_given(t, y, dy);
+  if (!layout_->active.empty() && layout_->smallest_pivot() < k_placed_pivot) [[unlikely]]
     rates_nearby(t, y, dy);
+}
+
+void Dynamics::rates_as_given(double t, const double* y, double* dy) {
+  rates_at(t, y, dy);
+  if (!layout_->active.empty()) lowest_pivot_ = std::min(lowest_pivot_, layout_->smallest_pivot());
 }
 
 STEPLAP_INLINE void Dynamics::finish_rates(const double* y, double* dy) {

@@ -12,6 +12,7 @@
 #pragma once
 
 #include "mbd/dynamics/constraint_solution.h"
+#include "mbd/dynamics/layout_store.h"
 #include "mbd/dynamics/reactions.h"
 #include "mbd/dynamics/stage_program.h"
 
@@ -40,7 +41,12 @@ public:
   /// What describes islands for which there is a choice; counts from the next set_state() on. Absolute unless asked.
   void use_coordinates(Coordinates coordinates) { choice_ = coordinates; }
   [[nodiscard]] Coordinates coordinates() const { return choice_; }
-  void use_stage_code(StageCode choice) { stage_programs_.choose(choice); }
+  void use_stage_code(StageCode choice) {
+    layouts_.clear_programs();
+    stage_programs_.choose(choice);
+  }
+  /// Layouts kept at a time; results do not hang on it.
+  void keep_layouts(std::size_t count) { layouts_.keep_at_most(count); }
   /// Stages made by machine code, of all evaluations().
   [[nodiscard]] long coded_stages() const { return coded_stages_; }
   /// Takes over modes, friction phases and anchors. `state` must outlive the use of this object or be
@@ -48,7 +54,7 @@ public:
   void set_state(const State& state);
   /// Forgets layouts whose merged bodies may have moved against each other.
   void forget_layouts() {
-    stage_programs_.clear();
+    stage_programs_.leave();
     layouts_.clear();
   }
   /// Relative rates along the rows of friction element f, and what they change by in a second, at the last rates().
@@ -57,6 +63,9 @@ public:
   /// Signals are read on the left side of `limit`, a breakpoint that no step passes: a jump there does
   /// not reach into the step that ends at it.
   void set_time_limit(double limit);
+  /// rates() that follow take signals that are forces by their means from `from` to their time, until this is asked for
+  /// with an infinite time.
+  void take_means(double from) { evaluation_.mean_from = from; }
 
   /// As last set.
   [[nodiscard]] const State& state() const { return *state_; }
@@ -73,6 +82,9 @@ public:
 
   /// dy/dt. Also leaves watch values, multipliers and forces for the functions below.
   void rates(double t, const double* y, double* dy);
+  /// The same at y itself, however near to a singular position: there rates() are those of the nearest state on the constraints,
+  /// which is another function of y and t than the one that Linearization differentiates.
+  void rates_as_given(double t, const double* y, double* dy);
   /// The same for a stage inside a step, whose rates, watch() and count of evaluations are all that is asked for: other
   /// by-products may be those of the evaluation before, and factors are forgotten. Near a singular position (k_traced_pivot) it
   /// is rates().
@@ -207,6 +219,7 @@ private:
   [[nodiscard]] double rate_rounding(const double* y) const;
   struct CandidateRow;
   void decide_rank();
+  void record_rank(State& state) const;
   void find_sharing();
   [[nodiscard]] bool is_shared(int friction) const;
   [[nodiscard]] bool has_groups() const;
@@ -240,8 +253,7 @@ private:
   mutable Team team_;
   std::vector<PartPower> part_power_;
   const State* state_ = nullptr;
-  std::vector<std::unique_ptr<Layout>> layouts_;
-  LayoutKey key_; ///< of the present one
+  LayoutStore layouts_;
   Coordinates choice_ = Coordinates::absolute;
   Layout* layout_ = nullptr;
   bool is_rank_new_ = false; ///< which rows of friction the equations leave out is decided, or was, since set_state()
@@ -270,6 +282,7 @@ private:
   std::vector<double> behind_y_, behind_dy_;
   std::vector<double> placed_;     ///< state of rates_nearby
   std::vector<double> kept_;       ///< scratch of keep_allowed, per active row
+  std::vector<char> was_out_;      ///< scratch of decide_rank, per active row
   mutable std::vector<double> cluster_q_, cluster_v_; ///< 3 per cluster, where some are in mechanisms
   std::vector<double> cluster_a_;
 };

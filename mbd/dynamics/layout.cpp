@@ -2,6 +2,7 @@
 
 #include "mbd/dynamics/carriage_layout.h"
 #include "mbd/dynamics/parts.h"
+#include "mbd/dynamics/stage_program.h"
 #include "mbd/math/portable_math.h"
 
 #include <algorithm>
@@ -22,17 +23,16 @@ struct RigidJoint {
 
 bool is_stuck(const State& state, int f) { return state.friction[f].phase == FrictionPhase::stick; }
 
-std::vector<RigidJoint> rigid_joints(const System& system, const State& state) {
+// `frictions`: those that merge.
+std::vector<RigidJoint> rigid_joints(const System& system, const State& state, const std::vector<int>& frictions) {
   std::vector<RigidJoint> joints;
   for (int i = 0; i < static_cast<int>(system.row_blocks.size()); ++i) {
     const RowBlock& block = system.row_blocks[i];
     const RowSpec& row = system.rows[block.first];
     if (block.is_rigid) joints.push_back({row.a, row.b, i, -1});
   }
-  for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
-    const FrictionElement& friction = *system.frictions[f].friction;
-    if (!is_stuck(state, f) || !friction.is_rigid()) continue;
-    const RowSpec* rows = friction.rows(state.friction[f]);
+  for (const int f : frictions) {
+    const RowSpec* rows = system.frictions[f].friction->rows(state.friction[f]);
     joints.push_back({rows[0].a, rows[0].b, -1, f});
   }
   return joints;
@@ -59,35 +59,35 @@ std::vector<char> merge(const System& system, const std::vector<RigidJoint>& joi
   return is_merged;
 }
 
-void make_clusters(const System& system, const State& state, std::vector<int>& parent, Layout& layout) {
+void make_clusters(const System& system, const State& state, std::vector<int>& parent, MergedBodies& merged) {
   const int n = system.body_count();
-  layout.placements.assign(n, {});
+  merged.placements.assign(n, {});
   std::vector<int> cluster_of(n, -1);
   std::vector<int> size;
   for (int i = 1; i < n; ++i) {
     const int root = find_root(parent, i);
     if (root == i) {
-      cluster_of[i] = layout.cluster_count();
-      layout.clusters.push_back({});
-      layout.clusters.back().root = i;
+      cluster_of[i] = static_cast<int>(merged.clusters.size());
+      merged.clusters.push_back({});
+      merged.clusters.back().root = i;
       size.push_back(0);
     }
     const int k = cluster_of[root];
     cluster_of[i] = k;
-    layout.placements[i].cluster = k;
-    layout.clusters[k].mass += system.bodies[i].mass;
+    merged.placements[i].cluster = k;
+    merged.clusters[k].mass += system.bodies[i].mass;
     ++size[k];
   }
-  std::vector<Vec2> centre(layout.clusters.size(), Vec2::Zero());
+  std::vector<Vec2> centre(merged.clusters.size(), Vec2::Zero());
   for (int i = 1; i < n; ++i) {
     const int k = cluster_of[i];
     const Vec2 p(state.q[3 * i], state.q[3 * i + 1]);
     if (size[k] == 1) centre[k] = p;
-    else centre[k] += system.bodies[i].mass / layout.clusters[k].mass * p;
+    else centre[k] += system.bodies[i].mass / merged.clusters[k].mass * p;
   }
   for (int i = 1; i < n; ++i) {
-    Cluster& cluster = layout.clusters[cluster_of[i]];
-    Placement& place = layout.placements[i];
+    Cluster& cluster = merged.clusters[cluster_of[i]];
+    Placement& place = merged.placements[i];
     place.is_alone = place.is_trivial = size[cluster_of[i]] == 1;
     cluster.inertia += system.bodies[i].inertia;
     if (place.is_alone) continue;
@@ -100,15 +100,20 @@ void make_clusters(const System& system, const State& state, std::vector<int>& p
     place.s = turn.sin;
     cluster.inertia += system.bodies[i].mass * lever.squaredNorm();
   }
+  for (Cluster& cluster : merged.clusters) {
+    cluster.w[0] = cluster.w[1] = 1.0 / cluster.mass;
+    cluster.w[2] = 1.0 / cluster.inertia;
+  }
+}
+
+// Slots of the clusters' motions: a body's own where it moves as its cluster does, else one behind those of the links.
+void find_slots(const System& system, Layout& layout) {
   int extra = system.links.slot_count();
-  for (int k = 0; k < layout.cluster_count(); ++k) {
-    Cluster& cluster = layout.clusters[k];
+  for (Cluster& cluster : layout.clusters) {
     // The body that carries the angle often lies at the common centre (limbs on both sides of a core).
     Placement& root = layout.placements[cluster.root];
     if (root.offset.norm() < k_same_place) root.is_trivial = true;
     cluster.motion = root.is_trivial ? cluster.root : extra++;
-    cluster.w[0] = cluster.w[1] = 1.0 / cluster.mass;
-    cluster.w[2] = 1.0 / cluster.inertia;
     layout.slots.push_back(cluster.motion);
   }
   layout.slot_count = extra;
@@ -192,7 +197,7 @@ void want_frictions(const System& system, const State& state, const std::vector<
   for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
     if (is_friction_merged[f]) {
       layout.merged.push_back(f);
-      if (!system.frictions[f].friction->never_slips()) layout.is_merged_watched = true;
+      if (!system.frictions[f].friction->never_slips()) layout.can_merged_slip = true;
     } else if (is_stuck(state, f)) {
       layout.holding.push_back(f);
       const FrictionElement& friction = *system.frictions[f].friction;
@@ -385,13 +390,35 @@ void layout_key(const State& state, Coordinates coordinates, LayoutKey& key) {
     key[i] = static_cast<std::uint64_t>(state.friction[i].phase) << 32 | state.friction[i].foot;
 }
 
+std::vector<int> merging_frictions(const System& system, const State& state) {
+  std::vector<int> frictions;
+  for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f)
+    if (is_stuck(state, f) && system.frictions[f].friction->is_rigid()) frictions.push_back(f);
+  return frictions;
+}
+
+MergedBodies merge_bodies(const System& system, const State& state) {
+  MergedBodies merged;
+  merged.frictions = merging_frictions(system, state);
+  std::vector<int> parent;
+  static_cast<void>(merge(system, rigid_joints(system, state, merged.frictions), parent));
+  make_clusters(system, state, parent, merged);
+  return merged;
+}
+
 Layout make_layout(const System& system, const State& state, Coordinates coordinates) {
+  return make_layout(system, state, coordinates, merge_bodies(system, state));
+}
+
+Layout make_layout(const System& system, const State& state, Coordinates coordinates, const MergedBodies& merged) {
   Layout layout;
   layout_key(state, coordinates, layout.key);
-  const std::vector<RigidJoint> joints = rigid_joints(system, state);
+  const std::vector<RigidJoint> joints = rigid_joints(system, state, merged.frictions);
   std::vector<int> parent;
   const std::vector<char> is_merged = merge(system, joints, parent);
-  make_clusters(system, state, parent, layout);
+  layout.clusters = merged.clusters;
+  layout.placements = merged.placements;
+  find_slots(system, layout);
   std::vector<char> is_block_merged(system.row_blocks.size(), 0);
   std::vector<char> is_friction_merged(system.frictions.size(), 0);
   for (std::size_t i = 0; i < joints.size(); ++i)
@@ -465,6 +492,7 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());
   int absolute_rows = static_cast<int>(layout.active.size());
   for (const Mechanism& m : layout.mechanisms) absolute_rows -= m.row_count;
+  layout.forget_sharing();
   layout.division = make_parts(system, layout, absolute_rows);
   if (layout.division) layout.pivots.resize(layout.division->parts.size());
   layout.schur.analyze(layout.schur_rows, absolute_rows, layout.parts, layout.division ? layout.division->of_row : std::vector<int>{});

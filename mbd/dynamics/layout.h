@@ -22,6 +22,7 @@
 namespace steplap {
 
 class Carriages;
+class StageProgram;
 struct Parts;
 
 /// What describes islands for which there is a choice; `automatic`: joint coordinates where they pay.
@@ -141,7 +142,8 @@ struct Layout {
   std::vector<int> sliding_link;     ///< slot of each of those
   std::vector<int> holding;          ///< friction elements in phase stick that are not merged
   std::vector<int> merged;           ///< friction elements in phase stick that are merged
-  bool is_merged_watched = false;    ///< some of those can slip, or sticking elements share a load
+  bool can_merged_slip = false;      ///< some of those can
+  bool is_merged_watched = false;    ///< and are watched, as sticking elements that share a load are
   std::unique_ptr<LoadSharing> sharing; ///< null until rows have been met that depend on each other
   std::vector<double> reference;     ///< coordinates in the reference pose, for error scales
   std::vector<HeldRow> held_rows;    ///< of the elements in `holding`
@@ -157,7 +159,13 @@ struct Layout {
     bool is_singular = false;
   };
   std::vector<Pivots> pivots; ///< of mechanisms, in each part of the division; noted where these are factored
+  std::vector<std::unique_ptr<StageProgram>> programs; ///< of sets of modes that have this layout (stage_program.h)
 
+  /// As when it was made: what rows share hangs on the pose in which that was first asked for.
+  void forget_sharing() {
+    sharing.reset();
+    is_merged_watched = can_merged_slip;
+  }
   [[nodiscard]] int cluster_count() const { return static_cast<int>(clusters.size()); }
   /// Some rows that hold are over more than two bodies.
   [[nodiscard]] bool has_long_rows() const { return !parts.empty(); }
@@ -194,6 +202,9 @@ struct Layout {
     const Mechanism& m = mechanism_of_row(row);
     return m.is_dependent(row - m.first_row);
   }
+  [[nodiscard]] bool is_rank_open(int row) const {
+    return row < schur.size() ? schur.is_rank_open() : mechanism_of_row(row).is_rank_open();
+  }
   [[nodiscard]] bool is_left_out(int row) const {
     if (row < schur.size()) return schur.is_left_out(row);
     const Mechanism& m = mechanism_of_row(row);
@@ -203,8 +214,19 @@ struct Layout {
 
 void layout_key(const State& state, Coordinates coordinates, LayoutKey& key);
 
-/// The layout for the friction phases and the poses in `state`.
-[[nodiscard]] Layout make_layout(const System& system, const State& state,
-                                 Coordinates coordinates = Coordinates::absolute);
+/// Which bodies move as one, and where they are held against each other.
+struct MergedBodies {
+  std::vector<int> frictions; ///< sticking joints that merge bodies, beside all welds
+  std::vector<Cluster> clusters;
+  std::vector<Placement> placements; ///< per body
+};
+/// Elements that stick and merge their two bodies while they do.
+[[nodiscard]] std::vector<int> merging_frictions(const System& system, const State& state);
+/// In the friction phases and poses of `state`.
+[[nodiscard]] MergedBodies merge_bodies(const System& system, const State& state);
+
+/// The layout for the friction phases in `state`, with bodies merged where they are held in `merged`, or in `state`.
+[[nodiscard]] Layout make_layout(const System& system, const State& state, Coordinates coordinates, const MergedBodies& merged);
+[[nodiscard]] Layout make_layout(const System& system, const State& state, Coordinates coordinates = Coordinates::absolute);
 
 } // namespace steplap

@@ -299,45 +299,73 @@ private:
 
 } // namespace
 
+namespace {
+
+// What moves by the vector c makes of a row whose gradient is j, whichever way it points: the direction of a row is known no
+// better than k_discord of a radian, and rows that differ by less hold what moves across them alike.
+double across(const double* j, const double* c) { return (std::abs(j[0]) + std::abs(j[1])) * (std::abs(c[0]) + std::abs(c[1])) + std::abs(j[2] * c[2]); }
+
+// Sums over the rows of a null vector, each with that of the terms it is made of.
+struct Discord {
+  double gap = 0.0, rate = 0.0, second = 0.0; ///< of what the rows are held at, m, m/s, m/s²
+  double moved = 0.0, rate_terms = 0.0, second_terms = 0.0;
+  double length = 0.0, farthest = 0.0;
+
+  [[nodiscard]] double size() const {
+    const double known_gap = (k_least_gap + k_place_rounding * farthest) * length + k_discord * moved;
+    return std::max({std::abs(gap) / known_gap, std::abs(rate) / (k_discord * rate_terms + k_least_rate * length),
+                     std::abs(second) / (k_discord * second_terms + k_least_acceleration * length)});
+  }
+};
+
+// Of one row, which the null vector has n times. `is_led`: joints or drives are among the rows that depend on each other, and
+// hold along the way that the bodies have come.
+void add_row(const System& system, const RowSpec& spec, double n, bool is_led, const Evaluation& e, const double* acceleration, Discord& sum) {
+  const auto m = evaluate_row<true>(spec, e.motion);
+  const SignalJet target = row_target(spec, e.memory, e.t);
+  double along = m.bias - target.acceleration, terms = std::abs(m.bias) + std::abs(target.acceleration);
+  double rate_terms = std::abs(m.rate) + std::abs(target.rate), moved = 0.0;
+  for (const RowSpec* piece = &spec; piece; piece = piece->next) {
+    const RowGradient gradient = gradient_at(spec.next ? evaluate_row<true>(*piece, e.motion[piece->a], e.motion[piece->b]) : m);
+    for (const int side : {0, 1}) {
+      const int body = side == 0 ? piece->a : piece->b;
+      if (body == k_ground) continue;
+      const Motion<double>& motion = e.motion[body];
+      const Vec3& start = system.bodies[body].pose;
+      const double* const j = gradient.side[side];
+      const double way[3] = {motion.x - start[0], motion.y - start[1], motion.theta - start[2]};
+      const double v[3] = {motion.vx, motion.vy, motion.omega};
+      for (int c = 0; c < 3; ++c) along += j[c] * acceleration[3 * body + c];
+      terms += across(j, acceleration + 3 * static_cast<std::ptrdiff_t>(body));
+      rate_terms += across(j, v);
+      if (is_led) moved += across(j, way);
+      sum.farthest = std::max({sum.farthest, std::abs(motion.x), std::abs(motion.y)});
+    }
+  }
+  sum.gap += n * off_target(spec, m.value, target.value);
+  sum.rate += n * (m.rate - target.rate);
+  sum.second += n * along;
+  sum.moved += std::abs(n) * moved;
+  sum.rate_terms += std::abs(n) * rate_terms;
+  sum.second_terms += std::abs(n) * terms;
+  sum.length += std::abs(n);
+}
+
+} // namespace
+
 double LoadSharing::discord(int group, const Evaluation& e, const double* acceleration) const {
   double worst = 0.0;
   for (const Part& part : parts_)
     for (std::size_t g = 0; g < part.groups.size(); ++g) {
       if (part.groups[g] != group) continue;
       for (const int column : part.columns[g]) {
-        double gap = 0.0, farthest = 0.0, rate = 0.0, rate_terms = 0.0, second = 0.0, second_terms = 0.0, length = 0.0;
-        for (std::size_t r = 0; r < part.rows.size(); ++r) {
-          const double n = part.null(static_cast<Eigen::Index>(r), column);
-          if (n == 0.0) continue;
-          const RowSpec& spec = *part.rows[r].spec;
-          const auto m = evaluate_row<true>(spec, e.motion);
-          const SignalJet target = row_target(spec, e.memory, e.t);
-          double along = m.bias - target.acceleration, terms = std::abs(m.bias) + std::abs(target.acceleration);
-          double rate_sum = std::abs(m.rate) + std::abs(target.rate);
-          for (const RowSpec* piece = &spec; piece; piece = piece->next) {
-            const RowGradient j = gradient_at(spec.next ? evaluate_row<true>(*piece, e.motion[piece->a], e.motion[piece->b]) : m);
-            for (const int side : {0, 1}) {
-              const int body = side == 0 ? piece->a : piece->b;
-              if (body == k_ground) continue;
-              farthest = std::max({farthest, std::abs(e.motion[body].x), std::abs(e.motion[body].y)});
-              const double v[3] = {e.motion[body].vx, e.motion[body].vy, e.motion[body].omega};
-              for (int c = 0; c < 3; ++c) {
-                const double term = j.side[side][c] * acceleration[3 * body + c];
-                along += term;
-                terms += std::abs(term);
-                rate_sum += std::abs(j.side[side][c] * v[c]);
-              }
-            }
-          }
-          gap += n * off_target(spec, m.value, target.value);
-          rate += n * (m.rate - target.rate);
-          rate_terms += std::abs(n) * rate_sum;
-          second += n * along;
-          second_terms += std::abs(n) * terms;
-          length += std::abs(n);
-        }
-        worst = std::max({worst, std::abs(gap) / ((k_least_gap + k_place_rounding * farthest) * length), std::abs(rate) / (k_discord * rate_terms + k_least_rate * length),
-                          std::abs(second) / (k_discord * second_terms + k_least_acceleration * length)});
+        const auto n = part.null.col(column);
+        const bool is_led = part.free_count > 0 && n.head(part.free_count).cwiseAbs().maxCoeff() > 0.0;
+        Discord sum;
+        for (std::size_t r = 0; r < part.rows.size(); ++r)
+          if (const double share = n[static_cast<Eigen::Index>(r)]; share != 0.0)
+            add_row(system_, *part.rows[r].spec, share, is_led, e, acceleration, sum);
+        worst = std::max(worst, sum.size());
       }
     }
   return worst;

@@ -109,7 +109,8 @@ public:
   [[nodiscard]] double along(int row, const double* change) const;
   /// change += M⁻¹ Jᵀ λ.
   void add_response(const double* lambda, double* change) const;
-  void decide_rank(const char* is_friction);
+  void decide_rank(const char* is_friction, const char* was_out);
+  [[nodiscard]] bool is_rank_open() const { return is_rank_open_; }
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
   [[nodiscard]] bool is_dependent(int row) const;
   [[nodiscard]] bool is_left_out(int row) const { return !out_.empty() && out_[row] != 0; }

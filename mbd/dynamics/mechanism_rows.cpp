@@ -164,9 +164,9 @@ void Mechanism::factor_as_is(double shift) {
   smallest_pivot_ = found.smallest;
 }
 
-void Mechanism::decide_rank(const char* is_friction) {
+void Mechanism::decide_rank(const char* is_friction, const char* was_out) {
   can_stay_out_.assign(is_friction, is_friction + row_count);
-  if (!out_.empty()) was_out_.swap(out_);
+  was_out_.assign(was_out, was_out + row_count);
   out_.clear();
   is_rank_open_ = row_count > 0;
 }
@@ -174,7 +174,7 @@ void Mechanism::decide_rank(const char* is_friction) {
 void Mechanism::keep_rank(double shift) {
   const MechanismWork& w = *work_;
   is_rank_open_ = false;
-  if (dependent_count_ == 0 && smallest_pivot_ >= k_doubtful_pivot) return was_out_.clear();
+  if (dependent_count_ == 0 && smallest_pivot_ >= k_doubtful_pivot) return;
   bool is_in_doubt = smallest_pivot_ < k_doubtful_pivot;
   for (int r = 0; r < row_count; ++r) is_in_doubt = is_in_doubt || (is_dependent(r) && w.own[r] > 0.0);
   if (!is_in_doubt) { // what is out acts on nothing that can move

@@ -92,6 +92,7 @@ void Dynamics::unpack(double t, const double* y, State& state) const {
   std::copy(y + 2 * n, rest, state.inner.begin());
   state.dissipated = rest[0];
   state.work = rest[1];
+  record_rank(state);
 }
 
 const double* Dynamics::cluster_rates(const double* y) {

@@ -217,16 +217,16 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const st
   permuted_.assign(n_, 0.0);
 }
 
-void SchurSolver::decide_rank(const std::vector<char>& is_friction) {
+void SchurSolver::decide_rank(const std::vector<char>& is_friction, const std::vector<char>& was_out) {
   can_stay_out_ = is_friction;
-  if (!out_.empty()) was_out_.swap(out_);
+  was_out_ = was_out;
   out_.clear();
   is_rank_open_ = !is_friction.empty();
 }
 
 void SchurSolver::keep_rank(const std::vector<SchurRow>& rows, double shift) {
   is_rank_open_ = false;
-  if (dependent_count_ == 0 && smallest_pivot_ >= k_doubtful_pivot) return was_out_.clear();
+  if (dependent_count_ == 0 && smallest_pivot_ >= k_doubtful_pivot) return;
   if (!is_in_doubt(rows)) { // what is out acts on nothing that can move
     out_.assign(n_, 0);
     for (int r = 0; r < n_; ++r) out_[r] = can_stay_out_[r] != 0 && is_dependent(r);

@@ -60,9 +60,11 @@ public:
   /// Numbers from the rows' j and wj, the diagonal raised by the fraction `shift` (damping). Allocates nothing.
   void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
   /// Rows that hold friction: which of them depend on others is decided by the next factorisation, and those stay out
-  /// of the later ones too, until asked again. Within a step a row would else come and go by the rounding of a pivot;
-  /// asked again, a row that was out stays so up to twice the bound.
-  void decide_rank(const std::vector<char>& is_friction);
+  /// of the later ones too, until asked again. Within a step a row would else come and go by the rounding of a pivot.
+  /// Rows that `was_out` when it was last decided stay so up to twice the bound.
+  void decide_rank(const std::vector<char>& is_friction, const std::vector<char>& was_out);
+  /// Has no factorisation followed decide_rank() yet?
+  [[nodiscard]] bool is_rank_open() const { return is_rank_open_; }
   /// What factor() and solve() do for few rows that are independent, on numbers that are written down: conditions are that they
   /// stay as far from singular positions as `least_pivot`. x = A⁻¹ x. Adds the pivots that smallest_pivot() is one of.
   void trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const;

@@ -1,5 +1,7 @@
 #include "mbd/dynamics/stage_program.h"
 
+#include "mbd/dynamics/layout_store.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cstring>
@@ -59,8 +61,8 @@ void StageProgram::look_for_known() {
   if (choice_ == StageCode::when_it_pays && !stored_ && tapes_ == 0 && !is_hopeless_) known_ = kind_->coded();
 }
 
-bool StageProgram::is_of(const Layout& layout, const State& state) const {
-  return layout_ == &layout && std::equal(modes_.begin(), modes_.end(), state.mode.begin(), state.mode.end()) &&
+bool StageProgram::is_of(const State& state) const {
+  return std::equal(modes_.begin(), modes_.end(), state.mode.begin(), state.mode.end()) &&
          std::equal(frictions_.begin(), frictions_.end(), state.friction.begin(), state.friction.end(),
                     [](const Friction& a, const FrictionState& b) { return a == Friction{b.phase, b.sign, b.foot}; });
 }
@@ -195,18 +197,18 @@ void StageProgram::take_down(const System& system, const State& state, double t,
   look_for_code();
 }
 
-void StagePrograms::enter(const Layout& layout, const State& state) {
-  const auto known = std::find_if(programs_.begin(), programs_.end(),
-                                  [&](const auto& program) { return program->is_of(layout, state); });
-  if (known != programs_.end()) {
+void StagePrograms::enter(Layout& layout, const State& state, const LayoutStore& kept) {
+  const auto known =
+      std::find_if(layout.programs.begin(), layout.programs.end(), [&state](const auto& program) { return program->is_of(state); });
+  if (known != layout.programs.end()) {
     now_ = known->get();
     now_->look_for_code();
     now_->look_for_known();
     return;
   }
   now_ = nullptr;
-  if (choice_ == StageCode::never || programs_.size() >= k_most_programs) return;
-  now_ = programs_.emplace_back(std::make_unique<StageProgram>(layout, state, choice_)).get();
+  if (choice_ == StageCode::never || kept.program_count() >= k_most_programs) return;
+  now_ = layout.programs.emplace_back(std::make_unique<StageProgram>(layout, state, choice_)).get();
 }
 
 } // namespace steplap

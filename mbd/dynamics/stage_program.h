@@ -43,11 +43,12 @@ struct StageColumn {
   [[nodiscard]] double input(std::size_t i) const { return inputs[i * static_cast<std::size_t>(stride)]; }
 };
 
-/// Of one layout in one set of modes.
+/// Of one layout, which owns it, in one set of modes.
 class StageProgram {
 public:
   StageProgram(const Layout& layout, const State& state, StageCode choice);
-  [[nodiscard]] bool is_of(const Layout& layout, const State& state) const;
+  /// Was it made for these modes, in its layout?
+  [[nodiscard]] bool is_of(const State& state) const;
 
   /// Code may have been made since. It is used if it makes of the stage that was written down what that has made.
   void look_for_code();
@@ -138,20 +139,19 @@ private:
   bool is_hopeless_ = false;
 };
 
-/// Those of a run, by layout and modes: these come back.
+class LayoutStore;
+
+/// The one in use, of those that layouts keep for their sets of modes: these come back.
 class StagePrograms {
 public:
+  /// Those made until now must be given up (LayoutStore::clear_programs).
   void choose(StageCode choice) {
     choice_ = choice;
-    clear();
-  }
-  /// Layouts are given up, or what they were made of has changed.
-  void clear() {
-    programs_.clear();
-    now_ = nullptr;
+    leave();
   }
   void leave() { now_ = nullptr; }
-  void enter(const Layout& layout, const State& state);
+  /// `kept`: all layouts.
+  void enter(Layout& layout, const State& state, const LayoutStore& kept);
   /// Of the modes entered; null: none.
   [[nodiscard]] StageProgram* now() const { return now_; }
 
@@ -159,7 +159,6 @@ private:
   /// Scenes with many contacts have more sets of modes than it pays to keep.
   static constexpr std::size_t k_most_programs = 64;
 
-  std::vector<std::unique_ptr<StageProgram>> programs_;
   StageProgram* now_ = nullptr;
   StageCode choice_ = StageCode::when_it_pays;
 };

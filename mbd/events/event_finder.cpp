@@ -10,6 +10,9 @@ namespace steplap {
 namespace {
 
 constexpr int k_usual_parts = 128; // as many as a survey may hold without allocating
+// Times what steps were off the joints before they were projected: inside a step dense output is no nearer to them, and what is
+// measured on longer levers than between the joints is off by more.
+constexpr double k_off_joints = 10.0;
 
 } // namespace
 
@@ -17,9 +20,16 @@ EventFinder::EventFinder(const System& system, int max_dimension)
     : system_(system), slots_(system.watch_count), y_(max_dimension, 0.0), dy_(max_dimension, 0.0), armed_(slots_, 1), armed_before_(slots_, 1) {
   slack_.assign(slots_, 0.0);
   near_.reserve(slots_);
+  curves_.reserve(slots_);
+  merged_.assign(slots_, 0);
   fired_.reserve(slots_);
   fired_before_.reserve(slots_);
   parts_.reserve(k_usual_parts);
+  for (const Unit& unit : system.units)
+    for (int w = 0; w < unit.watch_count; ++w) {
+      const WatchKind kind = unit.group->watch_kind(w);
+      if (kind != WatchKind::exact) (kind == WatchKind::place ? place_slots_ : rate_slots_).push_back(unit.watch + w);
+    }
   for (Look& look : place_) look.watch.resize(slots_), look.rate.resize(slots_);
 }
 
@@ -41,8 +51,19 @@ void EventFinder::look_at_end(const Integrator& integrator, bool is_last, Look& 
   for (double& rate : look.rate) rate *= integrator.h();
 }
 
-EventFinder::Suspicion EventFinder::suspicion(Integrator& integrator, const std::vector<char>& fresh) {
+// Is this a value of a joint that holds inside a cluster? Those are not looked at by every stage.
+bool EventFinder::is_merged(const Dynamics& dynamics, int slot) {
+  if (!are_merged_known_) {
+    std::fill(merged_.begin(), merged_.end(), 0);
+    for (const int f : dynamics.layout().merged) std::fill_n(merged_.begin() + system_.frictions[f].watch, k_friction_watches, 1);
+    are_merged_known_ = true;
+  }
+  return merged_[slot] != 0;
+}
+
+EventFinder::Suspicion EventFinder::suspicion(Integrator& integrator, const Dynamics& dynamics, const std::vector<char>& fresh) {
   near_.clear();
+  are_merged_known_ = false;
   WatchNodes& nodes = integrator.watch_nodes();
   nodes.close(integrator.watch0().data(), integrator.watch1().data());
   Suspicion worst = Suspicion::none;
@@ -51,16 +72,17 @@ EventFinder::Suspicion EventFinder::suspicion(Integrator& integrator, const std:
     const double low = nodes.low(i);
     if (2.0 * low > nodes.high(i)) continue; // far
     const double w0 = integrator.watch0()[i], w1 = integrator.watch1()[i];
+    const double start = fresh[i] ? std::max(w0, 0.0) : w0;
+    const WatchedStep watched{i, is_merged(dynamics, i), {start, h * integrator.watch_rate0()[i]}, {w1, h * integrator.watch_rate1()[i]}};
     if (w1 < 0.0) {
       // A plain crossing. A value that is fresh, or negative from the start (rounding, or the projection at another
       // event), has to be followed.
-      const bool is_plain = !fresh[i] && w0 >= 0.0 && nodes.crosses_once(i);
+      const bool is_plain = !fresh[i] && w0 >= 0.0 && nodes.crosses_once(watched);
       worst = std::max(worst, is_plain ? Suspicion::at_end : Suspicion::inside);
       if (!is_plain) near_.push_back(i);
       continue;
     }
-    const double start = fresh[i] ? std::max(w0, 0.0) : w0;
-    if (nodes.is_surely_positive(i, {start, h * integrator.watch_rate0()[i]}, {w1, h * integrator.watch_rate1()[i]})) continue;
+    if (nodes.is_surely_positive(watched)) continue;
     near_.push_back(i);
     worst = Suspicion::inside;
   }
@@ -89,6 +111,10 @@ void EventFinder::set_slack(const Integrator& integrator, const Dynamics& dynami
     const bool is_rate = unit.friction->dimension() == 1 && dynamics.state().friction[f].phase == FrictionPhase::slip;
     slack_[unit.watch] = is_rate ? slack : 0.0;
   }
+  for (const int slot : rate_slots_) slack_[slot] = slack + k_off_joints * integrator.max_velocity_residual();
+  if (place_slots_.empty()) return;
+  const double place_slack = integrator.place_accuracy(dynamics) + k_off_joints * integrator.max_position_residual();
+  for (const int slot : place_slots_) slack_[slot] = place_slack;
 }
 
 // Joints that are merged and certain to hold through the step need not be looked at in it.
@@ -112,17 +138,28 @@ EventFinder::Bracket EventFinder::bracket_whole(const Integrator& integrator) {
 bool EventFinder::find(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh) {
   is_step_withdrawn_ = false;
   if (slots_ == 0) return false;
-  const Suspicion suspected = suspicion(integrator, fresh);
+  const Suspicion suspected = suspicion(integrator, dynamics, fresh);
   if (suspected == Suspicion::none) return false;
   is_step_withdrawn_ = !integrator.bears_look(dynamics);
   if (is_step_withdrawn_) return false;
   set_slack(integrator, dynamics);
   is_merged_near_ = is_any_merged_near(integrator, dynamics);
-  const Bracket bracket = suspected == Suspicion::inside ? survey(integrator, dynamics, fresh)
-                                                         : bracket_whole(integrator);
+  Bracket bracket = suspected == Suspicion::inside ? survey(integrator, dynamics, fresh) : bracket_whole(integrator);
   if (bracket == Bracket::none) return false;
+  // What lies below zero by less than its slack where the bracket begins, and does not come up again, has passed zero before: there
+  // the event is. What was not above at the start is left at once.
+  const auto has_passed = [&](int slot) {
+    return armed_[slot] != 0 && fresh[slot] == 0 && integrator.watch0()[slot] >= 0.0 && low_.watch[slot] < 0.0;
+  };
+  if (bracket == Bracket::at_once && std::any_of(fired_.begin(), fired_.end(), has_passed)) {
+    std::erase_if(fired_, [&](int slot) { return !has_passed(slot); });
+    std::swap(low_, high_);
+    look_at_end(integrator, false, low_);
+    bracket = Bracket::found;
+  }
   if (bracket == Bracket::found) close_in(integrator, dynamics);
   theta_ = high_.theta;
+  integrator.cut_at(dynamics, theta_);
   integrator.dense(dynamics, theta_, y_.data());
   return true;
 }

@@ -5,15 +5,17 @@
 //            in between unless it varies faster than stages resolve, which no step lets it (watch_nodes.h);
 //   certain  the bound of watch_nodes.h keeps it positive between stages;
 //   looked   else it is interpolated on dense output by a polynomial, the part of the step divided until the
-//            polynomial is exact enough to tell (event_survey.cpp).
-// A plain change of sign is closed in on at once. The root is closed in on to rounding; all values that are
-// negative on the far side of the bracket fire together.
+//            polynomial, held against the value where it was not known before, is exact enough to tell (event_survey.cpp).
+// A change of sign that is certain to be the only one is closed in on at once. The root is closed in on to rounding; all
+// values that are negative on the far side of the bracket fire together. A step that takes more parts than there may be
+// ends where it has been looked through, with nothing fired.
 //
 // A value that belongs to a unit or friction whose mode has just changed is *fresh*: it starts at zero
 // up to rounding and is not believed negative until it has been positive.
 #pragma once
 
 #include "mbd/integrators/integrator.h"
+#include "mbd/math/part_polynomial.h"
 #include "mbd/math/root_estimate.h"
 
 #include <array>
@@ -27,7 +29,7 @@ public:
   EventFinder(const System& system, int max_dimension);
 
   /// True if the step just made by `integrator` contains an event; then theta(), state() and fired()
-  /// tell which. `fresh[slot]` as above.
+  /// tell which: none, if it only has to end there. `fresh[slot]` as above.
   bool find(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
 
   /// find() has found nothing, for the step does not bear to be looked into: it has to be made again.
@@ -58,15 +60,31 @@ private:
     double error = 0.0;
     int stalled = 0;
   };
+  /// A value that ends and stages do not make certain, in the part of the step being looked through.
+  struct Near {
+    int slot = -1;
+    int stalled = 0;
+    std::size_t from = 0, to = 0; ///< places between which it has to be positive for the part to be passed
+    bool has_fired = false;       ///< it falls below zero behind the last of these
+    PartPolynomial polynomial;
+  };
 
-  [[nodiscard]] Suspicion suspicion(Integrator& integrator, const std::vector<char>& fresh);
+  [[nodiscard]] Suspicion suspicion(Integrator& integrator, const Dynamics& dynamics, const std::vector<char>& fresh);
+  [[nodiscard]] bool is_merged(const Dynamics& dynamics, int slot);
   Bracket bracket_whole(const Integrator& integrator);
   // --- event_survey.cpp
   Bracket survey(Integrator& integrator, Dynamics& dynamics, const std::vector<char>& fresh);
-  bool look_along(Integrator& integrator, Dynamics& dynamics, double theta);
   bool look_through(Integrator& integrator, Dynamics& dynamics, const Part& part);
+  void begin_parts(Integrator& integrator, Dynamics& dynamics, bool is_any_unarmed);
+  void arm_positive(double theta, const std::vector<double>& watch);
+  std::size_t look_at_places(Integrator& integrator, Dynamics& dynamics, const Part& part);
+  void fit_near(const Part& part, std::size_t last);
   [[nodiscard]] double tangents_meet_below(int slot, std::size_t last) const;
-  [[nodiscard]] Unclear unclear_place(const Part& part, std::size_t last) const;
+  [[nodiscard]] int doubtful_gap(const Near& near) const;
+  [[nodiscard]] Unclear unclear_at(const Near& near, double place) const;
+  [[nodiscard]] Unclear unclear_place(std::size_t last) const;
+  [[nodiscard]] double place_to_check() const;
+  [[nodiscard]] Unclear belied_place(Integrator& integrator, Dynamics& dynamics, const Part& part, std::size_t last);
   // --- event_closing.cpp
   void close_in(Integrator& integrator, Dynamics& dynamics);
   [[nodiscard]] double next_look(double middle);
@@ -104,15 +122,18 @@ private:
     bool is_settled = false; ///< the root is as exact as it can be
   };
   Aim aim_;
-  static constexpr std::size_t k_places = 7;
+  static constexpr std::size_t k_places = PartPolynomial::k_order + 1;
   std::array<Look, k_places> place_; ///< of the part of the step being looked through
-  /// Per slot: a dip that is not deeper and comes up again within the step is none. Of rates of slip, that to which
-  /// velocities are known; 0 of all else.
+  /// Per slot: a dip that is not deeper and comes up again within the step is none. Of rates of slip and of what ForceGroup's
+  /// watch_kind() says, that to which velocities or places are known; 0 of all else.
   std::vector<double> slack_;
+  std::vector<int> place_slots_, rate_slots_; ///< of units
   std::vector<int> near_;        ///< slots that ends and stages do not make certain
+  std::vector<char> merged_;     ///< slots of joints that are merged, once somebody has asked in this step
+  bool are_merged_known_ = false;
+  std::vector<Near> curves_;     ///< of those among near_ that are looked at in the part
   std::vector<Part> parts_;      ///< still to be looked through, the first one last
   bool is_merged_near_ = false;  ///< some joint that is merged may give way in the step
-  int looked_through_ = 0;       ///< parts so far
   std::vector<char> armed_, armed_before_; ///< believed when negative
   std::vector<int> fired_, fired_before_;
 };

@@ -5,6 +5,7 @@
 #include "mbd/system/approximate_place.h"
 #include "mbd/system/one_sided_row.h"
 #include "mbd/system/rope_end.h"
+#include "mbd/system/rounding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,10 +81,15 @@ void EventHandler::load(State& state, int f) {
   if (friction.phase == FrictionPhase::apart) return;
   modes_.set_anchor(state, f);
   double rate[3] = {0, 0, 0};
-  slip_rates(state, f, rate);
-  double largest = 0.0;
-  for (const double r : rate) largest = std::max(largest, std::abs(r));
-  const bool is_sliding = largest > k_rest_velocity && !element.never_slips();
+  place_bodies(state.q, state.v, motion_);
+  bool is_sliding = false;
+  for (int r = 0; r < element.dimension(); ++r) {
+    const RowSpec& row = element.rows(friction)[r];
+    const auto m = evaluate_row<false>(row, motion_.data());
+    rate[r] = m.rate;
+    is_sliding = is_sliding || std::abs(m.rate) > (element.dimension() == 1 ? rest_rate(row, m, motion_.data()) : k_rest_velocity);
+  }
+  is_sliding = is_sliding && !element.never_slips();
   friction.phase = is_sliding ? FrictionPhase::slip : FrictionPhase::stick;
   friction.is_starting = false;
   element.aim(friction, rate);
@@ -138,6 +144,8 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
     const int u = unit_of_slot_[slot];
     if (u < 0) continue;
     const Unit& unit = system_.units[u];
+    // Inside a step the joints are met to its tolerance only: what is no kink where they are met was none.
+    if (unit.group->watch_kind(slot - unit.watch) != WatchKind::exact && dynamics_.watch()[slot] > 0.5 * k_met) continue;
     const UnitMode from = state.mode[u];
     const UnitMode to =
         unit.group->next_mode(unit.index, from, slot - unit.watch, dynamics_.evaluation());
@@ -147,7 +155,8 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
     if (unit.group->stops_in(unit.index, to))
       stop_reason_ = "'" + system_.element_names[unit.element] + "' " + words_of(unit.group->transition(from, to));
     is_any = true;
-    for (int w = 0; w < unit.watch_count; ++w) fresh_[unit.watch + w] = 1;
+    for (int w = 0; w < unit.watch_count; ++w)
+      fresh_[unit.watch + w] = !unit.group->is_surely_positive(unit.index, to, w, dynamics_.evaluation());
     const EventKind kind = unit.group->transition(from, to);
     if (kind != EventKind::none) events.push_back({state.t, system_.element_names[unit.element], kind});
   }

@@ -1,85 +1,36 @@
 // EventFinder: what watch values do inside a step that its ends and stages do not make certain.
 //
-// Part by part from the step's start, values at seven Chebyshev–Lobatto places of dense output are interpolated. With
-// the Chebyshev coefficients a_0 … a_6 of a value, 4 (|a_5| + |a_6|) stands for the error of the polynomial: a part is clear of a value that stays above it. Else the part is divided, where the polynomial is
-// least, so that the bottom of a dip becomes an end of both halves; a value that is negative at any place makes the
-// bracket of an event. What dips below zero for less than k_shortest of a step, and only by rounding, is no event.
+// Part by part from the step's start, values at seven Chebyshev–Lobatto places of dense output are interpolated
+// (mbd/math/part_polynomial.h). A part is passed if every value is above zero between those places by more than the
+// polynomial may be off, and if one more look, where the value that is nearest to zero is least, finds no value further from
+// its polynomial than that. Else the part is divided: where the polynomial is least, so that the bottom of a dip becomes an
+// end of both halves, or where it was off. A value that is negative at a place makes the bracket of an event, if it
+// passes zero once for certain from the place before, and nothing else does. What dips below zero for less than k_shortest of
+// a step, and only by rounding, is no event. That this misses nothing is argued in docs/theory.md, "Events".
 #include "mbd/events/event_finder.h"
-#include "mbd/math/portable_math.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace steplap {
 
 namespace {
 
-constexpr int k_order = 6;
-constexpr int k_samples = 32;          // of the polynomial, to find its least value
 constexpr double k_shortest = 1e-9;    // part of a step that is not divided
 constexpr double k_margin_of_cut = 0.1; // of a part: not nearer to its ends;
 constexpr double k_margin_if_rough = 0.3, k_rough = 1e-3; // … where the error is a larger share of the values than this
-// Coefficients fall as 1/j² at a kink, the gap to a pin that is passed, and the rest of them sum up to so many of the
-// last two; those of what is smooth fall much faster.
-constexpr double k_tail = 4.0;
-constexpr double k_rounding = 1e-15;   // of a value's largest: coefficients below it are rounding
 constexpr double k_stalled = 0.9;      // of the error of the part before: no more exact
 constexpr int k_most_stalled = 4;      // generations in a row
 constexpr int k_most_parts = 400;      // of one step
-constexpr double k_at_once = 1e-4;     // of the step: where what was never positive is decided anew
-
-struct Chebyshev {
-  double place[k_order + 1];                       // in [0, 1]
-  double transform[k_order + 1][k_order + 1];      // coefficients from values
-  double sample[k_samples + 1][k_order + 1];       // T_j at even places
-
-  Chebyshev() {
-    const double pi = std::numbers::pi;
-    for (int k = 0; k <= k_order; ++k)
-      place[k] = 0.5 * (1.0 - portable::cos(pi * k / k_order));
-    for (int j = 0; j <= k_order; ++j)
-      for (int k = 0; k <= k_order; ++k) {
-        double w = 2.0 / k_order * portable::cos(pi * j * (k_order - k) / k_order);
-        if (j == 0 || j == k_order) w *= 0.5;
-        if (k == 0 || k == k_order) w *= 0.5;
-        transform[j][k] = w;
-      }
-    for (int m = 0; m <= k_samples; ++m) { // T_j+1 = 2u T_j − T_j−1
-      const double u = -1.0 + 2.0 * m / k_samples;
-      sample[m][0] = 1.0;
-      sample[m][1] = u;
-      for (int j = 2; j <= k_order; ++j)
-        sample[m][j] = 2.0 * u * sample[m][j - 1] - sample[m][j - 2];
-    }
-  }
-};
-
-const Chebyshev k_chebyshev; // made before main(): threads that run side by side find it made
-
-double sum_at(const double* a, double x) {
-  const double u = 2.0 * x - 1.0;
-  double b1 = 0.0, b2 = 0.0;
-  for (int j = k_order; j > 0; --j) {
-    const double b = a[j] + 2.0 * u * b1 - b2;
-    b2 = b1;
-    b1 = b;
-  }
-  return a[0] + u * b1 - b2;
-}
-
-// Least value of the series between the samples beside x, where it is moved to (golden section).
-double bottom_near(const double* a, double& x) {
-  constexpr double k_golden = 0.3819660112501051;
-  double low = x - 1.0 / k_samples, high = x + 1.0 / k_samples;
-  for (int i = 0; i < 40; ++i) {
-    const double left = low + k_golden * (high - low), right = high - k_golden * (high - low);
-    (sum_at(a, left) < sum_at(a, right) ? high : low) = sum_at(a, left) < sum_at(a, right) ? right : left;
-  }
-  x = 0.5 * (low + high);
-  return sum_at(a, x);
-}
+// Of the step: nearer to its start nobody believes what was not positive there (dense output does not know so small
+// changes); what has not become positive at all is decided anew here.
+constexpr double k_at_once = 1e-4;
+constexpr double k_off_places = 0.25;  // of a gap between places: a check is not made nearer to these, where nothing can be off
+// Beside what a polynomial is off by at one place it may be off by so many times that at others: between the first two
+// places it reaches about a quarter of what it does in the middle.
+constexpr double k_elsewhere = 4.0;
+constexpr double k_far = 0.25; // of the size of a value that is clear: it is not checked
 
 } // namespace
 
@@ -87,7 +38,7 @@ double bottom_near(const double* a, double& x) {
 // what is convex between them, as the gap to anything round that is flown past, may be as low. −1: nowhere, or rates
 // are not known.
 double EventFinder::tangents_meet_below(int slot, std::size_t last) const {
-  const double begin = place_[0].theta, width = place_[k_order].theta - begin;
+  const double begin = place_[0].theta, width = place_[k_places - 1].theta - begin;
   for (std::size_t k = 0; k < last; ++k) {
     const double w0 = place_[k].watch[slot], w1 = place_[k + 1].watch[slot];
     const double s0 = place_[k].rate[slot], s1 = place_[k + 1].rate[slot];
@@ -99,92 +50,169 @@ double EventFinder::tangents_meet_below(int slot, std::size_t last) const {
   return -1.0;
 }
 
-// Where in the part between the first `count` + 1 places some near value may be below zero (0 … 1), −1 if nowhere.
-EventFinder::Unclear EventFinder::unclear_place(const Part& part, std::size_t last) const {
-  const Chebyshev& table = k_chebyshev;
-  const double until = table.place[last];
+// The polynomials of the near values in the part whose places are looked at, and between which of them each has to be
+// positive: up to `last`, or where some value has been seen below zero behind that, one place more. What is fresh is not
+// believed before it has been positive, nor what is negative at the part's begin.
+void EventFinder::fit_near(const Part& part, std::size_t last) {
+  curves_.clear();
   for (const int slot : near_) {
-    if (!armed_[slot] || place_[0].watch[slot] < 0.0) continue; // not believed yet, or followed by the looks themselves
-    if (const double x = tangents_meet_below(slot, last); x >= 0.0) return {x, slot, 0.0, 0};
-    double a[k_order + 1] = {}, largest = 0.0;
-    for (int k = 0; k <= k_order; ++k) {
-      const double w = place_[k].watch[slot];
-      largest = std::max(largest, std::abs(w));
-      for (int j = 0; j <= k_order; ++j) a[j] += table.transform[j][k] * w;
-    }
-    if (largest == 0.0) continue; // what touches and does not move: zero is not below zero, however fine one looks
-    double error = k_tail * (std::abs(a[k_order]) + std::abs(a[k_order - 1]));
-    if (error < k_rounding * largest) error = 0.0;
+    Near near;
+    near.slot = slot;
+    near.has_fired = last + 1 < k_places && std::find(fired_.begin(), fired_.end(), slot) != fired_.end();
+    near.to = near.has_fired ? last : std::min(last + 1, k_places - 1);
+    const auto is_positive = [&](const Look& place) { return place.watch[slot] > 0.0 && place.theta >= k_at_once; };
+    if (armed_before_[slot] == 0 || place_[0].watch[slot] < 0.0)
+      while (near.from < k_places && !is_positive(place_[near.from])) ++near.from;
+    if (near.from > near.to) continue;
+    PartPolynomial::Values values;
+    for (std::size_t k = 0; k < k_places; ++k) values[k] = place_[k].watch[slot];
+    near.polynomial.fit(values);
+    if (near.polynomial.largest() == 0.0) continue; // what touches and does not move: zero is not below zero, however fine one looks
     // What dividing does not make more exact is rounding (a contact that touches without being pressed), or a jump: its
     // values at the places are all there is to know. Errors at a kink fall with the width, those of what is smooth much
     // faster.
-    const bool is_stalled = slot == part.slot && error > k_stalled * part.error;
-    const int stalled = is_stalled ? part.stalled + 1 : 0;
-    if (stalled >= k_most_stalled) continue;
-    double p[k_samples + 1];
-    for (int m = 0; m <= k_samples; ++m) {
-      p[m] = 0.0;
-      for (int j = 0; j <= k_order; ++j) p[m] += a[j] * table.sample[m][j];
-    }
-    double least = error - slack_[slot], at = -1.0;
-    // The ends are known; what leaves one upward is above the error at the first sample.
-    for (int m = 1; m < k_samples && static_cast<double>(m) / k_samples <= until; ++m) {
-      double place = static_cast<double>(m) / k_samples, value = p[m];
-      const bool is_bottom = p[m] <= p[m - 1] && p[m] <= p[m + 1] && p[m] < p[m - 1] - 2.0 * p[m] + p[m + 1];
-      if (is_bottom && value > least) value = bottom_near(a, place);
-      if (value > least) continue;
-      least = value;
-      at = place;
-    }
-    const double margin = error > k_rough * largest ? k_margin_if_rough : k_margin_of_cut;
-    if (at >= 0.0) return {std::clamp(at, margin, 1.0 - margin), slot, error, stalled};
+    const bool is_stalled = slot == part.slot && near.polynomial.error() > k_stalled * part.error;
+    near.stalled = is_stalled ? part.stalled + 1 : 0;
+    if (near.stalled < k_most_stalled) curves_.push_back(near);
+  }
+}
+
+// The gap between places in which the value may be below zero, or pass it more than once; −1: none.
+int EventFinder::doubtful_gap(const Near& near) const {
+  const double floor = -slack_[near.slot];
+  const int gap = near.polynomial.doubtful_gap(floor, near.from, near.to);
+  if (gap >= 0 || !near.has_fired || near.polynomial.falls_once(floor, near.to)) return gap;
+  return static_cast<int>(near.to);
+}
+
+EventFinder::Unclear EventFinder::unclear_at(const Near& near, double place) const {
+  const PartPolynomial& p = near.polynomial;
+  const double margin = p.error() > k_rough * p.largest() ? k_margin_if_rough : k_margin_of_cut;
+  return {std::clamp(place, margin, 1.0 - margin), near.slot, p.error(), near.stalled};
+}
+
+// Where in the part some near value may be below zero between the places.
+EventFinder::Unclear EventFinder::unclear_place(std::size_t last) const {
+  for (const Near& near : curves_) {
+    if (const double x = tangents_meet_below(near.slot, last); x >= 0.0) return {x, near.slot, 0.0, 0};
+    const int gap = doubtful_gap(near);
+    if (gap < 0) continue;
+    const auto k = static_cast<std::size_t>(gap); // a bottom may lie at its end
+    return unclear_at(near, near.polynomial.lowest(k > 0 ? k - 1 : 0, std::min(k + 2, k_places - 1)));
   }
   return {};
 }
 
-// A look beyond low_: true if something falls below zero between the two.
-bool EventFinder::look_along(Integrator& integrator, Dynamics& dynamics, double theta) {
-  if (theta == 1.0) look_at_end(integrator, true, high_);
-  else watch_at(integrator, dynamics, theta, high_);
-  if (falls(low_, high_)) return true;
+// Where the value that comes nearest to zero, as a share of its size, is least between the places; −1: there is none, or all are
+// so far away that the polynomial would have to be off by as much as the value itself.
+double EventFinder::place_to_check() const {
+  const Near* nearest = nullptr;
+  double least = 0.0;
+  for (const Near& near : curves_) {
+    if (near.from >= near.to) continue;
+    double low = place_[near.from].watch[near.slot];
+    for (std::size_t k = near.from + 1; k <= near.to; ++k) low = std::min(low, place_[k].watch[near.slot]);
+    const double share = low / near.polynomial.largest();
+    if (nearest && share >= least) continue;
+    nearest = &near;
+    least = share;
+  }
+  if (!nearest || least > k_far) return -1.0;
+  const double x = nearest->polynomial.lowest(nearest->from, nearest->to);
+  std::size_t gap = nearest->from;
+  while (gap + 1 < nearest->to && x > PartPolynomial::place(gap + 1)) ++gap;
+  const double begin = PartPolynomial::place(gap), width = PartPolynomial::place(gap + 1) - begin;
+  return std::clamp(x, begin + k_off_places * width, begin + (1.0 - k_off_places) * width);
+}
+
+// All near values are clear by their polynomials: are they what these say at a place where nobody has looked? Where one is
+// not, and may be below zero if the polynomial is off by so much, the part has to be divided; there, where one, near or not, is
+// below zero before the first place that has one.
+EventFinder::Unclear EventFinder::belied_place(Integrator& integrator, Dynamics& dynamics, const Part& part, std::size_t last) {
+  const double x = place_to_check();
+  if (x < 0.0) return {};
+  watch_at(integrator, dynamics, part.begin + x * (part.end - part.begin), middle_);
+  for (int i = 0; i < slots_ && x < PartPolynomial::place(last); ++i)
+    if (armed_before_[i] && place_[0].watch[i] >= -slack_[i] && middle_.watch[i] < -slack_[i]) return {x, i, 0.0, 0};
+  for (Near& near : curves_) {
+    if (x < PartPolynomial::place(near.from) || x > PartPolynomial::place(near.to)) continue;
+    const double off = std::abs(middle_.watch[near.slot] - near.polynomial.at(x));
+    if (!(off > near.polynomial.error())) continue;
+    near.polynomial.widen(k_elsewhere * off);
+    if (doubtful_gap(near) >= 0) return unclear_at(near, x);
+  }
+  return {};
+}
+
+// All places of the part beyond its begin; the one up to which nothing has been seen below zero.
+std::size_t EventFinder::look_at_places(Integrator& integrator, Dynamics& dynamics, const Part& part) {
+  const double width = part.end - part.begin;
+  std::size_t last = k_places - 1;
+  for (std::size_t k = 1; k < k_places; ++k) {
+    const double theta = k == k_places - 1 ? part.end : part.begin + PartPolynomial::place(k) * width;
+    if (theta == 1.0) look_at_end(integrator, true, place_[k]);
+    else watch_at(integrator, dynamics, theta, place_[k]);
+    if (last < k_places - 1) continue;
+    if (falls(place_[k - 1], place_[k])) {
+      last = k - 1;
+      continue;
+    }
+    arm_positive(place_[k].theta, place_[k].watch);
+  }
+  return last;
+}
+
+void EventFinder::arm_positive(double theta, const std::vector<double>& watch) {
+  if (theta < k_at_once) return;
   for (int i = 0; i < slots_; ++i)
-    if (high_.watch[i] > 0.0) armed_[i] = 1;
+    if (watch[i] > 0.0) armed_[i] = 1;
+}
+
+// A look ahead of which what is fresh is not believed. What is, and is not far from zero between the step's start and that
+// look, has to be looked at in between.
+void EventFinder::begin_parts(Integrator& integrator, Dynamics& dynamics, bool is_any_unarmed) {
+  parts_.clear();
+  parts_.push_back({});
+  if (!is_any_unarmed) return;
+  parts_.back().begin = k_at_once;
+  watch_at(integrator, dynamics, k_at_once, high_);
+  const bool is_any_near = std::any_of(near_.begin(), near_.end(), [this](int slot) {
+    const double low = std::min(low_.watch[slot], high_.watch[slot]), high = std::max(low_.watch[slot], high_.watch[slot]);
+    return armed_[slot] && 2.0 * low <= high;
+  });
+  if (is_any_near || falls(low_, high_)) {
+    parts_.push_back({0.0, k_at_once});
+    return;
+  }
+  arm_positive(k_at_once, high_.watch);
   std::swap(low_, high_);
-  return false;
 }
 
 // low_ is at the part's begin. True with a bracket in low_ and high_; else low_ is at its end, or the part has been divided.
 bool EventFinder::look_through(Integrator& integrator, Dynamics& dynamics, const Part& part) {
-  const Chebyshev& table = k_chebyshev;
   const double width = part.end - part.begin;
   place_[0] = low_;
   armed_before_ = armed_;
-  std::size_t last = k_order; // place up to which nothing has been seen below zero
-  for (std::size_t k = 1; k <= k_order; ++k) {
-    const double theta = k == k_order ? part.end : part.begin + table.place[k] * width;
-    if (theta == 1.0) look_at_end(integrator, true, place_[k]);
-    else watch_at(integrator, dynamics, theta, place_[k]);
-    if (last == k_order && falls(place_[k - 1], place_[k])) last = k - 1;
-    if (last == k_order)
-      for (int i = 0; i < slots_; ++i)
-        if (place_[k].watch[i] > 0.0) armed_[i] = 1;
+  const std::size_t last = look_at_places(integrator, dynamics, part);
+  if (last + 1 < k_places) (void)falls(place_[last], place_[last + 1]);
+  if (width > k_shortest) {
+    fit_near(part, last);
+    Unclear unclear = unclear_place(last);
+    if (unclear.slot < 0) unclear = belied_place(integrator, dynamics, part, last);
+    if (unclear.slot >= 0) {
+      const double cut = part.begin + unclear.place * width;
+      parts_.push_back({cut, part.end, unclear.slot, unclear.error, unclear.stalled});
+      parts_.push_back({part.begin, cut, unclear.slot, unclear.error, unclear.stalled});
+      armed_ = armed_before_;
+      return false;
+    }
   }
-  const bool may_divide = width > k_shortest && ++looked_through_ < k_most_parts;
-  const Unclear unclear = may_divide ? unclear_place(part, last) : Unclear{};
-  if (unclear.slot >= 0) {
-    const double cut = part.begin + unclear.place * width;
-    parts_.push_back({cut, part.end, unclear.slot, unclear.error, unclear.stalled});
-    parts_.push_back({part.begin, cut, unclear.slot, unclear.error, unclear.stalled});
-    armed_ = armed_before_;
-    return false;
-  }
-  if (last < k_order) {
-    (void)falls(place_[last], place_[last + 1]);
+  if (last + 1 < k_places) {
     std::swap(low_, place_[last]);
     std::swap(high_, place_[last + 1]);
     return true;
   }
-  std::swap(low_, place_[k_order]);
+  std::swap(low_, place_[k_places - 1]);
   return false;
 }
 
@@ -195,18 +223,15 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
     armed_[i] = !fresh[i] && low_.watch[i] >= 0.0;
     is_any_unarmed = is_any_unarmed || !armed_[i];
   }
-  looked_through_ = 0;
-  parts_.clear();
-  parts_.push_back({});
-  // Fresh values often turn within the first fraction of a step.
-  if (is_any_unarmed)
-    for (const double theta : {1e-4, 1e-3, 1e-2}) {
-      if (look_along(integrator, dynamics, theta)) return bracket_of_fall();
-      parts_.back().begin = theta;
-    }
-  while (!parts_.empty()) {
+  begin_parts(integrator, dynamics, is_any_unarmed);
+  for (int parts = 0; !parts_.empty(); ++parts) {
     const Part part = parts_.back();
     parts_.pop_back();
+    if (parts >= k_most_parts && part.begin > 0.0) { // the step ends where it has been looked through
+      fired_.clear();
+      high_ = low_;
+      return Bracket::at_once;
+    }
     if (look_through(integrator, dynamics, part)) return bracket_of_fall();
   }
   // Values that were never positive: the mode chosen is not the one the motion takes. The event

@@ -21,6 +21,9 @@ namespace {
 // where both are right, by a tenth of the tolerance (docs/integrators.md).
 constexpr std::size_t k_looked_stage = 14;
 constexpr double k_most_departure = 5.0;
+// Velocities of a slip by which its friction turns may be off by no more there than where they have fallen to a tenth
+// within a step (Integrator::resolves_slips): a 60th of that.
+constexpr double k_most_departure_of_slips = 10.0 / 60.0;
 constexpr double k_most_defect = 10.0; // of accurate steps about 1: an eighth of the polynomial's error, times hρ
 
 class Dop853 final : public ExplicitPair, public LaneTry {
@@ -88,7 +91,7 @@ protected:
 
   [[nodiscard]] double dense_error(Dynamics& dynamics) override {
     if (!is_dense_ready_) prepare_dense(dynamics);
-    double error = stage_departure() / k_most_departure;
+    double error = stage_departure() / (has_slip_scale0_ ? k_most_departure_of_slips : k_most_departure);
     if (flows_inside(dynamics)) error = std::max(error, defect(dynamics) / k_most_defect);
     return std::isfinite(error) ? error : std::numeric_limits<double>::infinity();
   }
@@ -127,10 +130,11 @@ private:
     const double theta = dop853::c[stage];
     const bool is_due = is_merged_look_due(theta);
     if (is_due) last_merged_look_ = theta;
-    if (!dynamics.looks_at_merged(is_due)) dynamics.take_stage(program, made);
+    const bool has_merged = dynamics.looks_at_merged(is_due);
+    if (!has_merged) dynamics.take_stage(program, made);
     else if (program.can_look()) dynamics.take_look(program, made, t0_ + theta * h_, y0_.data());
     else evaluate_again(dynamics, made, stage);
-    nodes_.add(theta, dynamics.watch().data());
+    nodes_.add(theta, dynamics.watch().data(), has_merged);
   }
 
   // Joints inside clusters are looked at by an evaluation.

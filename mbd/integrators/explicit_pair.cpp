@@ -58,15 +58,19 @@ void ExplicitPair::refuse_shorter_than_rounding(double h) const {
 bool ExplicitPair::bears_look(Dynamics& dynamics) {
   if (is_crossing_ || is_inside_known_) return true;
   const double inside = error_inside(dynamics);
-  if (inside <= 1.0) return true;
+  return inside <= 1.0 || !withdraw(dynamics, h_ * shorter(inside));
+}
+
+bool ExplicitPair::withdraw(Dynamics& dynamics, double h) {
+  if (is_crossing_) return false;
   --steps_;
   ++rejections_;
   approach_ = before_.approach;
   control_.previous_error = before_.error;
-  next_h_ = h_ * shorter(inside);
+  next_h_ = h;
   refuse_shorter_than_rounding(next_h_);
   dynamics.rates(t0_, y0_.data(), scratch_.data()); // where the next try begins
-  return false;
+  return true;
 }
 
 void ExplicitPair::dense(Dynamics& dynamics, double theta, double* out) {

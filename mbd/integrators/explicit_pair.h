@@ -38,6 +38,7 @@ protected:
   /// beyond 1, which is no number too (infinite), the step is refused like any other.
   [[nodiscard]] virtual double dense_error(Dynamics& /*dynamics*/) { return 0.0; }
   void on_restart(Dynamics& dynamics) override;
+  [[nodiscard]] bool withdraw(Dynamics& dynamics, double h) final;
 
   template <const auto& Rows, std::size_t Row>
   void stage(Dynamics& dynamics, double c) {

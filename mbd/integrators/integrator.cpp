@@ -17,13 +17,24 @@ constexpr double k_displacement_floor = 1e-3;
 constexpr double k_rate_floor = 60.0;
 // What projection takes away counts by this share: it leaves what directions turn by within a step, twice.
 constexpr double k_turned_share = 1e-4;
-// Merged joints far from their bounds are looked at about twice inside a step, so far apart.
-constexpr double k_merged_look = 0.25;
+// Merged joints far from their bounds are looked at about twice inside a step, so far apart, and not just before its end,
+// where they are looked at anyway.
+constexpr double k_merged_look = 0.25, k_merged_end = 0.0625;
 // Of the time, from which on a step that cannot meet the constraints is not shortened any more.
 constexpr double k_shortest_try = 1e-12;
 // Errors of velocity stay below this share of what a slip law turns with, whatever the tolerance: where a slip
 // begins and ends, |ν| → 0, an error of the tolerance's size would give the friction any direction.
 constexpr double k_slip_share = 5e-4;
+// The norm is a mean over the numbers of the state: of more of them than those of eight bodies, velocities of a slip weigh as
+// much as they would there.
+constexpr double k_slip_numbers = 50.0;
+// Within a step a slip slows down to this share at most. Errors that are k_slip_share of its speed where the step begins
+// are then a two hundredth of it wherever the step is looked into, and so is what they turn it by.
+constexpr double k_least_slip = 0.1;
+// Of the way to the place where it was slower, how much the next try goes: a slip that falls evenly is at a fifth there.
+constexpr double k_shorter_slip = 0.8;
+// Halved steps leave a 32nd of the error of the methods of least order here, 5.
+double slip_share(int division) { return k_slip_share / (static_cast<double>(division) * division * division * division * division); }
 // Numbers of a state of which sums are made in pieces.
 constexpr int k_long_state = 6 * Parts::k_least_clusters;
 
@@ -33,7 +44,8 @@ Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& setti
     : system_(dynamics.system()), team_(dynamics.team()), settings_(settings), y0_(max_dimension, 0.0),
       y1_(max_dimension, 0.0), weight_(max_dimension, 0.0), scratch_(3 * max_dimension, 0.0),
       watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_rate0_(watch0_),
-      watch_rate1_(watch0_), nodes_(system_.watch_count), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_) {
+      watch_rate1_(watch0_), nodes_(system_.watch_count), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_),
+      slip_scale_inside_(slip_scale0_) {
   double size = 0.0;
   for (const BodyData& body : system_.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
@@ -73,6 +85,19 @@ void Integrator::note_slips(Dynamics& dynamics, std::vector<double>& scale, bool
   decay_rate_ = is_adaptive() ? 0.0 : dynamics.slip_decay_rate();
 }
 
+bool Integrator::resolves_slips(Dynamics& dynamics, double theta, const double* y) {
+  if (!has_slip_scale0_) return true;
+  const std::vector<double>* scale = &slip_scale1_;
+  if (theta < 1.0) {
+    dynamics.rates(t0_ + theta * h_, y, scratch_.data());
+    if (!dynamics.slip_scales(slip_scale_inside_.data())) return true;
+    scale = &slip_scale_inside_;
+  }
+  for (int i = 0; i < dynamics.coordinate_count(); ++i)
+    if ((*scale)[i] < k_least_slip * slip_scale0_[i]) return !withdraw(dynamics, k_shorter_slip * theta * h_);
+  return true;
+}
+
 double Integrator::rate_accuracy(const Dynamics& dynamics) const {
   constexpr double k_rounding = 1e-12;
   const int m = dynamics.coordinate_count();
@@ -80,6 +105,15 @@ double Integrator::rate_accuracy(const Dynamics& dynamics) const {
   for (int i = 0; i < m; ++i) fastest = std::max(fastest, std::abs(y1_[m + i]));
   const double tolerance = is_adaptive() ? std::max(settings_.tolerance, k_rounding) : k_rounding;
   return tolerance * (k_rate_floor * k_displacement_floor * length_scale_ + fastest) + k_rounding;
+}
+
+double Integrator::place_accuracy(const Dynamics& dynamics) const {
+  constexpr double k_rounding = 1e-12;
+  const Layout& layout = dynamics.layout();
+  double farthest = 0.0;
+  for (int i = 0; i < dynamics.coordinate_count(); ++i) farthest = std::max(farthest, std::abs(y1_[i] - layout.reference[i]));
+  const double tolerance = is_adaptive() ? std::max(settings_.tolerance, k_rounding) : k_rounding;
+  return tolerance * (k_displacement_floor * length_scale_ + farthest) + k_rounding;
 }
 
 bool Integrator::end_at(Dynamics&, double) { return false; }
@@ -152,21 +186,22 @@ bool Integrator::try_finish_step(Dynamics& dynamics) {
 }
 
 bool Integrator::is_merged_look_due(double theta) const {
-  return theta > last_merged_look_ + k_merged_look && theta < 1.0 - 0.5 * k_merged_look;
+  return theta > last_merged_look_ + k_merged_look && theta < 1.0 - k_merged_end;
 }
 
 void Integrator::evaluate_stage(Dynamics& dynamics, double t, const double* y, double* dy, double theta) {
   const bool is_due = is_merged_look_due(theta);
   if (is_due) last_merged_look_ = theta;
+  const bool has_merged = dynamics.looks_at_merged(is_due);
   dynamics.look_rates(t, y, dy, is_due);
-  nodes_.add(theta, dynamics.watch().data());
+  nodes_.add(theta, dynamics.watch().data(), has_merged);
 }
 
 void Integrator::note_stage_watches(Dynamics& dynamics, const double* dy, double theta) {
   const bool is_due = is_merged_look_due(theta);
   if (is_due) last_merged_look_ = theta;
   dynamics.watch_merged_if_near(dy, is_due);
-  nodes_.add(theta, dynamics.watch().data());
+  nodes_.add(theta, dynamics.watch().data(), dynamics.looks_at_merged(is_due));
 }
 
 void Integrator::update_weights(Dynamics& dynamics) {
@@ -188,9 +223,11 @@ void Integrator::update_weights(Dynamics& dynamics) {
   team_.stretches(m, [&](int from, int to) {
     for (int i = from; i < to; ++i) weigh(i);
   });
-  if (has_slip_scale0_)
+  if (has_slip_scale0_) {
+    const double share = slip_care_ * slip_share(settings_.division) * std::min(1.0, std::sqrt(k_slip_numbers / n_));
     for (int i = 0; i < m; ++i)
-      if (weight_[m + i] > 0.0) weight_[m + i] = std::max(weight_[m + i], 1.0 / (k_slip_share * slip_scale0_[i]));
+      if (weight_[m + i] > 0.0) weight_[m + i] = std::max(weight_[m + i], 1.0 / (share * slip_scale0_[i]));
+  }
   // Inner states are displacements (of an elastic joint: m, m, rad), known as well as those of bodies.
   for (int i = 2 * m; i < n_ - 2; ++i)
     weight_[i] = 1.0 / (tolerance * (k_displacement_floor * std::min(length_scale_, 1.0) +
@@ -239,10 +276,10 @@ double Integrator::restrained_step(Dynamics& dynamics, double h) {
     double turned = 0.0;
     for (int i = m; i < 2 * m; ++i)
       turned = std::max(turned, settings_.tolerance * weight_[i] * h * std::abs(f[i] - k0_[i]));
-    if (turned <= 1.0) return h;
+    if (turned <= 1.0) return attempt == 0 ? h : h / settings_.division;
     h *= std::isfinite(turned) ? std::max(k_most_shortened, 0.8 / std::sqrt(turned)) : k_most_shortened;
   }
-  return h;
+  return h / settings_.division;
 }
 
 // Hairer, Nørsett, Wanner, Solving ODEs I, II.4: from the size of y, f and a difference of f.

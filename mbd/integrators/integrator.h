@@ -25,6 +25,9 @@ struct IntegratorSettings {
   double step = 0.0;                  ///< s; fixed-step methods need it, others take it as the first step
   double max_step = 0.0;              ///< s; 0: none
   double projection_tolerance = 1e-12;
+  /// Of a finer run, above 1: whatever else limits a step (a breakpoint, a harmonic, the forces behind an event, a slip that
+  /// ends) limits one of so many parts. Fixed steps are cut as steps of division × step would be, and then divided.
+  int division = 1;
 };
 
 class Integrator {
@@ -46,8 +49,16 @@ public:
   /// To be asked before anybody looks into the step made. False: its dense output is worse than its ends allow; the step is
   /// withdrawn, and step() makes another, shorter one.
   [[nodiscard]] virtual bool bears_look(Dynamics& /*dynamics*/) { return true; }
+  /// To be asked where the step made is to be used up to: at theta of it, in the state y. False: some slip has fallen there to
+  /// what velocities are known to in this step, so that nobody could tell whether it comes to rest or which way it goes on;
+  /// the step is withdrawn, and step() makes another, shorter one.
+  [[nodiscard]] virtual bool resolves_slips(Dynamics& dynamics, double theta, const double* y);
   /// No step is longer than this, s: Simulation sets it anew wherever the loads' and drives' harmonics change.
   virtual void limit_step(double longest) { longest_step_ = longest; }
+  /// Takes the memory that its steps will need, at (t, y) in the present layout: afterwards they allocate nothing.
+  virtual void reserve(Dynamics&, double, const double*) {}
+  /// The length of the next step, s, of a method that chooses its steps and has made none yet.
+  virtual void propose_step(double) {}
   /// No step turns a harmonic of a load or drive further than this, rad: its places resolve a quarter of a period.
   static constexpr double k_largest_turn = 1.6;
   /// Makes one step of at most t_limit − t. Throws NumericalFailure where no step can be made.
@@ -62,6 +73,9 @@ public:
   /// Ends the step just made at theta of it, anew as a step of its own. Fixed steps do where forces have a kink behind
   /// the event; no error estimate has shortened them. False: it was left as it is.
   virtual bool end_at(Dynamics& dynamics, double theta);
+  /// Nobody will look beyond theta of the step made, where an event ends it: dissipated energy and work are to be as exact
+  /// there as at an end. May evaluate.
+  virtual void cut_at(Dynamics& /*dynamics*/, double /*theta*/) {}
   /// State at t + theta·h of the step made, 0 ≤ theta ≤ 1. May evaluate.
   virtual void dense(Dynamics& dynamics, double theta, double* out) = 0;
   /// Goes on from the end of the step.
@@ -92,6 +106,8 @@ public:
   [[nodiscard]] double tolerance() const { return is_adaptive() ? settings_.tolerance : 0.0; }
   /// How well velocities are known in the step made, m/s: its tolerance, or their rounding.
   [[nodiscard]] double rate_accuracy(const Dynamics& dynamics) const;
+  /// The same of places, m, and of angles, rad.
+  [[nodiscard]] double place_accuracy(const Dynamics& dynamics) const;
   [[nodiscard]] long steps() const { return steps_; }
   [[nodiscard]] long rejections() const { return rejections_; }
   [[nodiscard]] double max_position_residual() const { return residual_.position; }
@@ -99,6 +115,8 @@ public:
 
 protected:
   virtual void on_restart(Dynamics& /*dynamics*/) {}
+  /// Takes the step made back; the next one tries h. False: it has to stay as it is.
+  [[nodiscard]] virtual bool withdraw(Dynamics& /*dynamics*/, double /*h*/) { return false; }
   [[nodiscard]] bool are_looks_expected() const { return are_looks_expected_; }
   void begin_at(Dynamics& dynamics, double t, const double* y);
   void note_begin(Dynamics& dynamics);
@@ -160,7 +178,9 @@ protected:
   double longest_step_ = std::numeric_limits<double>::infinity();
   double last_merged_look_ = 0.0; ///< theta at which joints that are merged were last looked at inside the step
   std::vector<double> slip_scale0_, slip_scale1_; ///< per rate (Dynamics::slip_scales)
+  std::vector<double> slip_scale_inside_;         ///< where the step is used up to
   bool has_slip_scale0_ = false, has_slip_scale1_ = false;
+  double slip_care_ = 1.0; ///< of the errors that velocities of a slip may have: less where nothing checks the output within a step
   double decay_rate_ = 0.0; ///< of slip laws where the next step begins, 1/s; of methods that choose no steps
   long steps_ = 0, rejections_ = 0;
   Residual residual_;

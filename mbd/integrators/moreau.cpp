@@ -2,6 +2,7 @@
 #include "mbd/integrators/methods.h"
 #include "mbd/integrators/time_stepping.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace steplap {
@@ -23,7 +24,7 @@ public:
   void step(Dynamics& dynamics, double t_limit) override {
     // As many equal steps as there is room for up to the limit: sums of steps end beside it by rounding, and a last
     // step of that length would tell nothing but rounding.
-    const double left = t_limit - t0_, count = std::ceil(left / settings_.step - k_stretch);
+    const double left = t_limit - t0_, count = steps_to(t_limit, left);
     h_ = count > 1.0 ? left / count : left;
     t1_ = count > 1.0 ? t0_ + h_ : t_limit;
     state_ = dynamics.state();
@@ -46,9 +47,21 @@ public:
   }
 
 private:
+  // How many equal ones: of a finer run `division` for each that the longer steps have up to the same limit.
+  [[nodiscard]] double steps_to(double t_limit, double left) {
+    if (settings_.division == 1) return std::ceil(left / limited(settings_.step) - k_stretch);
+    if (t_limit != limit_) {
+      limit_ = t_limit;
+      part_ = left / (settings_.division * std::max(1.0, std::ceil(left / limited(settings_.division * settings_.step) - k_stretch)));
+    }
+    return std::round(left / part_);
+  }
+
   TimeStepping stepping_;
   State state_, start_;
   std::vector<double> k_;
+  double limit_ = -1.0; ///< of the steps of length part_, s
+  double part_ = 0.0;   ///< s
 };
 
 } // namespace

@@ -30,16 +30,16 @@ public:
 
   void step(Dynamics& dynamics, double t_limit) override {
     const double left = t_limit - t0_;
-    const double h = next_step();
-    // A remainder of a step's rounding is taken along rather than left for a step of its own.
-    const double step = limited(h);
-    const bool is_last = left <= step * (1.0 + 1e-9);
-    h_ = is_last ? left : step;
+    if (parts_left_ == 0) cut_step(left);
+    --parts_left_;
+    const bool is_last = is_cut_at_limit_ && parts_left_ == 0;
+    h_ = is_last ? left : part_;
     t1_ = is_last ? t_limit : t0_ + h_;
     while (!try_step(dynamics)) {
       ++rejections_;
       h_ *= 0.5;
       t1_ = t0_ + h_;
+      parts_left_ = 0;
     }
     ++steps_;
   }
@@ -64,7 +64,10 @@ public:
   }
 
 protected:
-  void on_restart(Dynamics&) override { last_decay_rate_ = 0.0; }
+  void on_restart(Dynamics&) override {
+    last_decay_rate_ = 0.0;
+    parts_left_ = 0;
+  }
 
 private:
   [[nodiscard]] bool try_step(Dynamics& dynamics) {
@@ -78,14 +81,22 @@ private:
     });
     return try_finish_step(dynamics);
   }
-  double next_step() {
+  // The step that is due, into `division` parts.
+  void cut_step(double left) {
+    // A remainder of a step's rounding is taken along rather than left for a step of its own.
+    const double step = limited(next_step(settings_.division * settings_.step));
+    is_cut_at_limit_ = left <= step * (1.0 + 1e-9);
+    parts_left_ = settings_.division;
+    part_ = (is_cut_at_limit_ ? left : step) / settings_.division;
+  }
+  double next_step(double longest) {
     const bool is_coming_to_rest = decay_rate_ > last_decay_rate_;
     last_decay_rate_ = decay_rate_;
-    if (decay_rate_ == 0.0) return settings_.step;
-    const double h = std::min(settings_.step, k_decay_share / decay_rate_);
+    if (decay_rate_ == 0.0) return longest;
+    const double h = std::min(longest, k_decay_share / decay_rate_);
     if (!is_coming_to_rest) return h;
     const double share = 1.0 / (k_rest_layer * decay_rate_);
-    return std::min(h, settings_.step * std::sqrt(share * std::sqrt(share)));
+    return std::min(h, longest * std::sqrt(share * std::sqrt(share)));
   }
   // The quintic's derivative divides the rounding of positions by h: too much where steps are shortened by decades.
   void velocities_by_cubic(int n, double theta, double* out) const {
@@ -105,6 +116,9 @@ private:
   std::vector<double> k_, kept_; ///< kept_: end of a step that is tried anew
   int stride_;
   double last_decay_rate_ = 0.0; ///< where the last step began
+  double part_ = 0.0;            ///< of the step cut last, s
+  int parts_left_ = 0;           ///< of it, still to be made
+  bool is_cut_at_limit_ = false; ///< it ends at the limit
 };
 
 } // namespace

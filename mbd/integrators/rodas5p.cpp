@@ -38,8 +38,16 @@ public:
       : Integrator(dynamics, settings, max_dimension), k_(2 * max_dimension), u_(8 * max_dimension),
         rate_(max_dimension), slope_(max_dimension), right_(max_dimension), raw_(max_dimension),
         stride_(max_dimension), next_h_(settings.step) {
+    slip_care_ = 0.1; // as tsit5: nothing checks the output within a step
     set_rate_storage(k_.data(), k_.data() + stride_);
     control_.order = 5;
+  }
+  void propose_step(double h) override { next_h_ = h; }
+  void reserve(Dynamics& dynamics, double t, const double* y) override {
+    constexpr double k_any_step = 1e-6; // s
+    linearization_.evaluate(dynamics, t, y);
+    system_of_stages_.set(linearization_, dynamics.layout());
+    static_cast<void>(system_of_stages_.factor(k_any_step));
   }
   [[nodiscard]] const char* name() const override { return "rodas5p"; }
   [[nodiscard]] bool is_adaptive() const override { return true; }
@@ -51,13 +59,27 @@ public:
     interpolate(theta, out);
     // The integral of the cubic through the powers at Lobatto's points.
     const int e = n_ - 2;
-    for (int i = 0; i < 2; ++i) out[e + i] = y0_[e + i] + h_ * power_integral(theta, power_[i]) + theta * settled_[i];
+    for (int i = 0; i < 2; ++i)
+      out[e + i] = y0_[e + i] + power_span_ * h_ * power_integral(theta / power_span_, power_[i]) + theta * settled_[i];
   }
+
+  void cut_at(Dynamics& dynamics, double theta) override;
 
 protected:
   void on_restart(Dynamics&) override {
     control_.previous_error = 1e-4;
     approach_.restart();
+  }
+  [[nodiscard]] bool withdraw(Dynamics& dynamics, double h) override {
+    if (is_crossing_) return false;
+    --steps_;
+    ++rejections_;
+    approach_ = before_.approach;
+    control_.previous_error = before_.error;
+    next_h_ = h;
+    refuse_shorter_than_rounding(h);
+    dynamics.rates(t0_, y0_.data(), scratch_.data()); // where the next try begins
+    return true;
   }
 
 private:
@@ -70,11 +92,13 @@ private:
   void note_end(const Dynamics& dynamics);
   static double power_integral(double theta, const double* power);
   [[nodiscard]] double error_of_powers() const;
+  void refuse_shorter_than_rounding(double h) const;
 
   std::vector<double> k_, u_, rate_, slope_, right_, raw_;
   int stride_;
   double settled_[2] = {};
   double power_[2][4] = {}; ///< of dissipation and work at 0, the two points inside, 1
+  double power_span_ = 1.0; ///< part of the step that these points divide
   Linearization linearization_;
   StageSystem system_of_stages_;
   StepControl control_;
@@ -82,6 +106,12 @@ private:
   std::unique_ptr<SingularCrossing> crossing_; ///< made where one is met
   SingularApproach approach_;
   bool is_crossing_ = false; ///< the step made is one
+  /// What was before the step made, if it is withdrawn.
+  struct Before {
+    SingularApproach approach;
+    double error = 1e-4;
+  };
+  Before before_;
 };
 
 // ∂F/∂t at (t0, y0) from five points forward (order 4).
@@ -93,7 +123,7 @@ void Rodas5p::find_time_slope(Dynamics& dynamics) {
   bool is_still = true;
   for (int i = 0; i < n; ++i) slope_[i] = -25.0 / 12.0 * k0_[i] / d;
   for (int p = 3; p >= 0; --p) {
-    dynamics.rates(t0_ + (p + 1) * d, y0_.data(), f);
+    dynamics.rates_as_given(t0_ + (p + 1) * d, y0_.data(), f);
     is_still = is_still && std::equal(f, f + n, k0_);
     if (is_still && p < 3) break; // the same at three instants: no explicit time
     for (int i = 0; i < n; ++i) slope_[i] += weights[p] / d * f[i];
@@ -120,7 +150,7 @@ double Rodas5p::try_step(Dynamics& dynamics) {
     }
     const double* f = k0_;
     if (i > 0) {
-      dynamics.rates(t0_ + c[i] * h_, y, rate_.data());
+      dynamics.rates_as_given(t0_ + c[i] * h_, y, rate_.data());
       f = rate_.data();
     }
     for (int k = 0; k < n; ++k) right_[k] += f[k];
@@ -164,6 +194,7 @@ double Rodas5p::power_integral(double theta, const double* power) {
 
 void Rodas5p::finish_powers(Dynamics& dynamics) {
   const int e = n_ - 2;
+  power_span_ = 1.0;
   for (int i = 0; i < 2; ++i) power_[i][0] = k0_[e + i];
   std::vector<double>& y = scratch_;
   y[e] = y[e + 1] = 0.0;
@@ -178,6 +209,23 @@ void Rodas5p::finish_powers(Dynamics& dynamics) {
     settled_[i] = y1_[e + i] - y0_[e + i]; // what settling inner states at the step's end has booked
     y1_[e + i] += h_ * power_integral(1.0, power_[i]);
   }
+}
+
+// Up to θ alone by Lobatto's rule of its own: no cubic through powers of the whole step is as good at θ as at the step's
+// end, and behind an event they may be those of a law that ends there.
+void Rodas5p::cut_at(Dynamics& dynamics, double theta) {
+  if (is_crossing_ || !(theta > 0.0) || theta == power_span_) return;
+  const int e = n_ - 2;
+  std::vector<double>& y = scratch_;
+  y[e] = y[e + 1] = 0.0;
+  constexpr int k_points = 3;
+  const double points[k_points] = {k_lobatto[0], k_lobatto[1], 1.0};
+  for (int p = 0; p < k_points; ++p) {
+    interpolate(points[p] * theta, y.data());
+    dynamics.rates(t0_ + points[p] * theta * h_, y.data(), rate_.data());
+    for (int i = 0; i < 2; ++i) power_[i][p + 1] = rate_[e + i];
+  }
+  power_span_ = theta;
 }
 
 // For power that turns by φ within the step, cos φτ, Lobatto's rule with four points is off by φ⁶/1.5e6 of its size and
@@ -211,6 +259,7 @@ bool Rodas5p::cross_singularity(Dynamics& dynamics, double left) {
 
 void Rodas5p::note_end(const Dynamics& dynamics) {
   ++steps_;
+  before_.approach = approach_;
   approach_.note_end(dynamics.layout().active.empty() ? 1.0 : dynamics.smallest_pivot());
 }
 
@@ -243,6 +292,7 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
     }
     if (error <= 1.0) error = std::max(error, error_of_powers());
     if (error <= 1.0) {
+      before_.error = control_.previous_error;
       const double factor = control_.factor(error, is_retry);
       next_h_ = h_ < h ? std::max(h, h_ * factor) : h_ * factor;
       return note_end(dynamics);
@@ -251,10 +301,14 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
     h = std::isfinite(error)
             ? h_ * std::clamp(0.9 * portable::pow(error, -1.0 / control_.order), 0.1, 0.9)
             : 0.2 * h_;
-    if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
-      throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
-                             " s: the motion becomes singular there, or the tolerance is too small");
+    refuse_shorter_than_rounding(h);
   }
+}
+
+void Rodas5p::refuse_shorter_than_rounding(double h) const {
+  if (h < 16.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t0_), 1e-3))
+    throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
+                           " s: the motion becomes singular there, or the tolerance is too small");
 }
 
 } // namespace

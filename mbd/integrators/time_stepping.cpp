@@ -31,7 +31,19 @@ constexpr double k_tolerated = 1e-6;
 constexpr double k_negligible = 1e-6;
 constexpr double k_roundings_of_time = 64.0;
 constexpr double k_whole = 1e-6; // of a part: what is left beyond is added to it
-constexpr double k_known = 1e-12; // m, rad: to which places are known, as constraints are met
+constexpr double k_known = 1e-12; // of the scene's length: to which places are known, as constraints are met
+
+// While it lives, rates take signals that are forces by their means from `from` to their time.
+class Means {
+public:
+  Means(Dynamics& dynamics, double from) : dynamics_(dynamics) { dynamics.take_means(from); }
+  ~Means() { dynamics_.take_means(std::numeric_limits<double>::infinity()); }
+  Means(const Means&) = delete;
+  Means& operator=(const Means&) = delete;
+
+private:
+  Dynamics& dynamics_;
+};
 
 // What a law does not hold beyond, whatever the mode (a rope that has run onto its pulley), ends the run from
 // next_mode().
@@ -63,7 +75,8 @@ void TimeStepping::drift(Dynamics& dynamics, State& state, double t1) {
   const double h = t1 - state.t;
   dynamics.set_state(state);
   dynamics.pack(state, y1_.data());
-  dynamics.rates(state.t, y1_.data(), dy_.data());
+  const Means means(dynamics, state.t);
+  dynamics.rates(t1, y1_.data(), dy_.data());
   for (int i = 0; i < dynamics.dimension(); ++i)
     y1_[i] += h * dy_[i];
   dynamics.unpack(t1, y1_.data(), state);
@@ -183,12 +196,13 @@ int TimeStepping::changed_unit(Dynamics& dynamics, State& state) {
 // to parting without any force of the contact need something that turns them; a part half as long then tells. One that would have
 // gone in by no more than places are known lies there.
 int TimeStepping::passed_unit(const Dynamics& dynamics, const State& state, double h) const {
+  const double known = k_known * system_.scale.length;
   for (std::size_t u = 0; u < system_.units.size(); ++u) {
     const Unit& unit = system_.units[u];
     if (state.mode[u] != 0 || start_.mode[u] != 0) continue;
     for (int slot = unit.watch; slot < unit.watch + unit.watch_count; ++slot)
-      if (start_watch_[slot] + h * start_watch_rate_[slot] < -k_known && // not so where a rate is not known
-          dynamics.watch()[slot] - h * dynamics.watch_rate()[slot] < -k_known)
+      if (start_watch_[slot] + h * start_watch_rate_[slot] < -known && // not so where a rate is not known
+          dynamics.watch()[slot] - h * dynamics.watch_rate()[slot] < -known)
         return static_cast<int>(u);
   }
   return -1;
@@ -212,10 +226,13 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
   dynamics.set_state(state);
   Trouble trouble;
   for (int pass = 0; pass < k_max_mode_passes; ++pass) {
-    linearization_.evaluate(dynamics, t1, y0_.data());
-    stages_.set(linearization_, dynamics.layout());
-    if (!stages_.factor(h)) return {"its equations are singular"};
-    evaluate(dynamics, t1, y0_.data());
+    {
+      const Means means(dynamics, start_.t);
+      linearization_.evaluate(dynamics, t1, y0_.data());
+      stages_.set(linearization_, dynamics.layout());
+      if (!stages_.factor(h)) return {"its equations are singular"};
+      evaluate(dynamics, t1, y0_.data());
+    }
     std::copy(dy_.begin(), dy_.begin() + 2 * n_, right_.begin());
     stages_.solve(right_.data(), free_.data());
     respond(dynamics, h);
@@ -238,6 +255,20 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
                ""};
   }
   return trouble;
+}
+
+// A force that is the same throughout a step works by the mean of the velocities at its ends: so do loads and drives, whose
+// impulse a step takes as it is. What is dissipated is that of the step's end, as laws are met there.
+void TimeStepping::book_power(Dynamics& dynamics, State& state, double h) {
+  const int n = dynamics.dimension(), m = dynamics.coordinate_count();
+  dynamics.rates(state.t, y1_.data(), dy_.data());
+  state.dissipated += h * dy_[n - 2];
+  if (!system_.has_work) return;
+  dynamics.pack(start_, y0_.data());
+  for (int i = m; i < 2 * m; ++i) y1_[i] = 0.5 * (y0_[i] + y1_[i]);
+  const Means means(dynamics, start_.t);
+  dynamics.rates(state.t, y1_.data(), dy_.data());
+  state.work += h * dy_[n - 1];
 }
 
 // What became of each friction element, its anchor, and the power at the step's end.
@@ -269,10 +300,7 @@ void TimeStepping::finish_phases(Dynamics& dynamics, State& state, double h) {
     dynamics.forget_layouts(); // those that merge the two have them where they held before
   dynamics.set_state(state);
   dynamics.pack(state, y1_.data());
-  dynamics.rates(state.t, y1_.data(), dy_.data());
-  const int n = dynamics.dimension();
-  state.dissipated += h * dy_[n - 2];
-  state.work += h * dy_[n - 1];
+  book_power(dynamics, state, h);
 }
 
 } // namespace steplap

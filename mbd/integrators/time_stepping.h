@@ -4,6 +4,9 @@
 //   M (v₁ − v₀) = h (Q(q₁, v₁, t₁) + Jᵀλ₁ + Hᵀw),   q₁ = q₀ + h v₁,   J v₁ = target's rate,
 //   −H v₁ in the normal cone of K at w: each friction element bears any w inside its convex set K
 //   and slides only on the set's boundary, the way that dissipates most.
+// Forces that follow signals enter by their means over the step, from the signals' integrals: their impulse is exact however
+// short they are. What moves by a signal does so by its value at the step's end, where what it presses against is met:
+// steps have to resolve it (Moreau, Simulation).
 // Springs, dampers and contacts enter linearised at the step's begin (linearization.h) and
 // implicitly, so that no stiffness limits the step; which contacts press is found by repeating the
 // step until the pressed ones are those that the end asks for. Friction is the convex problem of
@@ -81,6 +84,7 @@ private:
   [[nodiscard]] int changed_unit(Dynamics& dynamics, State& state);
   [[nodiscard]] int passed_unit(const Dynamics& dynamics, const State& state, double h) const;
   void finish_phases(Dynamics& dynamics, State& state, double h);
+  void book_power(Dynamics& dynamics, State& state, double h);
   // time_stepping_friction.cpp
   void collect_friction(Dynamics& dynamics, State& state);
   [[nodiscard]] bool has_held(const FrictionState& friction, int f) const;

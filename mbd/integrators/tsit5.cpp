@@ -7,11 +7,16 @@ namespace steplap {
 
 namespace {
 
+// The output within a step is of order 4 and known from no estimate; near a slip's end the wrench follows the direction of what it
+// says of the slip's velocity. A tenth of the usual error keeps 200 random slips (slip_ends_test.cpp) within 2 % of the capacity.
+constexpr double k_slip_care = 0.1;
+
 class Tsit5 final : public ExplicitPair {
 public:
   Tsit5(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
       : ExplicitPair(dynamics, settings, max_dimension, 7, 5), raw_(max_dimension) {
     set_rate_storage(k(0), k(6));
+    slip_care_ = k_slip_care;
   }
   [[nodiscard]] const char* name() const override { return "tsit5"; }
 

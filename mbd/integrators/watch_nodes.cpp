@@ -10,6 +10,11 @@ namespace {
 
 // A kink between two places shows in the differences at both as half of what would bound it there; and as much again.
 constexpr double k_curvature_safety = 4.0;
+// Where w″ changes its sign differences do not see it. Of a harmonic that turns by 1.6 rad about such a place it is up to 1.28 times
+// what w itself varies by.
+constexpr double k_bend_of_range = 2.0;
+constexpr int k_few = 3; // so few gaps may lie about such a place
+constexpr double k_unseen_by_one = 2.0; // of what the values at three places differ by
 
 // Least of chord − ½ M s (g − s) over 0 < s < g for values a, b at its ends: positive?
 bool is_positive_between(double a, double b, double g, double m) {
@@ -18,6 +23,12 @@ bool is_positive_between(double a, double b, double g, double m) {
   if (!(s > 0.0)) return b > 0.0;
   if (!(s < g)) return a > 0.0;
   return a + slope * s - 0.5 * m * s * (g - s) > 0.0;
+}
+
+// Three places, of rk4, have one difference: where parts of a sum of harmonics cancel in it nobody knows how w bends, but by
+// its slopes.
+template <class Curve> bool tells_bend(const Curve& c) {
+  return c.last > 2 || (c.last == 2 && !std::isnan(c.start_slope) && !std::isnan(c.end_slope));
 }
 
 // Ranges by the values at four places.
@@ -38,7 +49,7 @@ void widen(int slots, const std::array<const double*, 4>& values, double* __rest
 
 } // namespace
 
-void WatchNodes::add(double theta, const double* watch) {
+void WatchNodes::add(double theta, const double* watch, bool has_merged) {
   if (count_ == k_most || !(theta > 0.0 && theta < 1.0)) return;
   int place = count_;
   while (place > 0 && theta_[order_[place - 1]] > theta) --place;
@@ -46,11 +57,13 @@ void WatchNodes::add(double theta, const double* watch) {
     // Of two stages at one place, the midpoints of rk4, one is off to either side, by h² a/8: their mean is not.
     double* const known = values_.data() + static_cast<std::ptrdiff_t>(order_[place - 1]) * stride_;
     for (int k = 0; k < slots_; ++k) known[k] = 0.5 * (known[k] + watch[k]);
+    has_merged_[order_[place - 1]] = has_merged_[order_[place - 1]] && has_merged;
     return;
   }
   for (int i = count_; i > place; --i) order_[i] = order_[i - 1];
   order_[place] = count_;
   theta_[count_] = theta;
+  has_merged_[count_] = has_merged;
   std::copy_n(watch, slots_, values_.data() + static_cast<std::ptrdiff_t>(count_) * stride_);
   ++count_;
 }
@@ -62,48 +75,74 @@ void WatchNodes::close(const double* watch0, const double* watch1) {
   }
   const auto at = [this](int place) { return values_.data() + static_cast<std::ptrdiff_t>(std::min(place, count_ - 1)) * stride_; };
   for (int k = 0; k < count_; k += 4) widen(slots_, {at(k), at(k + 1), at(k + 2), at(k + 3)}, low_.data(), high_.data());
+  if (count_ > 1) return;
+  // One place inside, as of rk4, does not see where parts of a sum of harmonics cancel: it may be lower than there.
+  for (int i = 0; i < slots_; ++i) low_[i] -= k_unseen_by_one * (high_[i] - low_[i]);
 }
 
-bool WatchNodes::is_surely_positive(int slot, const WatchEnd& start, const WatchEnd& end) const {
-  std::array<double, k_most + 2> x, w, bend; // bend[j]: |w″| by the difference about j
-  const int n = count_ + 1;
-  x[0] = 0.0;
-  w[0] = start.value;
-  for (int j = 1; j < n; ++j) {
-    x[j] = theta_[order_[j - 1]];
-    w[j] = values_[static_cast<std::size_t>(order_[j - 1]) * stride_ + slot];
-    if (!(w[j] > 0.0)) return false;
-  }
-  x[n] = 1.0;
-  w[n] = end.value;
-  if (!(w[0] >= 0.0 && w[n] >= 0.0) || n < 2) return false;
-  for (int j = 1; j < n; ++j)
-    bend[j] = 2.0 * std::abs(((w[j + 1] - w[j]) / (x[j + 1] - x[j]) - (w[j] - w[j - 1]) / (x[j] - x[j - 1])) /
-                             (x[j + 1] - x[j - 1]));
-  bend[0] = bend[1];
-  bend[n] = bend[n - 1];
-  // What is known of slopes at the ends tells more than the stages.
-  if (!std::isnan(start.slope)) bend[0] = 2.0 * std::abs((w[1] - w[0]) / x[1] - start.slope) / x[1];
-  if (!std::isnan(end.slope)) bend[n] = 2.0 * std::abs(end.slope - (w[n] - w[n - 1]) / (1.0 - x[n - 1])) / (1.0 - x[n - 1]);
-  for (int j = 0; j < n; ++j) {
-    const double m = k_curvature_safety * std::max(bend[j], bend[j + 1]), g = x[j + 1] - x[j];
-    if (is_positive_between(w[j], w[j + 1], g, m)) continue;
-    // Out of the start or into the end with a slope that is known (comparisons with NaN are false).
-    if (j == 0 && start.slope > 0.5 * m * g) continue;
-    if (j == n - 1 && -end.slope > 0.5 * m * g) continue;
-    return false;
-  }
-  return true;
-}
-
-bool WatchNodes::crosses_once(int slot) const {
-  bool is_negative = false;
+WatchNodes::Curve WatchNodes::curve_of(const WatchedStep& watched) const {
+  Curve c;
+  int n = 0;
+  c.x[0] = 0.0;
+  c.w[0] = watched.start.value;
   for (int k = 0; k < count_; ++k) {
-    const double w = values_[static_cast<std::size_t>(order_[k]) * stride_ + slot];
-    if (is_negative && w >= 0.0) return false;
-    is_negative = is_negative || w < 0.0;
+    const int place = order_[k];
+    if (watched.is_merged && !has_merged_[place]) continue;
+    c.x[++n] = theta_[place];
+    c.w[n] = values_[static_cast<std::size_t>(place) * stride_ + watched.slot];
   }
+  c.x[++n] = 1.0;
+  c.w[n] = watched.end.value;
+  c.last = n;
+  c.start_slope = watched.start.slope;
+  c.end_slope = watched.end.slope;
+  for (int j = 1; j < n; ++j)
+    c.bend[j] = 2.0 * ((c.w[j + 1] - c.w[j]) / (c.x[j + 1] - c.x[j]) - (c.w[j] - c.w[j - 1]) / (c.x[j] - c.x[j - 1])) / (c.x[j + 1] - c.x[j - 1]);
+  c.bend[0] = c.bend[1];
+  c.bend[n] = c.bend[n - 1];
+  // What is known of slopes at the ends tells more than the stages.
+  const auto [least, most] = std::minmax_element(c.w.begin(), c.w.begin() + n + 1);
+  c.range = *most - *least;
+  const double first = c.x[1], rest = 1.0 - c.x[n - 1];
+  if (!std::isnan(c.start_slope)) c.bend[0] = 2.0 * ((c.w[1] - c.w[0]) / first - c.start_slope) / first;
+  if (!std::isnan(c.end_slope)) c.bend[n] = 2.0 * (c.end_slope - (c.w[n] - c.w[n - 1]) / rest) / rest;
+  return c;
+}
+
+double WatchNodes::Curve::bound(int gap) const {
+  const double seen = k_curvature_safety * std::max(std::abs(bend[gap]), std::abs(bend[gap + 1]));
+  return last > k_few ? seen : std::max(seen, k_bend_of_range * range);
+}
+
+bool WatchNodes::Curve::is_positive_in(int gap) const {
+  const double m = bound(gap), g = x[gap + 1] - x[gap];
+  if (is_positive_between(w[gap], w[gap + 1], g, m)) return true;
+  // Out of the start or into the end with a slope that is known (comparisons with NaN are false).
+  return (gap == 0 && start_slope > 0.5 * m * g) || (gap == last - 1 && -end_slope > 0.5 * m * g);
+}
+
+bool WatchNodes::Curve::falls_once_in(int gap) const {
+  const double g = x[gap + 1] - x[gap];
+  return w[gap] - w[gap + 1] > 0.5 * bound(gap) * g * g || bend[gap] * bend[gap + 1] > 0.0;
+}
+
+bool WatchNodes::is_surely_positive(const WatchedStep& watched) const {
+  const Curve c = curve_of(watched);
+  if (!(c.w[0] >= 0.0 && c.w[c.last] >= 0.0) || !tells_bend(c)) return false;
+  for (int j = 1; j < c.last; ++j)
+    if (!(c.w[j] > 0.0)) return false;
+  for (int gap = 0; gap < c.last; ++gap)
+    if (!c.is_positive_in(gap)) return false;
   return true;
+}
+
+bool WatchNodes::crosses_once(const WatchedStep& watched) const {
+  const Curve c = curve_of(watched);
+  if (!tells_bend(c)) return false;
+  int gap = 0;
+  for (; c.w[gap + 1] >= 0.0; ++gap)
+    if (!c.is_positive_in(gap)) return false;
+  return c.falls_once_in(gap);
 }
 
 } // namespace steplap

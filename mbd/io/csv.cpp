@@ -2,13 +2,15 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/io/digest.h"
+#include "mbd/io/read_input.h"
+#include "mbd/io/input_files.h"
 
 #include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <sstream>
 
@@ -62,6 +64,13 @@ std::optional<double> number_of(std::string_view field, bool has_decimal_comma) 
   return value;
 }
 
+bool begins_like_number(std::string_view field) {
+  if (number_of(field, true)) return true; // "inf", too
+  if (!field.empty() && (field.front() == '+' || field.front() == '-')) field.remove_prefix(1);
+  if (!field.empty() && (field.front() == '.' || field.front() == ',')) field.remove_prefix(1);
+  return !field.empty() && field.front() >= '0' && field.front() <= '9';
+}
+
 // "time [s]" → "time"
 std::string column_name(std::string_view field) {
   const auto bracket = field.find('[');
@@ -100,16 +109,20 @@ private:
     table_.lines.push_back(line_);
   }
 
-  // The first row: true if it holds names.
+  // The first row: true if it holds names. A row whose first field begins like a number is data, so that a mistyped number in
+  // it is refused by its column instead of being taken for the name of one, and the row lost.
   bool read_header() {
     table_.columns.resize(fields_.size());
-    for (const std::string_view field : fields_)
-      if (!number_of(field, delimiter_ != ',')) {
-        for (const std::string_view name : fields_)
-          table_.names.push_back(column_name(name));
-        return true;
-      }
-    return false;
+    if (begins_like_number(fields_.front())) return false;
+    const bool has_decimal_comma = delimiter_ != ',';
+    const auto number = std::find_if(fields_.begin(), fields_.end(),
+                                     [&](std::string_view field) { return number_of(field, has_decimal_comma).has_value(); });
+    if (number != fields_.end())
+      fail("the first row holds both words and numbers: '" + std::string(fields_.front()) + "' in column 1, '" + std::string(*number) +
+           "' in column " + std::to_string(number - fields_.begin() + 1) +
+           ". If it is data, correct the word; if it names the columns, take names that are not numbers");
+    for (const std::string_view name : fields_) table_.names.push_back(column_name(name));
+    return true;
   }
 
   double value(std::size_t column) const {
@@ -151,12 +164,13 @@ CsvTable parse_csv(const std::string& text, const std::string& file_name) {
   return CsvReader(file_name).read(text);
 }
 
-CsvTable read_csv(const std::string& path, const Location& where) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || !text) throw ModelError(where, "cannot read the record '" + path + "'");
-  return parse_csv(text.str(), path);
+CsvTable read_csv(const std::string& path, const Location& where, const std::string& wanted) {
+  const std::string text = read_input(path, where, "the record ");
+  note_input(path, text, true);
+  if (!wanted.empty() && sha256(text) != wanted)
+    throw ModelError(where, "the record '" + path + "' is not the one that was meant: its SHA-256 is " + sha256(text) +
+                                ". Take the file of that time, or drop 'sha256' to take this one");
+  return parse_csv(text, path);
 }
 
 std::string csv_field(const std::string& text) {

@@ -2,7 +2,7 @@
 //
 // Reading: the delimiter is a tab, a semicolon or a comma (the first of them that the first row
 // holds); with a semicolon or a tab a decimal comma is understood. Lines that are empty or start
-// with # are skipped; a first row that is not all numbers holds the names of the columns (with or
+// with # are skipped; a first row that does not begin with a number holds the names of the columns (with or
 // without quotes, a unit in brackets after the name is not part of it: "time [s]").
 #pragma once
 
@@ -27,8 +27,9 @@ struct CsvTable {
 };
 
 /// Throws ModelError with file:line: for a file that cannot be read (at `where`), rows of unequal
-/// length, fields that are no finite number, and a file without rows.
-[[nodiscard]] CsvTable read_csv(const std::string& path, const Location& where);
+/// length, fields that are no finite number, a first row that mixes words and numbers, and a file without rows; and, if
+/// `wanted` is not empty, for a file with another SHA-256.
+[[nodiscard]] CsvTable read_csv(const std::string& path, const Location& where, const std::string& wanted = "");
 [[nodiscard]] CsvTable parse_csv(const std::string& text, const std::string& file_name);
 
 /// Comma-separated text, shortest digits that read back as the same numbers, "\n" after each row.

@@ -1,10 +1,10 @@
 #include "mbd/io/document.h"
 
 #include "mbd/base/shown_text.h"
+#include "mbd/io/read_input.h"
+#include "mbd/io/input_files.h"
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -17,13 +17,10 @@ std::string entry_name(const Node& entry) {
 
 namespace {
 
-std::string read_text(const std::string& path, const Location& where) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path))
-    throw ModelError(where, "cannot read '" + path + "'");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return std::move(text).str();
+std::string read_layer(const std::string& path, const Location& where) {
+  std::string text = read_input(path, where);
+  note_input(path, text, false);
+  return text;
 }
 
 // Lays one file's tree over what it extends.
@@ -166,7 +163,7 @@ public:
 
 private:
   Node load_layer(std::string text, const std::string& file) {
-    const std::string id = std::filesystem::weakly_canonical(file).string();
+    const std::string id = identity_of(file);
     Document::Source& source =
         document_.sources->emplace_back(Document::Source{file, std::move(text)});
     chain_.push_back(id);
@@ -190,11 +187,13 @@ private:
     const std::string path =
         (std::filesystem::path(file).parent_path() / name).lexically_normal().string();
     check_no_cycle(path, extends.where());
-    return load_layer(read_text(path, extends.where()), path);
+    return load_layer(read_layer(path, extends.where()), path);
   }
 
   void check_no_cycle(const std::string& path, const Location& where) const {
-    const std::string id = std::filesystem::weakly_canonical(path).string();
+    if (chain_.size() >= k_longest_chain)
+      throw ModelError(where, "more than " + std::to_string(k_longest_chain) + " files extend each other: this is hardly meant");
+    const std::string id = identity_of(path);
     for (std::size_t k = 0; k < chain_.size(); ++k) {
       if (chain_[k] != id) continue;
       std::string text = "'extends' goes round in circles: ";
@@ -203,6 +202,16 @@ private:
       throw ModelError(where, text + base_name(path));
     }
   }
+
+  // The same for a file, whatever it is called; of a pipe its name.
+  static std::string identity_of(const std::string& file) {
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::weakly_canonical(file, error);
+    return error ? file : path.string();
+  }
+
+  // Far beyond what a person keeps apart, far below what the stack holds.
+  static constexpr std::size_t k_longest_chain = 100;
 
   static std::string base_name(const std::string& path) {
     return std::filesystem::path(path).filename().string();
@@ -232,7 +241,7 @@ void look_for_control_characters(const Node& node, std::vector<Diagnostic>& prob
 void refuse_control_characters(Document& document) { look_for_control_characters(document.root, document.problems); }
 
 Document load_document(const std::string& path) {
-  return Loader().load(read_text(path, Location{}), path);
+  return Loader().load(read_layer(path, Location{}), path);
 }
 
 Document parse_document(std::string text, const std::string& file_name) {

@@ -1,5 +1,6 @@
 #include "mbd/io/field_reader.h"
 
+#include "mbd/io/standalone_text.h"
 #include "mbd/io/units.h"
 #include "mbd/base/number_text.h"
 #include "mbd/model/field_units.h"
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 namespace steplap {
 
@@ -110,12 +110,7 @@ private:
     return node.type == Node::Type::text ? node.text() : number_text(value);
   }
 
-  std::string path(const Node& node) const {
-    const std::filesystem::path given = text(node);
-    const bool on_command_line = node.line == 0;
-    if (given.is_absolute() || on_command_line || !node.file) return given.string();
-    return (std::filesystem::path(*node.file).parent_path() / given).lexically_normal().string();
-  }
+  std::string path(const Node& node) const { return path_named_by(node, text(node)); }
 
   Vec2 point(const Node& node, const std::string& unit_x, const std::string& unit_y) const {
     if (node.type != Node::Type::array) unexpected(node);

@@ -1,5 +1,6 @@
 #include "mbd/io/reader.h"
 
+#include "mbd/io/standalone_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/field_reader.h"
 #include "mbd/io/signal_units.h"
@@ -54,10 +55,10 @@ public:
       : document_(std::move(document)), catalogue_(catalogue), names_(top_level_names(catalogue)) {}
 
   /// The model as it is given, and completed; its text, if asked for.
-  std::pair<Model, Model> read(const std::vector<std::string>& overrides, std::string* effective_text = nullptr) {
-    for (const std::string& text : overrides)
-      apply_override(document_, text, names_);
-    if (effective_text) *effective_text = write_toml(document_.root);
+  std::pair<Model, Model> read(const std::vector<std::string>& overrides, std::string* text = nullptr) {
+    for (const std::string& change : overrides)
+      apply_override(document_, change, names_);
+    if (text) *text = standalone_text(document_, catalogue_);
     refuse_control_characters(document_);
     problems_ = std::move(document_.problems);
     read_header();

@@ -16,7 +16,7 @@
 namespace steplap {
 
 /// Reads the file, with "path=value" overrides (overrides.h). Throws ModelError. `text`, if not null, becomes what
-/// effective_model_text() gives, of the same reading of the file.
+/// standalone_text() gives, of the same reading of the file.
 [[nodiscard]] Model read_model(const std::string& path, const Catalogue& catalogue,
                                const std::vector<std::string>& overrides = {}, std::string* text = nullptr);
 

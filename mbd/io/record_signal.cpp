@@ -17,6 +17,7 @@ struct Record : SignalDefinition {
   double scale = 1.0;
   double offset = 0.0; // s
   std::string after = "zero";
+  std::string sha256;
 };
 
 double unit_factor(const Record& record, const std::string& key, const std::string& unit,
@@ -43,7 +44,7 @@ void check_ascending(const CsvTable& table, const std::vector<double>& times) {
 
 Signal build_record(const SignalDefinition& definition) {
   const Record& record = static_cast<const Record&>(definition);
-  const CsvTable table = read_csv(record.file, record.where);
+  const CsvTable table = read_csv(record.file, record.where, record.sha256);
   const auto& times = table.columns[table.column(record.time_column, record.where)];
   const auto& values = table.columns[table.column(record.column, record.where)];
   check_ascending(table, times);
@@ -88,6 +89,8 @@ const SignalKind& record_signal_kind() {
     k.fields.add("after", &Record::after)
         .one_of({"zero", "hold"})
         .doc("value after the last row: 0, or the last one kept");
+    k.fields.add("sha256", &Record::sha256)
+        .doc("SHA-256 of the file, as sha256sum prints it: another content is refused. Results give it");
     return k;
   }();
   return kind;

@@ -3,6 +3,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <charconv>
+#include <string_view>
 
 namespace steplap {
 
@@ -183,6 +185,48 @@ private:
   int line_ = 1, parts_ = 1;
 };
 
+std::string_view line_at(std::string_view text, int line) {
+  for (; line > 1; --line) {
+    const auto end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  return text.substr(0, text.find('\n'));
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || static_cast<unsigned char>(c) >= 0x80; }
+
+// What TOML writes differently from people: ".5", "5.", "05", "0,5", 0.5 kg. Empty if the value about `column` (from 1) is none of them.
+std::string number_hint(std::string_view line, int column) {
+  constexpr std::string_view k_before = "=[{ \t", k_behind = " \t\r,]}#";
+  const auto at = std::min(line.size(), static_cast<std::size_t>(std::max(column, 2) - 2));
+  auto begin = line.find_last_of('=', at);
+  begin = begin == std::string_view::npos ? line.size() : line.find_first_not_of(k_before, begin);
+  if (begin == std::string_view::npos || begin >= line.size()) return "";
+  std::string_view rest = line.substr(begin);
+  const std::string sign = rest.front() == '-' || rest.front() == '+' ? std::string(1, rest.front()) : "";
+  rest.remove_prefix(sign.size());
+  const std::string number(rest.substr(0, rest.find_first_of(k_behind)));
+  const auto instead = [&](const std::string& right) { return ": write " + sign + right + " instead of " + sign + number; };
+  if (number.size() > 1 && number[0] == '.' && is_digit(number[1])) return instead("0" + number);
+  if (number.empty() || !is_digit(number[0])) return "";
+  const auto other = number.find_first_not_of("0123456789");
+  if (other == number.size() - 1 && number.back() == '.') return instead(number + "0");
+  const auto significant = number.find_first_not_of('0');
+  if (number[0] == '0' && significant != 0 && significant != std::string::npos && is_digit(number[significant]))
+    return instead(number.substr(significant));
+  const auto behind = rest.find_first_not_of("0123456789");
+  if (behind != std::string_view::npos && rest[behind] == ',' && behind + 1 < rest.size() && is_digit(rest[behind + 1]))
+    return ": the decimal sign is a point: " + sign + std::string(rest.substr(0, behind)) + "." +
+           std::string(rest.substr(behind + 1, rest.find_first_not_of("0123456789", behind + 1) - behind - 1));
+  double value = 0.0;
+  const auto [end, status] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  const auto unit = rest.find_first_not_of(" \t", static_cast<std::size_t>(end - rest.data()));
+  if (status == std::errc() && unit != std::string_view::npos && is_letter(rest[unit])) return ": a number with a unit stands in quotes, as in \"0.5 kg\"";
+  return "";
+}
+
 } // namespace
 
 Node parse_toml(const std::string& text, const std::string* file) {
@@ -192,7 +236,7 @@ Node parse_toml(const std::string& text, const std::string* file) {
   } catch (const toml::parse_error& error) {
     const toml::source_region& region = error.source();
     throw ModelError(Location{*file, line_of(region), column_of(region)},
-                     "not valid TOML: " + std::string(error.description()));
+                     "not valid TOML: " + std::string(error.description()) + number_hint(line_at(text, line_of(region)), column_of(region)));
   }
 }
 

@@ -86,14 +86,27 @@ ut_status visit_galilean(const ut_unit*, double, const ut_unit* underlying, doub
   return ut_accept_visitor(underlying, &k_visitor, out);
 }
 
+// Units as people write them that the database does not know, or not so.
+struct SpokenUnit {
+  const char* name;
+  const char* meaning;
+  bool takes_prefix; ///< "kNm"
+};
+constexpr SpokenUnit k_spoken_units[] = {{"deg", "degree", false}, {"rev", "2 PI radian", false}, {"mph", "mile/hour", false},
+                                         {"Nm", "newton metre", true}, {"Ns", "newton second", true}, {"Nms", "newton metre second", true}};
+
 class UnitSystem {
 public:
   UnitSystem() {
     ut_set_error_message_handler(ut_ignore);
     system_.reset(ut_read_xml(nullptr));
     if (!system_) throw ModelError(Location{}, "the unit database of UDUNITS-2 was not found");
-    const UnitPtr degree = parse("degree"); // the database knows no "deg"
-    if (degree) ut_map_name_to_unit("deg", UT_ASCII, degree.get());
+    for (const SpokenUnit& spoken : k_spoken_units) {
+      const UnitPtr unit(ut_parse(system_.get(), spoken.meaning, UT_ASCII));
+      if (!unit) continue;
+      if (spoken.takes_prefix) ut_map_symbol_to_unit(spoken.name, UT_ASCII, unit.get());
+      else ut_map_name_to_unit(spoken.name, UT_ASCII, unit.get());
+    }
   }
 
   UnitPtr parse(const std::string& text) const {

@@ -59,7 +59,7 @@ const FieldTable& SimulationSettings::fields() {
     f.add("velocity", &T::velocity).in("m/s").doc("added to the initial velocity of every body");
     f.add("projection_tolerance", &T::projection_tolerance).positive().at_most(1e-6).doc(
         "largest constraint residual left after a step, m or rad");
-    f.add("max_events", &T::max_events).at_least(1).doc("events after which a run is given up");
+    f.add("max_events", &T::max_events).at_least(1).doc("events after which a run is given up; kinks of tables are let pass up to ten times as many, and a million at least");
     return f;
   }();
   return table;

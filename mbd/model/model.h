@@ -163,7 +163,7 @@ struct Plot : TableObject {
   std::vector<std::string> bounds;   ///< channels drawn dashed at plus and minus their value
 };
 
-/// [[channel]]: a formula of other channels (system/channel_expression.h).
+/// [[channel]]: a formula of other channels (formula/formula.h).
 struct DefinedChannel : TableObject {
   std::string expression;
   std::string unit; ///< that it is given in; "": SI, as it follows from the operands

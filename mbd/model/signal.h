@@ -69,6 +69,8 @@ public:
   /// The driven coordinate's increment since t = 0, its rate and its acceleration at t, the signal
   /// being read at `level`: position f(t) − f(0), velocity ∫f, acceleration ∬f (from rest at t = 0).
   [[nodiscard]] SignalJet drive(double t, DriveLevel level) const;
+  /// Of its values between two times, from < to: their integral over the time between.
+  [[nodiscard]] double mean(double from, double to) const;
   /// Times at which the signal or one of its derivatives may jump, ascending: the starts of the
   /// pieces (none for a constant).
   [[nodiscard]] const std::vector<double>& breakpoints() const { return breakpoints_; }

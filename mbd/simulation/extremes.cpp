@@ -2,11 +2,11 @@
 
 #include "mbd/integrators/methods.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/simulation/channel_rates.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 
@@ -37,7 +37,6 @@ constexpr int k_most_probes = 8;
 constexpr double k_hair = 1.25e-4; // of a stretch: smooth curves and kinks change by a hundredth of what nodes differ by
 constexpr double k_jitter = 0.25;  // of what its nodes differ by: what a few hair's breadths change by so much is rounding
 constexpr double k_most_jitter = 1e-6; // of the largest value in the same unit: more is not rounding
-constexpr double k_at_pole = 1e9; // numbers without a unit beyond it
 constexpr double k_golden = 0.3819660112501051;
 // Error of a straight line through two ends against the third, of a channel's range: below and above which the
 // stretches of a fixed-step method become longer and shorter.
@@ -57,31 +56,6 @@ const std::array<double, k_last + 1> k_thetas = [] {
   return t;
 }();
 
-// Of each channel of a body's, marker's or joint's motion the one that is its rate.
-std::vector<int> rates_of(const System& system) {
-  static constexpr std::array<std::pair<const char*, const char*>, 6> k_rates = {
-      {{".x", ".vx"}, {".y", ".vy"}, {".theta", ".omega"}, {".vx", ".ax"}, {".vy", ".ay"}, {".omega", ".alpha"}}};
-  static constexpr std::array<std::pair<const char*, const char*>, 6> k_requested = {
-      {{".x", ".vx"}, {".y", ".vy"}, {".vx", ".ax"}, {".vy", ".ay"}, {".angle", ".rate"}, {".displacement", ".rate"}}};
-  std::map<std::string, int> place;
-  for (std::size_t c = 0; c < system.channels.size(); ++c) place[system.channels[c].name] = static_cast<int>(c);
-  std::vector<int> rates(system.channels.size(), -1);
-  for (const BodyData& body : system.bodies)
-    for (const auto& [value, rate] : k_rates) {
-      const auto of = place.find(body.name + value), its = place.find(body.name + rate);
-      if (of != place.end() && its != place.end()) rates[of->second] = its->second;
-    }
-  for (std::size_t c = 0; c < system.channels.size(); ++c) {
-    const std::string& name = system.channels[c].name;
-    if (!system.channels[c].is_on_request) continue;
-    for (const auto& [value, rate] : k_requested)
-      if (name.ends_with(value))
-        if (const auto its = place.find(name.substr(0, name.size() - std::string_view(value).size()) + rate); its != place.end())
-          rates[c] = its->second;
-  }
-  return rates;
-}
-
 // Vertex of the parabola through three points; the middle one if it has none.
 Extreme vertex(const Extreme& a, const Extreme& b, const Extreme& c) {
   const double p = (b.value - a.value) / (b.t - a.t), q = (c.value - b.value) / (c.t - b.t);
@@ -90,18 +64,6 @@ Extreme vertex(const Extreme& a, const Extreme& b, const Extreme& c) {
   const double slope = p + bend * (b.t - a.t); // at b
   const double shift = std::clamp(-0.5 * slope / bend, a.t - b.t, c.t - b.t);
   return {b.value + shift * (slope + bend * shift), b.t + shift};
-}
-
-// Numbers without a unit have nothing in common but that 1 means something to most of them. Some have poles, as a margin
-// has where nothing loads a joint, and a range that says nothing of their least value: that is located to a millionth of
-// itself. Before a load has come such a number is one over rounding, of which no more than its size is followed.
-double tolerance_of_number(const ChannelRange& channel, double resolution, double rounding) {
-  const double range = channel.high.value - channel.low.value;
-  const double near = std::min(std::abs(channel.low.value), std::abs(channel.high.value));
-  if (std::isinf(near)) return 0.0;
-  if (near > k_at_pole) return 0.5 * near;
-  const double size = std::max(1.0, near);
-  return resolution * (range < size ? range : size) + rounding * size;
 }
 
 } // namespace
@@ -131,18 +93,11 @@ ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
     bounds_.emplace_back();
   }
   rate_of_ = rates_of(system);
+  formulas_ = std::make_unique<FormulaExtremes>(system, rate_of_);
   bounds_before_ = bounds_;
   is_wanted_.assign(bounds_.size(), 1);
   kinds_.resize(units.size());
   open_.reserve(count_);
-}
-
-double ExtremeFinder::tolerance(std::size_t c) const {
-  if (ranges_[c].channel->unit.empty()) return tolerance_of_number(ranges_[c], k_resolution, k_rounding);
-  const Kind& kind = kinds_[kind_[c]];
-  const double range = ranges_[c].high.value - ranges_[c].low.value;
-  const double wanted = k_resolution * (std::isfinite(range) ? range : 0.0) + k_noise * kind.range + k_rounding * std::max(kind.largest, kind.scale);
-  return jitter_.empty() ? wanted : std::max(wanted, jitter_[c]);
 }
 
 void ExtremeFinder::note(std::size_t c, double value, double t) {
@@ -151,12 +106,22 @@ void ExtremeFinder::note(std::size_t c, double value, double t) {
     range.had_no_value = true;
     return;
   }
-  if (!(value >= range.low.value)) range.low = {value, t};
-  if (!(value <= range.high.value)) range.high = {value, t};
+  if (!(value >= range.low.value)) {
+    range.low = {value, t};
+    range.is_low_singular = is_singular_;
+  }
+  if (!(value <= range.high.value)) {
+    range.high = {value, t};
+    range.is_high_singular = is_singular_;
+  }
 }
 
 void ExtremeFinder::take(std::size_t c, double t, const Snapshot& snapshot, double* values) {
-  const double value = values[c] = ranges_[c].channel->value(snapshot);
+  values[c] = ranges_[c].channel->value(snapshot);
+  take(c, t, values[c]);
+}
+
+void ExtremeFinder::take(std::size_t c, double t, double value) {
   const bool is_new = !(value >= ranges_[c].low.value && value <= ranges_[c].high.value);
   if (!is_new) return;
   note(c, value, t);
@@ -188,30 +153,11 @@ void ExtremeFinder::screen(const Snapshot& snapshot) {
   }
 }
 
-// Sizes beside which rounding is seen where everything rests: of lengths, of the forces at the start over all masses.
-void ExtremeFinder::set_scales() {
-  const auto kind_of = [this](const char* unit) -> Kind* {
-    for (std::size_t c = 0; c < count_; ++c)
-      if (ranges_[c].channel->unit == unit) return &kinds_[kind_[c]];
-    return nullptr;
-  };
-  const auto largest = [&](const char* unit) { return kind_of(unit) ? kind_of(unit)->largest : 0.0; };
-  double mass = 0.0;
-  for (const BodyData& body : system_.bodies) mass += body.mass;
-  const double length = largest("m") > 0.0 ? largest("m") : 1.0;
-  const double force = std::max(largest("N"), mass * system_.gravity.norm()), a = mass > 0.0 ? force / mass : 0.0;
-  const double v = std::sqrt(a * length);
-  const std::pair<const char*, double> scales[] = {{"m", length},      {"rad", 1.0},           {"m/s", v},
-                                                   {"rad/s", v / length}, {"m/s^2", a},         {"rad/s^2", a / length},
-                                                   {"N", force},       {"N m", force * length}, {"W", force * v},
-                                                   {"J", force * length}};
-  for (const auto& [unit, scale] : scales)
-    if (Kind* kind = kind_of(unit)) kind->scale = scale;
-}
-
 void ExtremeFinder::begin(double t, const Snapshot& snapshot) {
   const bool is_start = !is_begun_;
   is_begun_ = true;
+  is_singular_ = false;
+  if (!is_start && t > t_) pass_between(t, snapshot);
   screen(snapshot);
   evaluate(t, snapshot, node_[0].data(), is_start);
   if (is_start) {
@@ -220,16 +166,41 @@ void ExtremeFinder::begin(double t, const Snapshot& snapshot) {
   }
   for (const std::size_t c : dimensionless_)
     if (!ranges_[c].first_above_one && node_[0][c] > 1.0) ranges_[c].first_above_one = t;
+  formulas_->begin(snapshot);
   t_ = t;
   h_last_ = 0.0;
   steps_ = 0;
   longest_ = 1;
 }
 
+// What formulas find on their way in the stretch from t_ on.
+class ExtremeFinder::Site : public ExtremeSite {
+public:
+  Site(ExtremeFinder& finder, double h, Integrator* integrator, Dynamics* dynamics)
+      : finder_(finder), h_(h), integrator_(integrator), dynamics_(dynamics) {}
+  ChannelRange& range(std::size_t channel) override { return finder_.ranges_[channel]; }
+  [[nodiscard]] double tolerance(std::size_t channel) const override { return finder_.tolerance(channel); }
+  Snapshot look(double theta) override { return finder_.look(theta, *integrator_, *dynamics_); }
+  void note(std::size_t channel, double value, double theta) override { finder_.take(channel, finder_.t_ + theta * h_, value); }
+
+private:
+  ExtremeFinder& finder_;
+  double h_;
+  Integrator* integrator_; ///< null, as the next, where there is no motion to look at
+  Dynamics* dynamics_;
+};
+
+// Methods that decide contact modes themselves leave nothing but the ends of their steps: in between there is a straight line.
+void ExtremeFinder::pass_between(double t, const Snapshot& snapshot) {
+  Site site(*this, t - t_, nullptr, nullptr);
+  formulas_->arrive(snapshot);
+  formulas_->search_straight(t_, t - t_, site);
+}
+
 void ExtremeFinder::finish(const Snapshot& snapshot) {
   for (std::size_t c = 0; c < count_; ++c) {
     ranges_[c].final = ranges_[c].channel->value(snapshot);
-    ranges_[c].resolution = tolerance(c);
+    ranges_[c].resolution = std::max(tolerance(c), formulas_->unclosed(c, ranges_[c]));
   }
 }
 
@@ -278,8 +249,10 @@ void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrat
 }
 
 void ExtremeFinder::arrive(double t, const Snapshot& snapshot, Integrator& integrator, Dynamics& dynamics) {
+  is_singular_ = dynamics.smallest_pivot() < k_singular_pivot;
   screen(snapshot);
   evaluate(t, snapshot, node_[k_last].data(), false);
+  formulas_->arrive(snapshot);
   close(t, integrator, dynamics);
 }
 
@@ -300,6 +273,7 @@ Snapshot ExtremeFinder::look(double theta, Integrator& integrator, Dynamics& dyn
   const double t = t_ + theta * (t1_ - t_);
   state_at(t, integrator, dynamics);
   dynamics.rates(t, y_.data(), dy_.data());
+  is_singular_ = dynamics.smallest_pivot() < k_singular_pivot;
   return dynamics.snapshot(dy_.data());
 }
 
@@ -308,11 +282,14 @@ void ExtremeFinder::close(double t, Integrator& integrator, Dynamics& dynamics) 
   const double h = t1_ - t_;
   if (h > 0.0) {
     if (suspect(h)) search(integrator, dynamics);
+    Site site(*this, h, &integrator, &dynamics);
+    formulas_->search(t_, h, site);
     find_crossings(integrator, dynamics);
     adapt_length();
   }
   std::swap(before_, node_[0]);
   std::swap(node_[0], node_[k_last]);
+  formulas_->pass(h);
   t_last_ = t_;
   h_last_ = h;
   t_ = t;
@@ -337,7 +314,7 @@ bool ExtremeFinder::suspect(double h) {
     Curve& curve = curve_[c];
     curve.is_open = false;
     curve.error = std::numeric_limits<double>::infinity();
-    if (is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
+    if (formulas_->is_formula(c) || is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
     const double slope = b - a, last = h_last_ > 0.0 ? (a - before_[c]) * (h / h_last_) : k_unknown;
     if (!std::isnan(slope) && !std::isnan(last)) { // over the stretch, and over as long before
       const double bend_now = std::abs(slope - last) / (1.0 + h_last_ / h);

@@ -9,15 +9,19 @@
 // the polynomial's. Where none is found (a kink) the search goes on by sections around the outermost point, for each channel by
 // itself; of many channels those that are rounding are told first, all together, and left as they are.
 //
+// Channels that are formulas of others are bounded instead (formula_extremes.h): kinks and peaks of theirs may be anywhere.
+//
 // What is looked at depends on the steps alone: not on the samples written. Limits: a peak that rises and
 // falls within one step of which neither the ends nor the curve before show anything is not seen, nor is it
 // by the integrator's own error control; of methods that decide contact modes themselves (moreau, storms) the
-// ends of steps are all there is.
+// ends of steps are all there is, and of formulas what the straight lines between them make of them.
 #pragma once
 
 #include "mbd/integrators/integrator.h"
+#include "mbd/simulation/formula_extremes.h"
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -33,8 +37,10 @@ struct ChannelRange {
   Extreme low, high;  ///< not-a-number where the channel had no value, or has no extremes (Channel::has_extremes)
   double first = 0.0; ///< at the start
   double final = 0.0; ///< at the end
-  double resolution = 0.0;   ///< extremes are located to within this; smaller ones were not looked for
+  /// Extremes are located to within this; smaller ones were not looked for. Infinite: they may be anywhere beyond.
+  double resolution = 0.0;
   bool had_no_value = false;             ///< it was not-a-number at some time
+  bool is_low_singular = false, is_high_singular = false; ///< met beside a singular position of the joints, where reactions may diverge
   std::optional<double> first_above_one; ///< s; of channels without a unit: the first time they passed 1
 
   /// Whichever is further from zero.
@@ -57,12 +63,17 @@ public:
   [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return ranges_; }
 
   static constexpr double k_resolution = 1e-6; ///< of a channel's range
+  static constexpr double k_at_pole = 1e9;     ///< numbers without a unit beyond it
 
 private:
   static constexpr int k_nodes = 9;        ///< at most, inside a stretch
   static constexpr int k_longest = 16;     ///< steps of a fixed size in a stretch
   static constexpr double k_noise = 1e-9;  ///< of the largest range of channels in the same unit
   static constexpr double k_rounding = 1e-12; ///< of the largest value in the same unit
+  class Site;
+  /// Pivots of the constraints, squares of distances in rad²: nearer than a hundredth of a milliradian nothing but a singular
+  /// position is met.
+  static constexpr double k_singular_pivot = 1e-10;
   /// What is known of a channel's curve in the stretch being looked at.
   struct Curve {
     bool is_open = false;   ///< it may still have an extreme that is not found
@@ -77,6 +88,8 @@ private:
   void note(std::size_t c, double value, double t);
   void evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything);
   void take(std::size_t c, double t, const Snapshot& snapshot, double* values);
+  void take(std::size_t c, double t, double value);
+  void pass_between(double t, const Snapshot& snapshot);
   Snapshot look(double theta, Integrator& integrator, Dynamics& dynamics);
   void state_at(double t, Integrator& integrator, Dynamics& dynamics);
   void close(double t, Integrator& integrator, Dynamics& dynamics);
@@ -126,6 +139,8 @@ private:
   std::size_t stride_;
   std::vector<double> y_, dy_, scratch_;
   bool is_begun_ = false;
+  bool is_singular_ = false; ///< what was looked at last lies beside a singular position of the joints
+  std::unique_ptr<FormulaExtremes> formulas_; ///< of channels that are formulas
 };
 
 } // namespace steplap

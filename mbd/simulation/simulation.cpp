@@ -1,5 +1,6 @@
 #include "mbd/simulation/simulation.h"
 
+#include "mbd/simulation/arguments.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/dynamics/parts.h"
 #include "mbd/system/element_failure.h"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <numbers>
 #include <sstream>
 
 namespace steplap {
@@ -21,11 +23,20 @@ namespace {
 // limit means that modes chase each other without the motion getting anywhere.
 constexpr double k_same_instant = 1e-13;
 constexpr int k_max_events_at_once = 60;
-constexpr double k_storm_interval = 2e-3;  // s, that time stepping goes over
+// Windows of storms, of the time in which bodies fall, √(L/g) (1 ms for L = 1 m), and of the run, of which it is a thousandth:
+// an element may have 50 events in each of them, 50 000 in a run, and is followed from one to the next.
+constexpr double k_storm_window = 1e-3 * std::numbers::pi;
+constexpr double k_storm_windows = 2.0; // that time stepping goes over
 constexpr long k_steps_between_looks = 1L << 16;
 // By how much a joint that holds may be beyond its limit, in shares of it: the mode problem knows wrenches to 1e-9 of the
 // capacities and finds events to rounding; what is a thousand times that is neither.
 constexpr double k_held_beyond = 1e-6;
+// Kinks of tables are no sign of anything wrong, and cost little; but a list of more than a million is read by nobody.
+constexpr long k_least_kinks = 1000000;
+constexpr long k_kinks_per_event = 10;
+// rad, of a harmonic of a load or drive in a step whose error nothing controls: of the fourth order it then takes half a wave
+// to 1e-5.
+constexpr double k_turn_of_fixed_steps = 0.4;
 constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
 
 } // namespace
@@ -60,7 +71,7 @@ static int threads_worth_while(const System& system, int threads) {
 }
 
 Simulation::Simulation(const System& system, const State& initial, SimulationOptions options)
-    : system_(system), options_(std::move(options)), state_(initial), dynamics_(system, threads_worth_while(system, options_.threads)),
+    : system_(system), options_(checked(std::move(options), initial.t)), state_(checked(initial, system)), dynamics_(system, threads_worth_while(system, options_.threads)),
       handler_(system, dynamics_), finder_(system, system.largest_dimension()),
       y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   cpu_start_ = thread_cpu_seconds();
@@ -80,6 +91,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
   dynamics_.unpack(state_.t, y_.data(), state_);
   dynamics_.use_coordinates(chosen_coordinates());
   dynamics_.use_stage_code(options_.stage_code);
+  if (options_.kept_layouts > 0) dynamics_.keep_layouts(options_.kept_layouts);
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const FrictionElement& friction = *system.frictions[f].friction;
     if (friction.dimension() > 1 && !friction.never_slips()) joints_.push_back(static_cast<int>(f));
@@ -113,7 +125,21 @@ void Simulation::refuse_time_stepping() const {
                          "integrator, auto for one");
 }
 
+// Where something begins to move otherwise, or a law to change: no method steps over that.
+double Simulation::next_motion_limit() const {
+  const auto next = std::upper_bound(system_.motion_breakpoints.begin(), system_.motion_breakpoints.end(), state_.t);
+  return next == system_.motion_breakpoints.end() ? options_.end : std::min(*next, options_.end);
+}
+
+// Up to where `step` may go that takes forces by their means: over what is too near for a step of its own.
+double Simulation::next_limit_of_steps(double step) const {
+  constexpr double k_own_step = 1e-4; // of a step: far above what time stepping takes for rounding
+  const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t + k_own_step * step);
+  return next == system_.breakpoints.end() ? next_motion_limit() : std::min(*next, next_motion_limit());
+}
+
 double Simulation::next_limit() const {
+  if (integrator_->stepped_state()) return next_limit_of_steps(options_.settings.step);
   const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t);
   return next == system_.breakpoints.end() ? options_.end : std::min(*next, options_.end);
 }
@@ -123,7 +149,11 @@ void Simulation::approach_limit() {
   limit_ = next_limit();
   dynamics_.set_time_limit(limit_);
   const double fastest = system_.fastest_at(0.5 * (state_.t + limit_));
-  integrator_->limit_step(fastest > 0.0 ? Integrator::k_largest_turn / fastest : std::numeric_limits<double>::infinity());
+  const double turn = integrator_->is_adaptive() ? Integrator::k_largest_turn : k_turn_of_fixed_steps;
+  double longest = fastest > 0.0 ? turn / fastest : std::numeric_limits<double>::infinity();
+  const int division = options_.settings.division;
+  if (division > 1 && integrator_->is_adaptive()) longest = std::min(longest, limit_ - state_.t) / division;
+  integrator_->limit_step(longest);
 }
 
 // `is_evaluated`: by the handler, as this state is.
@@ -215,8 +245,18 @@ void Simulation::sample_until(double t) {
   }
 }
 
-void Simulation::guard_against_chatter(double t) {
-  const bool is_same = t - last_event_ <= k_same_instant * std::max(1.0, std::abs(t));
+// Whose switching value it is.
+std::string Simulation::owner_of(int slot) const {
+  int element = -1;
+  for (const Unit& unit : system_.units)
+    if (slot >= unit.watch && slot < unit.watch + unit.watch_count) element = unit.element;
+  for (const FrictionUnit& unit : system_.frictions)
+    if (slot >= unit.watch && slot < unit.watch + k_friction_watches) element = unit.element;
+  return element < 0 ? "" : std::string(system_.element_names[element]);
+}
+
+void Simulation::guard_against_chatter(double t, const std::vector<int>& fired) {
+  const bool is_same = t - last_event_ <= k_same_instant * std::max(system_.scale.time(), std::abs(t));
   events_at_once_ = is_same ? events_at_once_ + 1 : 0;
   last_event_ = t;
   ++statistics_.events;
@@ -225,7 +265,12 @@ void Simulation::guard_against_chatter(double t) {
   message.precision(12);
   message << (events_at_once_ >= k_max_events_at_once ? "events repeat without end at t = "
                                                       : "more events than simulation.max_events by t = ")
-          << t << " s; the last ones:";
+          << t << " s; ";
+  if (events_.empty()) { // of a kind that is not written
+    message << "a switching value of '" << owner_of(fired.back()) << "' keeps changing its sign";
+    throw ElementFailure(message.str(), {owner_of(fired.back())});
+  }
+  message << "the last ones:";
   const std::size_t shown = std::min<std::size_t>(events_.size(), 4);
   for (std::size_t i = events_.size() - shown; i < events_.size(); ++i)
     message << " '" << events_[i].element << "' " << events_[i].words() << (i + 1 < events_.size() ? ";" : "");
@@ -259,6 +304,16 @@ bool Simulation::are_joints(const std::vector<int>& slots) const {
   });
 }
 
+// Tables of many points make many: they have a limit of their own, far above that of other events.
+static void guard_against_kinks(long kinks, long max_events, double t, const std::string& element) {
+  const long most = std::max(k_least_kinks, k_kinks_per_event * std::min(max_events, std::numeric_limits<long>::max() / k_kinks_per_event));
+  if (kinks <= most) return;
+  throw ElementFailure("more than " + std::to_string(most) + " kinks of characteristics by t = " + number_text(t) + " s, the last one of '" + element +
+                         "'. Thin out its table, end the run earlier, or raise simulation.max_events: " + std::to_string(k_kinks_per_event) +
+                         " kinks are let pass for each event",
+                       {element});
+}
+
 void Simulation::pass_event(double t, const double* y, const std::vector<int>& fired) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
@@ -275,30 +330,59 @@ void Simulation::pass_event(double t, const double* y, const std::vector<int>& f
   energy_.check_settled(state_.t, handler_.settled());
   const auto is_at_kink = [](const Event& event) { return is_kink(event.kind); };
   const auto first_new = events_.begin() + static_cast<std::ptrdiff_t>(known);
-  if (first_new != events_.end() && std::all_of(first_new, events_.end(), is_at_kink)) ++kinks_;
-  if (method(options_.integrator).may_step_over_storms && system_.inner_count() == 0 && !first_one_sided_row(system_) && handler_.stop_reason().empty())
-    for (std::size_t i = known; i < events_.size(); ++i)
-      if (!is_kink(events_[i].kind) && storm_.note(t, events_[i].element)) return step_through_storm(std::string(events_[i].element));
-  if (!fired.empty()) guard_against_chatter(t);
+  if (first_new != events_.end() && std::all_of(first_new, events_.end(), is_at_kink))
+    guard_against_kinks(++kinks_, options_.max_events, t, std::string(events_.back().element));
+  if (method(options_.integrator).may_step_over_storms && system_.inner_count() == 0 && !first_one_sided_row(system_) && handler_.stop_reason().empty()) {
+    const double window = storm_window();
+    for (std::size_t i = known; i < events_.size(); ++i) {
+      if (is_kink(events_[i].kind) || !storm_.note(t, events_[i].element, window)) continue;
+      const double step = options_.storm_step * window;
+      const double end = std::min(next_motion_limit(), t + k_storm_windows * window);
+      if (end - t > step) return step_through_storm(std::string(events_[i].element), end);
+    }
+  }
+  if (!fired.empty()) guard_against_chatter(t, fired);
   restart(handler_.is_evaluated());
+}
+
+// An element's events are a storm where they crowd within the time in which everything else changes: bodies that fall, the
+// run as a whole, and the fastest wave of a load or drive, of which 50 events are no part.
+double Simulation::storm_window() const {
+  const SceneUnits& scale = system_.scale;
+  const double window = k_storm_window / std::max(scale.rate, std::numbers::pi / scale.duration);
+  const double fastest = system_.fastest_at(state_.t);
+  return fastest > 0.0 ? std::min(window, 2.0 * std::numbers::pi / fastest) : window;
 }
 
 // An element whose events crowd is not followed from one to the next: time stepping goes over an interval,
 // in which modes change where they will, and the usual methods go on from its end.
-void Simulation::step_through_storm(const std::string& element) {
+void Simulation::step_through_storm(const std::string& element, double end) {
   if (!stepping_) stepping_ = std::make_unique<TimeStepping>(system_);
   is_between_events_ = false;
   ++statistics_.storms;
   const double begin = state_.t;
-  const double end = std::min(next_limit(), begin + k_storm_interval);
   events_.push_back({begin, element, EventKind::storm, "for " + rounded_text(1e3 * (end - begin)) + " ms"});
   dynamics_.use_coordinates(Coordinates::absolute);
+  dynamics_.set_time_limit(end);
+  const double step = options_.storm_step * storm_window();
   const long parts = stepping_->extra_parts();
+  const int division = options_.settings.division;
+  double whole = 0.0, t_whole = begin; // the step that is divided, s, and its end
+  int part = division;
   while (state_.t < end && stepping_->extra_parts() - parts < options_.storm_parts) {
-    double t1 = std::min(end, state_.t + options_.storm_step);
     const double due = static_cast<double>(sample_) * options_.output_step;
-    const bool is_sample = options_.output_step > 0.0 && due > state_.t && due <= t1;
-    if (is_sample) t1 = due;
+    if (part == division) { // cut by a sample as a step of its length would be
+      part = 0;
+      t_whole = std::min({end, state_.t + division * step, next_limit_of_steps(division * step)});
+      if (const double fastest = system_.fastest_at(0.5 * (state_.t + t_whole)); fastest > 0.0)
+        t_whole = std::min(t_whole, state_.t + k_turn_of_fixed_steps / fastest);
+      if (options_.output_step > 0.0 && due > state_.t && due <= t_whole) t_whole = due;
+      whole = t_whole - state_.t;
+    }
+    ++part;
+    const double t1 = part == division ? t_whole : t_whole - (division - part) * whole / division;
+    const bool is_sample = options_.output_step > 0.0 && due == t1;
+    note_passed(state_.t, t1);
     stepping_->step(dynamics_, state_, t1, options_.settings.projection_tolerance);
     ++statistics_.steps;
     if (!is_sample && !extremes_ && !ledger_) continue;
@@ -377,7 +461,9 @@ bool Simulation::pass_step() {
   }
   check_finite();
   const bool is_event = finder_.find(*integrator_, dynamics_, handler_.fresh());
-  if (finder_.is_step_withdrawn()) {
+  const bool is_withdrawn = finder_.is_step_withdrawn() ||
+                            !integrator_->resolves_slips(dynamics_, is_event ? finder_.theta() : 1.0, finder_.state().data());
+  if (is_withdrawn) {
     integrator_->begin_step(dynamics_, limit);
     return false;
   }
@@ -428,9 +514,19 @@ void Simulation::end_run() {
   extremes_->finish(dynamics_.snapshot(dy_.data()));
 }
 
+// Bodies have the impulse of what a step of time stepping passes over, but no force or acceleration shows it.
+void Simulation::note_passed(double t0, double t1) {
+  if (statistics_.passed_pulse) return;
+  constexpr double k_rounding = 64.0 * std::numeric_limits<double>::epsilon(); // times that were meant to be the same
+  const std::vector<double>& times = system_.breakpoints;
+  for (auto next = std::lower_bound(times.begin(), times.end(), t0); next != times.end() && next + 1 != times.end() && *(next + 1) < t1; ++next)
+    if (*(next + 1) - *next > k_rounding * *(next + 1)) statistics_.passed_pulse = *next;
+}
+
 // A step that has decided the modes itself: they are taken over, and noted where they changed.
 void Simulation::pass_stepped() {
   const double t1 = integrator_->t1();
+  note_passed(state_.t, t1);
   if (ledger_) {
     dynamics_.rates(t1, integrator_->y1(), dy_.data());
     ledger_->add_stepped(t1, dynamics_.snapshot(dy_.data()));

@@ -15,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,10 +27,11 @@ struct SimulationOptions {
   IntegratorSettings settings;
   Coordinates coordinates = Coordinates::automatic; ///< moreau: always absolute
   StageCode stage_code = StageCode::when_it_pays;   ///< of explicit methods
+  std::size_t kept_layouts = 0;            ///< at a time (layout_store.h); 0: as memory allows. Changes no result
   double output_step = 0.0;                ///< s; 0: no samples
   std::vector<std::string> channels;       ///< patterns of those sampled; empty: all
   bool has_extremes = false;               ///< look for the extremes of all channels, sampled or not
-  double storm_step = 1e-5;                ///< s, of time stepping through a storm of events
+  double storm_step = 1e-2;                ///< of time stepping through a storm of events, in shares of its window
   long storm_parts = 10000;                ///< into which these are halved at most: events are the cheaper then
   long max_events = 100000;
   int threads = 1;                         ///< that share the evaluation of scenes of some thousand bodies; changes no result
@@ -51,6 +53,7 @@ struct RunStatistics {
   double energy_worst_step = 0.0;      ///< largest energy a step made or lost, of what its tolerance lets it
   double energy_rounding = 0.0;        ///< below this a residual is rounding of the energies, J
   double dissipated = 0.0, work = 0.0; ///< J
+  std::optional<double> passed_pulse;  ///< s: where time stepping passed over a part of a load that is far shorter than its step
   double cpu_seconds = 0.0;            ///< of this thread, samples included
 };
 
@@ -112,14 +115,19 @@ private:
   void pass_event(double t, const double* y, const std::vector<int>& fired);
   void pass_stepped();
   [[nodiscard]] bool are_joints(const std::vector<int>& slots) const;
-  void step_through_storm(const std::string& element);
-  void guard_against_chatter(double t);
+  void step_through_storm(const std::string& element, double end);
+  void note_passed(double t0, double t1);
+  [[nodiscard]] std::string owner_of(int slot) const;
+  void guard_against_chatter(double t, const std::vector<int>& fired);
   void guard_against_crawl();
   [[noreturn]] void fail_infinite(double t) const;
   void refuse_time_stepping() const;
   [[nodiscard]] bool is_over() const { return state_.t >= options_.end || !handler_.stop_reason().empty(); }
   [[nodiscard]] bool pass_step();
   [[nodiscard]] double next_limit() const;
+  [[nodiscard]] double next_motion_limit() const;
+  [[nodiscard]] double next_limit_of_steps(double step) const;
+  [[nodiscard]] double storm_window() const;
   [[nodiscard]] Coordinates chosen_coordinates() const;
   void approach_limit();
 

@@ -6,13 +6,18 @@
 //   S force(S value, S rate, mode)           force along the measure's gradient
 //   S elastic_force(S value, mode)           −dU/dvalue of the stored energy, smooth within a mode
 //   double energy(value)                     U
-//   and, if k_watches > 0: mode_at, next_mode, watch, transition.
+//   and, if k_watches > 0: mode_at, next_mode (with the value's rounding), watch, transition, and if it can tell, is_surely_positive;
+//   with k_watches_beyond_rounding its watch() is told what value and rate are known to, and there is a watch_kind(slot).
 // It dissipates (elastic_force − force)·rate. A law that takes doubles only where S or watch() stands is not written down
 // (mbd/tape/traced.h).
 #pragma once
 
 #include "mbd/math/dual.h"
+#include "mbd/system/gap_source.h"
 #include "mbd/system/roles.h"
+#include "mbd/system/rounding.h"
+
+#include <type_traits>
 
 namespace steplap {
 
@@ -53,14 +58,28 @@ Dual<12> add_pair_jacobian(int a, int b, const Measure& measure, const Evaluatio
   return f;
 }
 
+/// ForceGroup::is_surely_positive by a law; false of those that do not say.
+template <class Law>
+[[nodiscard]] bool is_surely_positive(const Law& law, UnitMode mode, int slot, double value, double rounding) {
+  if constexpr (requires { law.is_surely_positive(mode, slot, value, rounding); })
+    return law.is_surely_positive(mode, slot, value, rounding);
+  return false;
+}
+
+template <class Law> inline constexpr bool k_watches_beyond_rounding = requires { requires Law::k_watches_beyond_rounding; };
+
 /// Laws whose functions are templates can be written down.
 template <class Law>
 concept TraceableLaw = requires(const Law& law, const Traced& x, Traced* watch) {
   law.elastic_force(x, UnitMode{});
-  requires Law::k_watches == 0 || requires { law.watch(x, x, UnitMode{}, watch, watch); };
+  requires Law::k_watches == 0 || k_watches_beyond_rounding<Law> || requires { law.watch(x, x, UnitMode{}, watch, watch); };
 };
 
-template <class Measure, class Law> class LawGroup final : public ForceGroup {
+/// What groups of elements that are no contacts are instead of a GapSource.
+struct NoGaps {};
+
+template <class Measure, class Law>
+class LawGroup final : public ForceGroup, public std::conditional_t<Law::k_is_contact, GapSource, NoGaps> {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -119,6 +138,16 @@ public:
     for (Entry& entry : entries) entry.link = links.add(entry.a, entry.b);
   }
 
+  /// Overrides GapSource's, where the law is a contact's.
+  void add_gaps(const Motion<double>* motion, std::vector<GapBounds>& out) const {
+    if constexpr (Law::k_is_contact)
+      for (const Entry& entry : entries) {
+        out.push_back(gap_bounds(entry.measure, entry.law.offset, motion[entry.a], motion[entry.b]));
+        out.back().a = entry.a;
+        out.back().b = entry.b;
+      }
+  }
+
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     if constexpr (Law::k_watches > 0) {
       const auto m = measured(element, e);
@@ -129,9 +158,17 @@ public:
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     if constexpr (Law::k_watches > 0) {
       const auto m = measured(element, e);
-      return entries[element].law.next_mode(mode, slot, m.value, m.rate);
+      return entries[element].law.next_mode(mode, slot, m.value, m.rate, rounding_of(element, m, e));
     }
     return mode;
+  }
+  [[nodiscard]] bool is_surely_positive(int element, UnitMode mode, int slot, const Evaluation& e) const override {
+    const auto m = measured(element, e);
+    return steplap::is_surely_positive(entries[element].law, mode, slot, m.value, rounding_of(element, m, e));
+  }
+  [[nodiscard]] WatchKind watch_kind(int slot) const override {
+    if constexpr (k_watches_beyond_rounding<Law>) return Law::watch_kind(slot);
+    return WatchKind::exact;
   }
   [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override {
     if constexpr (Law::k_watches > 0) return Law::transition(from, to);
@@ -149,6 +186,9 @@ public:
   }
 
 private:
+  [[nodiscard]] double rounding_of(int element, const MeasureValue<double>& m, const Evaluation& e) const {
+    return value_rounding(m, e.motion[entries[element].a], e.motion[entries[element].b]);
+  }
   template <class S> STEPLAP_INLINE void add_forces_to(Evaluated<S>& e) const {
     S dissipation{0.0}; // in a register: a sum in memory would chain the elements to each other
     for (const Entry& entry : entries) dissipation += add_force_to(entry, e);
@@ -160,9 +200,14 @@ private:
     const auto m = entry.measure.template at<false, S>(e.link_motion[entry.link], Origin{});
     const S f = entry.law.force(m.value, m.rate, mode_of(entry, e));
     if constexpr (Law::k_is_contact) e.contact_force[entry.contact] = f;
-    if constexpr (Law::k_watches > 0)
+    if constexpr (k_watches_beyond_rounding<Law>) {
+      const Motion<S>&a = e.motion[entry.a], &b = e.motion[entry.b];
+      entry.law.watch(m.value, m.rate, mode_of(entry, e), S(k_met) + value_rounding(m, a, b), S(k_met) + rate_rounding(m, a, b),
+                      e.watch + entry.watch, e.watch_rate + entry.watch);
+    } else if constexpr (Law::k_watches > 0) {
       entry.law.watch(m.value, m.rate, mode_of(entry, e), e.watch + entry.watch,
                       e.watch_rate + entry.watch);
+    }
     if (!is_surely_zero(f)) apply_force(e.link_force[entry.link], m, f);
     return (entry.law.elastic_force(m.value, mode_of(entry, e)) - f) * m.rate;
   }

@@ -1,6 +1,7 @@
 #include "mbd/system/requested_channels.h"
 
 #include "mbd/base/name_pattern.h"
+#include "mbd/system/formula_channel.h"
 #include "mbd/system/one_sided_row.h"
 
 #include <algorithm>
@@ -59,28 +60,6 @@ bool wants_energies(const std::vector<std::string>* wanted) {
          });
 }
 
-// What the channel of a formula calls.
-struct FormulaValue {
-  std::shared_ptr<const ChannelExpression> expression;
-  std::vector<std::function<double(const Snapshot&)>> operands;
-  std::vector<double> factors; ///< of the operands' units
-  double factor = 1.0;
-
-  double operator()(const Snapshot& s) const {
-    thread_local std::vector<std::vector<double>> kept; // a formula of formulas needs one for each
-    thread_local std::size_t depth = 0;
-    if (kept.size() <= depth) kept.resize(depth + 1);
-    kept[depth].resize(std::max(kept[depth].size(), operands.size()));
-    for (std::size_t i = 0; i < operands.size(); ++i) {
-      ++depth;
-      const double operand = factors[i] * operands[i](s);
-      --depth;
-      kept[depth][i] = operand;
-    }
-    return factor * expression->value(kept[depth].data(), s.t);
-  }
-};
-
 std::string without_unit(const std::string& name) {
   if (name.empty() || name.back() != ']') return name;
   const std::size_t open = name.rfind('[');
@@ -94,7 +73,7 @@ RequestedChannels::RequestedChannels(SystemBuilder& builder)
     : builder_(builder), model_(builder.model_), has_requests_(!model_.output.also.empty() || !model_.channels.empty()),
       wants_shares_(has_requests_ || wants_energies(builder.wanted_)) {
   for (const DefinedChannel& definition : model_.channels) {
-    Formula& formula = formulas_.emplace_back();
+    Defined& formula = formulas_.emplace_back();
     formula.definition = &definition;
     try {
       formula.expression.emplace(definition.expression, "channel '" + definition.name + "'", definition.place("expression"));
@@ -322,43 +301,40 @@ std::pair<std::string, double> RequestedChannels::unit_of(const DefinedChannel& 
 }
 
 // Others that it uses first.
-void RequestedChannels::add_formula(Formula& formula) {
+void RequestedChannels::add_formula(Defined& formula) {
   const DefinedChannel& d = *formula.definition;
-  if (formula.mark == Formula::Mark::done) return;
-  if (formula.mark == Formula::Mark::open)
+  if (formula.mark == Defined::Mark::done) return;
+  if (formula.mark == Defined::Mark::open)
     throw ModelError(d.place("expression"), "channel '" + d.name + "': its expression leads back to itself");
-  formula.mark = Formula::Mark::open;
+  formula.mark = Defined::Mark::open;
   if (!formula.expression) return;
-  std::vector<std::string> units;
-  FormulaValue value;
-  for (const std::string& name : formula.expression->names()) {
+  for (const std::string& name : formula.expression->names())
     for (const std::string& each : {name, without_unit(name)})
-      for (Formula& other : formulas_)
+      for (Defined& other : formulas_)
         if (other.definition->name == each) add_formula(other);
-    const Channel& channel = operand(d, name);
-    const auto dimension = dimension_of(channel.unit);
-    units.push_back(channel.unit);
-    value.operands.push_back(channel.value);
-    value.factors.push_back(dimension ? dimension->factor : 1.0);
+  std::vector<std::string> units;
+  std::vector<const Channel*> operands; // good as long as no channel is added
+  for (const std::string& name : formula.expression->names()) {
+    operands.push_back(&operand(d, name));
+    units.push_back(operands.back()->unit);
   }
   const auto [unit, factor] = unit_of(d, formula.expression->dimension(units));
-  formula.mark = Formula::Mark::done;
-  value.expression = std::make_shared<const ChannelExpression>(*formula.expression);
-  value.factor = factor;
+  formula.mark = Defined::Mark::done;
+  const auto value = std::make_shared<const FormulaChannel>(formula.expression->tree(), operands, factor);
   const auto* const wanted = builder_.wanted_;
   const bool is_listed = !wanted || std::find(wanted->begin(), wanted->end(), d.name) != wanted->end();
   if (!is_listed && !std::binary_search(builder_.operand_names_.begin(), builder_.operand_names_.end(), d.name)) return;
   const std::string meaning = d.meaning.empty() ? "= " + d.expression : d.meaning;
   Channel& channel = builder_.enter_channel(is_listed ? SystemBuilder::Use::channel : SystemBuilder::Use::operand, "", d.name, unit,
-                                            ChannelText(meaning, d.sign), std::move(value));
+                                            ChannelText(meaning, d.sign), FormulaValue{value});
   channel.is_on_request = true;
 }
 
 void RequestedChannels::add_formulas() {
-  for (Formula& formula : formulas_) try {
+  for (Defined& formula : formulas_) try {
       add_formula(formula);
     } catch (const ModelError& error) {
-      formula.mark = Formula::Mark::done;
+      formula.mark = Defined::Mark::done;
       builder_.errors_.insert(builder_.errors_.end(), error.diagnostics().begin(), error.diagnostics().end());
     }
 }

@@ -1,12 +1,12 @@
 // Channels that a model asks for, made beside those that elements make: motion of markers, energies of the whole and of single
-// elements, formulas (channel_expression.h). What nobody asks for is not made.
+// elements, formulas (formula_channel.h). What nobody asks for is not made.
 //
 //   M.x .y .vx .vy .ax .ay        of marker M, ground axes; accelerations as the equations of motion give them
 //   whole.kinetic .potential .dissipated .work .balance
 //   E.dissipated .stored .work    of element E, since the start
 #pragma once
 
-#include "mbd/system/channel_expression.h"
+#include "mbd/formula/formula.h"
 #include "mbd/system/system.h"
 
 #include <optional>
@@ -28,9 +28,9 @@ public:
   void add();
 
 private:
-  struct Formula {
+  struct Defined {
     const DefinedChannel* definition;
-    std::optional<ChannelExpression> expression;
+    std::optional<Formula> expression;
     enum class Mark { untouched, open, done } mark = Mark::untouched;
   };
   struct Share { ///< of an element
@@ -49,7 +49,7 @@ private:
   void add_share(const Share& share);
   void add_energy(const Share& share, const char* name, const ChannelText& text, Integrand integrand);
   void add_formulas();
-  void add_formula(Formula& formula);
+  void add_formula(Defined& formula);
   [[nodiscard]] const Channel& operand(const DefinedChannel& definition, const std::string& name) const;
   [[nodiscard]] static std::pair<std::string, double> unit_of(const DefinedChannel& definition, const UnitDimension& derived);
   [[nodiscard]] bool is_anything_missing() const;
@@ -60,7 +60,7 @@ private:
 
   SystemBuilder& builder_;
   const Model& model_;
-  std::vector<Formula> formulas_;
+  std::vector<Defined> formulas_;
   std::vector<Share> shares_;
   std::vector<std::size_t> counts_; ///< of entries in groups, before the element
   std::size_t rows_ = 0, frictions_ = 0;

@@ -34,6 +34,10 @@ enum class FrictionPhase : std::uint8_t {
   apart  ///< the joint has come apart: no friction for good
 };
 
+/// What a watch value is known to inside a step: as exactly as it is computed; or, of one that says where the present piece of a
+/// continuous force ends, as places or velocities of the motion are.
+enum class WatchKind : std::uint8_t { exact, place, rate };
+
 /// What a friction element remembers; anchors are in the state's memory (RowSpec::memory).
 struct FrictionState {
   FrictionPhase phase = FrictionPhase::stick;
@@ -42,6 +46,7 @@ struct FrictionState {
   bool has_slipped = false;
   bool is_starting = false;         ///< slip has only begun: `direction` still shares in the slip law
   std::uint8_t stage = 0;           ///< of a slip's start or end, as its element counts them
+  std::uint8_t left_out = 0;        ///< by bits, its rows that the equations left out while it stuck, since others hold them
   double slid = 0.0;                ///< path length of finished slips (first row), m
   double direction[3] = {0, 0, 0};  ///< of slip, as last looked at, for three-dimensional friction
 };
@@ -88,10 +93,15 @@ struct TracedEvaluation : Evaluated<Traced> {
 /// Everything an evaluation reads and writes; one per thread, sized once.
 struct Evaluation : Evaluated<double> {
   double t = 0.0;
+  /// Signals that are forces (SignalUse) are taken by their means from here to t, for the impulse of a step of time
+  /// stepping; where this is not before t (infinite) by their values at t.
+  double mean_from = std::numeric_limits<double>::infinity();
   const double* memory = nullptr;         ///< of the state: anchors of rows
   const double* inner = nullptr;          ///< inner states of force elements
   double* inner_rate = nullptr;           ///< their rates: zero, unless an element says more
   FrictionScratch* const* scratch = nullptr; ///< per friction element; null where it wants none
+
+  [[nodiscard]] double force_of(const Signal& signal) const { return mean_from < t ? signal.mean(mean_from, t) : signal.value(t); }
 };
 
 /// Adds f along the gradient of a measure taken in the link's frame (Origin).
@@ -154,6 +164,11 @@ public:
   [[nodiscard]] virtual UnitMode next_mode(int /*element*/, UnitMode mode, int /*slot*/, const Evaluation&) const {
     return mode;
   }
+  /// Of a mode that has just begun: is this watch value positive, by more than rounding? Else nobody believes its sign before
+  /// it was positive once.
+  [[nodiscard]] virtual bool is_surely_positive(int /*element*/, UnitMode /*mode*/, int /*slot*/, const Evaluation&) const { return false; }
+  /// Of a watch value of each element.
+  [[nodiscard]] virtual WatchKind watch_kind(int /*slot*/) const { return WatchKind::exact; }
   /// Which event the change is.
   [[nodiscard]] virtual EventKind transition(UnitMode /*from*/, UnitMode /*to*/) const { return EventKind::none; }
   /// Does the run end with the change to this mode?

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace steplap {
 
@@ -99,6 +100,22 @@ SystemBuilder::SystemBuilder(const Model& model, const std::vector<std::string>*
   system_->gravity = model.header.gravity;
 }
 
+namespace {
+
+SceneUnits units_of(const System& system, double duration) {
+  SceneUnits scale;
+  double size = 0.0;
+  for (const BodyData& body : system.bodies)
+    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
+  if (size > 0.0) scale.length = size;
+  const double gravity = system.gravity.norm();
+  scale.duration = duration;
+  scale.rate = gravity > 0.0 ? std::sqrt(gravity / scale.length) : std::numbers::pi / duration;
+  return scale;
+}
+
+} // namespace
+
 void SystemBuilder::compile_bodies() {
   system_->bodies.push_back({"ground", 0.0, 0.0, Vec3::Zero(), Vec3::Zero()});
   body_index_["ground"] = k_ground;
@@ -114,6 +131,7 @@ void SystemBuilder::compile_bodies() {
     system_->bodies.push_back({body.name, body.mass, body.inertia, body.reference_pose(),
                                Vec3(velocity.x(), velocity.y(), body.angular_velocity)});
   }
+  system_->scale = units_of(*system_, model_.simulation.end);
   State state = system_->initial_state();
   place_bodies(state.q, state.v, reference_);
 
@@ -187,8 +205,14 @@ void SystemBuilder::finish() {
     const RowSpec& row = *unit.friction->rows({}); // the same two bodies at each of its places
     s.links.add(row.a, row.b);
   }
-  std::sort(s.breakpoints.begin(), s.breakpoints.end());
-  s.breakpoints.erase(std::unique(s.breakpoints.begin(), s.breakpoints.end()), s.breakpoints.end());
+  s.has_work = std::any_of(group_types_.begin(), group_types_.end(), [](const GroupType& type) { return type.does_work; }) ||
+               std::any_of(s.rows.begin(), s.rows.end(), [](const RowSpec& row) { return row.drive != nullptr; });
+  for (const Signal* signal : s.motion_signals_)
+    std::copy_if(signal->breakpoints().begin(), signal->breakpoints().end(), std::back_inserter(s.motion_breakpoints), [](double t) { return t > 0.0; });
+  for (std::vector<double>* const times : {&s.breakpoints, &s.motion_breakpoints}) {
+    std::sort(times->begin(), times->end());
+    times->erase(std::unique(times->begin(), times->end()), times->end());
+  }
 }
 
 void SystemBuilder::add_body_channels() {
@@ -238,8 +262,15 @@ int SystemBuilder::body(const std::string& name) const {
   return found->second;
 }
 
-const Signal* SystemBuilder::signal(const std::string& name) {
+const Signal* SystemBuilder::signal(const std::string& name, SignalUse use) {
   if (name.empty()) return nullptr;
+  const Signal* const found = signal_of(name);
+  auto& moving = system_->motion_signals_;
+  if (use == SignalUse::motion && std::find(moving.begin(), moving.end(), found) == moving.end()) moving.push_back(found);
+  return found;
+}
+
+const Signal* SystemBuilder::signal_of(const std::string& name) {
   if (const auto found = signal_index_.find(name); found != signal_index_.end()) return found->second;
   if (const Signal* built = signals_.build(name)) {
     auto signal = std::make_unique<Signal>(*built);

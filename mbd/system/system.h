@@ -4,6 +4,7 @@
 
 #include "mbd/model/model.h"
 #include "mbd/system/roles.h"
+#include "mbd/system/scene_units.h"
 #include "mbd/model/signal_network.h"
 
 #include <functional>
@@ -129,6 +130,7 @@ public:
 
   std::string title;
   Vec2 gravity = Vec2::Zero();
+  SceneUnits scale;
   std::vector<BodyData> bodies;
   std::vector<std::string> element_names;
   std::vector<std::string> element_kinds;
@@ -144,12 +146,14 @@ public:
   std::vector<std::unique_ptr<Channel>> operands; ///< of expressions, where they are no channels themselves
   std::vector<std::unique_ptr<ForceGroup>> shares; ///< of single elements, whose energy channels ask for
   std::vector<double> breakpoints; ///< of all signals in use, ascending
+  std::vector<double> motion_breakpoints; ///< of those that are no mere forces (SignalUse), ascending
   double drives_end = std::numeric_limits<double>::infinity(); ///< the first drive jumps there: no run may pass it, s
   std::vector<double> initial_memory;
   std::vector<double> initial_inner;
   std::vector<int> inner_elements;           ///< of each inner state
   std::vector<const ForceGroup*> inner_groups; ///< those with inner states
   std::vector<char> is_body_used; ///< per body: some force element or friction refers to it
+  bool has_work = false; ///< some load, motor or drive may do work
   int contact_count = 0;
   int watch_count = 0;
   int friction_row_count = 0;
@@ -170,6 +174,7 @@ public:
 private:
   friend class SystemBuilder;
   std::vector<std::unique_ptr<Signal>> signals_;
+  std::vector<const Signal*> motion_signals_; ///< those with SignalUse::motion
 };
 
 /// Fills per-body motions from q and v; `motion` has one entry per body.
@@ -192,6 +197,10 @@ struct ContactIndex {
   int force = 0, unit = 0;
 };
 
+/// What an element takes a signal for. The impulse of a force is known for a step of any length from the signal's
+/// integral; what moves something, or enters a law otherwise, acts through what follows it: no step may pass over a part.
+enum class SignalUse : unsigned char { motion, force };
+
 /// Handed to ElementKind::compile: names in, indices out.
 class SystemBuilder {
 public:
@@ -202,7 +211,7 @@ public:
   [[nodiscard]] CompiledMarker marker(const std::string& name) const;
   [[nodiscard]] int body(const std::string& name) const;
   /// Null for an empty name.
-  [[nodiscard]] const Signal* signal(const std::string& name);
+  [[nodiscard]] const Signal* signal(const std::string& name, SignalUse use = SignalUse::motion);
   [[nodiscard]] const Motion<double>& reference(int body) const { return reference_[body]; }
   [[nodiscard]] Vec2 marker_position(const CompiledMarker& marker) const;
   /// A direction given in a marker's axes, in the axes of its body, length 1.
@@ -239,6 +248,7 @@ public:
   void error(const std::string& message);
 
 private:
+  [[nodiscard]] const Signal* signal_of(const std::string& name);
   friend std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted);
   friend class RequestedChannels;
   enum class Use { none, operand, channel };

@@ -62,6 +62,7 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
       {"mbd/analysis/accuracy_study.h", "the two that make references"},
       {"mbd/analysis/cross_check.cpp", "the plan of a cross check, method by method"},
       {"transformer/verdict.cpp", "what to try instead"},
+      {"tools/steplap/second_opinion.cpp", "the two that share least: which one is asked hangs on which one ran"},
   };
   REQUIRE(methods().size() >= 6);
   for (const Method& m : methods()) {

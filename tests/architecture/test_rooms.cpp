@@ -16,7 +16,7 @@ namespace {
 
 // In the order of the data: a model is read, compiled, moved, asked.
 const std::vector<std::string> k_rooms = {
-    "mbd/math",   "mbd/base",       "mbd/algebra",  "mbd/tape",       "mbd/model",  "mbd/system", "mbd/dynamics", "mbd/friction", "mbd/integrators",
+    "mbd/math",   "mbd/base",       "mbd/formula",  "mbd/algebra",  "mbd/tape",       "mbd/model",  "mbd/system", "mbd/dynamics", "mbd/friction", "mbd/integrators",
     "mbd/events", "mbd/simulation", "mbd/ensemble", "mbd/analysis", "mbd/io",     "elements/patch", "elements",     "transformer",
     "tools"};
 

@@ -13,6 +13,7 @@ import json
 import os
 import shutil
 import sqlite3
+import struct
 import subprocess
 import sys
 import tempfile
@@ -68,6 +69,51 @@ def steplap(*arguments):
     return done.returncode, done.stdout, done.stderr
 
 
+# mbd/base/fingerprint.h: stores with others are refused.
+def fingerprint(*values):
+    most = 2**64 - 1
+    state = 0xCBF29CE484222325
+    words = []
+    for value in values:
+        if isinstance(value, int):
+            words.append(value & most)
+        elif isinstance(value, str):
+            data = value.encode()
+            words.append(len(data))
+            words += [int.from_bytes(data[i:i + 8], "little") for i in range(0, len(data), 8)]
+        else:
+            words.append(most if value is None else struct.unpack("<Q", struct.pack("<d", value + 0.0))[0])
+    for word in words:
+        state = (state ^ word) * 0x100000001B3 & most
+        state = (state ^ state >> 32) * 0x9E3779B97F4A7C15 & most
+    return state - 2**64 if state >= 2**63 else state
+
+
+# What a forger has to do, too: all fingerprints of a store anew (tools/study/store_check.cpp).
+def make_fingerprints(store):
+    counts = [store.execute(f"SELECT count(*) FROM {table}").fetchone()[0] for table in ("finding", "note")]
+    store.execute("UPDATE setting SET value = ? WHERE key = 'answer'", ("{} findings, {} notes".format(*counts),))
+    for key, value in store.execute("SELECT key, value FROM setting").fetchall():
+        store.execute("UPDATE setting SET fingerprint = ? WHERE key = ?", (fingerprint(key, value), key))
+    for place, text in store.execute("SELECT place, text FROM note").fetchall():
+        store.execute("UPDATE note SET fingerprint = ? WHERE place = ?", (fingerprint(str(place), text), place))
+    for table in ("finding", "growth"):
+        rows = store.execute(f"SELECT place, method, subject, quantity, status, value, low, high, samples FROM {table}").fetchall()
+        for place, *row in rows:
+            texts, numbers, samples = [text or "" for text in row[:4]], row[4:7], row[7] or 0
+            numbers = [None if x is None else float(x) for x in numbers]
+            store.execute(f"UPDATE {table} SET fingerprint = ? WHERE place = ?", (fingerprint(place, table, *texts, *numbers, samples), place))
+    names = [row[1] for row in store.execute("PRAGMA table_info(sample)")]
+    values, first = sum(name.startswith("v_") for name in names), 1
+    for (last,) in store.execute("SELECT last FROM batch ORDER BY last").fetchall():
+        parts = []
+        for number, status, reason, *doubles in store.execute("SELECT * FROM sample WHERE number BETWEEN ? AND ? ORDER BY number", (first, last)).fetchall():
+            doubles = [None if x is None else float(x) for x in doubles]
+            parts += [number, status, reason or "", *doubles[:3], values, *doubles[3:3 + values], len(doubles) - 3 - values, *doubles[3 + values:], 0]
+        store.execute("UPDATE batch SET fingerprint = ? WHERE last = ?", (fingerprint(*parts), last))
+        first = last + 1
+
+
 def start_browser():
     options = Options()
     for argument in ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--force-color-profile=srgb", "--window-size=1280,900"]:
@@ -110,6 +156,7 @@ class StudyReportTest(unittest.TestCase):
             store.execute("INSERT INTO finding (method, subject, quantity, value) VALUES (?, ?, ?, 1)", (HOSTILE, HOSTILE, HOSTILE))
             store.execute("UPDATE sample SET status = 1 WHERE number = 2")
             store.execute("UPDATE setting SET value = replace(value, '\"file\":\"tornado.toml\"', ?) WHERE key = 'about'", (f'"file":{json.dumps(HOSTILE)}',))
+            make_fingerprints(store)
         store.close()
         code, _, errors = steplap("study", "report", path, "-o", "out/hostile.html", "-q")
         if code != 0:

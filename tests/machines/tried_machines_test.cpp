@@ -125,7 +125,7 @@ TEST_CASE("check warns of a corner at which two segments press on one circle") {
   const Written doubled(road("[1.0, 0.0]", "[1.0, 0.05]"));
   const Answer warned = steplap_does({"check", doubled.file.string()});
   CAPTURE(warned.out);
-  CHECK(has(warned.out, "segment_contacts 'kerb' and 'path' (line "));
+  CHECK(has(warned.out, "segment_contacts 'kerb' and 'path' end at "));
   CHECK(has(warned.out, "20 mm for a depth of 1 mm")); // sqrt(2 · 0.2 m · 1 mm)
   CHECK_FALSE(has(warned.out, "'road' and 'kerb'"));    // in an inner corner a circle touches two sides
   const Written apart(road("[1.0, 0.0]", "[1.05, 0.05]"));

@@ -203,8 +203,7 @@ TEST_CASE("what would turn or pull the wrong way is refused, what acts on nothin
   answer = checked(door_and_drawer(
       element("spring_damper", "s", "a = 'drawer'; b = { body = 'drawer', point = [0.1, 0.0] }; stiffness = 10.0")));
   CHECK(answer.code == 0);
-  CHECK(has(answer.out, "warning: spring_damper 's' (line "));
-  CHECK(has(answer.out, ") acts between two places of 'drawer': it moves nothing"));
+  CHECK(has(answer.out, "warning: spring_damper 's' acts between two places of 'drawer': it moves nothing ("));
 }
 
 // On inclines of 40° and 25°, mu = 0.15, 30 kg pull 20 kg over the peak with 0.92 m/s²: there is no rest, whatever is

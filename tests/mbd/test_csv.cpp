@@ -73,6 +73,8 @@ TEST_CASE("records that are no record") {
   CHECK(problem("0,1\n1,\n") == "r.csv:2:1: error: no value in column 2");
   CHECK(problem("0,1\n1,x\n") == "r.csv:2:1: error: 'x' in column 2 is not a number");
   CHECK(problem("0,1\n1,inf\n") == "r.csv:2:1: error: 'inf' in column 2 is not finite");
+  CHECK(problem("0,\n") == "r.csv:1:1: error: no value in column 2");
+  CHECK(problem("0,1 000\n") == "r.csv:1:1: error: '1 000' in column 2 is not a number");
   CHECK(problem("0,nan\n") == "r.csv:1:1: error: 'nan' in column 2 is not finite");
 }
 

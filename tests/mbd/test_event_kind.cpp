@@ -123,7 +123,7 @@ TEST_CASE("kinds by a pattern, and what a kind is") {
   CHECK(!is_main(EventKind::force_returns));
   CHECK(is_kink(EventKind::passes_kink));
   CHECK(!is_kink(EventKind::force_returns));
-  CHECK(Event{0.1, "foot", EventKind::storm, "for 2 ms"}.words() == "changes 50 times within 1 ms: time stepping for 2 ms");
+  CHECK(Event{0.1, "foot", EventKind::storm, "for 2 ms"}.words() == "changes too often to be followed: time stepping for 2 ms");
 }
 
 TEST_CASE("code that reads words is told from other code") {

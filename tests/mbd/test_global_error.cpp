@@ -161,6 +161,69 @@ TEST_CASE("runs are compared by events too: a run without the last ones misses t
   CHECK(d.of(ErrorKind::event_time).value < 1e-9); // that of "sticks"
 }
 
+TEST_CASE("the worst position is not that of a channel whose whole range is rounding") {
+  // One swings by 0.1 m; one hangs 150 km away, a ten-billionth of a metre beside its rest: ten times what its place is rounded to.
+  const auto system = compile(scene(R"(
+[simulation]
+step = 1e-3
+[[body]]
+name = "near"
+mass = 1.0
+inertia = 1.0
+position = [0.1, 0.0]
+[[body]]
+name = "far"
+mass = 3.0
+inertia = 1.0
+position = [123456.7, 89012.3000000001]
+[[marker]]
+name = "hook"
+body = "ground"
+at = [123456.7, 89013.3]
+[[element]]
+kind = "spring_damper"
+name = "swing"
+a = "near"
+axis = [1.0, 0.0]
+free_length = 0.0
+stiffness = 400.0
+[[element]]
+kind = "spring_damper"
+name = "hang"
+a = "far"
+b = "hook"
+stiffness = 70000.0
+free_length = 0.99957957142857145
+)"));
+  for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
+    SimulationOptions o = options({"dop853", tolerance, 1.0, 0.01});
+    o.has_extremes = true;
+    const RunResult run = simulate(*system, system->initial_state(), o);
+    const GlobalErrorEstimate estimate = estimate_global_error(*system, system->initial_state(), o, run);
+    CHECK(estimate.error.of(ErrorKind::position).where == "near.x");
+    CHECK(estimate.error.of(ErrorKind::position).value < 1e3 * tolerance);
+  }
+}
+
+TEST_CASE("reactions that diverge at a singular position have no error that is known; those that do not have one") {
+  Model model = read_model(std::string(STEPLAP_MODELS) + "/benchmarks/hard/singular_parallelogram.toml", transformer_catalog());
+  const auto system = compile(model);
+  for (const Settings& settings : {Settings{"dop853", 1e-6}, Settings{"dop853", 1e-10}, Settings{"tsit5", 1e-8}, Settings{"rodas5p", 1e-8}}) {
+    CAPTURE(settings.integrator);
+    SimulationOptions o = options({settings.integrator, settings.step_or_tolerance, 3.0, 0.05});
+    o.has_extremes = true;
+    const RunResult run = simulate(*system, system->initial_state(), o);
+    const GlobalErrorEstimate estimate = estimate_global_error(*system, system->initial_state(), o, run);
+    for (std::size_t c = 0; c < system->channels.size(); ++c) {
+      const std::string& name = system->channels[c].name;
+      CAPTURE(name);
+      if (name.ends_with(".force_x")) CHECK((std::isnan(estimate.channels[c].low) && std::isnan(estimate.channels[c].high)));
+      // Finite, however much rounding beside the position adds to them.
+      if (name.ends_with(".force_y") || name == "motor.reaction") CHECK((std::isfinite(estimate.channels[c].low) && std::isfinite(estimate.channels[c].high)));
+    }
+  }
+}
+
 TEST_CASE("a study: cheapest setting, Pareto set, slopes, failures") {
   const auto system = compile(scene(k_belt));
   const State initial = system->initial_state();
@@ -248,6 +311,58 @@ TEST_CASE("events pair so that their times differ least; what is left over has n
   CHECK(between.holds(3.0));
   CHECK_FALSE(between.holds(2.5));
   CHECK_FALSE(between.holds(0.5));
+}
+
+TEST_CASE("finer runs are given up beyond the evaluations granted, wherever these end") {
+  const auto system = compile(scene(k_belt));
+  const State initial = system->initial_state();
+  SimulationOptions coarse = options({"tsit5", 1e-6, 10.0, 0.05});
+  coarse.has_extremes = true;
+  const RunResult run = simulate(*system, initial, coarse);
+  const auto needed = static_cast<double>(estimate_global_error(*system, initial, coarse, run).cost.evaluations);
+  CHECK_NOTHROW((void)estimate_global_error(*system, initial, coarse, run, {}, needed));
+  for (const double share : {0.0, 0.1, 0.5})
+    CHECK_THROWS_AS((void)estimate_global_error(*system, initial, coarse, run, {}, share * needed), EstimateTooDear);
+}
+
+// Below 1e-14 rounding makes the steps: there is no finer tolerance.
+TEST_CASE("where no run is finer all errors are unknown but those of what never changes") {
+  const auto system = compile(scene(k_oscillator));
+  const State initial = system->initial_state();
+  SimulationOptions finest = options({"dop853", 1e-14, 1.0, 0.1});
+  finest.has_extremes = true;
+  const RunResult run = simulate(*system, initial, finest);
+  const GlobalErrorEstimate estimate = estimate_global_error(*system, initial, finest, run);
+  CHECK_FALSE(estimate.unknown_because.empty());
+  CHECK(std::isnan(estimate.error.of(ErrorKind::position).value));
+  for (std::size_t c = 0; c < run.ranges.size(); ++c) {
+    if (run.ranges[c].channel->name == "mass.x") CHECK(std::isnan(estimate.channels[c].high));
+    if (run.ranges[c].channel->name == "mass.y") CHECK(estimate.channels[c].high == 0.0);
+  }
+}
+
+// A contact that hovers by a hair bounces for a microsecond at an instant that is chance.
+TEST_CASE("a brief event is no partner of another one far away, however well their numbers fit") {
+  const auto bounces = [](double first, double lasts) {
+    std::vector<Event> events;
+    for (const double t : {first, 0.4}) {
+      events.push_back({t, "press", EventKind::closes});
+      if (t < 0.4) events.push_back({t + lasts, "press", EventKind::opens});
+    }
+    return events;
+  };
+  for (double lasts = 1e-9; lasts < 1e-3; lasts *= 10.0)
+    for (const double apart : {0.5, 5.0, 20.0, 100.0}) {
+      CAPTURE(lasts);
+      CAPTURE(apart);
+      const EventMatch match = match_events(bounces(0.01, lasts), bounces(0.01 + apart * lasts, lasts));
+      CHECK(match.pairs.size() == (apart < 10.0 ? 3 : 1));
+      CHECK(match.only_mine.size() == match.only_reference.size());
+    }
+  // Several at one instant are no neighbours of each other, and one alone has none.
+  const std::vector<Event> early{{0.1, "foot", EventKind::slips_forward}, {0.1, "foot", EventKind::changes_foot}};
+  const std::vector<Event> late{{0.2, "foot", EventKind::slips_forward}, {0.2, "foot", EventKind::changes_foot}};
+  CHECK(match_events(early, late).pairs.size() == 2);
 }
 
 // The belt at a tolerance so large that it slips and sticks where it should not (tsit5 at 1e-4 has two events too many).

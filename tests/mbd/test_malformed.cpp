@@ -63,7 +63,7 @@ TEST_CASE("malformed model files fail with the message they expect") {
 
 TEST_CASE("a file that is not there") {
   CHECK_THROWS_WITH_AS(static_cast<void>(read_model("no_such.toml", testing::small_catalogue())),
-                       "error: cannot read 'no_such.toml'", ModelError);
+                       "error: cannot read 'no_such.toml': No such file or directory", ModelError);
 }
 
 TEST_CASE("very many errors are cut short") {

@@ -5,6 +5,8 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <limits>
+#include <stdexcept>
 #include <thread>
 
 using namespace steplap;
@@ -71,6 +73,45 @@ force_x = "wave"
 )";
 
 } // namespace
+
+// Of a library's caller: what a model file cannot say.
+TEST_CASE("a run that cannot be is refused before it begins") {
+  const auto system = compile(scene(k_smooth));
+  const State start = system->initial_state();
+  constexpr double k_nan = std::numeric_limits<double>::quiet_NaN(), k_infinite = std::numeric_limits<double>::infinity();
+  const auto is_refused = [&](const State& state, const auto& change) {
+    SimulationOptions options;
+    options.settings.step = 1e-3;
+    change(options);
+    CHECK_THROWS_AS(static_cast<void>(simulate(*system, state, options)), std::invalid_argument);
+  };
+  const auto as_it_is = [](SimulationOptions&) {};
+  for (const double bad : {k_nan, k_infinite, -1.0}) {
+    CAPTURE(bad);
+    is_refused(start, [bad](SimulationOptions& o) { o.end = bad; });
+    is_refused(start, [bad](SimulationOptions& o) { o.output_step = bad; });
+    is_refused(start, [bad](SimulationOptions& o) { o.settings.tolerance = bad; });
+    is_refused(start, [bad](SimulationOptions& o) { o.settings.step = bad; });
+    is_refused(start, [bad](SimulationOptions& o) { o.settings.max_step = bad; });
+    is_refused(start, [bad](SimulationOptions& o) { o.storm_step = bad; });
+  }
+  is_refused(start, [](SimulationOptions& o) { o.max_events = 0; });
+  is_refused(State{}, as_it_is);
+  for (const double bad : {k_nan, k_infinite}) {
+    State state = start;
+    state.q.back() = bad;
+    is_refused(state, as_it_is);
+    state = start;
+    state.v.back() = bad;
+    is_refused(state, as_it_is);
+    state = start;
+    state.t = bad;
+    is_refused(state, as_it_is);
+  }
+  State longer = start;
+  longer.q.push_back(0.0);
+  is_refused(longer, as_it_is);
+}
 
 TEST_CASE("two runs of one model are identical to the last bit") {
   for (const Condition condition : {Condition::no_interference, Condition::interference})

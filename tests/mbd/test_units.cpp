@@ -41,6 +41,19 @@ TEST_CASE("quantities in SI") {
   CHECK(value("0.25", "") == 0.25);
 }
 
+TEST_CASE("units as people write them") {
+  const std::pair<const char*, const char*> joined[] = {{"Nm", "N m"}, {"kNm", "kN m"}, {"MNm", "MN m"}, {"kNs", "kN s"}, {"Nms", "N m s"}};
+  for (const auto& [spoken, spaced] : joined) CHECK(value(std::string("3 ") + spoken, "*") == value(std::string("3 ") + spaced, "*"));
+  CHECK(value("2 kNs/m", "N s/m") == 2000.0);
+  CHECK(value("5 kNm/rad", "N m") == 5000.0);
+  CHECK(value("5 Nms/rad", "N m s") == 5.0);
+  CHECK(value("1 rev", "rad") == doctest::Approx(2 * std::numbers::pi).epsilon(1e-15));
+  CHECK(value("2 rev/s", "rad/s") == doctest::Approx(4 * std::numbers::pi).epsilon(1e-15));
+  CHECK(value("60 rpm", "rad/s") == doctest::Approx(2 * std::numbers::pi).epsilon(1e-14));
+  CHECK(value("10 mph", "m/s") == doctest::Approx(4.4704).epsilon(1e-15)); // a mile is 1609.344 m
+  CHECK(problem("1 Nm", "kg") == "'1 Nm' has the unit 'Nm', but a unit like 'kg' is needed");
+}
+
 TEST_CASE("any unit goes to SI base units") {
   CHECK(value("-0.6 gravity", "*") == doctest::Approx(-0.6 * 9.80665).epsilon(1e-15));
   CHECK(value("98.1 kN", "*") == doctest::Approx(98100.0).epsilon(1e-15));
@@ -60,7 +73,7 @@ TEST_CASE("turns and radians are told apart") {
 TEST_CASE("what is wrong is said") {
   CHECK(problem("47 m", "kg") == "'47 m' has the unit 'm', but a unit like 'kg' is needed");
   CHECK(problem("3 m", "") == "'3 m' has the unit 'm', but the value has no dimension");
-  CHECK(problem("5 Nm", "N m") == "'5 Nm' has the unknown unit 'Nm' (did you mean 'N m'?)");
+  CHECK(problem("5 kgm/s", "kg m/s") == "'5 kgm/s' has the unknown unit 'kgm/s' (did you mean 'kg m/s'?)");
   CHECK(problem("5 parsnips", "m") == "'5 parsnips' has the unknown unit 'parsnips'");
   CHECK(problem("5 10 kg", "kg") == "'5 10 kg' has the unknown unit '10 kg'");
   CHECK(problem("5 s since 2000-01-01", "s") ==

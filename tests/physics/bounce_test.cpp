@@ -132,8 +132,8 @@ TEST_CASE("a contact that closes presses, damped or not, whatever rounding leave
     for (const double gap : {-1e-18, 0.0, 1e-18})
       for (const double rate : {-1.0, -1e-12, 0.0}) {
         const KelvinVoigtContact law{1e5, damping, 0.0};
-        CHECK(law.next_mode(k_contact_open, 0, gap, rate) == k_contact_pressed);
+        CHECK(law.next_mode(k_contact_open, 0, gap, rate, 1e-15) == k_contact_pressed);
       }
   // Drawn out of the ground faster than its spring follows it does not pull.
-  CHECK(KelvinVoigtContact{1e5, 20.0, 0.0}.next_mode(k_contact_open, 0, -1e-6, 1.0) == k_contact_released);
+  CHECK(KelvinVoigtContact{1e5, 20.0, 0.0}.next_mode(k_contact_open, 0, -1e-6, 1.0, 1e-15) == k_contact_released);
 }

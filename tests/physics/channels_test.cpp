@@ -5,7 +5,7 @@
 #include "mbd/io/kind_channels.h"
 #include "mbd/io/units.h"
 #include "mbd/model/completion.h"
-#include "mbd/system/unit_dimension.h"
+#include "mbd/formula/unit_dimension.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

@@ -244,9 +244,10 @@ TEST_CASE("moreau: friction with joints and drives comes to the exact slips and 
     REQUIRE(!expected.empty());
     for (const double mass : c.masses) {
       CAPTURE(mass);
-      double error[2] = {};
-      for (const int i : {0, 1}) {
-        const double step = i == 0 ? k_long : k_short;
+      double error[2] = {}; // the worst of a few steps, as it hangs on where in a step a slip falls
+      for (const int trial : {0, 1, 2, 3, 4, 5}) {
+        const int i = trial % 2;
+        const double step = (i == 0 ? k_long : k_short) * (1.0 - 0.07 * (trial / 2));
         CAPTURE(step);
         const Run r = stepped(c.text(mass), step, c.end);
         const std::vector<double> found = changes(r, c.element, step);
@@ -255,9 +256,9 @@ TEST_CASE("moreau: friction with joints and drives comes to the exact slips and 
         // step, that is what it needs half a step before.
         CHECK(std::abs(found.front() - expected.front()) <= 1.5 * step);
         // Later ones follow a motion that is off by about a step, too.
-        for (std::size_t k = 1; k < found.size(); ++k)
-          CHECK(std::abs(found[k] - expected[k]) <= 2.0 * step);
-        error[i] = end_error(r, exact, c.channels);
+        for (std::size_t n = 1; n < found.size(); ++n)
+          CHECK(std::abs(found[n] - expected[n]) <= 2.0 * step);
+        error[i] = std::max(error[i], end_error(r, exact, c.channels));
       }
       // First order makes it a twentieth; where in a step a slip falls changes that by less than a
       // factor of two.

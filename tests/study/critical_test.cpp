@@ -200,3 +200,25 @@ TEST_CASE("a plain without a border is not searched hollow by hollow") {
   CHECK(outcome.code == 5);
   CHECK(bench.find("map", "points").samples == 121);
 }
+
+// Islands in a plain, to which nothing points: those that are larger than what is said to be unseen are all found, at
+// any place; of smaller ones some are not.
+TEST_CASE("a map says which islands its looks cannot exclude") {
+  int unseen = 0;
+  for (int k = 0; k < 40; ++k) {
+    const double spacing = 1.0 / 6.0, bound = spacing / std::sqrt(2.0), radius = k % 2 ? 1.01 * bound : 0.045;
+    const double x = bound + (1.0 - 2.0 * bound) * std::fmod(0.618 * k, 1.0), y = bound + (1.0 - 2.0 * bound) * std::fmod(0.755 * k, 1.0);
+    StudyBench bench;
+    (void)bench.run("kind = \"map\"\n[map]\nvariables = [\"x\", \"y\"]\npoints = 7\nexpression = \"(x - " + std::to_string(x) +
+                    ")^2 + (y - " + std::to_string(y) + ")^2 < " + std::to_string(radius) + "^2 ? -1 : 1\"\n" +
+                    "[[variable]]\nname = \"x\"\nrange = [0, 1]\n[[variable]]\nname = \"y\"\nrange = [0, 1]\n");
+    const study::Finding f = bench.find("map", "unseen radius, of the ranges");
+    CHECK(f.value == doctest::Approx(bound));
+    const bool is_seen = !borders_of(bench).empty() && borders_of(bench).begin()->first.starts_with("border 1");
+    CAPTURE(x);
+    CAPTURE(y);
+    if (radius > f.value) CHECK(is_seen);
+    unseen += !is_seen;
+  }
+  CHECK(unseen > 0);
+}

@@ -131,7 +131,7 @@ TEST_CASE("odd variables are told before anything runs") {
   CHECK(has(said(sample + "distribution = \"uniform\"\nlow = 2\nhigh = 1\n"), "'low' must be below 'high'"));
   CHECK(has(said(sample + "distribution = \"triangular\"\nlow = 0\nmode = 2\nhigh = 1\n"), "'mode' must lie between"));
   CHECK(has(said(sample + "distribution = \"normal\"\nmean = 0\nstandard_deviation = 1\nlower = 60\nupper = 61\n"),
-            "support of the distribution"));
+            "'lower' and 'upper' leave nothing of a normal distribution with mean = 0, standard_deviation = 1"));
   CHECK(has(said(sample + "distribution = \"normal\"\nmean = nan\nstandard_deviation = 1\n"), "must be finite"));
   CHECK(has(said("kind = \"sample\"\n" + normal("x") + normal("y") + normal("z") +
                  "[[response]]\nname = \"r\"\nexpression = \"x + y + z\"\n" +
@@ -156,4 +156,42 @@ TEST_CASE("an expression that is zero all over has no critical value") {
   CHECK(has(f.status, "zero all over"));
   CHECK(f.low == 0.0);
   CHECK(f.high == doctest::Approx(0.5));
+}
+
+// Parameters that are each in their ranges and make no distribution together, of every kind: what is said has no word
+// of a library's in it.
+TEST_CASE("words of libraries never reach the user") {
+  const char* values[] = {"1", "5", "-1", "1e-300", "1e300", "1e308", "-1e308", "0"};
+  const std::vector<std::pair<std::string, std::vector<std::string>>> kinds{
+      {"normal", {"mean", "standard_deviation", "lower"}},     {"lognormal", {"mean", "standard_deviation", "location"}},
+      {"uniform", {"mean", "standard_deviation", "upper"}},    {"triangular", {"low", "mode", "high"}},
+      {"weibull", {"mean", "standard_deviation", "location"}}, {"gumbel", {"mean", "standard_deviation", "lower"}},
+      {"beta", {"mean", "standard_deviation", "high"}},        {"exponential", {"mean", "location", "lower"}}};
+  StudyBench bench;
+  for (const auto& [kind, keys] : kinds)
+    for (std::size_t k = 0; k < 16; ++k) {
+      std::string text = "kind = \"sample\"\n[sample]\nsamples = 3\n[[variable]]\nname = \"x\"\ndistribution = \"" + kind + "\"\n";
+      for (std::size_t i = 0; i < keys.size(); ++i) text += keys[i] + " = " + values[(k * (2 * i + 1) + i * (k / 8 + 1) + k / 8) % 8] + "\n";
+      if (kind == "beta") text += "low = 0\n";
+      const Outcome outcome = bench.run(text + "[[response]]\nname = \"r\"\nexpression = \"x\"\n", {"--restart"});
+      CAPTURE(text);
+      CAPTURE(outcome.err);
+      CHECK((outcome.code == 0 || outcome.code == 3 || outcome.code == 5 || outcome.code == 4));
+      for (const char* word : {"class=", "Unnamed", "MUST", "Exception", "OT::", "Error:", "internal", "null"})
+        CHECK_FALSE(has(outcome.err + outcome.out, word));
+    }
+  for (const char* method : k_methods)
+    for (const char* g : {"1 + x^2", "-1 - x^2", "sqrt(-1 - x^2)", "x > 7 ? -1 : 1", "exp(exp(x*20)) - 5", "1/(x - 0.5)", "0*x"}) {
+      const Outcome outcome = bench.run(reliability(method, g), {"--restart"});
+      for (const char* word : {"class=", "Unnamed", "MUST", "Exception", "OT::", "internal"})
+        CHECK_FALSE(has(outcome.err + outcome.out, word));
+    }
+}
+
+TEST_CASE("help tells the exit codes of studies") {
+  const Outcome outcome = study_does({"--help"});
+  CHECK(outcome.code == 0);
+  CHECK(has(outcome.out, "a store that cannot be used"));
+  CHECK(has(outcome.out, "an answer that is not to be trusted"));
+  CHECK_FALSE(has(outcome.out, "partial_"));
 }

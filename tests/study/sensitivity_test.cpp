@@ -132,3 +132,21 @@ TEST_CASE("a tornado's bars, the widest first") {
   CHECK(bench.findings()[1].high == doctest::Approx(6.5));
   CHECK(bench.findings()[2].value == doctest::Approx(1.0));
 }
+
+TEST_CASE("kinds that set variables one by one say that a correlation plays no part") {
+  const std::string pair = "[[variable]]\nname = \"a\"\ndistribution = \"normal\"\nmean = 1\ncov = 0.1\n[[variable]]\nname = \"b\"\n"
+                           "distribution = \"normal\"\nmean = 2\ncov = 0.1\n[[correlation]]\nbetween = [\"a\", \"b\"]\nrho = 0.5\n";
+  for (const std::string& kind : {std::string("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"elasticity\"\n"), std::string("kind = \"sweep\"\n[sweep]\npoints = 3\n")}) {
+    StudyBench bench;
+    const Outcome outcome = bench.run(kind + pair + response("a*b"));
+    CAPTURE(outcome.err);
+    CHECK(outcome.code == 0);
+    CHECK(has(outcome.out, "the stated correlation of 'a' and 'b' plays no part"));
+  }
+  for (const std::string method : {"sobol", "morris", "tornado"}) { // these refuse
+    StudyBench bench;
+    CHECK(bench.run("kind = \"sensitivity\"\n[sensitivity]\nmethod = \"" + method + "\"\n" + pair + response("a*b")).code == 3);
+  }
+  StudyBench bench; // drawn from their joint distribution
+  CHECK_FALSE(has(bench.run("kind = \"sample\"\n" + pair + response("a*b")).out, "plays no part"));
+}

@@ -26,7 +26,7 @@ struct Outcome {
 inline Outcome study_does(std::vector<std::string> arguments) {
   static const study::Ranks ranks;
   std::ostringstream out, err;
-  const int code = run_program({"steplap study", "studies", study::study_commands(ranks)}, arguments, out, err, false);
+  const int code = run_program(study::study_program(ranks), arguments, out, err, false);
   return {code, out.str(), err.str()};
 }
 

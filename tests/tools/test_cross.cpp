@@ -1,4 +1,5 @@
 // steplap check --cross: a second opinion on a model.
+#include "mbd/simulation/simulation.h"
 #include "tests/tools/workbench.h"
 
 #include <doctest/doctest.h>
@@ -11,6 +12,20 @@ TEST_CASE("check --cross runs a model by all methods and says that they agree") 
   CHECK(outcome.err.empty());
   for (const char* part : {"auto ", "dop853 1e-10", "tsit5 1e-10", "rodas5p 1e-08", "rk4 h = ", "moreau h = ", "own error", "block_on_incline: all agree"})
     CHECK_MESSAGE(has(outcome.out, part), part);
+}
+
+// Time stepping misses a bound of friction by its own error: five other methods agree with each other and with it.
+TEST_CASE("check --cross takes what smaller steps make smaller for the error of the steps") {
+  const Outcome outcome = steplap_does({"check", "--cross", STEPLAP_MODELS "/machines/stacked_blocks.toml"});
+  CHECK(outcome.code == 0);
+  CHECK(has(outcome.out, "stacked_blocks: all agree"));
+}
+
+TEST_CASE("the CPU time of check --cross is that of the whole command, however many runs there are") {
+  const double limit = 1.0, start = steplap::thread_cpu_seconds();
+  const Outcome outcome = steplap_does({"check", "--cross", "--cpu-limit", "1", STEPLAP_MODELS "/machines/pile.toml", STEPLAP_MODELS "/machines/brick_wall.toml"});
+  CHECK(outcome.code == 4);
+  CHECK(steplap::thread_cpu_seconds() - start < 2.0 * limit); // some steps take long, and models are read
 }
 
 TEST_CASE("check --cross trusts nothing where no two runs end, and asks for a time that is one") {

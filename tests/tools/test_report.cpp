@@ -99,23 +99,6 @@ TEST_CASE("folders without results and damaged files are told apart") {
   bench.write("empty/notes.txt", "mine");
   CHECK(has(usage_error(bench.at("empty")), "holds no results"));
   REQUIRE(steplap_does({"simulate", bench.write("a.toml", k_bouncer), "-q", "-o", bench.at("out")}).code == 0);
-  const std::string csv = text_of(bench.at("out/a/trajectory.csv"));
-  const auto damaged = [&](const std::string& trajectory) {
-    bench.write("out/a/trajectory.csv", trajectory);
-    return usage_error(bench.at("out/a"));
-  };
-  CHECK(has(damaged(csv.substr(0, csv.size() / 2)), "trajectory.csv', line "));
-  CHECK(has(damaged(""), "line 1: empty"));
-  CHECK(has(damaged("a,b\n1,2\n"), "the first column is not 't [s]'"));
-  CHECK(has(damaged("t [s],x [m]\n0,one\n"), "line 2: not a number"));
-  CHECK(has(damaged("t [s],x [m]\n0,1,2\n"), "line 2: more numbers than columns"));
-  CHECK(has(damaged("t [s],x [m]\n"), "no rows"));
-  bench.write("out/a/trajectory.csv", csv);
-  bench.write("out/a/summary.json", "{");
-  const Outcome outcome = steplap_does({"report", bench.at("out/a")});
-  CHECK(outcome.code == 2);
-  CHECK(has(outcome.err, "summary.json' is not as steplap wrote it"));
-  CHECK(bench.content("out/a").count("report.html") == 0);
   fs::remove(bench.at("out/a/drawing.json"));
   CHECK(has(usage_error(bench.at("out/a")), "drawing.json' is missing"));
 }

@@ -244,6 +244,7 @@ TEST_CASE("sources call mbd/math instead of the C library") {
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(STEPLAP_SOURCE) / room)) {
       const std::string path = entry.path().string(), extension = entry.path().extension().string();
       if ((extension != ".cpp" && extension != ".h") || has(path, "/mbd/math/")) continue;
+      if (has(path, "/mbd/formula/")) continue; // functions of these names on its own kinds of numbers; what it calls is looked at above
       ++looked_at;
       const std::string text = text_of(path);
       std::istringstream lines(text);

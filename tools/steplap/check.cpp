@@ -7,9 +7,10 @@
 #include "mbd/model/validate.h"
 #include "mbd/system/one_sided_row.h"
 #include "tools/steplap/cross.h"
+#include "tools/steplap/findings.h"
 #include "tools/steplap/run.h"
+#include "tools/steplap/start_contacts.h"
 #include "tools/steplap/text_table.h"
-#include "tools/steplap/warnings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,7 @@ namespace {
 
 using Align = TextTable::Align;
 
-constexpr std::size_t k_shown_moves = 20;
+constexpr std::size_t k_shown_moves = 20, k_shown_contacts = 40;
 
 struct CheckOptions {
   std::vector<std::string> models;
@@ -35,7 +36,7 @@ struct CheckOptions {
   std::optional<std::string> cpu_limit;
 };
 
-constexpr double k_usual_cpu_limit = 60.0; // s, of one run
+constexpr double k_usual_cpu_limit = 60.0; // s, of all runs
 
 double cpu_limit_of(const CheckOptions& options) {
   if (!options.cpu_limit) return k_usual_cpu_limit;
@@ -115,6 +116,39 @@ void print_assembly(std::ostream& out, const LoadedModel& loaded) {
   if (moves.size() > k_shown_moves) out << "  and " << counted(moves.size() - k_shown_moves, "body", "bodies") << " that moved less\n";
 }
 
+// Where the run begins; as given if there is no rest to begin at, which the run will say.
+State start_to_show(const LoadedModel& loaded, std::string& title) {
+  const bool is_at_rest = loaded.model.simulation.initial == "equilibrium";
+  title = is_at_rest ? "contact at rest" : "contact at the start";
+  try {
+    return beginning_of(loaded, !is_at_rest);
+  } catch (const NumericalFailure&) {
+    title = "contact as given";
+    return beginning_of(loaded, true);
+  }
+}
+
+// What touches, or could, how near it is and how hard it presses.
+void print_contacts(std::ostream& out, const LoadedModel& loaded) {
+  std::string title;
+  if (loaded.system->contact_count == 0) return;
+  const State start = start_to_show(loaded, title);
+  const std::vector<ContactAtStart> contacts = contacts_at(loaded, start);
+  double largest = 0.0;
+  for (const ContactAtStart& contact : contacts) largest = std::max(largest, contact.force);
+  TextTable table({Align::left, Align::left, Align::right, Align::right, Align::right, Align::right});
+  table.add_row({title, "between", "gap", "force", "at x", "y"});
+  const auto name = [&](int body) { return body == k_ground ? std::string("ground") : loaded.system->bodies[body].name; };
+  for (std::size_t i = 0; i < std::min(contacts.size(), k_shown_contacts); ++i) {
+    const ContactAtStart& c = contacts[i];
+    const double size = size_of_pair(*loaded.system, c.a, c.b);
+    table.add_row({c.entry->element->name, name(c.a) + ", " + name(c.b), quantity_text(c.gap, "m", size),
+                   c.force > 0.0 ? quantity_text(c.force, "N", largest) : "-", quantity_text(c.place.x(), "m", size), quantity_text(c.place.y(), "m", size)});
+  }
+  out << table;
+  if (contacts.size() > k_shown_contacts) out << "  and " << counted(contacts.size() - k_shown_contacts, "contact", "contacts") << " more\n";
+}
+
 void print_model(std::ostream& out, const LoadedModel& loaded) {
   const Model& model = loaded.model;
   out << loaded.path << ": fine\n";
@@ -131,10 +165,9 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
                                number_text(std::floor(model.simulation.end / model.output.step) + 1.0) + " rows"});
   out << table;
   print_assembly(out, loaded);
-  for (const std::string& warning : warnings_about(loaded))
-    out << "  warning: " << warning << "\n";
-  for (const std::string& note : notes_about(loaded))
-    out << "  note: " << note << "\n";
+  print_contacts(out, loaded);
+  for (const Finding& finding : findings_of(loaded))
+    out << (finding.level == FindingLevel::warning ? "  warning: " : "  note: ") << text_with_place(finding) << "\n";
 }
 
 ExitCode check(const CheckOptions& options, Console& console) {
@@ -164,7 +197,7 @@ disagrees beyond these.
   command.options = {{"MODEL", &o->models, "FILE", "model files (TOML)", true},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
                      {"--cross", &o->is_crossed, "", "run each model by methods that share little, and compare"},
-                     {"--cpu-limit", &o->cpu_limit, "S", "with --cross: a run that needs more CPU time is given up, s (default: 60)"}};
+                     {"--cpu-limit", &o->cpu_limit, "S", "with --cross: CPU time of all runs together, s; each method may take an even part of what is left (default: 60)"}};
   command.run = [o](Console& console) { return check(*o, console); };
   return command;
 }

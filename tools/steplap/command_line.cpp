@@ -129,7 +129,7 @@ int run_program(const Program& program, const std::vector<std::string>& argument
   VerbosityFlags flags;
   app.set_version_flag("--version", program.name + " " + k_version);
   app.require_subcommand(1);
-  app.footer(std::string(k_exit_codes) + (program.name == "steplap" ? k_examples : ""));
+  app.footer((program.exit_codes.empty() ? k_exit_codes : program.exit_codes) + (program.name == "steplap" ? k_examples : ""));
   for (const Command& command : commands)
     bind(app, command, std::find(arguments.begin(), arguments.end(), command.name) != arguments.end(), flags);
   try {

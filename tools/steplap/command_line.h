@@ -21,6 +21,7 @@ int code_of_output(std::ostream& out, std::ostream& err, int code);
 struct Program {
   std::string name, doc;
   std::vector<Command> commands;
+  std::string exit_codes{}; ///< what help says of them; those of `steplap` if there is nothing
 };
 
 /// The same for a program with other commands.

@@ -19,14 +19,6 @@ using Align = TextTable::Align;
 constexpr std::size_t k_shown_disagreements = 6;
 constexpr double k_most_samples = 2000.0, k_least_samples = 400.0;
 
-// As often as the model asks for, within what a comparison needs and can bear.
-SimulationOptions sampled(const Model& model) {
-  SimulationOptions options = options_of(model);
-  options.output_step = std::clamp(options.output_step, options.end / k_most_samples, options.end / k_least_samples);
-  options.has_extremes = true; // verdicts are judged by them
-  return options;
-}
-
 std::string where_text(const Disagreement& d) {
   if (d.ratio == 0.0) return "-";
   std::string text = d.where;
@@ -92,7 +84,7 @@ CrossCheckOptions options_for(const LoadedModel& loaded, double cpu_limit) {
 }
 
 bool cross_check_one(const LoadedModel& loaded, double cpu_limit, Console& console) {
-  const SimulationOptions base = sampled(loaded.model);
+  const SimulationOptions base = sampled_for_comparison(loaded.model);
   const CrossCheck check = cross_check(*loaded.system, initial_state_of(loaded), base, options_for(loaded, cpu_limit));
   const bool is_trusted = check.outcome != CrossOutcome::disagree && finished_runs(check) >= 2;
   for (const CrossRun& run : check.runs)
@@ -107,12 +99,22 @@ bool cross_check_one(const LoadedModel& loaded, double cpu_limit, Console& conso
 
 } // namespace
 
+SimulationOptions sampled_for_comparison(const Model& model) {
+  SimulationOptions options = options_of(model);
+  options.output_step = std::clamp(options.output_step, options.end / k_most_samples, options.end / k_least_samples);
+  options.has_extremes = true; // verdicts are judged by them
+  return options;
+}
+
 ExitCode cross_check_models(const std::vector<std::shared_ptr<const LoadedModel>>& models, double cpu_limit, Console& console) {
   ExitCode code = ExitCode::done;
+  const double start = thread_cpu_seconds();
+  auto models_left = static_cast<double>(models.size());
   for (const auto& loaded : models) {
+    const double granted = (cpu_limit - (thread_cpu_seconds() - start)) / models_left--;
     try {
       add_audit_channels(*loaded->system, loaded->model);
-      if (!cross_check_one(*loaded, cpu_limit, console)) code = ExitCode::numerical_failure;
+      if (!cross_check_one(*loaded, granted, console)) code = ExitCode::numerical_failure;
     } catch (const NumericalFailure& failure) {
       log_error("'" + loaded->path + "': " + failure.what());
       code = ExitCode::numerical_failure;

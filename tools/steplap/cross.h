@@ -6,7 +6,10 @@
 
 namespace steplap {
 
-/// Runs and prints one table for each model. Exit code 4 if anything disagrees beyond the estimates, or if there are
+/// What the model asks for, with samples as often as a comparison needs and can bear.
+[[nodiscard]] SimulationOptions sampled_for_comparison(const Model& model);
+
+/// Runs and prints one table for each model, all of them within `cpu_limit`, s. Exit code 4 if anything disagrees beyond the estimates, or if there are
 /// no two opinions.
 [[nodiscard]] ExitCode cross_check_models(const std::vector<std::shared_ptr<const LoadedModel>>& models, double cpu_limit,
                                           Console& console);

@@ -103,7 +103,11 @@ void print_margins(std::ostream& out, const System& system, const std::vector<Fr
 }
 
 void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equilibrium& found) {
-  out << loaded.name << ": in stable equilibrium, the nearest downhill, after " << counted(static_cast<std::size_t>(found.iterations), "iteration", "iterations") << "; acceleration left "
+  out << loaded.name << ": in stable equilibrium, "
+      << (found.is_settled ? "where the machine settles from the pose given when it is strongly damped, after " +
+                                 counted(static_cast<std::size_t>(found.settling_steps), "time step", "time steps") + " and "
+                           : "the nearest downhill, after ")
+      << counted(static_cast<std::size_t>(found.iterations), "iteration", "iterations") << "; acceleration left "
       << small_text(found.residual) << " m/s²; moved at most " << quantity_text(found.moved, "m", k_unit) << "\n\n";
   print_poses(out, *loaded.system, loaded.system->initial_state(), found.state);
   print_reactions(out, *loaded.system, found.state);

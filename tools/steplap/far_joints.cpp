@@ -22,8 +22,8 @@ std::string rounded(double value) {
 
 } // namespace
 
-std::vector<std::string> far_joints(const LoadedModel& loaded) {
-  std::vector<std::string> found;
+std::vector<Finding> far_joints(const LoadedModel& loaded) {
+  std::vector<Finding> found;
   const State given = loaded.system->initial_state();
   for (const ElementEntry& entry : loaded.model.elements) {
     const auto* const joint = dynamic_cast<const Joint*>(entry.element.get());
@@ -33,10 +33,9 @@ std::vector<std::string> far_joints(const LoadedModel& loaded) {
     const Vec3 pose = pose_of(*loaded.system, given, a.body);
     const Vec2 at = Vec2(pose.x(), pose.y()) + rotated(a.point, pose.z());
     if (!(at.norm() > k_far * std::sqrt(a.body->inertia / a.body->mass))) continue;
-    const std::string line = joint->where.line > 0 ? " (line " + std::to_string(joint->where.line) + ")" : "";
-    found.push_back("revolute '" + joint->name + "'" + line + " pins '" + a.body->name + "' to the ground's origin, since its 'b' names no place; in the pose given 'a' is " +
+    found.push_back({"far_joint", FindingLevel::warning, "revolute '" + joint->name + "' pins '" + a.body->name + "' to the ground's origin, since its 'b' names no place; in the pose given 'a' is " +
                     quantity_text(at.norm(), "m", 1e-3) + " from there. A pin where 'a' is has b = { body = \"ground\", at = [" + rounded(at.x()) + ", " +
-                    rounded(at.y()) + "] }");
+                    rounded(at.y()) + "] }", joint->where});
   }
   return found;
 }

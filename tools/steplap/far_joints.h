@@ -1,11 +1,12 @@
 // Pins whose ends are far apart in the poses given, since 'b' names the ground and no place on it: that is the ground's origin.
 #pragma once
 
+#include "tools/steplap/findings.h"
 #include "tools/steplap/run.h"
 
 namespace steplap {
 
-/// A sentence for each, with the place that 'b' would have to have.
-[[nodiscard]] std::vector<std::string> far_joints(const LoadedModel& loaded);
+/// One for each, with the place that 'b' would have to have.
+[[nodiscard]] std::vector<Finding> far_joints(const LoadedModel& loaded);
 
 } // namespace steplap

@@ -3,6 +3,8 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/number_text.h"
 
+#include <poll.h>
+
 #include <array>
 #include <csignal>
 #include <string>
@@ -11,7 +13,7 @@ namespace steplap {
 
 namespace {
 
-constexpr std::array k_signals = {SIGINT, SIGTERM, SIGHUP};
+constexpr std::array k_signals = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
 
 volatile std::sig_atomic_t noted = 0;
 std::array<struct sigaction, k_signals.size()> before{};
@@ -29,6 +31,7 @@ const char* name_of_signal(int signal) {
   switch (signal) {
   case SIGINT: return "SIGINT";
   case SIGTERM: return "SIGTERM";
+  case SIGXCPU: return "SIGXCPU (the limit of processor time)";
   default: return "SIGHUP";
   }
 }
@@ -48,6 +51,17 @@ InterruptionGuard::InterruptionGuard() {
 
 InterruptionGuard::~InterruptionGuard() {
   for (std::size_t i = 0; i < k_signals.size(); ++i) sigaction(k_signals[i], &before[i], nullptr);
+}
+
+void let_writing_fail() {
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
+}
+
+void end_if_nobody_reads(int descriptor) {
+  pollfd ends{descriptor, 0, 0};
+  if (poll(&ends, 1, 0) != 1 || (ends.revents & POLLERR) == 0) return;
+  std::signal(SIGPIPE, SIG_DFL);
+  std::raise(SIGPIPE);
 }
 
 int noted_signal() { return noted; }

@@ -3,7 +3,7 @@
 
 namespace steplap {
 
-/// While one of these lives, the first SIGINT, SIGTERM or SIGHUP is noted instead of ending the program; a second one ends
+/// While one of these lives, the first SIGINT, SIGTERM, SIGHUP or SIGXCPU is noted instead of ending the program; a second one ends
 /// it at once.
 class InterruptionGuard {
 public:
@@ -12,6 +12,12 @@ public:
   InterruptionGuard& operator=(const InterruptionGuard&) = delete;
   ~InterruptionGuard();
 };
+
+/// What cannot be written, beyond a file's allowed size or to a reader that has gone, is an error that can be told, not the end of
+/// the program with temporary files left behind. To be called once, first.
+void let_writing_fail();
+/// Ends the program by SIGPIPE, as others end, if nobody reads from `descriptor` any more.
+void end_if_nobody_reads(int descriptor);
 
 /// The signal noted, 0 if there was none.
 [[nodiscard]] int noted_signal();

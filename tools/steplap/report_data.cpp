@@ -1,5 +1,6 @@
 #include "tools/steplap/report_data.h"
 
+#include "mbd/io/digest.h"
 #include "mbd/simulation/trajectory.h"
 #include "tools/steplap/command.h"
 #include "tools/steplap/measured_text.h"
@@ -8,10 +9,8 @@
 #include "tools/steplap/version.h"
 
 #include <nlohmann/json.hpp>
-#include <openssl/evp.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -31,26 +30,7 @@ constexpr std::size_t k_most_channels = 10000;   ///< of all runs: each brings i
 constexpr std::size_t k_least_stretches = 60;    ///< a curve thinned more says little
 constexpr double k_base64 = 4.0 / 3.0;
 
-template <class T> std::string base64(const std::vector<T>& values) {
-  const auto bytes = std::as_bytes(std::span(values));
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), // NOLINT: bytes
-                                     reinterpret_cast<const unsigned char*>(bytes.data()), // NOLINT
-                                     static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
-  return text;
-}
-
-std::string sha256(const std::string& text) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int length = 0;
-  if (EVP_Digest(text.data(), text.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1) return "";
-  std::string hex;
-  for (unsigned int i = 0; i < length; ++i)
-    for (const int nibble : {digest[i] >> 4, digest[i] & 15})
-      hex += "0123456789abcdef"[nibble];
-  return hex;
-}
+template <class T> std::string base64_of(const std::vector<T>& values) { return base64(std::as_bytes(std::span(values))); }
 
 Json parsed(const Results& run, const std::string& text, const char* file) {
   Json json = parse_ordered(text);
@@ -125,8 +105,8 @@ Json channel_json(const ResultChannel& channel, const std::vector<double>& times
     for (const double value : channel.values)
       values.push_back(static_cast<float>(value - zero));
   }
-  Json json{{"name", channel.name}, {"unit", channel.unit}, {"zero", zero}, {"values", base64(values)}};
-  if (is_thinned) json["times"] = base64(own_times);
+  Json json{{"name", channel.name}, {"unit", channel.unit}, {"zero", zero}, {"values", base64_of(values)}};
+  if (is_thinned) json["times"] = base64_of(own_times);
   return json;
 }
 
@@ -224,7 +204,7 @@ Json run_json(const Results& run, Json drawing, const std::vector<std::size_t>& 
           {"drawing", std::move(drawing)},
           {"is_thinned", is_thinned},
           {"channels_left_out", run.channels.size() - kept.size()},
-          {"times", base64(is_thinned ? ends : run.times)},
+          {"times", base64_of(is_thinned ? ends : run.times)},
           {"channels", std::move(channels)}};
 }
 

@@ -2,6 +2,7 @@
 
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/csv.h"
+#include "mbd/io/digest.h"
 #include "mbd/base/number_text.h"
 #include "tools/steplap/command.h"
 #include "tools/steplap/drawing.h"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 
 namespace steplap {
 
@@ -160,6 +162,30 @@ std::string events_csv(const std::vector<Event>& events, const std::vector<doubl
   return text;
 }
 
+namespace {
+
+// Notes what passes through it; what it noted is whole when the content has been put.
+ResultFile noted(std::string name, FileContent content, const std::shared_ptr<FileRecords>& records) {
+  FileContent put_and_note = [name, content = std::move(content), records](const FileSink& put) {
+    FileRecord record{name, 0, ""};
+    Sha256 digest;
+    content([&](std::string_view part) {
+      record.bytes += part.size();
+      digest.add(part);
+      put(part);
+    });
+    record.sha256 = digest.hex();
+    records->push_back(std::move(record));
+  };
+  return {std::move(name), "", std::move(put_and_note)};
+}
+
+FileContent whole(std::string text) {
+  return [text = std::move(text)](const FileSink& put) { put(text); };
+}
+
+} // namespace
+
 std::vector<ResultFile> result_files(const Run& run, const RunSummary& summary) {
   const std::string prefix = run.failure.empty() ? "" : k_partial;
   const std::string head = "# Effective model of '" + run.loaded->path + "', written by steplap " +
@@ -167,11 +193,13 @@ std::vector<ResultFile> result_files(const Run& run, const RunSummary& summary) 
   const auto rows = [&run, errors = column_errors(run, summary)](const FileSink& put) {
     write_trajectory_csv(*run.result.trajectory, errors, put);
   };
-  return {{prefix + "trajectory.csv", "", rows},
-          {prefix + "events.csv", events_csv(run.result.events, summary.global_error ? &summary.global_error->event_times : nullptr)},
-          {prefix + "model.toml", head + run.loaded->text},
-          {prefix + "drawing.json", drawing_json(run.loaded->model)},
-          {prefix + "summary.json", summary_json(run, summary)}};
+  const auto records = std::make_shared<FileRecords>();
+  const auto events = events_csv(run.result.events, summary.global_error ? &summary.global_error->event_times : nullptr);
+  return {noted(prefix + "trajectory.csv", rows, records),
+          noted(prefix + "events.csv", whole(events), records),
+          noted(prefix + "model.toml", whole(head + run.loaded->text), records),
+          noted(prefix + "drawing.json", whole(drawing_json(run.loaded->model)), records),
+          {prefix + "summary.json", "", [&run, &summary, records](const FileSink& put) { put(summary_json(run, summary, *records)); }}};
 }
 
 void check_result_folder(const std::string& folder, bool is_overwriting) {

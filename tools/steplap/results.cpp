@@ -1,10 +1,14 @@
 #include "tools/steplap/results.h"
 
+#include "mbd/io/digest.h"
 #include "mbd/simulation/trajectory.h"
 #include "tools/steplap/command.h"
+#include "tools/steplap/ordered_json.h"
+#include "tools/steplap/result_files.h"
 
 #include <sys/stat.h>
 
+#include <array>
 #include <charconv>
 #include <ctime>
 #include <filesystem>
@@ -119,6 +123,35 @@ std::string prefix_in(const fs::path& folder) {
   throw UsageError("'" + folder.string() + "' holds no results (no summary.json): run steplap simulate first");
 }
 
+[[noreturn]] void changed(const fs::path& file, const std::string& how) {
+  throw UsageError("'" + file.string() + "' is not as steplap wrote it: " + how + ". Run the model again");
+}
+
+std::string digest_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Sha256 digest;
+  for (std::array<char, 1 << 16> part{}; stream.read(part.data(), part.size()), stream.gcount() > 0;)
+    digest.add({part.data(), static_cast<std::size_t>(stream.gcount())});
+  return digest.hex();
+}
+
+// The summary tells of itself and of the other files whether they are what the run wrote.
+void check_files(const fs::path& file, const std::string& summary, const std::string& prefix) {
+  const std::string_view content = checked_summary(summary);
+  if (content.empty()) changed(file, "its checksum is not that of its text, or is missing");
+  const OrderedJson json = parse_ordered(std::string(content) + "}");
+  for (const char* const name : {"trajectory.csv", "events.csv", "model.toml", "drawing.json"}) {
+    const fs::path path = file.parent_path() / (prefix + name);
+    const OrderedJson& wanted = json.at("files").at(prefix + name); // the checksum says that it is there
+    std::error_code error;
+    const auto bytes = fs::file_size(path, error);
+    if (error) throw UsageError("'" + path.string() + "' is missing: the results are not whole, run the model again");
+    if (bytes != wanted.at("bytes").get<std::uintmax_t>())
+      changed(path, "it has " + std::to_string(bytes) + " bytes, and had " + std::to_string(wanted.at("bytes").get<std::uintmax_t>()));
+    if (digest_of(path) != wanted.at("sha256").get<std::string>()) changed(path, "it has as many bytes, but others");
+  }
+}
+
 } // namespace
 
 std::string read_text(const std::string& file) {
@@ -140,6 +173,8 @@ Results read_results(const std::string& folder) {
     return found;
   };
   Results results;
+  results.summary = read_text(file("summary.json").string());
+  check_files(file("summary.json"), results.summary, prefix);
   results.folder = folder;
   results.name = fs::absolute(path / "").lexically_normal().parent_path().filename().string();
   results.is_partial = !prefix.empty();
@@ -147,7 +182,6 @@ Results read_results(const std::string& folder) {
   read_events(file("events.csv"), results);
   results.model = read_text(file("model.toml").string());
   results.drawing = read_text(file("drawing.json").string());
-  results.summary = read_text(file("summary.json").string());
   results.model_date = date_of(file("model.toml"));
   return results;
 }

@@ -5,6 +5,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/system/element_failure.h"
+#include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
 #include "mbd/io/presentation.h"
 #include "tools/steplap/catalogue.h"
@@ -23,6 +24,7 @@ namespace {
 // "wagon" of "models/wagon.toml". A name of dots alone would be another folder: it keeps its ending.
 std::string name_of_model(const std::string& path) {
   if (has_control_character(path)) throw UsageError("the name '" + shown(path) + "' of a model file holds control characters: rename the file");
+  if (is_standard_input(path)) return "stdin";
   const std::filesystem::path file(path);
   const std::string stem = file.stem().string();
   return stem.find_first_not_of('.') == std::string::npos ? file.filename().string() : stem;
@@ -60,8 +62,10 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path,
   loaded->path = path;
   loaded->name = name_of_model(path);
   loaded->overrides = overrides;
+  const InputFiles read; // until its signals are built
   loaded->model = read_model(path, program_catalogue(), overrides, &loaded->text);
   loaded->system = compile(loaded->model);
+  loaded->inputs = read.files();
   refuse_endless_output(loaded->model, *loaded->system);
   loaded->plots_left_out = check_presentation(loaded->model, *loaded->system);
   loaded->assembled = assemble(loaded->model, *loaded->system); // joints that cannot be met are the model's error

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mbd/analysis/equilibrium.h"
+#include "mbd/io/input_files.h"
 #include "mbd/simulation/simulation.h"
 
 #include <memory>
@@ -16,6 +17,7 @@ struct LoadedModel {
   std::string name;                   ///< of the file, without folder and ending
   std::vector<std::string> overrides; ///< "path=value", laid over the file
   std::string text;                   ///< the effective model as TOML that stands alone
+  std::vector<InputFile> inputs;      ///< all that it was read from
   Model model;
   std::vector<std::string> plots_left_out; ///< of channels that are not written
   std::unique_ptr<System> system;

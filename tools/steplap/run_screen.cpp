@@ -78,6 +78,8 @@ bool is_shown(const ChannelRange& range) {
 std::string value_text(const RunSummary& summary, const ChannelRange& range, const Extreme& extreme) {
   const std::string& unit = range.channel->unit;
   const auto error = summary.error_of(range, &extreme == &range.low ? &ChannelError::low : &ChannelError::high);
+  const bool is_singular = &extreme == &range.low ? range.is_low_singular : range.is_high_singular;
+  if (is_singular && error && std::isnan(*error)) return "diverges at a singular pose";
   return error ? measured_text(extreme.value, error, unit) : quantity_text(extreme.value, unit, range.largest().value);
 }
 
@@ -196,6 +198,14 @@ std::string value_beside_limit(const CriterionResult& c) {
   return measured_text(*c.value, c.error, c.unit) + " (limit " + quantity_text(*c.limit, c.unit) + ")";
 }
 
+void print_second_opinion(std::ostream& out, const SecondOpinion& opinion, double end) {
+  out << "  Second opinion, " << opinion.method << ": ";
+  if (!opinion.disagreement.empty()) out << "disagrees\n";
+  else if (!opinion.none_because.empty()) out << "none; " << opinion.none_because << "\n";
+  else if (opinion.known_until < end * (1.0 - 1e-6)) out << "agrees up to t = " << quantity_text(opinion.known_until, "s") << " and cannot tell from there on\n";
+  else out << "agrees; the worst difference is " << small_text(opinion.worst_ratio) << " of what both errors allow\n";
+}
+
 void print_judgement(std::ostream& out, const FinishedRun& finished) {
   const Judgement& judgement = finished.summary.judgement;
   if (!judgement.distrust.empty()) out << "\nNOT TO BE TRUSTED: " << judgement.distrust << "\n";
@@ -203,6 +213,7 @@ void print_judgement(std::ostream& out, const FinishedRun& finished) {
   out << "\nVerdict by the criteria of the model: " << name_of(judgement.verdict);
   if (!finished.run.failure.empty()) out << "; the run broke off, until then: " << name_of(judgement.so_far);
   out << "\n";
+  for (const std::string& why : judgement.caps) out << "  It cannot be \"hold\": " << why << "\n";
   TextTable table({Align::left, Align::left, Align::left, Align::right, Align::right});
   for (const CriterionResult& c : judgement.criteria)
     table.add_row({c.name, c.text, c.outcome == Verdict::hold ? "met" : name_of(c.outcome), value_beside_limit(c),
@@ -214,6 +225,7 @@ void print_judgement(std::ostream& out, const FinishedRun& finished) {
                                        [](const CriterionResult& c) { return !c.doubt.empty(); });
   if (!finished.summary.global_error) out << "  judged without the errors of the numbers: " << finished.summary.no_estimate << "\n";
   if (is_in_doubt) out << "  A smaller tolerance or step decides.\n";
+  if (finished.summary.second_opinion) print_second_opinion(out, *finished.summary.second_opinion, finished.run.result.final_state.t);
 }
 
 // "rk4, step 5e-05 s and 2.5e-05 s"
@@ -238,6 +250,10 @@ void print_global_error(std::ostream& out, const FinishedRun& finished) {
   const GlobalErrorEstimate& estimate = *finished.summary.global_error;
   if (rests(finished)) {
     out << "\nThe machine rests: nothing moves but by rounding, so that errors have no range to be measured by\n";
+    return;
+  }
+  if (!estimate.unknown_because.empty()) {
+    out << "\nGlobal error: unknown; " << estimate.unknown_because << "\n";
     return;
   }
   const SimulationOptions asked = options_of(finished.run.loaded->model);

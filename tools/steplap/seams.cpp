@@ -40,10 +40,10 @@ std::string text_of(double value) {
 
 } // namespace
 
-std::vector<std::string> doubled_corners(const LoadedModel& loaded) {
+std::vector<Finding> doubled_corners(const LoadedModel& loaded) {
   const State given = loaded.system->initial_state();
   std::map<std::pair<Track, Rounded>, std::vector<End>> ends;
-  std::map<Track, std::string> found;
+  std::map<Track, Finding> found;
   std::vector<Track> order;
   for (const ElementEntry& entry : loaded.model.elements) {
     const auto* const contact = dynamic_cast<const SegmentContact*>(entry.element.get());
@@ -60,18 +60,19 @@ std::vector<std::string> doubled_corners(const LoadedModel& loaded) {
       for (const End& before : here) {
         if (before.contact == contact || is_inner(before.direction, end.direction, centre - corner) || found.count(pair) > 0) continue;
         order.push_back(pair);
-        found[pair] = "segment_contacts '" + before.contact->name + "' and '" + contact->name + "'" +
-                      (contact->where.line > 0 ? " (line " + std::to_string(contact->where.line) + ")" : "") + " end at the same point of '" +
+        found[pair] = {"doubled_corner", FindingLevel::warning,
+                       "segment_contacts '" + before.contact->name + "' and '" + contact->name + "' end at the same point of '" +
                       contact->b + "': over that corner both press on the circle, with twice the stiffness, damping and friction of one. " +
                       "One presses at a time where the other ends short of the corner by sqrt(2 r d), r the radius and d the depth: " +
-                      text_of(1e3 * std::sqrt(2e-3 * std::max(contact->radius, 0.0))) + " mm for a depth of 1 mm";
+                      text_of(1e3 * std::sqrt(2e-3 * std::max(contact->radius, 0.0))) + " mm for a depth of 1 mm",
+                       contact->where};
       }
       here.push_back(end);
     }
   }
-  std::vector<std::string> texts;
-  for (const Track& pair : order) texts.push_back(found[pair]);
-  return texts;
+  std::vector<Finding> findings;
+  for (const Track& pair : order) findings.push_back(found[pair]);
+  return findings;
 }
 
 } // namespace steplap

@@ -1,11 +1,12 @@
 // Segments that a circle passes from one to the next, where both end at one point: there both press.
 #pragma once
 
+#include "tools/steplap/findings.h"
 #include "tools/steplap/run.h"
 
 namespace steplap {
 
-/// A sentence for each circle and body with segments, naming the first such corner.
-[[nodiscard]] std::vector<std::string> doubled_corners(const LoadedModel& loaded);
+/// One for each circle and body with segments, naming the first such corner.
+[[nodiscard]] std::vector<Finding> doubled_corners(const LoadedModel& loaded);
 
 } // namespace steplap

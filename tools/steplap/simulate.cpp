@@ -6,6 +6,7 @@
 #include "mbd/model/validate.h"
 #include "tools/steplap/edges.h"
 #include "tools/steplap/far_joints.h"
+#include "tools/steplap/plausible_scene.h"
 #include "tools/steplap/seams.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/log.h"
@@ -20,6 +21,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -89,15 +91,17 @@ void check_folders(const SimulateOptions& options, const Models& models) {
 }
 
 // From finer runs; where one fails the run stands, but nothing of it can be called known.
-void make_estimate(FinishedRun& finished, int threads) {
+void make_estimate(FinishedRun& finished, int threads, double most_evaluations) {
   const LoadedModel& loaded = *finished.run.loaded;
   const RunResult& result = finished.run.result;
   SimulationOptions as_run = options_of(loaded.model);
   as_run.progress = stop_if_interrupted;
   as_run.threads = threads;
   try {
-    finished.summary.global_error = estimate_global_error(*loaded.system, initial_state_of(loaded), as_run, result, is_main_event);
+    finished.summary.global_error = estimate_global_error(*loaded.system, initial_state_of(loaded), as_run, result, is_main_event, most_evaluations);
     weigh_errors(finished.summary.judgement, loaded.model, *loaded.system, result, *finished.summary.global_error);
+  } catch (const EstimateTooDear& stopped) {
+    finished.summary.no_estimate = std::string(stopped.what()) + "; ask with --estimate-error";
   } catch (const NumericalFailure& failure) {
     finished.summary.no_estimate = std::string("the finer run failed: ") + failure.what();
     leave_open(finished.summary.judgement, "the finer run failed");
@@ -109,6 +113,7 @@ void make_estimate(FinishedRun& finished, int threads) {
 // verdict may not hang on how fast or how busy the computer is. A part takes some 40 to 300 ns, where much slides more.
 void estimate_error(const SimulateOptions& options, FinishedRun& finished) {
   constexpr double k_little = 1e7; // parts evaluated
+  constexpr double k_most = 3.0;   // times that: finer runs that turn out to need more are given up
   const LoadedModel& loaded = *finished.run.loaded;
   std::string& why_not = finished.summary.no_estimate;
   if (!finished.run.failure.empty() || noted_signal() != 0) {
@@ -121,29 +126,51 @@ void estimate_error(const SimulateOptions& options, FinishedRun& finished) {
   }
   const RunStatistics& statistics = finished.run.result.statistics;
   const double times = times_of_finer_runs(*loaded.system, options_of(loaded.model));
-  if (times * parts_evaluated(*loaded.system, statistics) < k_little || options.is_error_estimated) {
-    make_estimate(finished, options.thread_count());
+  const double parts = parts_evaluated(*loaded.system, statistics);
+  if (times * parts < k_little || options.is_error_estimated) {
+    const double granted = k_most * k_little * static_cast<double>(statistics.evaluations) / std::max(parts, 1.0);
+    make_estimate(finished, options.thread_count(), options.is_error_estimated ? std::numeric_limits<double>::infinity() : std::floor(granted));
     return;
   }
   finished.summary.estimate_cost = times * statistics.cpu_seconds;
   why_not = "would take long; ask with --estimate-error";
 }
 
-// What is hardly meant, and how bodies were moved: poses given to the digits of a file need no mention, nor do velocities that
-// a drive or a joint sets.
-void note_assembly(const LoadedModel& loaded) {
+// Only a verdict that holds has anything to lose.
+void ask_second_opinion(FinishedRun& finished) {
+  Judgement& judgement = finished.summary.judgement;
+  if (judgement.verdict != Verdict::hold || noted_signal() != 0) return;
+  const SecondOpinion opinion = second_opinion(*finished.run.loaded, finished.run.result);
+  if (!opinion.disagreement.empty()) distrust(judgement, "a second method disagrees beyond both errors: " + opinion.disagreement);
+  finished.summary.second_opinion = opinion;
+}
+
+// How bodies were moved: poses given to the digits of a file need no mention, nor do velocities that a drive or a joint sets.
+bool has_moved(const LoadedModel& loaded) {
   constexpr double k_noticeable = 1e-5; // m, rad
-  for (const std::string& text : doubled_corners(loaded)) log_warning("'" + loaded.path + "': " + text);
   const System& system = *loaded.system;
   auto moves = assembly_moves(system.initial_state(), loaded.assembled, k_noticeable);
   std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });
-  if (moves.empty()) return;
-  for (const std::string& text : stepped_feet(loaded)) log_warning("'" + loaded.path + "': " + text);
-  for (const std::string& text : far_joints(loaded)) log_warning("'" + loaded.path + "': " + text);
+  if (moves.empty()) return false;
   log_info("'" + loaded.path + "': assembling the joints moved " + counted(moves.size(), "body", "bodies") +
            ", most of all '" + system.bodies[moves.front().body].name + "' by " +
            quantity_text(moves.front().shift, "m", 1e-3) + " and " + quantity_text(moves.front().turn, "rad", 1e-3) +
            "; steplap check lists them");
+  return true;
+}
+
+// What is hardly meant, and bears on what a run can say: told before it begins, and beside its verdict.
+std::vector<Finding> findings_before(const LoadedModel& loaded) {
+  std::vector<Finding> findings = doubled_corners(loaded);
+  const auto append = [&findings](const std::vector<Finding>& more) { findings.insert(findings.end(), more.begin(), more.end()); };
+  append(start_findings(loaded));
+  append(implausible_findings(loaded));
+  if (has_moved(loaded)) {
+    append(stepped_feet(loaded));
+    append(far_joints(loaded));
+  }
+  for (const Finding& finding : findings) log_warning("'" + loaded.path + "': " + text_with_place(finding));
+  return findings;
 }
 
 void warn_of_missing_values(const LoadedModel& loaded, const RunResult& result) {
@@ -158,7 +185,7 @@ FinishedRun run_one(const SimulateOptions& options,
   log_detail("'" + loaded->name + "': " + counted(static_cast<std::size_t>(loaded->system->body_count() - 1), "body", "bodies") + ", " +
              counted(loaded->system->rows.size(), "constraint row", "constraint rows") + ", " +
              counted(loaded->system->frictions.size(), "joint with friction", "joints with friction"));
-  note_assembly(*loaded);
+  const std::vector<Finding> findings = findings_before(*loaded);
   FinishedRun finished;
   {
     Progress progress(console, loaded->name, loaded->model.simulation.end);
@@ -170,7 +197,11 @@ FinishedRun run_one(const SimulateOptions& options,
   for (const std::string& text : contacts_too_deep(*loaded, finished.run.result.ranges))
     log_warning("'" + loaded->path + "': " + text);
   finished.summary = summarise(finished.run);
+  finished.summary.findings = findings;
+  for (const Finding& finding : findings)
+    if (caps_verdict(finding)) add_cap(finished.summary.judgement, text_with_place(finding));
   estimate_error(options, finished);
+  if (options.is_hold_required) ask_second_opinion(finished);
   finished.folder = options.folder_of(*loaded);
   for (const Event& event : finished.run.result.events)
     log_detail("t = " + time_text(event.t) + " s: '" + event.element + "' " + event.words());
@@ -247,8 +278,8 @@ Command simulate_command() {
   steplap simulate my.toml --end "2 s" --integrator dop853 --tolerance 1e-9
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --set body.tank.mass="48 t"
 Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv,
-summary.json and model.toml. All numbers stand with their estimated error, where that takes less than about
-a second of computing; else it is said what it would take. If the computation fails, or Ctrl-C (SIGINT, SIGTERM, SIGHUP) stops it, what there is is saved
+summary.json and model.toml. All numbers stand with their estimated error, where that takes about a second of computing
+or a few; else it is said what it would take, or when it was given up. If the computation fails, or Ctrl-C (SIGINT, SIGTERM, SIGHUP) stops it, what there is is saved
 as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends it at once.
 )";
   command.options = {
@@ -271,7 +302,8 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
       {"--no-estimate", &o->is_estimate_left_out, "", "do not estimate the error"},
       {"--report", &o->is_reported, "", "write a page of the runs, too; see steplap report"},
       {"--require-hold", &o->is_hold_required, "",
-       "exit code 5 unless the verdict on every run is hold; see steplap elements acceptance"},
+       "exit code 5 unless the verdict on every run is hold, 4 if a second method, which is run for it, disagrees beyond both "
+       "errors; see steplap elements acceptance"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
   command.run = [o](Console& console) { return simulate(*o, console); };
   return command;

@@ -42,13 +42,13 @@ void add_foot(const LoadedModel& loaded, const State& given, const UnilateralCon
 
 } // namespace
 
-std::vector<std::string> stepped_feet(const LoadedModel& loaded) {
+std::vector<Finding> stepped_feet(const LoadedModel& loaded) {
   const State given = loaded.system->initial_state();
   std::unordered_map<std::string, const UnilateralContact*> contacts;
   for (const ElementEntry& entry : loaded.model.elements)
     if (const auto* contact = dynamic_cast<const UnilateralContact*>(entry.element.get()))
       contacts[contact->name] = contact;
-  std::vector<std::string> found;
+  std::vector<Finding> found;
   for (const ElementEntry& entry : loaded.model.elements) {
     const auto* const stick = dynamic_cast<const CoulombStick*>(entry.element.get());
     if (!stick) continue;
@@ -57,10 +57,9 @@ std::vector<std::string> stepped_feet(const LoadedModel& loaded) {
       if (const auto contact = contacts.find(name); contact != contacts.end())
         add_foot(loaded, given, *contact->second, height, way);
     if (!(height.size() > k_step_share * way.size() + k_same)) continue;
-    const std::string line = stick->where.line > 0 ? " (line " + std::to_string(stick->where.line) + ")" : "";
-    found.push_back("the contacts of coulomb_stick '" + stick->name + "'" + line + " touch on lines " +
+    found.push_back({"stepped_feet", FindingLevel::warning, "the contacts of coulomb_stick '" + stick->name + "' touch on lines " +
                     quantity_text(height.size(), "m", 1e-3) +
-                    " apart, but their friction acts on one of them: give those of each line their own coulomb_stick");
+                    " apart, but their friction acts on one of them: give those of each line their own coulomb_stick", stick->where});
   }
   return found;
 }

@@ -2,11 +2,12 @@
 // wrong for the others.
 #pragma once
 
+#include "tools/steplap/findings.h"
 #include "tools/steplap/run.h"
 
 namespace steplap {
 
-/// A sentence for each coulomb_stick of such contacts.
-[[nodiscard]] std::vector<std::string> stepped_feet(const LoadedModel& loaded);
+/// One for each coulomb_stick of such contacts.
+[[nodiscard]] std::vector<Finding> stepped_feet(const LoadedModel& loaded);
 
 } // namespace steplap

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "mbd/analysis/global_error.h"
+#include "tools/steplap/findings.h"
 #include "tools/steplap/run.h"
+#include "tools/steplap/second_opinion.h"
 #include "transformer/verdict_error.h"
 
 #include <map>
@@ -22,6 +24,8 @@ struct RunSummary {
   std::string no_estimate;                   ///< why: "left out with --no-estimate"
   std::optional<double> estimate_cost;       ///< s, of computing, for which it was left out
   Judgement judgement;
+  std::vector<Finding> findings;             ///< before the run: those that forbid "hold" stand in the judgement, too
+  std::optional<SecondOpinion> second_opinion; ///< if one was asked for
 
   /// nullptr if there is no such channel.
   [[nodiscard]] const ChannelRange* find(const std::string& channel) const;

@@ -1,4 +1,6 @@
 #include "tools/steplap/result_files.h"
+
+#include "mbd/io/digest.h"
 #include "tools/steplap/ordered_json.h"
 #include "tools/steplap/version.h"
 #include "transformer/joint_assessment.h"
@@ -13,6 +15,29 @@ namespace steplap {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// The last entry, which is of all text before it.
+constexpr std::string_view k_before_checksum = ",\n  \"checksum\": \"", k_after_checksum = "\"\n}\n";
+
+Json inputs_json(const std::vector<InputFile>& inputs) {
+  Json json = Json::array();
+  for (const InputFile& input : inputs)
+    json.push_back({{"file", input.path}, {"path", absolute_path(input)}, {"bytes", input.bytes}, {"sha256", input.sha256}});
+  return json;
+}
+
+Json files_json(const FileRecords& files) {
+  Json json = Json::object();
+  for (const FileRecord& file : files) append(json, file.name) = {{"bytes", file.bytes}, {"sha256", file.sha256}};
+  return json;
+}
+
+Json findings_json(const std::vector<Finding>& findings) {
+  Json json = Json::array();
+  for (const Finding& f : findings)
+    json.push_back({{"code", f.code}, {"level", f.level == FindingLevel::warning ? "warning" : "note"}, {"text", f.text}, {"file", f.where.file}, {"line", f.where.line}});
+  return json;
+}
 
 Json settings_json(const Model& model) {
   const SimulationSettings& s = model.simulation;
@@ -62,6 +87,7 @@ Json global_error_json(const GlobalErrorEstimate& estimate) {
     const WorstError& worst = estimate.error.worst[k];
     json[name_of(static_cast<ErrorKind>(k))] = {{"error", number_json(worst.value)}, {"where", worst.where}, {"t", worst.t}};
   }
+  if (!estimate.unknown_because.empty()) json["unknown_because"] = estimate.unknown_because;
   json["unmatched_events"] = estimate.error.unmatched_events;
   json["evaluations_of_finer_runs"] = estimate.cost.evaluations;
   return json;
@@ -160,6 +186,12 @@ Json joints_json(const Run& run, const RunSummary& summary) {
                      {"t_largest_required_pressure", a.time_of_largest},
                      {"smallest_margin", number_json(a.smallest_margin)},
                      {"least_margin_asked", a.least_margin},
+                     {"least_pressure", number_json(a.least_pressure.value)},
+                     {"smallest_corner_margin", number_json(a.corner_margin.value)},
+                     {"smallest_packet_margin", number_json(a.part_margin.value)},
+                     {"largest_demand", number_json(a.largest_demand)},
+                     {"limb_weight", number_json(a.weight)},
+                     {"was_loaded", a.is_loaded},
                      {"slid_x", number_json(a.slid_x)},
                      {"slid_y", number_json(a.slid_y)},
                      {"slid_angle", number_json(a.slid_angle)},
@@ -193,7 +225,16 @@ Json judgement_json(const Judgement& judgement) {
                         {"error", optional(c.error)},
                         {"error_t", optional(c.t_error)},
                         {"doubt", c.doubt}});
-  return {{"verdict", name_of(judgement.verdict)}, {"so_far", name_of(judgement.so_far)}, {"distrust", judgement.distrust}, {"criteria", std::move(criteria)}};
+  return {{"verdict", name_of(judgement.verdict)}, {"so_far", name_of(judgement.so_far)}, {"distrust", judgement.distrust}, {"capped_by", judgement.caps}, {"criteria", std::move(criteria)}};
+}
+
+Json second_opinion_json(const SecondOpinion& opinion) {
+  return {{"method", opinion.method},
+          {"agrees", opinion.none_because.empty() ? Json(opinion.disagreement.empty()) : Json()},
+          {"disagreement", opinion.disagreement},
+          {"none_because", opinion.none_because},
+          {"worst_ratio", number_json(opinion.worst_ratio)},
+          {"known_until", opinion.known_until}};
 }
 
 Json state_json(const System& system, const State& state, const RunSummary& summary) {
@@ -219,16 +260,18 @@ Json state_json(const System& system, const State& state, const RunSummary& summ
 
 } // namespace
 
-std::string summary_json(const Run& run, const RunSummary& summary) {
+std::string summary_json(const Run& run, const RunSummary& summary, const FileRecords& files) {
   const LoadedModel& loaded = *run.loaded;
   const RunStatistics& statistics = run.result.statistics;
   Json json;
   json["program"] = {{"name", "steplap"}, {"version", k_version}};
   json["model"] = {{"file", loaded.path},
                    {"title", loaded.model.header.title},
-                   {"overrides", loaded.overrides}};
+                   {"overrides", loaded.overrides},
+                   {"inputs", inputs_json(loaded.inputs)}};
   json["completed"] = run.failure.empty();
   if (!run.failure.empty()) json["failure"] = run.failure;
+  json["findings"] = findings_json(summary.findings);
   json["integrator"] = loaded.model.simulation.integrator;
   json["settings"] = settings_json(loaded.model);
   json["statistics"] = statistics_json(statistics);
@@ -239,12 +282,25 @@ std::string summary_json(const Run& run, const RunSummary& summary) {
   if (Json joints = joints_json(run, summary); !joints.empty()) json["joints"] = std::move(joints);
   // Without criteria there is nothing to say, unless the run itself is not to be trusted.
   if (summary.judgement.has_criteria || !summary.judgement.distrust.empty()) json["judgement"] = judgement_json(summary.judgement);
+  if (summary.second_opinion) json["second_opinion"] = second_opinion_json(*summary.second_opinion);
   Meanings meanings;
   json["extremes"] = extremes_json(summary, meanings);
   json["meanings"] = meanings.list();
   json["final_state"] = state_json(*loaded.system, run.result.final_state, summary);
+  json["files"] = files_json(files);
   // Names may hold bytes that are no UTF-8: replaced, not an exception at the end of a long run.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  text.resize(text.size() - 2); // "\n}"
+  return text + std::string(k_before_checksum) + sha256(text) + std::string(k_after_checksum);
+}
+
+std::string_view checked_summary(std::string_view text) {
+  constexpr std::size_t k_digits = 64;
+  const std::size_t tail = k_before_checksum.size() + k_digits + k_after_checksum.size();
+  if (text.size() < tail) return {};
+  const std::string_view content = text.substr(0, text.size() - tail);
+  const std::string wanted = std::string(k_before_checksum) + sha256(content) + std::string(k_after_checksum);
+  return text.substr(content.size()) == wanted ? content : std::string_view{};
 }
 
 } // namespace steplap

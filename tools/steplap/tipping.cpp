@@ -30,7 +30,42 @@ public:
     return found;
   }
 
+  std::vector<Unjudged> unjudged() const {
+    std::vector<Unjudged> found;
+    for (const int component : scene_.components()) {
+      TippingPart own(scene_.system().bodies.size(), 0);
+      scene_.add_component(component, own);
+      if (!is_carried(own)) continue;
+      Unjudged one;
+      const auto part = scene_.part_on(component, &one.why);
+      if (part && is_led(*part)) one.why = "joints or drives keep it from turning over";
+      if (one.why.empty()) continue;
+      Tipping heaviest;
+      scene_.name_part(own, heaviest);
+      one.body = heaviest.body;
+      found.push_back(one);
+    }
+    return found;
+  }
+
 private:
+  // It stands on a foot.
+  [[nodiscard]] bool is_carried(const TippingPart& part) const {
+    const std::vector<Foot>& feet = scene_.feet();
+    return std::any_of(feet.begin(), feet.end(),
+                       [&](const Foot& foot) { return TippingScene::push_on(part, foot).dot(scene_.system().gravity) < 0.0; });
+  }
+  // Joints to what does not belong to it leave it no turn about any foot.
+  [[nodiscard]] bool is_led(const TippingPart& part) const {
+    const MatX rows = outer_rows(part);
+    if (rows.rows() == 0) return false;
+    if (PivotedQr(rows, k_rank).rank() > 1) return true;
+    return std::none_of(scene_.feet().begin(), scene_.feet().end(), [&](const Foot& pivot) {
+      const Vec2 normal = TippingScene::push_on(part, pivot);
+      return normal != Vec2::Zero() && motion_about(pivot, normal, rows, 1.0).has_value();
+    });
+  }
+
   // Rigid motions are (velocity of the ground's origin as the part sees it, rate of turning).
   [[nodiscard]] static Vec2 velocity(const Vec3& twist, const Vec2& at) { return Vec2(twist.head<2>()) + twist.z() * quarter_turn(at); }
   [[nodiscard]] static Vec3 turn_about(const Vec2& point, double rate) {
@@ -161,6 +196,12 @@ private:
 };
 
 } // namespace
+
+std::vector<Unjudged> not_judged_for_tipping(const LoadedModel& loaded, const State& state) {
+  const TippingScene scene(loaded, state);
+  if (!(scene.system().gravity.norm() > 0.0) || scene.feet().empty()) return {};
+  return PartTipping(scene).unjudged();
+}
 
 std::vector<Tipping> tipping_of(const LoadedModel& loaded, const State& state) {
   const TippingScene scene(loaded, state);

@@ -6,8 +6,9 @@
 //   A cos φ + B sin φ + C = 0,
 // A of gravity, B of gravity turned by a right angle, C of loads and springs. For a block of width 2b and height 2h on an
 // incline α: φ = atan(b/h) − α. What hangs freely counts with its mass in the point that it hangs from (tipping_hung.h). What
-// stands on several others, and these with it, are blocks that come down together (tipping_mechanism.h). Nothing is said of
-// parts that joints keep from turning over, and of parts with other joints that can move.
+// stands on several others, and these with it, are blocks that come down together (tipping_mechanism.h). Parts that joints keep
+// from turning over, that forces alone hold in shape (a servo) or that springs and ropes tie to others are not judged, and it is
+// said why.
 #pragma once
 
 #include "tools/steplap/run.h"
@@ -30,10 +31,17 @@ struct Tipping {
 /// Of every part that can tip over, the nearest way for each; margins of more than a right angle are left out.
 [[nodiscard]] std::vector<Tipping> tipping_of(const LoadedModel& loaded, const State& state);
 
+/// What stands on feet and is not judged.
+struct Unjudged {
+  int body = 0;    ///< the heaviest of the part
+  std::string why; ///< follows "because"
+};
+[[nodiscard]] std::vector<Unjudged> not_judged_for_tipping(const LoadedModel& loaded, const State& state);
+
 /// A sentence for each part that tips over as it is: about what, and from which angle on.
 [[nodiscard]] std::vector<std::string> tipping_over(const LoadedModel& loaded, const State& state);
 
-/// A table of those that stand; nothing where nothing can tip.
+/// A table of those that stand, and what is not judged; nothing where nothing stands.
 void print_tipping(std::ostream& out, const LoadedModel& loaded, const State& state);
 
 } // namespace steplap

@@ -124,9 +124,13 @@ Vec2 TippingScene::push_on(const TippingPart& part, const Foot& foot) {
 }
 
 // A component with all that stands on it.
-std::optional<TippingPart> TippingScene::part_on(int component) const {
+std::optional<TippingPart> TippingScene::part_on(int component, std::string* why) const {
+  const auto none = [why](const char* reason) -> std::optional<TippingPart> {
+    if (why) *why = reason;
+    return std::nullopt;
+  };
   TippingPart part(system_.bodies.size(), 0);
-  if (!is_rigid(component)) return std::nullopt;
+  if (!is_rigid(component)) return none("its joints let parts of it move against each other, and what forces or servos hold is not taken as rigid");
   add_component(component, part);
   for (bool is_changed = true; is_changed;) {
     is_changed = false;
@@ -134,7 +138,7 @@ std::optional<TippingPart> TippingScene::part_on(int component) const {
       const Vec2 push = push_on(part, foot);
       if (!(push.dot(system_.gravity) > 0.0)) continue; // it is carried there, not pressed down
       const int above = part[foot.a] ? foot.b : foot.a;
-      if (above == k_ground || !is_rigid(component_[above])) return std::nullopt;
+      if (above == k_ground || !is_rigid(component_[above])) return none("what stands on it has joints that can move");
       add_component(component_[above], part);
       is_changed = true;
     }
@@ -149,11 +153,11 @@ std::optional<TippingPart> TippingScene::part_on(int component) const {
     return part[a] != part[b] && a != k_ground && b != k_ground && !is_hung(a) && !is_hung(b);
   };
   for (const PairJacobian& j : springs_) // another body that moves would change its force
-    if (is_to_another(j.a, j.b) && !j.stiffness.isZero()) return std::nullopt;
+    if (is_to_another(j.a, j.b) && !j.stiffness.isZero()) return none("a spring or a servo ties it to another part that can move");
   for (const OneSidedRow* stay : stays_) {
     bool is_tied = false;
     stay->for_parts([&](const RowSpec& row) { is_tied = is_tied || is_to_another(row.a, row.b); });
-    if (is_tied) return std::nullopt;
+    if (is_tied) return none("a rope ties it to another part that can move");
   }
   return part;
 }

@@ -39,8 +39,9 @@ public:
   /// Joints between its bodies leave it no motion but those of a rigid body.
   [[nodiscard]] bool is_rigid(int component) const;
   void add_component(int component, TippingPart& part) const;
-  /// A component with all that stands on it; nothing where some of that moves, or stands elsewhere, too.
-  [[nodiscard]] std::optional<TippingPart> part_on(int component) const;
+  /// A component with all that stands on it; nothing where some of that moves, or stands elsewhere, too. `why`: the reason,
+  /// following "because", where no other part can be judged for it.
+  [[nodiscard]] std::optional<TippingPart> part_on(int component, std::string* why = nullptr) const;
   /// Of a foot between the part and something else: the normal of the force on the part; zero for others.
   [[nodiscard]] static Vec2 push_on(const TippingPart& part, const Foot& foot);
   /// What a row measures, by the poses of its bodies.

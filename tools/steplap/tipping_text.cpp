@@ -56,7 +56,10 @@ void print_tipping(std::ostream& out, const LoadedModel& loaded, const State& st
                    t.is_clockwise ? "clockwise" : "counter-clockwise",
                    t.acceleration > 0.0 ? quantity_text(t.acceleration, "m/s^2", 1.0) : "-"});
   }
-  if (is_any) out << "\nDistance from tipping over\n" << table;
+  const std::vector<Unjudged> unjudged = not_judged_for_tipping(loaded, state);
+  if (is_any || !unjudged.empty()) out << "\nDistance from tipping over\n";
+  if (is_any) out << table;
+  for (const Unjudged& one : unjudged) out << "  '" << loaded.system->bodies[one.body].name << "' is not judged, because " << one.why << "\n";
 }
 
 } // namespace steplap

@@ -348,6 +348,22 @@ void report(const Border& border, std::size_t number, Plane& plane, StudyRun& ru
   if (!border.end.empty()) answer.degrade(Standing::not_met);
 }
 
+// What may lie between the looks: the largest circle that holds none of them, in the middle of a square of the grid.
+// Islands that something points to are found down to much smaller ones; of one in a plain nothing is known.
+void report_unseen(const Grid& grid, const Plane& plane, const StudyRun& run, Answer& answer) {
+  const double radius = grid.width() / std::sqrt(2.0);
+  Finding f{"map", "island", "unseen radius, of the ranges", radius};
+  f.samples = run.evaluator.asked();
+  if (plane.bad() > 0) f.status = "larger beside runs without a result";
+  answer.findings.push_back(f);
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "Looks lie %.3g of the ranges apart: an island with a radius of up to %.3g of the ranges may lie between "
+                "them unseen; 'points' looks closer.",
+                grid.width(), radius);
+  answer.notes.emplace_back(text);
+}
+
 } // namespace
 
 void check_map(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
@@ -394,6 +410,7 @@ Answer run_map(StudyRun& run) {
                                    : "the expression has one sign wherever it was looked at"});
     answer.degrade(Standing::not_met);
   }
+  report_unseen(grid, plane, run, answer);
   if (plane.has_jump())
     answer.notes.push_back("In places the expression jumps past zero: the border is then where it jumps.");
   if (plane.bad() > 0)

@@ -62,6 +62,14 @@ void add_fits(const JointLaw& law, Answer& answer) {
   }
 }
 
+// Kinds that set variables themselves, one by one, do not draw them from their joint distribution.
+void add_correlations(const Study& study, Answer& answer) {
+  if (study.kind == "reliability" || study.kind == "sample") return;
+  for (const Correlation& c : study.correlations)
+    answer.notes.push_back("Variables are set one by one here, whatever the others are: the stated correlation of '" +
+                           c.between[0] + "' and '" + c.between[1] + "' plays no part in it.");
+}
+
 Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, Console& console) {
   std::vector<Diagnostic> problems;
   const JointLaw law(loaded.study, loaded.nominal, problems); // checked by the reader
@@ -74,6 +82,7 @@ Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, in
     Answer answer = kind.run(run);
     store.forget_from(evaluator.asked() + 1);
     add_fits(law, answer);
+    add_correlations(loaded.study, answer);
     return answer;
   }
   throw std::logic_error("a kind of study that the reader let pass is not there");
@@ -312,6 +321,18 @@ Command schema_command() {
 
 std::vector<Command> study_commands(const Ranks& ranks) {
   return {run_command(ranks), show_command(), report_command(), export_command(), replay_command(), schema_command()};
+}
+
+Program study_program(const Ranks& ranks) {
+  return {"steplap study", "studies: what if, how likely, how much does it matter; see docs/studies.md",
+          study_commands(ranks), R"(Exit codes:
+  0  done
+  1  a fault of the program itself
+  2  wrong command line, or a store that cannot be used: of another study, damaged, held by another process
+  3  a study file or a model that cannot be used as it stands
+  4  an answer that is not to be trusted, or a study that was to stop at a failed run and did
+  5  done, but the wanted accuracy was not reached, or there is nothing to be found
+)"};
 }
 
 } // namespace steplap::study

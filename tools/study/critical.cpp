@@ -208,6 +208,12 @@ Answer run_critical(StudyRun& run) {
     answer.degrade(Standing::not_met);
   }
   answer.notes.push_back("The expression " + monotonic_text(look) + ".");
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "Looks lie %.3g apart: two crossings nearer to each other may lie between them unseen, where nothing "
+                "points to them; 'points' looks closer.",
+                width / static_cast<double>(s.points - 1));
+  answer.notes.emplace_back(text);
   if (line.bad() > 0) {
     answer.notes.push_back(
         std::to_string(line.bad()) +

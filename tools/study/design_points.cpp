@@ -1,8 +1,9 @@
 #include "tools/study/design_points.h"
 
+#include "tools/study/design_search.h"
+
 #include <openturns/AbdoRackwitz.hxx>
 #include <openturns/CompositeRandomVector.hxx>
-#include <openturns/FORM.hxx>
 #include <openturns/Less.hxx>
 #include <openturns/Log.hxx>
 #include <openturns/Normal.hxx>
@@ -20,6 +21,13 @@ class BadSample : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
 };
+
+double cosine_between(const std::vector<double>& a, const std::vector<double>& b) {
+  double product = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) product += a[i] * b[i];
+  const double lengths = length_of(a.data(), a.size()) * length_of(b.data(), b.size());
+  return lengths > 0.0 ? product / lengths : 0.0;
+}
 
 std::vector<double> vector_of(const OT::Point& p) { return {p.begin(), p.end()}; }
 
@@ -50,22 +58,6 @@ private:
   LimitFunction* limit_;
 };
 
-std::vector<double> gradient_at(LimitFunction& limit, const std::vector<double>& u, double h) {
-  const std::size_t n = u.size();
-  std::vector<double> points;
-  for (std::size_t i = 0; i < 2 * n; ++i) {
-    points.insert(points.end(), u.begin(), u.end());
-    points[i * n + i / 2] += i % 2 ? -h : h;
-  }
-  const std::vector<LimitValue>& g = limit.at(points);
-  std::vector<double> gradient(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (g[2 * i].is_bad || g[2 * i + 1].is_bad) throw BadSample("a run without result lay on the way");
-    gradient[i] = (g[2 * i].g - g[2 * i + 1].g) / (2.0 * h);
-  }
-  return gradient;
-}
-
 class LimitGradient : public OT::GradientImplementation {
 public:
   LimitGradient(LimitFunction& limit, double h) : limit_(&limit), h_(h) {}
@@ -73,9 +65,10 @@ public:
   OT::UnsignedInteger getInputDimension() const override { return limit_->dimension(); }
   OT::UnsignedInteger getOutputDimension() const override { return 1; }
   OT::Matrix gradient(const OT::Point& u) const override {
-    const std::vector<double> d = gradient_at(*limit_, vector_of(u), h_);
-    OT::Matrix matrix(d.size(), 1);
-    for (std::size_t i = 0; i < d.size(); ++i) matrix(i, 0) = d[i];
+    const auto d = gradient_at(*limit_, vector_of(u), h_);
+    if (!d) throw BadSample("a run without result lay on the way");
+    OT::Matrix matrix(d->size(), 1);
+    for (std::size_t i = 0; i < d->size(); ++i) matrix(i, 0) = (*d)[i];
     return matrix;
   }
 
@@ -133,45 +126,32 @@ OT::RandomVector event_of(LimitFunction& limit, double h) {
   return OT::ThresholdEvent(OT::CompositeRandomVector(function, input), OT::Less(), 0.0);
 }
 
-// The first start is the origin; the others lie in random directions.
-OT::Point start_of(const LimitFunction& limit, const CounterRandom& random, long k) {
-  constexpr double k_far = 3.0;
-  const std::size_t n = limit.dimension();
-  OT::Point start(n, 0.0);
-  if (k == 0) return start;
-  for (std::size_t i = 0; i < n; ++i)
-    start[i] = random.normal(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i));
-  return start * (k_far / start.norm());
-}
-
-void judge(LimitFunction& limit, double h, DesignPoint& point) {
+// Where a search has ended, held against what a design point is.
+DesignPoint point_of(LimitFunction& limit, const SearchEnd& end, bool is_origin_failing) {
   constexpr double k_on_surface = 1e-4, k_aligned = 1e-4;
+  DesignPoint point;
+  point.u = end.u;
   const std::size_t n = point.u.size();
-  const std::vector<double> gradient = gradient_at(limit, point.u, h);
-  const double steepness = length_of(gradient.data(), n), distance = length_of(point.u.data(), n);
-  point.g = limit.at_point(point.u).g;
-  point.off_surface = steepness > 0.0 ? std::abs(point.g) / steepness : std::numeric_limits<double>::infinity();
+  const double distance = length_of(point.u.data(), n);
+  point.beta = is_origin_failing ? -distance : distance;
+  for (const double x : point.u) point.alpha.push_back(distance > 0.0 ? -x / point.beta : 0.0);
+  point.breitung = point.hohenbichler = point.tvedt = std::nan("");
+  point.g = end.g;
+  point.off_surface = std::numeric_limits<double>::infinity();
+  const auto gradient = gradient_at(limit, point.u, limit.run().study().reliability.difference);
+  const double steepness = gradient ? length_of(gradient->data(), n) : 0.0;
+  if (!(steepness > 0.0)) return point;
+  point.off_surface = std::abs(point.g) / steepness;
   double product = 0.0;
-  for (std::size_t i = 0; i < n; ++i) product += point.u[i] * gradient[i];
-  point.misalignment = distance > 0.0 && steepness > 0.0 ? 1.0 - std::abs(product) / (distance * steepness) : 0.0;
+  for (std::size_t i = 0; i < n; ++i) product += point.u[i] * (*gradient)[i];
+  point.misalignment = distance > 0.0 ? 1.0 - std::abs(product) / (distance * steepness) : 0.0;
   point.is_found = point.off_surface < k_on_surface * std::max(1.0, distance) && point.misalignment < k_aligned;
+  return point;
 }
 
 bool is_same(const DesignPoint& a, const DesignPoint& b) {
   constexpr double k_near = 1e-2;
-  double square = 0.0;
-  for (std::size_t i = 0; i < a.u.size(); ++i) square += (a.u[i] - b.u[i]) * (a.u[i] - b.u[i]);
-  return std::sqrt(square) < k_near * std::max(1.0, std::abs(a.beta));
-}
-
-DesignPoint point_of(const OT::FORMResult& result) {
-  DesignPoint point;
-  point.u = vector_of(result.getStandardSpaceDesignPoint());
-  const double distance = length_of(point.u.data(), point.u.size());
-  point.beta = result.getIsStandardPointOriginInFailureSpace() ? -distance : distance;
-  for (const double x : point.u) point.alpha.push_back(distance > 0.0 ? -x / point.beta : 0.0);
-  point.breitung = point.hohenbichler = point.tvedt = std::nan("");
-  return point;
+  return distance_between(a.u, b.u) < k_near * std::max(1.0, std::abs(a.beta));
 }
 
 void add_second_order(LimitFunction& limit, const OT::OptimizationAlgorithm& search, double h, DesignPoint& point) {
@@ -192,11 +172,10 @@ void add_second_order(LimitFunction& limit, const OT::OptimizationAlgorithm& sea
   }
 }
 
+// What OpenTURNS asks for beside a design point that is there already.
 OT::AbdoRackwitz search_algorithm() {
   OT::Log::Show(OT::Log::NONE);
   OT::AbdoRackwitz search;
-  // Steps of 1e-6 standard deviations end it: beta is known to the square of that. Points that have not arrived are
-  // told by judge().
   search.setMaximumEvaluationNumber(1000);
   search.setMaximumIterationNumber(60);
   search.setMaximumAbsoluteError(1e-6);
@@ -217,22 +196,17 @@ bool add_point(DesignPoint point, std::vector<DesignPoint>& points) {
   return true;
 }
 
-// One search; what ends it early is noted.
-bool search_from(LimitFunction& limit, const OT::Point& start, DesignPoints& found) {
-  const double h = limit.run().study().reliability.difference;
+// One search, which may take samples until there are `last`; what ends it early is noted.
+bool search_from(LimitFunction& limit, const std::vector<double>& start, long last, DesignPoints& found) {
   ++found.starts;
-  try {
-    OT::FORM form(search_algorithm(), event_of(limit, h), start);
-    form.run();
-    DesignPoint point = point_of(form.getResult());
-    judge(limit, h, point);
-    return add_point(std::move(point), found.points);
-  } catch (const OT::Exception& error) {
-    if (found.failed_starts++ == 0) found.trouble = error.what();
-  } catch (const BadSample& error) {
-    if (found.failed_starts++ == 0) found.trouble = error.what();
-  }
-  return false;
+  constexpr double k_near_surface = 1e-2; // where another search would go to and fro as well
+  std::vector<std::vector<double>> known;
+  for (const DesignPoint& p : found.points)
+    if (p.is_found || p.off_surface < k_near_surface) known.push_back(p.u);
+  const SearchEnd end = search_design_point(limit, start, known, last);
+  if (!end.trouble.empty() && found.failed_starts++ == 0) found.trouble = end.trouble;
+  if (end.is_known || end.is_bad) return false;
+  return add_point(point_of(limit, end, found.is_origin_failing), found.points);
 }
 
 void sort_points(std::vector<DesignPoint>& points) {
@@ -241,14 +215,85 @@ void sort_points(std::vector<DesignPoint>& points) {
   });
 }
 
+// For all searches together: a search takes some five steps of a gradient each, and most end at the first.
+long budget_of(const LimitFunction& limit) {
+  const ReliabilitySettings& settings = limit.study().reliability;
+  return settings.search_samples.value_or(300 + 50 * static_cast<long>(limit.dimension()));
+}
+
+// Directions that lie apart: of many random ones each time the one that is farthest from all taken before.
+std::vector<std::vector<double>> spread_directions(const LimitFunction& limit, long count) {
+  constexpr long k_pool = 20; // for each
+  const CounterRandom random(static_cast<std::uint64_t>(limit.study().seed), 3);
+  std::vector<std::vector<double>> pool, directions;
+  for (long k = 1; k <= k_pool * count; ++k) {
+    std::vector<double> a;
+    for (std::size_t i = 0; i < limit.dimension(); ++i)
+      a.push_back(random.normal(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i)));
+    const double length = length_of(a.data(), a.size());
+    for (double& x : a) x /= length;
+    pool.push_back(std::move(a));
+  }
+  std::vector<double> nearest(pool.size(), -1.0); // cosine
+  for (std::size_t next = 0; static_cast<long>(directions.size()) < count;) {
+    directions.push_back(pool[next]);
+    for (std::size_t i = 0; i < pool.size(); ++i)
+      nearest[i] = std::max(nearest[i], cosine_between(pool[i], directions.back()));
+    next = static_cast<std::size_t>(std::min_element(nearest.begin(), nearest.end()) - nearest.begin());
+  }
+  return directions;
+}
+
+// Where searches begin: of looks in directions that lie apart, three for each start, those at which the limit state is
+// lowest (where the origin holds; highest, where it fails), and which lie apart from one another and from what is known.
+std::vector<std::vector<double>> starts_of(LimitFunction& limit, long count, const DesignPoints& found) {
+  constexpr double k_far = 3.0, k_apart = 0.9; // of the cosine between two directions
+  std::vector<std::vector<double>> looks = spread_directions(limit, 3 * count);
+  std::vector<double> points;
+  for (std::vector<double>& u : looks) {
+    for (double& x : u) x *= k_far;
+    points.insert(points.end(), u.begin(), u.end());
+  }
+  if (looks.empty()) return {};
+  const std::vector<LimitValue> values = limit.at(points);
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    if (!values[i].is_bad) order.push_back(i);
+  const double sign = found.is_origin_failing ? -1.0 : 1.0;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return sign * values[a].g < sign * values[b].g; });
+  std::vector<std::vector<double>> starts, taken;
+  for (const DesignPoint& p : found.points)
+    if (p.is_found) taken.push_back(p.u);
+  for (const std::size_t i : order) {
+    if (static_cast<long>(starts.size()) == count) break;
+    const bool is_apart = std::none_of(taken.begin(), taken.end(), [&](const std::vector<double>& other) {
+      return cosine_between(other, looks[i]) > k_apart;
+    });
+    if (!is_apart) continue;
+    taken.push_back(looks[i]);
+    starts.push_back(looks[i]);
+  }
+  return starts;
+}
+
 } // namespace
 
 DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
   const ReliabilitySettings& settings = limit.run().study().reliability;
-  const CounterRandom random(static_cast<std::uint64_t>(limit.run().study().seed), 3);
+  const std::vector<double> origin(limit.dimension(), 0.0);
   DesignPoints found;
-  const long before = limit.asked();
-  for (long k = 0; k < settings.starts; ++k) (void)search_from(limit, start_of(limit, random, k), found);
+  const long before = limit.asked(), last = before + budget_of(limit);
+  const LimitValue value = limit.at_point(origin);
+  found.is_origin_failing = !value.is_bad && value.g < 0.0;
+  (void)search_from(limit, origin, last, found);
+  for (const std::vector<double>& start : starts_of(limit, settings.starts - 1, found)) {
+    if (limit.asked() >= last) {
+      ++found.left_starts;
+      continue;
+    }
+    (void)search_from(limit, start, last, found);
+  }
   sort_points(found.points);
   if (is_second_order && !found.points.empty() && found.points.front().is_found)
     for (DesignPoint& point : found.points)
@@ -259,9 +304,7 @@ DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
 
 bool search_again(LimitFunction& limit, const std::vector<double>& start, DesignPoints& found) {
   const long before = limit.asked();
-  OT::Point u(start.size());
-  std::copy(start.begin(), start.end(), u.begin());
-  const bool is_new = search_from(limit, u, found);
+  const bool is_new = search_from(limit, start, before + budget_of(limit) / 2, found);
   sort_points(found.points);
   found.samples += limit.asked() - before;
   return is_new;

@@ -1,5 +1,6 @@
 // Design points: the places of the limit state's surface that are nearest to the origin of standard normal space, and
-// what first and second order theory (FORM, SORM) make of them. By OpenTURNS, from several starts.
+// what first and second order theory (FORM, SORM) make of them. Searched for from several starts; second order by
+// OpenTURNS.
 #pragma once
 
 #include "tools/study/limit_function.h"
@@ -21,6 +22,8 @@ struct DesignPoint {
 struct DesignPoints {
   std::vector<DesignPoint> points; ///< found ones, the nearest first
   long starts = 0, failed_starts = 0;
+  long left_starts = 0;            ///< not searched from: the samples for searches were used up
+  bool is_origin_failing = false;
   std::string trouble;             ///< of the starts that failed, the first
   long samples = 0;
 };

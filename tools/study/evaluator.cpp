@@ -2,7 +2,6 @@
 
 #include <omp.h>
 
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -51,7 +50,8 @@ const char* unpack(const char* bytes, Outcome& o) {
   return bytes;
 }
 
-bool is_same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+// Both zeros are one to a store.
+bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 } // namespace
 
@@ -78,6 +78,9 @@ public:
     }
   }
 
+  /// What is a formula of other numbers is what the formula gives.
+  [[nodiscard]] bool is_derived(const StoredSample& sample) { return scenes_.front()->is_derived(sample.values, sample.outcome); }
+
 private:
   std::vector<std::unique_ptr<Scene>> scenes_;
   std::size_t width_;
@@ -101,12 +104,23 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
     for (std::size_t j = 0; j < width; ++j)
       if (!is_same(fetched_[i].values[j],
                    points[(from + i) * width + j])) { // a study that has changed goes another way from here
+        if (!may_go_another_way())
+          throw StoreError("the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
+                           " has other values than the study asks for; --restart makes it anew");
         store_.forget_from(fetched_[i].number);
         return;
       }
+    if (!team_->is_derived(fetched_[i]))
+      throw StoreError("the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
+                       " has numbers that do not follow from its values and responses; --restart makes it anew");
     rows_[from + i] = std::move(fetched_[i]);
     ++pace_.stored;
   }
+}
+
+// What ends by the clock asks for more or less each time.
+bool Evaluator::may_go_another_way() {
+  return store_.may_hold_others() || loaded_.study.reliability.seconds.has_value();
 }
 
 void Evaluator::run(std::size_t from, std::size_t count, const std::vector<double>& points) {
@@ -128,6 +142,8 @@ void Evaluator::run(std::size_t from, std::size_t count, const std::vector<doubl
       for (std::size_t i = r; i < count; i += stride) bytes = unpack(bytes, rows_[from + i].outcome);
     }
   }
+  if (const std::string record = loaded_.changed_record(); !record.empty())
+    throw StoreError("'" + record + "' has changed while the study ran: what was run since is not kept; run it again");
   store_.append(&rows_[from], count);
 }
 

@@ -56,6 +56,7 @@ public:
 
 private:
   void fetch(std::size_t from, std::size_t count, const std::vector<double>& points);
+  [[nodiscard]] bool may_go_another_way();
   void run(std::size_t from, std::size_t count, const std::vector<double>& points);
   void check(const StoredSample& sample) const;
 

@@ -149,14 +149,37 @@ struct Described {
   bool is_misfit = false;
 };
 
+// Of parameters that each are in their ranges, and make no distribution together.
+std::string why_there_is_none(const Variable& v) {
+  if (!v.measured.empty()) return "no " + v.distribution + " distribution fits the values of '" + v.measured + "': " +
+                                  "they are too few, all alike, or none that such a distribution can take";
+  const std::pair<const char*, const std::optional<double>&> all[] = {
+      {"mean", v.mean},     {"standard_deviation", v.standard_deviation}, {"cov", v.cov},       {"low", v.low},
+      {"mode", v.mode},     {"high", v.high},                             {"shape", v.shape},   {"shape2", v.shape2},
+      {"scale", v.scale},   {"location", v.location}};
+  std::string given;
+  for (const auto& [name, value] : all)
+    if (value) given += (given.empty() ? "" : ", ") + std::string(name) + " = " + number_text(*value);
+  if (v.lower || v.upper) {
+    try {
+      (void)by_parameters(v); // then it is its bounds
+      return "'lower' and 'upper' leave nothing of a " + v.distribution + " distribution with " + given;
+    } catch (const std::exception&) {
+    }
+  }
+  return "there is no " + v.distribution + " distribution with " + given;
+}
+
 Described distribution_of(const Variable& v) {
   try {
     if (!v.has_distribution()) return {OT::Uniform(v.range[0], v.range[1]), ""};
     if (v.measured.empty()) return {truncated(v, by_parameters(v)), ""};
     const MeasuredLaw law = measured_law(v);
     return {law.distribution, law.text, law.is_misfit};
-  } catch (const OT::Exception& error) {
-    complain(v, error.what());
+  } catch (const ModelError&) {
+    throw;
+  } catch (const std::exception&) { // a library's: its words are for programmers
+    complain(v, why_there_is_none(v));
   }
 }
 
@@ -187,7 +210,13 @@ Interval proportion_interval(double successes, double trials, double confidence)
 }
 
 double mean_of(const Variable& variable) {
-  return distribution_of(variable).distribution.getMean()[0];
+  try {
+    return distribution_of(variable).distribution.getMean()[0];
+  } catch (const ModelError&) {
+    throw;
+  } catch (const std::exception&) {
+    complain(variable, why_there_is_none(variable));
+  }
 }
 
 JointLaw::JointLaw(const Study& study, std::vector<double> nominal, std::vector<Diagnostic>& problems)
@@ -205,12 +234,16 @@ JointLaw::JointLaw(const Study& study, std::vector<double> nominal, std::vector<
       if (is_plain && v.distribution == "lognormal") m.form = Marginal::Form::lognormal;
       if (m.form != Marginal::Form::general) m.a = p[0], m.b = p[1];
       if (m.form == Marginal::Form::lognormal) m.location = p[2];
+      for (const double z : {-3.0, 0.0, 3.0}) // what cannot be computed is told before anything runs
+        if (std::isnan(m.at(z))) throw std::domain_error("no quantile");
       texts_.push_back(words_of(v, m.distribution, described.fit));
       if (!described.fit.empty()) fits_.push_back({v.name, texts_.back(), described.is_misfit});
       marginals_.push_back(std::move(m));
       random_.push_back(i);
     } catch (const ModelError& error) {
       problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+    } catch (const std::exception&) {
+      problems.push_back({v.where, "variable '" + v.name + "': " + why_there_is_none(v)});
     }
   }
   if (problems.empty()) correlate(study, problems);

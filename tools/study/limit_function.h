@@ -22,6 +22,7 @@ public:
   [[nodiscard]] LimitValue at_point(const std::vector<double>& u);
 
   [[nodiscard]] StudyRun& run() { return run_; }
+  [[nodiscard]] const Study& study() const { return run_.study(); }
   [[nodiscard]] long asked() const { return run_.evaluator.asked(); }
   [[nodiscard]] const std::string& subject() const { return subject_; }
   [[nodiscard]] long bad() const { return bad_; } ///< met so far

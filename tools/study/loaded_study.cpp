@@ -42,6 +42,13 @@ std::size_t LoadedStudy::curve_size() const {
   return size;
 }
 
+std::string LoadedStudy::changed_record() const {
+  for (const auto& model : models)
+    for (const InputFile& file : model->files)
+      if (file.is_record && sha256_of_file(file.path) != file.sha256) return file.path;
+  return "";
+}
+
 int LoadedStudy::index_of_number(const std::string& name) const {
   const std::vector<std::string> names = number_names();
   const auto found = std::find(names.begin(), names.end(), name);

@@ -12,8 +12,7 @@ int main(int argc, char** argv) {
   using namespace steplap;
   std::vector<std::string> arguments(argv + 1, argv + argc);
   const study::Ranks ranks;
-  const Program program{"steplap study", "studies: what if, how likely, how much does it matter; see docs/studies.md",
-                        study::study_commands(ranks)};
+  const Program program = study::study_program(ranks);
   const bool is_file = !arguments.empty() && arguments.front().front() != '-' &&
                        std::none_of(program.commands.begin(), program.commands.end(),
                                     [&](const Command& c) { return c.name == arguments.front(); });

@@ -12,6 +12,8 @@ namespace {
 
 const std::vector<std::string> k_methods{"monte_carlo", "form", "sorm", "importance_sampling", "directional", "subset"};
 
+constexpr double k_alarm = 0.01; // chance of a false alarm, of all comparisons of a study together
+
 std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0) {
   char text[240];
   std::snprintf(text, sizeof text, format, a, b, c);
@@ -20,20 +22,21 @@ std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0
 
 class Reliability {
 public:
-  explicit Reliability(StudyRun& run) : run_(run), limit_(run), settings_(run.study().reliability) {}
+  explicit Reliability(StudyRun& run) : run_(run), limit_(run), settings_(run.study().reliability), target_(target_of(settings_)) {}
 
   Answer answer() {
     const bool has_form = asks("form") || asks("sorm");
+    target_.test_confidence = 1.0 - k_alarm / static_cast<double>(comparisons());
     if (has_form || asks("importance_sampling")) points_ = find_design_points(limit_, asks("sorm"));
     for (const std::string& method : settings_.methods) {
       run_.evaluator.expect(0);
-      if (method == "monte_carlo") estimates_.push_back(monte_carlo(limit_, target_of(settings_)));
-      if (method == "directional") estimates_.push_back(directional(limit_, target_of(settings_)));
-      if (method == "subset") estimates_.push_back(subset_simulation(limit_, target_of(settings_)));
-      if (method == "importance_sampling") sample_around(target_of(settings_));
+      if (method == "monte_carlo") estimates_.push_back(monte_carlo(limit_, target_));
+      if (method == "directional") estimates_.push_back(directional(limit_, target_));
+      if (method == "subset") estimates_.push_back(subset_simulation(limit_, target_));
+      if (method == "importance_sampling") sample_around(target_);
     }
     if (has_form && estimates_.empty()) { // never alone
-      SamplingTarget check = target_of(settings_);
+      SamplingTarget check = target_;
       check.cov = std::max(check.cov, 0.1);
       check.samples = std::min(check.samples, 5000L);
       sample_around(check);
@@ -81,14 +84,41 @@ private:
     return "";
   }
 
-  // Does sampling bear out what first order theory says? A factor of two is what it may be off and still be of use.
+  // How many times intervals are held against each other or against a theory: one false alarm in a hundred studies
+  // comes by chance from all of them together (Bonferroni).
+  [[nodiscard]] long comparisons() const {
+    const auto theories = (asks("form") || asks("sorm") ? 1 : 0) + (asks("sorm") ? 3 : 0);
+    const auto samplings = std::max<long>(
+        1, std::count_if(settings_.methods.begin(), settings_.methods.end(), [](const std::string& method) {
+          return method != "form" && method != "sorm";
+        }));
+    return std::max(1L, samplings * theories + samplings * (samplings - 1)); // of both bounds, among samplings
+  }
+
+  // What sampling says of a probability by theory: by what factor it is off, with the interval of that.
   std::string sampling_doubt(double p, const char* whose) const {
     for (const Estimate& e : estimates_) {
-      const Interval interval = e.interval(run_.study().failed);
-      if (!e.is_trusted || (p >= interval.low && p <= interval.high)) continue;
-      return std::string(whose) + " is off: " + e.method + text_of(" gives %.4g to %.4g", interval.low, interval.high);
+      const Interval test = e.test(run_.study().failed);
+      if (!e.is_trusted || (p >= test.low && p <= test.high)) continue;
+      return std::string(whose) + " is off: " + e.method + text_of(" gives %.4g to %.4g", test.low, test.high) +
+             ", which it is " + factor_text(p, test) + " times";
     }
     return "";
+  }
+  static std::string factor_text(double p, const Interval& test) {
+    return text_of("%.3g", p / test.high) + (test.low > 0.0 ? text_of(" to %.3g", p / test.low) : " or more");
+  }
+
+  // Whether it is off or not: how well sampling bears a theory out.
+  void report_factors(const char* method, const std::string& name, double p) {
+    for (const Estimate& e : estimates_) {
+      if (!e.is_trusted || !std::isfinite(e.cov)) continue;
+      const Interval test = e.test(run_.study().failed);
+      const double sampled = run_.study().failed == "unsafe" ? e.unsafe : e.safe;
+      const auto over = [p](double q) { return q > 0.0 ? p / q : std::nan(""); };
+      answer_.findings.push_back({method, limit_.subject(), name + " to " + e.method, over(sampled),
+                                  over(test.high), over(test.low), e.samples});
+    }
   }
 
   void report_form() {
@@ -109,11 +139,15 @@ private:
     if (!status.empty() && !has_trusted_estimate()) answer_.degrade(Standing::not_trusted);
     add("form", "beta", first.beta, status);
     add("form", "probability", probability, status);
+    report_factors("form", "factor", probability);
     if (asks("sorm")) report_sorm(first);
     report_points();
     if (points_.failed_starts > 0)
       answer_.notes.push_back(std::to_string(points_.failed_starts) + " of " + std::to_string(points_.starts) +
                               " searches for a design point gave up: " + points_.trouble);
+    if (points_.left_starts > 0)
+      answer_.notes.push_back("The samples for searches were used up before " + std::to_string(points_.left_starts) +
+                              " more were begun: 'search_samples' gives more");
   }
 
   void report_sorm(const DesignPoint& first) {
@@ -127,6 +161,7 @@ private:
         status = is_known ? sampling_doubt(p, "second order")
                           : "the curvatures at the design point are too large for it, or unknown";
       add("sorm", quantity, is_known ? p : std::nan(""), status);
+      if (is_known) report_factors("sorm", "factor" + std::string(quantity).substr(std::string("probability").size()), p);
       if (is_known)
         add("sorm",
             quantity == std::string("probability (Breitung)") ? "beta (Breitung)"
@@ -168,23 +203,26 @@ private:
                        [](const Estimate& e) { return e.is_trusted && std::isfinite(e.cov); });
   }
 
-  // Two samplings whose intervals lie apart: one of them has missed something.
+  // Two samplings whose intervals lie apart: one of them has missed something. Both bounds one by one: what runs
+  // without a result leave open between them would hide it.
   void compare_estimates() {
     for (std::size_t i = 0; i < estimates_.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
-        const Interval a = estimates_[i].interval(run_.study().failed), b = estimates_[j].interval(run_.study().failed);
-        const double width = 0.5 * ((a.high - a.low) + (b.high - b.low));
-        if (a.low <= b.high + width && b.low <= a.high + width)
-          continue; // 95 % intervals may miss each other by a little
-        answer_.notes.push_back(estimates_[i].method + " and " + estimates_[j].method +
+        const Estimate &a = estimates_[i], &b = estimates_[j];
+        const bool is_of_safe = run_.study().failed != "unsafe" && lie_apart(a.safe_test, b.safe_test),
+                   is_of_unsafe = run_.study().failed != "safe" && lie_apart(a.unsafe_test, b.unsafe_test);
+        if (!is_of_safe && !is_of_unsafe) continue;
+        answer_.notes.push_back(a.method + " and " + b.method +
                                 " contradict each other: one of them has missed a part of the failures");
         answer_.degrade(Standing::not_trusted);
       }
   }
+  static bool lie_apart(const Interval& a, const Interval& b) { return a.low > b.high || b.low > a.high; }
 
   StudyRun& run_;
   LimitFunction limit_;
   const ReliabilitySettings& settings_;
+  SamplingTarget target_;
   DesignPoints points_;
   std::vector<Estimate> estimates_;
   Answer answer_;

@@ -53,6 +53,8 @@ constexpr Part k_parts[] = {
     {"condition", "condition", UnitOf::none},
     {"not told", "not told", UnitOf::none},
     {"another fit", "another fit", UnitOf::none},
+    {"factor", "factor", UnitOf::none}, // of a probability by theory to one by sampling
+    {"unseen", "unseen radius", UnitOf::none},
 };
 
 // "design point 2", "border 1 point 17": the number behind the first word or words.

@@ -255,6 +255,19 @@ void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
   }
 }
 
+bool Scene::is_derived(const std::vector<double>& values, const Outcome& outcome) {
+  std::copy(values.begin(), values.end(), values_.begin());
+  std::copy(outcome.numbers.begin(), outcome.numbers.end(), values_.begin() + static_cast<long>(values.size()));
+  const auto is_same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  bool is_whole = true;
+  for (std::size_t i = loaded_.study.responses.size(); i < outcome.numbers.size(); ++i)
+    is_whole = is_whole && !std::isnan(outcome.numbers[i]);
+  return outcome.curve.size() == loaded_.curve_size() && (outcome.status != SampleStatus::ok || is_whole) &&
+         std::all_of(expressions_.begin(), expressions_.end(), [&](const auto& of) {
+           return is_same(of.second(values_.data()), outcome.numbers[of.first]);
+         });
+}
+
 void Scene::run(const double* values, Outcome& outcome) {
   const std::size_t variables = loaded_.study.variables.size(), numbers = loaded_.number_count();
   outcome.status = SampleStatus::ok;

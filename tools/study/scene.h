@@ -42,6 +42,9 @@ public:
   /// Never throws for what a sample may do.
   void run(const double* values, Outcome& outcome);
 
+  /// Whether all numbers that are formulas of others are what the formulas give, of an outcome that was stored.
+  [[nodiscard]] bool is_derived(const std::vector<double>& values, const Outcome& outcome);
+
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
+#include <sstream>
 
 namespace steplap::study {
 
@@ -75,6 +76,10 @@ void show(Store& store, const std::string& title, std::ostream& out) {
         {f.method, f.subject, f.quantity, digits(f.value), interval_text(f), std::to_string(f.samples), f.status});
   out << table;
   for (const std::string& note : store.notes()) out << note << "\n";
+  std::istringstream files(store.setting("files"));
+  for (std::string line; std::getline(files, line);)
+    if (const std::size_t space = line.find(' '); space != std::string::npos)
+      out << "Read from " << line.substr(space + 1) << " (" << line.substr(0, space) << ")\n";
   if (!standing.empty() && standing != "done") out << "Standing: " << standing << "\n";
 }
 

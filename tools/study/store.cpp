@@ -1,5 +1,7 @@
 #include "tools/study/store.h"
 
+#include "tools/study/store_statement.h"
+
 #include <fcntl.h>
 #include <sqlite3.h>
 #include <sys/file.h>
@@ -16,61 +18,60 @@ namespace steplap::study {
 namespace {
 
 // Stores of other layouts are refused.
-constexpr int k_layout = 1;
+constexpr int k_layout = 2;
 constexpr int k_application = 0x73746c70; // "stlp", in the file's head
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string quoted(const std::string& name) { return "\"" + name + "\""; }
 
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
 } // namespace
 
-// A prepared statement that cannot leak.
-struct Store::Statement {
-  Statement(Store& store, const std::string& sql) : store_(store) {
-    if (sqlite3_prepare_v2(store.database_, sql.c_str(), -1, &statement, nullptr) != SQLITE_OK) store.fail("used");
-  }
-  ~Statement() { sqlite3_finalize(statement); }
-  Statement(const Statement&) = delete;
-  Statement& operator=(const Statement&) = delete;
+Store::Statement::Statement(Store& store, const std::string& sql) : store_(store) {
+  if (sqlite3_prepare_v2(store.database_, sql.c_str(), -1, &statement, nullptr) != SQLITE_OK) store.fail("used");
+}
+Store::Statement::~Statement() { sqlite3_finalize(statement); }
 
-  void bind(int i, double x) { std::isnan(x) ? sqlite3_bind_null(statement, i) : sqlite3_bind_double(statement, i, x); }
-  void bind(int i, long n) { sqlite3_bind_int64(statement, i, n); }
-  void bind(int i, const std::string& text) {
-    sqlite3_bind_text(statement, i, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
-  }
-  void bind(int i, const std::vector<double>& numbers) {
-    sqlite3_bind_blob(statement, i, numbers.data(), static_cast<int>(numbers.size() * sizeof(double)),
-                      SQLITE_TRANSIENT);
-  }
-  void take(int i, std::vector<double>& numbers) const {
-    numbers.resize(static_cast<std::size_t>(sqlite3_column_bytes(statement, i)) / sizeof(double));
-    if (!numbers.empty())
-      std::memcpy(numbers.data(), sqlite3_column_blob(statement, i), numbers.size() * sizeof(double));
-  }
-  bool step() {
-    const int code = sqlite3_step(statement);
-    if (code != SQLITE_ROW && code != SQLITE_DONE) store_.fail("used");
-    return code == SQLITE_ROW;
-  }
-  void once() {
-    (void)step();
-    sqlite3_reset(statement);
-  }
-  [[nodiscard]] double number(int i) const {
-    return sqlite3_column_type(statement, i) == SQLITE_NULL ? std::nan("") : sqlite3_column_double(statement, i);
-  }
-  [[nodiscard]] long integer(int i) const { return sqlite3_column_int64(statement, i); }
-  [[nodiscard]] std::string text(int i) const {
-    const unsigned char* bytes = sqlite3_column_text(statement, i);
-    return bytes ? std::string(reinterpret_cast<const char*>(bytes),
-                               static_cast<std::size_t>(sqlite3_column_bytes(statement, i)))
-                 : "";
-  }
-
-  Store& store_;
-  sqlite3_stmt* statement = nullptr;
-};
+void Store::Statement::bind(int i, double x) {
+  std::isnan(x) ? sqlite3_bind_null(statement, i) : sqlite3_bind_double(statement, i, x);
+}
+void Store::Statement::bind(int i, long n) { sqlite3_bind_int64(statement, i, n); }
+void Store::Statement::bind(int i, const std::string& text) {
+  sqlite3_bind_text(statement, i, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
+}
+void Store::Statement::bind(int i, const std::vector<double>& numbers) {
+  sqlite3_bind_blob(statement, i, numbers.data(), static_cast<int>(numbers.size() * sizeof(double)), SQLITE_TRANSIENT);
+}
+void Store::Statement::take(int i, std::vector<double>& numbers) const {
+  numbers.resize(static_cast<std::size_t>(sqlite3_column_bytes(statement, i)) / sizeof(double));
+  if (!numbers.empty()) std::memcpy(numbers.data(), sqlite3_column_blob(statement, i), numbers.size() * sizeof(double));
+}
+bool Store::Statement::step() {
+  const int code = sqlite3_step(statement);
+  if (code != SQLITE_ROW && code != SQLITE_DONE) store_.fail("used");
+  return code == SQLITE_ROW;
+}
+void Store::Statement::once() {
+  (void)step();
+  sqlite3_reset(statement);
+}
+double Store::Statement::number(int i) const {
+  const int type = sqlite3_column_type(statement, i);
+  if (type == SQLITE_TEXT || type == SQLITE_BLOB) store_.damaged("a number is none");
+  return type == SQLITE_NULL ? std::nan("") : sqlite3_column_double(statement, i);
+}
+long Store::Statement::integer(int i) const {
+  const int type = sqlite3_column_type(statement, i);
+  if (type != SQLITE_INTEGER && type != SQLITE_NULL) store_.damaged("a whole number is none");
+  return sqlite3_column_int64(statement, i);
+}
+std::string Store::Statement::text(int i) const {
+  const int type = sqlite3_column_type(statement, i);
+  if (type != SQLITE_TEXT && type != SQLITE_NULL) store_.damaged("a text is none");
+  const unsigned char* bytes = sqlite3_column_text(statement, i);
+  return bytes ? std::string(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(sqlite3_column_bytes(statement, i)))
+               : "";
+}
 
 void Store::fail(const std::string& doing) {
   const int code = sqlite3_extended_errcode(database_), kind = code & 0xff;
@@ -91,6 +92,9 @@ void Store::fail(const std::string& doing) {
 void Store::execute(const std::string& sql) {
   if (sqlite3_exec(database_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail("used");
 }
+
+bool Store::is_in_transaction() const { return sqlite3_get_autocommit(database_) == 0; }
+void Store::end_reading() noexcept { sqlite3_exec(database_, "COMMIT", nullptr, nullptr, nullptr); }
 
 void Store::begin() {
   if (!is_open_) execute("BEGIN IMMEDIATE");
@@ -136,21 +140,38 @@ void Store::open(const std::string& path, bool is_writing) {
   }
   constexpr int k_patience = 10000; // ms, while another process reads or writes
   sqlite3_busy_timeout(database_, k_patience);
+  // A name that is not there is an error, never a text; what the file itself holds of SQL is not run.
+  sqlite3_db_config(database_, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
+  sqlite3_db_config(database_, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
+  sqlite3_db_config(database_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_exec(database_, "PRAGMA cell_size_check = ON", nullptr, nullptr, nullptr);
+}
+
+// Nothing was written to it yet, or what was written first was cut off.
+bool Store::is_empty() {
+  Statement s(*this, "SELECT count(*) FROM sqlite_master");
+  return s.step() && s.integer(0) == 0 && pragma("application_id") == 0;
+}
+
+long Store::pragma(const char* name) {
+  Statement s(*this, std::string("PRAGMA ") + name);
+  return s.step() ? s.integer(0) : 0L;
 }
 
 Store::Store(const std::string& path) : Store() {
   open(path, false);
   read_identity();
+  check();
 }
 
 Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode mode) : Store() {
   if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
     throw StoreError("'" + path + "' is no file: a store cannot be kept there");
-  const bool is_there = std::filesystem::exists(path) && std::filesystem::file_size(path) > 0;
   open(path, true);
+  const bool is_there = !is_empty();
   if (mode == StoreMode::restart && is_there) {
-    read_identity(); // never overwrites what is no store
-    for (const char* table : {"sample", "finding", "growth", "note", "setting", "curve", "history"})
+    check_kind(); // never overwrites what is no store
+    for (const char* table : {"sample", "batch", "finding", "growth", "note", "setting", "curve", "history"})
       execute("DROP TABLE IF EXISTS " + quoted(table));
   }
   if (!is_there || mode == StoreMode::restart) {
@@ -158,6 +179,7 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
     return;
   }
   read_identity();
+  check();
   if (identity_.version != identity.version)
     throw StoreError("the store '" + path + "' was made by version " + identity_.version + ", this is " +
                      identity.version + ": --restart begins anew, or choose another store with -o");
@@ -165,21 +187,32 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
       identity_.numbers != identity.numbers)
     throw StoreError("the store '" + path +
                      "' is of another study: its models, variables, responses or limit states are not those of the "
-                     "study file any more. "
-                     "--restart begins anew and drops its " +
+                     "study file any more" +
+                     changed_files(identity) + ". --restart begins anew and drops its " +
                      std::to_string(size_) + " samples; -o names another store");
   if (identity_.study != identity.study || identity_.kind != identity.kind) {
     if (mode == StoreMode::run)
-      throw StoreError("the study has changed since the store '" + path +
-                       "' was made: --changed goes on with those of its " + std::to_string(size_) +
+      throw StoreError("the study has changed since the store '" + path + "' was made" + changed_files(identity) +
+                       ": --changed goes on with those of its " + std::to_string(size_) +
                        " samples that are the same, --restart begins anew, -o names another store");
     set("study", identity.study);
     set("kind", identity.kind);
     // What was found is of what was asked before: until it is found anew there is no answer.
     for (const char* table : {"growth", "finding", "note"}) execute("DELETE FROM " + quoted(table));
     set("standing", "");
+    set("changed", "its samples may be of the study as it was before");
     identity_ = identity;
   }
+  set("files", files_text(identity));
+}
+
+// Of the files that the store was made of, those that hold something else now; for a message.
+std::string Store::changed_files(const StoreIdentity& now) {
+  std::string text;
+  const std::string before = setting("files");
+  for (const InputFile& file : now.files)
+    if (before.find(file.sha256) == std::string::npos) text += (text.empty() ? "" : ", ") + ("'" + file.path + "'");
+  return text.empty() ? "" : " (changed, or new: " + text + ")";
 }
 
 Store::~Store() {
@@ -202,7 +235,8 @@ void Store::create(const StoreIdentity& identity) {
   execute("BEGIN IMMEDIATE");
   execute("PRAGMA application_id = " + std::to_string(k_application));
   execute("PRAGMA user_version = " + std::to_string(k_layout));
-  execute("CREATE TABLE setting (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID");
+  execute("CREATE TABLE setting (key TEXT PRIMARY KEY, value TEXT NOT NULL, fingerprint INTEGER) WITHOUT ROWID");
+  execute("CREATE TABLE batch (last INTEGER PRIMARY KEY, fingerprint INTEGER NOT NULL)");
   std::string sql = "CREATE TABLE sample (number INTEGER PRIMARY KEY, status INTEGER NOT NULL, reason TEXT, error "
                     "REAL, evaluations REAL, cpu_seconds REAL";
   for (const std::string& name : identity.variables) sql += ", " + quoted("v_" + name) + " REAL";
@@ -211,12 +245,13 @@ void Store::create(const StoreIdentity& identity) {
   for (const char* table : {"finding", "growth"})
     execute("CREATE TABLE " + quoted(table) +
             " (place INTEGER PRIMARY KEY, method TEXT, subject TEXT, quantity TEXT, value REAL, low REAL, high REAL, "
-            "samples INTEGER, status TEXT)");
+            "samples INTEGER, status TEXT, fingerprint INTEGER)");
   if (identity.has_curves) {
     execute("CREATE TABLE curve (number INTEGER PRIMARY KEY, data BLOB NOT NULL)");
-    execute("CREATE TABLE history (place INTEGER PRIMARY KEY, name TEXT, t REAL, measured REAL, fitted REAL)");
+    execute("CREATE TABLE history (place INTEGER PRIMARY KEY, name TEXT, t REAL, measured REAL, fitted REAL, "
+            "fingerprint INTEGER)");
   }
-  execute("CREATE TABLE note (place INTEGER PRIMARY KEY, text TEXT)");
+  execute("CREATE TABLE note (place INTEGER PRIMARY KEY, text TEXT, fingerprint INTEGER)");
   set("version", identity.version);
   set("study", identity.study);
   set("kind", identity.kind);
@@ -228,20 +263,25 @@ void Store::create(const StoreIdentity& identity) {
   };
   set("variables", joined(identity.variables));
   set("numbers", joined(identity.numbers));
+  set("files", files_text(identity));
   execute("COMMIT");
 }
 
 void Store::set(const std::string& key, const std::string& value) {
-  Statement s(*this, "INSERT OR REPLACE INTO setting VALUES (?, ?)");
+  Statement s(*this, "INSERT OR REPLACE INTO setting VALUES (?, ?, ?)");
   s.bind(1, key);
   s.bind(2, value);
+  s.bind(3, fingerprint_of(key, value));
   s.once();
 }
 
 std::string Store::setting(const std::string& key) {
-  Statement s(*this, "SELECT value FROM setting WHERE key = ?");
+  Statement s(*this, "SELECT value, fingerprint FROM setting WHERE key = ?");
   s.bind(1, key);
-  return s.step() ? s.text(0) : "";
+  if (!s.step()) return "";
+  std::string value = s.text(0);
+  if (s.integer(1) != fingerprint_of(key, value)) damaged("what it says of '" + key + "' is not what was written");
+  return value;
 }
 
 void Store::describe(const std::string& about) {
@@ -256,15 +296,15 @@ void Store::hold() {
   read_identity(); // takes the lock, and the size of this instant
 }
 
-void Store::read_identity() {
-  const auto number = [this](const char* pragma) {
-    Statement s(*this, std::string("PRAGMA ") + pragma);
-    return s.step() ? s.integer(0) : 0L;
-  };
-  if (number("application_id") != k_application) throw StoreError("'" + path_ + "' is no store of a study");
-  if (const long layout = number("user_version"); layout != k_layout)
+void Store::check_kind() {
+  if (pragma("application_id") != k_application) throw StoreError("'" + path_ + "' is no store of a study");
+  if (const long layout = pragma("user_version"); layout != k_layout)
     throw StoreError("the store '" + path_ + "' has the layout " + std::to_string(layout) +
                      "; this program reads layout " + std::to_string(k_layout));
+}
+
+void Store::read_identity() {
+  check_kind();
   const auto split = [](const std::string& text) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < text.size();) {
@@ -281,7 +321,7 @@ void Store::read_identity() {
   Statement s(*this, "SELECT count(*), max(number) FROM sample");
   (void)s.step();
   size_ = s.integer(0);
-  if (s.integer(1) != size_) throw StoreError("the store '" + path_ + "' is damaged: samples are missing in it");
+  if (s.integer(1) != size_) damaged("samples are missing in it");
 }
 
 void Store::read(long first, long count, std::vector<StoredSample>& rows) {
@@ -290,10 +330,10 @@ void Store::read(long first, long count, std::vector<StoredSample>& rows) {
   s.bind(1, first);
   s.bind(2, first + count);
   for (StoredSample& row : rows) {
-    if (!s.step()) throw StoreError("the store '" + path_ + "' is damaged: samples are missing in it");
+    if (!s.step()) damaged("samples are missing in it");
     int c = 0;
     row.number = s.integer(c++);
-    row.outcome.status = static_cast<SampleStatus>(s.integer(c++));
+    row.outcome.status = status_of(s.integer(c++));
     row.outcome.reason = s.text(c++);
     row.outcome.error = s.number(c++);
     row.outcome.evaluations = s.number(c++);
@@ -311,7 +351,7 @@ void Store::read_curves(long first, std::vector<StoredSample>& rows) {
   s.bind(1, first);
   s.bind(2, first + static_cast<long>(rows.size()));
   for (StoredSample& row : rows) {
-    if (!s.step()) throw StoreError("the store '" + path_ + "' is damaged: histories of samples are missing in it");
+    if (!s.step()) damaged("histories of samples are missing in it");
     s.take(0, row.outcome.curve);
   }
 }
@@ -343,12 +383,21 @@ void Store::append(const StoredSample* rows, std::size_t count) {
     curves->once();
   }
   size_ += static_cast<long>(count);
+  put_batch(rows, count);
   commit_if_due();
 }
 
+// The batch that is cut gets the fingerprint of what is left of it.
 void Store::forget_from(long number) {
   if (number > size_) return;
   begin();
+  const long first = begin_of_batch(number);
+  std::vector<StoredSample> left;
+  read(first, number - first, left);
+  Statement gone(*this, "DELETE FROM batch WHERE last >= ?");
+  gone.bind(1, number);
+  gone.once();
+  if (!left.empty()) put_batch(left.data(), left.size());
   Statement s(*this, "DELETE FROM sample WHERE number >= ?");
   s.bind(1, number);
   s.once();
@@ -357,7 +406,7 @@ void Store::forget_from(long number) {
 }
 
 void Store::put(const std::string& table, long place, const Finding& f) {
-  Statement s(*this, "INSERT OR REPLACE INTO " + quoted(table) + " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  Statement s(*this, "INSERT OR REPLACE INTO " + quoted(table) + " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   s.bind(1, place);
   s.bind(2, f.method);
   s.bind(3, f.subject);
@@ -367,6 +416,7 @@ void Store::put(const std::string& table, long place, const Finding& f) {
   s.bind(7, f.high);
   s.bind(8, f.samples);
   s.bind(9, f.status);
+  s.bind(10, fingerprint_of(table, place, f));
   s.once();
 }
 
@@ -379,21 +429,29 @@ void Store::note(long place, const Finding& finding) {
 void Store::set_histories(const std::vector<CurvePoint>& points) {
   begin();
   execute("DELETE FROM history");
-  Statement s(*this, "INSERT INTO history (name, t, measured, fitted) VALUES (?, ?, ?, ?)");
+  Statement s(*this, "INSERT INTO history VALUES (?, ?, ?, ?, ?, ?)");
+  long place = 0;
   for (const CurvePoint& p : points) {
-    s.bind(1, p.history);
-    s.bind(2, p.t);
-    s.bind(3, p.measured);
-    s.bind(4, p.fitted);
+    s.bind(1, ++place);
+    s.bind(2, p.history);
+    s.bind(3, p.t);
+    s.bind(4, p.measured);
+    s.bind(5, p.fitted);
+    s.bind(6, fingerprint_of(place, p));
     s.once();
   }
 }
 
 std::vector<Store::CurvePoint> Store::histories() {
   if (!identity_.has_curves) return {};
-  Statement s(*this, "SELECT name, t, measured, fitted FROM history ORDER BY place");
+  Statement s(*this, "SELECT name, t, measured, fitted, place, fingerprint FROM history ORDER BY place");
   std::vector<CurvePoint> points;
-  while (s.step()) points.push_back({s.text(0), s.number(1), s.number(2), s.number(3)});
+  while (s.step()) {
+    points.push_back({s.text(0), s.number(1), s.number(2), s.number(3)});
+    const long place = static_cast<long>(points.size());
+    if (s.integer(4) != place || s.integer(5) != fingerprint_of(place, points.back()))
+      damaged("a row of a history is not what was written");
+  }
   return points;
 }
 
@@ -404,22 +462,29 @@ void Store::set_findings(const std::vector<Finding>& findings, const std::vector
   execute("DELETE FROM note");
   for (std::size_t i = 0; i < findings.size(); ++i) put("finding", static_cast<long>(i + 1), findings[i]);
   for (std::size_t i = 0; i < notes.size(); ++i) {
-    Statement s(*this, "INSERT INTO note VALUES (?, ?)");
+    Statement s(*this, "INSERT INTO note VALUES (?, ?, ?)");
     s.bind(1, static_cast<long>(i + 1));
     s.bind(2, notes[i]);
+    s.bind(3, fingerprint_of(std::to_string(i + 1), notes[i]));
     s.once();
   }
   set("standing", standing);
+  set("answer", counts_text(findings.size(), notes.size()));
+  set("changed", "");
   flush();
 }
 
 std::vector<Finding> Store::all_of(const std::string& table) {
-  Statement s(*this, "SELECT method, subject, quantity, value, low, high, samples, status FROM " + quoted(table) +
-                         " ORDER BY place");
+  Statement s(*this, "SELECT method, subject, quantity, value, low, high, samples, status, place, fingerprint FROM " +
+                         quoted(table) + " ORDER BY place");
   std::vector<Finding> findings;
-  while (s.step())
+  while (s.step()) {
     findings.push_back(
         {s.text(0), s.text(1), s.text(2), s.number(3), s.number(4), s.number(5), s.integer(6), s.text(7)});
+    const long place = static_cast<long>(findings.size());
+    if (s.integer(8) != place || s.integer(9) != fingerprint_of(table, place, findings.back()))
+      damaged("what was found is not what was written");
+  }
   return findings;
 }
 
@@ -427,9 +492,14 @@ std::vector<Finding> Store::findings() { return all_of("finding"); }
 std::vector<Finding> Store::growth() { return all_of("growth"); }
 
 std::vector<std::string> Store::notes() {
-  Statement s(*this, "SELECT text FROM note ORDER BY place");
+  Statement s(*this, "SELECT text, place, fingerprint FROM note ORDER BY place");
   std::vector<std::string> notes;
-  while (s.step()) notes.push_back(s.text(0));
+  while (s.step()) {
+    notes.push_back(s.text(0));
+    const auto place = static_cast<long>(notes.size());
+    if (s.integer(1) != place || s.integer(2) != fingerprint_of(std::to_string(place), notes.back()))
+      damaged("a note is not what was written");
+  }
   return notes;
 }
 
@@ -452,7 +522,7 @@ std::vector<Store::Reason> Store::reasons() {
                      "reason ORDER BY status, n DESC, min(number)");
   std::vector<Reason> reasons;
   while (s.step())
-    reasons.push_back({name_of(static_cast<SampleStatus>(s.integer(0))), s.text(1), s.integer(2), s.integer(3)});
+    reasons.push_back({name_of(status_of(s.integer(0))), s.text(1), s.integer(2), s.integer(3)});
   return reasons;
 }
 

@@ -1,9 +1,11 @@
 // What a study leaves behind: one SQLite file with the study, the models, every sample and every finding.
 //
 // Samples are numbered from 1 in the order in which the study asks for them and are written in transactions, so that
-// those in the file are always the first so many. One process writes.
+// those in the file are always the first so many. One process writes. What is opened is looked at as a whole: a store
+// that is damaged is refused (store_check.cpp).
 #pragma once
 
+#include "mbd/io/input_files.h"
 #include "tools/study/scene.h"
 #include "tools/study/finding.h"
 
@@ -32,6 +34,7 @@ struct StoreIdentity {
   std::string scene;    ///< all that a sample's numbers depend on: models, variables, responses, limit states
   std::vector<std::string> variables, numbers; ///< names of columns
   bool has_curves = false; ///< every sample has the values of its run at measured times
+  std::vector<InputFile> files{}; ///< all that the study and its models were read from
 };
 [[nodiscard]] StoreIdentity identity_of(const LoadedStudy& loaded);
 
@@ -53,6 +56,8 @@ public:
 
   [[nodiscard]] const StoreIdentity& identity() const { return identity_; }
   [[nodiscard]] long size() const { return size_; } ///< samples
+  /// The study was changed, and not ended since: some samples may be of what it was before.
+  [[nodiscard]] bool may_hold_others() { return !setting("changed").empty(); }
   /// Rows number first … first + count − 1, all there.
   void read(long first, long count, std::vector<StoredSample>& rows);
   /// On the disk within half a second, or with the next call of append(), note() or flush() after that.
@@ -95,6 +100,9 @@ private:
   void open(const std::string& path, bool is_writing);
   bool is_cut_off();
   void lock();
+  [[nodiscard]] bool is_empty();
+  [[nodiscard]] long pragma(const char* name);
+  void check_kind();
   void create(const StoreIdentity& identity);
   void execute(const std::string& sql);
   void begin();
@@ -104,7 +112,23 @@ private:
   void read_curves(long first, std::vector<StoredSample>& rows);
   void put(const std::string& table, long place, const Finding& finding);
   [[nodiscard]] std::vector<Finding> all_of(const std::string& table);
+  [[nodiscard]] bool is_in_transaction() const;
+  void end_reading() noexcept;
   [[noreturn]] void fail(const std::string& doing);
+  [[noreturn]] void damaged(const std::string& why) const;
+  [[nodiscard]] SampleStatus status_of(long status) const;
+  static long fingerprint_of(const std::string& key, const std::string& value);
+  static long fingerprint_of(const std::string& table, long place, const Finding& finding);
+  static long fingerprint_of(long place, const CurvePoint& point);
+  static std::string counts_text(std::size_t findings, std::size_t notes);
+  static std::string files_text(const StoreIdentity& identity);
+  [[nodiscard]] std::string changed_files(const StoreIdentity& now);
+  void put_batch(const StoredSample* rows, std::size_t count);
+  [[nodiscard]] long begin_of_batch(long number);
+  void check();
+  void check_pages();
+  void check_settings();
+  void check_samples();
   [[nodiscard]] std::string sample_columns() const;
 
   std::string path_;

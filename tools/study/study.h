@@ -99,6 +99,7 @@ struct ReliabilitySettings {
   std::optional<double> seconds;         ///< and at this time for each method
   double difference = 1e-3;              ///< step of difference in standard normal space
   long starts = 8;                       ///< of the search for design points
+  std::optional<long> search_samples;    ///< for all searches together; 300 and 50 for each variable if not given
   long subset_samples = 2000;            ///< a level
   long repetitions = 4;                  ///< of subset simulation: its interval comes from their scatter
   double confidence = 0.95;

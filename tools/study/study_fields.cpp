@@ -162,6 +162,10 @@ FieldTable reliability_fields() {
       .at_most(0.5)
       .doc("step of the difference quotients of FORM and SORM, in standard deviations");
   t.add("starts", &S::starts).at_least(1).at_most(1000).doc("of the search for design points");
+  t.add("search_samples", &S::search_samples)
+      .at_least(10)
+      .at_most(1e7)
+      .doc("for all searches for design points together; 300 and 50 more for each variable if not given");
   t.add("subset_samples", &S::subset_samples).at_least(100).at_most(1e7).doc("samples a level of subset simulation");
   t.add("repetitions", &S::repetitions)
       .at_least(2)

@@ -148,6 +148,7 @@ private:
         continue;
       }
       try {
+        const InputFiles inputs;
         auto model = std::make_shared<StudyModel>();
         model->path = path;
         model->name = given.stem().string();
@@ -156,6 +157,7 @@ private:
         Model whole = completed(model->given);
         model->system = compile(whole);
         (void)check_presentation(whole, *model->system);
+        model->files = inputs.files();
         for (const auto& other : models_)
           if (other->name == model->name) add(node->children[i].where(), "two models are called '" + model->name + "'");
         models_.push_back(std::move(model));
@@ -559,14 +561,18 @@ LoadedStudy read_study(const std::string& path) {
   if (!stream) throw ModelError(Location{path, 0, 0}, "the study file cannot be read");
   std::ostringstream text;
   text << stream.rdbuf();
+  const InputFiles inputs;
   LoadedStudy loaded = Reader(load_document(path), path).read();
   loaded.study.text = model_source_text(path);
+  loaded.files = inputs.files();
   return loaded;
 }
 
 LoadedStudy parse_study(std::string text, const std::string& file_name) {
+  const InputFiles inputs;
   LoadedStudy loaded = Reader(parse_document(text, file_name), file_name).read();
   loaded.study.text = std::move(text);
+  loaded.files = inputs.files();
   return loaded;
 }
 

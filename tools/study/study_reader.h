@@ -1,6 +1,7 @@
 // Study files (TOML), as strict as model files: every error with its place, all of them at once, before anything runs.
 #pragma once
 
+#include "mbd/io/input_files.h"
 #include "mbd/system/system.h"
 #include "tools/study/study.h"
 
@@ -14,6 +15,7 @@ struct StudyModel {
   std::string path, name; ///< name: the file's without ending
   Model given;
   std::string text;       ///< effective model, as TOML that stands alone
+  std::vector<InputFile> files; ///< that it was read from: the model, what it extends, its records
   std::unique_ptr<System> system;
   std::vector<double> base; ///< per variable: what the first of its paths holds; not-a-number if it has none here
 };
@@ -29,6 +31,7 @@ struct LoadedStudy {
   Study study;
   std::vector<std::shared_ptr<const StudyModel>> models;
   std::vector<double> nominal; ///< per variable
+  std::vector<InputFile> files; ///< that the study was read from, without its models
   std::vector<ModelVariant> variants; ///< not empty: the last variable says which, from 1; 0 is the model as it is
 
   /// Values, responses and limit states: the names that expressions may use, in the order of the numbers.
@@ -38,6 +41,8 @@ struct LoadedStudy {
   /// Values of all histories, one after the other.
   [[nodiscard]] std::size_t curve_size() const;
   [[nodiscard]] std::size_t number_count() const { return study.responses.size() + study.limit_states.size(); }
+  /// A record that does not hold any more what it held when the study was read; "" if there is none.
+  [[nodiscard]] std::string changed_record() const;
   /// Place among the numbers of a response or limit state; −1 if there is none.
   [[nodiscard]] int index_of_number(const std::string& name) const;
 };

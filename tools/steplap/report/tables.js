@@ -138,6 +138,7 @@ steplap.tables = (() => {
       if (judgement) {
         const sentence = judgement.criteria.length ? sentences[judgement.verdict] : 'The model states no criteria.';
         card.append(make('span', { class: `badge ${judgement.verdict}` }, judgement.verdict.toUpperCase()), make('p', {}, sentence + (run.summary.completed ? '' : ` The run broke off; what was computed until then: ${judgement.so_far}.`) + (judgement.distrust ? ` NOT TO BE TRUSTED: ${judgement.distrust}.` : '')));
+        if (judgement.capped_by.length) card.append(make('p', {}, 'It cannot be “hold”:'), make('ul', { class: 'caps' }, ...judgement.capped_by.map((why) => make('li', {}, why))));
         if (judgement.criteria.length) card.append(scroll(criteria(run)));
       } else card.append(make('p', {}, 'The model states no criteria: what happened is below.'));
       card.append(...joints(run));

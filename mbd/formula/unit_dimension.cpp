@@ -1,4 +1,4 @@
-#include "mbd/system/unit_dimension.h"
+#include "mbd/formula/unit_dimension.h"
 
 #include "mbd/base/number_text.h"
 

@@ -1,0 +1,78 @@
+#include "mbd/dynamics/layout_store.h"
+
+#include "mbd/dynamics/stage_program.h"
+
+#include <algorithm>
+
+namespace steplap {
+
+namespace {
+
+// All layouts together are meant to take about this much memory: below what else a run of a large scene needs, and for scenes of some
+// bodies all sets of modes that ever come back.
+constexpr std::size_t k_store_bytes = 32U << 20U;
+// Bytes of a layout for each body and each row that may hold, an estimate: 374 MB after 6300 sets of modes of 300 landing blocks,
+// when all were kept, are 0.2 kB a body.
+constexpr std::size_t k_bytes_per_member = 512;
+// A run that goes back and forth between two sets of modes never finds one anew; a dozen contacts have some hundred of them.
+constexpr std::size_t k_fewest = 16, k_most = 1024;
+
+std::size_t usual_count(const System& system) {
+  const std::size_t members = system.bodies.size() + system.rows.size() + static_cast<std::size_t>(system.friction_row_count);
+  return std::clamp(k_store_bytes / (k_bytes_per_member * members), k_fewest, k_most);
+}
+
+} // namespace
+
+LayoutStore::LayoutStore(const System& system) : system_(system), most_(usual_count(system)) {}
+
+LayoutStore::Found LayoutStore::at(const State& state, Coordinates coordinates) {
+  layout_key(state, coordinates, key_);
+  const auto known = std::lower_bound(by_key_.begin(), by_key_.end(), key_,
+                                      [](const Place& place, const LayoutKey& key) { return place->key < key; });
+  if (known != by_key_.end() && (*known)->key == key_) {
+    layouts_.splice(layouts_.begin(), layouts_, *known);
+    return {layouts_.front(), false};
+  }
+  layouts_.push_front(make_layout(system_, state, coordinates, merged_at(state)));
+  by_key_.insert(known, layouts_.begin());
+  give_up_beyond(most_);
+  return {layouts_.front(), true};
+}
+
+const MergedBodies& LayoutStore::merged_at(const State& state) {
+  const std::vector<int> sticking = merging_frictions(system_, state);
+  const auto known = std::find_if(merged_.begin(), merged_.end(), [&](const MergedBodies& m) { return m.frictions == sticking; });
+  return known != merged_.end() ? *known : merged_.emplace_back(merge_bodies(system_, state));
+}
+
+void LayoutStore::give_up_beyond(std::size_t count) {
+  while (layouts_.size() > count) {
+    const Place last = std::prev(layouts_.end());
+    by_key_.erase(std::find(by_key_.begin(), by_key_.end(), last));
+    layouts_.pop_back();
+  }
+}
+
+void LayoutStore::clear() {
+  by_key_.clear();
+  layouts_.clear();
+  merged_.clear();
+}
+
+void LayoutStore::keep_at_most(std::size_t count) {
+  most_ = count;
+  give_up_beyond(count);
+}
+
+std::size_t LayoutStore::program_count() const {
+  std::size_t count = 0;
+  for (const Layout& layout : layouts_) count += layout.programs.size();
+  return count;
+}
+
+void LayoutStore::clear_programs() {
+  for (Layout& layout : layouts_) layout.programs.clear();
+}
+
+} // namespace steplap

@@ -1,0 +1,79 @@
+// What a formula can be over a short span of time: a polynomial in u, |u| <= 1, and how far from it at most (a Taylor model,
+// K. Makino and M. Berz, Int. J. Pure Appl. Math. 4 (2003) 379), with the interval of its values beside it.
+//
+// The polynomial keeps what operands have in common, so that a difference of large ones is not taken for large, and its
+// remainder falls with the power of the degree + 1 as the span becomes shorter. Where a function has a kink, a pole or the end
+// of what it is defined on inside the span, only the interval is kept, of which a shorter span makes more. Degree 0 is for
+// points in time. Roundings count: nothing that the operations say is left out by them.
+#pragma once
+
+#include "mbd/formula/formula_tree.h"
+#include "mbd/formula/interval.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+template <int Degree> struct Enclosure {
+  Interval range;
+  std::array<double, Degree + 1> c{}; ///< of 1, u, u² …
+  double rest = 0.0;                  ///< how far from the polynomial at most; infinite where there is none
+  bool is_partial = false;            ///< somewhere in the span it may have no value
+
+  [[nodiscard]] bool has_polynomial() const { return std::isfinite(rest); }
+  [[nodiscard]] double polynomial(double u) const {
+    double sum = c[Degree];
+    for (int k = Degree - 1; k >= 0; --k) sum = sum * u + c[k];
+    return sum;
+  }
+
+  [[nodiscard]] static Enclosure of_number(double value);
+  [[nodiscard]] static Enclosure of_range(const Interval& range, bool is_partial = false);
+  [[nodiscard]] static Enclosure of_polynomial(const std::array<double, Degree + 1>& c, double rest);
+};
+
+/// Where in |u| <= 1 the polynomial up to its square is largest.
+template <int Degree> [[nodiscard]] double place_of_largest(const Enclosure<Degree>& e, double sign);
+
+/// For evaluate (formula_tree.h).
+template <int Degree> struct EnclosingNumbers {
+  using Value = Enclosure<Degree>;
+  static Value number(double a) { return Value::of_number(a); }
+  static Value add(const Value& a, const Value& b);
+  static Value subtract(const Value& a, const Value& b);
+  static Value multiply(const Value& a, const Value& b);
+  static Value divide(const Value& a, const Value& b);
+  static Value power(const Value& a, const Value& b);
+  static Value negate(const Value& a);
+  static Value abs(const Value& a);
+  static Value sqrt(const Value& a);
+  static Value hypot(const Value& a, const Value& b);
+  static Value min(const Value& a, const Value& b);
+  static Value max(const Value& a, const Value& b);
+  static Value sin(const Value& a);
+  static Value cos(const Value& a);
+  static Value tan(const Value& a);
+  static Value asin(const Value& a);
+  static Value acos(const Value& a);
+  static Value atan(const Value& a);
+  static Value atan2(const Value& y, const Value& x);
+  static Value exp(const Value& a);
+  static Value ln(const Value& a);
+  static Value log10(const Value& a);
+  static Value less(const Value& a, const Value& b);
+  static Value less_or_equal(const Value& a, const Value& b);
+  static Value equal(const Value& a, const Value& b);
+  static Value both(const Value& a, const Value& b);
+  static Value either(const Value& a, const Value& b);
+  static Value negation(const Value& a);
+  static Value choice(const Value& condition, const Value& yes, const Value& no);
+  static Value finite(const Value& a);
+};
+
+inline constexpr int k_enclosure_degree = 8;
+extern template struct EnclosingNumbers<0>;
+extern template struct EnclosingNumbers<k_enclosure_degree>;
+
+} // namespace steplap

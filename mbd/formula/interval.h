@@ -1,0 +1,53 @@
+// Intervals of numbers, and what the operations of formulas make of them: the interval of all values that they can take,
+// rounded outward (by two units in the last place, more than portable_math.h leaves; what underflows is left as it is).
+//
+// A result may be partial: some of the arguments have no value, as roots of what is negative. What has none anywhere is empty.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+namespace steplap {
+
+struct Interval {
+  double low = 0.0, high = 0.0;
+
+  [[nodiscard]] bool is_empty() const { return !(low <= high); }
+  [[nodiscard]] bool holds(double x) const { return low <= x && x <= high; }
+  [[nodiscard]] bool is_bounded() const { return low >= -std::numeric_limits<double>::max() && high <= std::numeric_limits<double>::max(); }
+  [[nodiscard]] double middle() const { return 0.5 * low + 0.5 * high; }
+  [[nodiscard]] double radius() const { return 0.5 * high - 0.5 * low; }
+};
+
+namespace interval {
+
+inline constexpr Interval k_none{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+inline constexpr Interval k_all{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+
+[[nodiscard]] Interval widened(double low, double high);
+[[nodiscard]] inline Interval hull(const Interval& a, const Interval& b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
+[[nodiscard]] inline Interval common(const Interval& a, const Interval& b) { return {std::max(a.low, b.low), std::min(a.high, b.high)}; }
+
+// None of these is handed what is empty.
+[[nodiscard]] Interval add(const Interval& a, const Interval& b);
+[[nodiscard]] Interval subtract(const Interval& a, const Interval& b);
+[[nodiscard]] Interval multiply(const Interval& a, const Interval& b);
+[[nodiscard]] Interval divide(const Interval& a, const Interval& b, bool& is_partial);
+[[nodiscard]] Interval power(const Interval& a, double exponent, bool& is_partial);
+[[nodiscard]] Interval power(const Interval& a, const Interval& b, bool& is_partial);
+[[nodiscard]] Interval abs(const Interval& a);
+[[nodiscard]] Interval sqrt(const Interval& a, bool& is_partial);
+[[nodiscard]] Interval hypot(const Interval& a, const Interval& b);
+[[nodiscard]] Interval sin(const Interval& a);
+[[nodiscard]] Interval cos(const Interval& a);
+[[nodiscard]] Interval tan(const Interval& a);
+[[nodiscard]] Interval asin(const Interval& a, bool& is_partial);
+[[nodiscard]] Interval acos(const Interval& a, bool& is_partial);
+[[nodiscard]] Interval atan(const Interval& a);
+[[nodiscard]] Interval atan2(const Interval& y, const Interval& x);
+[[nodiscard]] Interval exp(const Interval& a);
+[[nodiscard]] Interval ln(const Interval& a, bool& is_partial);
+
+} // namespace interval
+
+} // namespace steplap

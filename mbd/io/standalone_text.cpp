@@ -1,0 +1,69 @@
+#include "mbd/io/standalone_text.h"
+
+#include "mbd/io/input_files.h"
+#include "mbd/io/toml_writer.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Calls `visit` with every entry of [[signal]] in `root` that names a file, and with that name.
+template <class Root, class Visit> void visit_named_files(Root& root, const Catalogue& catalogue, const Visit& visit) {
+  auto* const signals = root.find("signal");
+  if (!signals || !signals->is_array_of_tables()) return;
+  for (auto& entry : signals->children) {
+    const Node* const kind_name = entry.find("kind");
+    const auto kind = std::find_if(catalogue.signals.begin(), catalogue.signals.end(),
+                                   [&](const SignalKind* k) { return kind_name && k->name == kind_name->text(); });
+    if (kind == catalogue.signals.end()) continue;
+    for (const Field& field : (*kind)->fields.fields())
+      if (auto* const name = entry.find(field.name); field.type == FieldType::file && name && !name->text().empty())
+        visit(entry, *name);
+  }
+}
+
+std::string absolute(const std::string& file) {
+  std::error_code ignored;
+  return fs::weakly_canonical(fs::absolute(file), ignored).string();
+}
+
+Node text_node(const std::string& key, const std::string& text) {
+  Node node;
+  node.type = Node::Type::text;
+  node.key = key;
+  node.scalar = text;
+  return node;
+}
+
+} // namespace
+
+std::string path_named_by(const Node& node, const std::string& name) {
+  const fs::path given = name;
+  const bool on_command_line = node.line == 0;
+  if (given.is_absolute() || on_command_line || !node.file) return given.string();
+  return (fs::path(*node.file).parent_path() / given).lexically_normal().string();
+}
+
+std::string standalone_text(const Document& document, const Catalogue& catalogue) {
+  Node root = document.root;
+  std::vector<std::pair<Node*, std::string>> found; // entry and checksum: adding keys moves nodes
+  visit_named_files(root, catalogue, [&found](Node& entry, Node& name) {
+    const std::string path = absolute(path_named_by(name, name.text()));
+    found.emplace_back(&entry, sha256_of_file(path));
+    name.scalar = path;
+  });
+  for (const auto& [entry, checksum] : found) {
+    if (checksum.empty()) continue; // it is refused where it is needed
+    entry->erase("sha256");
+    entry->children.push_back(text_node("sha256", checksum));
+  }
+  return write_toml(root);
+}
+
+} // namespace steplap

@@ -1,0 +1,213 @@
+#include "mbd/math/part_polynomial.h"
+
+#include "mbd/math/portable_math.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace steplap {
+
+namespace {
+
+constexpr std::size_t k_order = PartPolynomial::k_order;
+using Values = PartPolynomial::Values;
+
+// Coefficients of a kink, the gap to a pin that is passed, fall as 1/j², and the rest of them sum up to so many of the last
+// two; those of what is smooth fall much faster.
+constexpr double k_tail = 4.0;
+// What T_j leaves beside the polynomial through its places is T_j − T_{12−j}, whose slope is j² − (12 − j)² at most on [−1, 1]: 24 and 48
+// for j = 7 and 8. Twice that on [0, 1], for a coefficient that E counts twice at least.
+constexpr double k_tail_slope = 48.0;
+constexpr double k_rounding = 1e-15; // of a value's largest: coefficients below it are rounding
+// Of a gap, until it is decided: each halving brings Bernstein's coefficients four times as near to the polynomial, and
+// at this depth to 1e-12 of its bend. What is nearer is divided in earnest.
+constexpr int k_depth = 20;
+constexpr int k_samples_of_gap = 8; // from which the least value is found
+constexpr int k_sections = 40;      // golden ones: to the rounding of the place
+
+struct Table {
+  Values place{}, between{};
+  std::array<Values, k_order + 1> transform{}; // Chebyshev coefficients from values
+  std::array<Values, k_order + 1> bernstein{}; // of T_j on [0, 1]
+
+  Table() {
+    const double pi = std::numbers::pi;
+    for (std::size_t k = 0; k <= k_order; ++k) {
+      place[k] = 0.5 * (1.0 - portable::cos(pi * static_cast<double>(k) / k_order));
+      between[k] = 0.5 * (1.0 - portable::cos(pi * (static_cast<double>(k) + 0.5) / k_order));
+    }
+    for (std::size_t j = 0; j <= k_order; ++j)
+      for (std::size_t k = 0; k <= k_order; ++k) {
+        double w = 2.0 / k_order * portable::cos(pi * static_cast<double>(j * (k_order - k)) / k_order);
+        if (j == 0 || j == k_order) w *= 0.5;
+        if (k == 0 || k == k_order) w *= 0.5;
+        transform[j][k] = w;
+      }
+    for (std::size_t j = 0; j <= k_order; ++j) bernstein[j] = raised(of_chebyshev(j), j);
+  }
+
+  static double choose(std::size_t n, std::size_t k) {
+    double c = 1.0;
+    for (std::size_t i = 1; i <= k; ++i) c = c * static_cast<double>(n - k + i) / static_cast<double>(i);
+    return c;
+  }
+  // T_n(2x − 1) = Σ_i (−1)^(n−i) C(2n, 2i)/C(n, i) B_i(x)
+  static Values of_chebyshev(std::size_t n) {
+    Values c{};
+    for (std::size_t i = 0; i <= n; ++i) c[i] = ((n - i) % 2 == 0 ? 1.0 : -1.0) * choose(2 * n, 2 * i) / choose(n, i);
+    return c;
+  }
+  // The same polynomial with coefficients of degree k_order.
+  static Values raised(Values c, std::size_t degree) {
+    for (std::size_t n = degree; n < k_order; ++n) {
+      Values up{};
+      for (std::size_t i = 0; i <= n + 1; ++i) {
+        const double share = static_cast<double>(i) / static_cast<double>(n + 1);
+        up[i] = (i > 0 ? share * c[i - 1] : 0.0) + (i <= n ? (1.0 - share) * c[i] : 0.0);
+      }
+      c = up;
+    }
+    return c;
+  }
+};
+
+const Table k_table; // made before main(): threads that run side by side find it made
+
+// A stretch of a gap, as long as `length` of the part.
+struct Stretch {
+  Values c; // Bernstein's coefficients
+  double length;
+  bool begins_at_place, ends_at_place;
+};
+
+// De Casteljau: what is left of `share` of it, which is taken away from `rest`.
+Values take_away(Values& rest, double share) {
+  Values left;
+  for (std::size_t n = 0; n <= k_order; ++n) {
+    left[n] = rest[0];
+    for (std::size_t i = 0; i + n < k_order; ++i) rest[i] += share * (rest[i + 1] - rest[i]);
+  }
+  return left;
+}
+
+struct Range {
+  double least, most;
+};
+
+Range range_of(const Stretch& s) {
+  const auto [least, most] = std::minmax_element(s.c.begin(), s.c.end());
+  return {*least, *most};
+}
+
+Range slopes_of(const Stretch& s) {
+  Range d{s.c[1] - s.c[0], s.c[1] - s.c[0]};
+  for (std::size_t i = 1; i < k_order; ++i) {
+    d.least = std::min(d.least, s.c[i + 1] - s.c[i]);
+    d.most = std::max(d.most, s.c[i + 1] - s.c[i]);
+  }
+  return {k_order * d.least / s.length, k_order * d.most / s.length};
+}
+
+std::array<Stretch, 2> halves(const Stretch& s) {
+  Values right = s.c;
+  const Values left = take_away(right, 0.5);
+  return {Stretch{left, 0.5 * s.length, s.begins_at_place, false}, Stretch{right, 0.5 * s.length, false, s.ends_at_place}};
+}
+
+bool is_above(const Stretch& s, double floor, double error, int depth) {
+  if (range_of(s).least >= floor + error) return true;
+  const Range slopes = slopes_of(s);
+  if (s.begins_at_place && s.c[0] >= floor && slopes.least > k_tail_slope * error) return true;
+  if (s.ends_at_place && s.c[k_order] >= floor && slopes.most < -k_tail_slope * error) return true;
+  const bool begins_in_doubt = !s.begins_at_place && s.c[0] < floor + error;
+  const bool ends_in_doubt = !s.ends_at_place && s.c[k_order] < floor + error;
+  if (depth == 0 || begins_in_doubt || ends_in_doubt) return false;
+  const auto [left, right] = halves(s);
+  return is_above(left, floor, error, depth - 1) && is_above(right, floor, error, depth - 1);
+}
+
+// How far a walk along a gap has come that is to fall below the floor and not before.
+enum class Fall { above, falling, below, in_doubt };
+
+Fall walk(const Stretch& s, Fall so_far, double floor, double error, int depth) {
+  if (so_far == Fall::below || so_far == Fall::in_doubt) return so_far;
+  if (so_far == Fall::above && is_above(s, floor, error, 0)) return Fall::above;
+  if (range_of(s).most <= floor - error) return Fall::below;
+  if (slopes_of(s).most < -k_tail_slope * error) {
+    if (s.c[k_order] >= floor + error) return Fall::above;
+    return s.c[k_order] <= floor - error ? Fall::below : Fall::falling;
+  }
+  if (depth == 0) return Fall::in_doubt;
+  const auto [left, right] = halves(s);
+  return walk(right, walk(left, so_far, floor, error, depth - 1), floor, error, depth - 1);
+}
+
+} // namespace
+
+double PartPolynomial::place(std::size_t k) { return k_table.place[k]; }
+
+double PartPolynomial::between(std::size_t gap) { return k_table.between[gap]; }
+
+void PartPolynomial::fit(const Values& values) {
+  value_ = values;
+  largest_ = 0.0;
+  chebyshev_ = {};
+  for (std::size_t k = 0; k <= k_order; ++k) {
+    largest_ = std::max(largest_, std::abs(values[k]));
+    for (std::size_t j = 0; j <= k_order; ++j) chebyshev_[j] += k_table.transform[j][k] * values[k];
+  }
+  error_ = k_tail * (std::abs(chebyshev_[k_order]) + std::abs(chebyshev_[k_order - 1]));
+  if (error_ < k_rounding * largest_) error_ = 0.0;
+  Values rest{};
+  for (std::size_t j = 0; j <= k_order; ++j)
+    for (std::size_t i = 0; i <= k_order; ++i) rest[i] += chebyshev_[j] * k_table.bernstein[j][i];
+  for (std::size_t gap = 0; gap < k_order; ++gap) {
+    const double from = k_table.place[gap], to = k_table.place[gap + 1];
+    bernstein_[gap] = gap + 1 < k_order ? take_away(rest, (to - from) / (1.0 - from)) : rest;
+    bernstein_[gap][0] = values[gap]; // but for rounding
+    bernstein_[gap][k_order] = values[gap + 1];
+  }
+}
+
+double PartPolynomial::at(double x) const {
+  const double u = 2.0 * x - 1.0;
+  double b1 = 0.0, b2 = 0.0;
+  for (std::size_t j = k_order; j > 0; --j) {
+    const double b = chebyshev_[j] + 2.0 * u * b1 - b2;
+    b2 = b1;
+    b1 = b;
+  }
+  return chebyshev_[0] + u * b1 - b2;
+}
+
+int PartPolynomial::doubtful_gap(double floor, std::size_t from, std::size_t to) const {
+  for (std::size_t gap = from; gap < to; ++gap) {
+    const Stretch whole{bernstein_[gap], place(gap + 1) - place(gap), true, true};
+    if (!is_above(whole, floor, error_, k_depth)) return static_cast<int>(gap);
+  }
+  return -1;
+}
+
+bool PartPolynomial::falls_once(double floor, std::size_t gap) const {
+  const Stretch whole{bernstein_[gap], place(gap + 1) - place(gap), true, true};
+  return walk(whole, Fall::above, floor, error_, k_depth) != Fall::in_doubt;
+}
+
+double PartPolynomial::lowest(std::size_t from, std::size_t to) const {
+  constexpr double k_golden = 0.3819660112501051;
+  const int count = k_samples_of_gap * static_cast<int>(to - from);
+  const double begin = place(from), step = (place(to) - begin) / count;
+  int least = 0;
+  for (int m = 1; m <= count; ++m)
+    if (at(begin + m * step) < at(begin + least * step)) least = m;
+  double low = begin + std::max(least - 1, 0) * step, high = begin + std::min(least + 1, count) * step;
+  for (int i = 0; i < k_sections; ++i) {
+    const double left = low + k_golden * (high - low), right = high - k_golden * (high - low);
+    const bool is_left = at(left) < at(right);
+    (is_left ? high : low) = is_left ? right : left;
+  }
+  return 0.5 * (low + high);
+}
+
+} // namespace steplap

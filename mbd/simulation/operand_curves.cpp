@@ -1,0 +1,198 @@
+#include "mbd/simulation/operand_curves.h"
+
+#include "mbd/math/portable_math.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_last = OperandCurves::k_degree;
+constexpr double k_ulp = 0x1p-52;
+// Of the values: what the evaluation of a channel rounds. Where it rounds more the last coefficients show it.
+constexpr double k_floor = 8.0 * k_ulp;
+constexpr double k_shift_rounding = 32.0 * k_ulp; // of the coefficients' sum, in a polynomial about another point
+constexpr double k_check = 0.6180339887498949;    // of a panel: far from all nodes
+constexpr double k_safety = 2.0;                  // no coefficients fall exactly as a geometric series
+constexpr double k_slowest_fall = 0.8;            // from one coefficient to the next: beyond, the series tells nothing
+constexpr double k_halved = 0.7; // an error that a half does not bring below this is not that of a polynomial
+constexpr double k_rough = 0.25; // an error beyond this share of what is seen: the hull says as much
+
+struct Tables {
+  std::array<double, k_last + 1> node{};                                   // in s, rising
+  std::array<std::array<double, k_last + 1>, k_last + 1> transform{};      // values at nodes to Chebyshev coefficients
+  std::array<std::array<double, k_last + 1>, k_last + 1> powers{};         // of s in each Chebyshev polynomial
+};
+
+// Made before main(): threads that run side by side find it made.
+const Tables k_tables = [] {
+  Tables t;
+  for (int i = 0; i < k_last / 2; ++i) {
+    t.node[i] = -portable::cos(std::numbers::pi * i / k_last);
+    t.node[k_last - i] = -t.node[i];
+  }
+  for (int k = 0; k <= k_last; ++k)
+    for (int i = 0; i <= k_last; ++i) {
+      const double ends = (k == 0 || k == k_last ? 0.5 : 1.0) * (i == 0 || i == k_last ? 0.5 : 1.0);
+      t.transform[k][i] = ends * 2.0 / k_last * portable::cos(std::numbers::pi * k * (k_last - i) / k_last);
+    }
+  t.powers[0][0] = 1.0;
+  t.powers[1][1] = 1.0;
+  for (int k = 2; k <= k_last; ++k)
+    for (int p = 0; p <= k_last; ++p) t.powers[k][p] = (p > 0 ? 2.0 * t.powers[k - 1][p - 1] : 0.0) - t.powers[k - 2][p];
+  return t;
+}();
+
+// What the series leaves out when its coefficients go on falling as the last four do; those of even and odd numbers by pairs.
+double left_out(const std::array<double, k_last + 1>& chebyshev) {
+  const double last = std::max(std::abs(chebyshev[k_last]), std::abs(chebyshev[k_last - 1]));
+  const double before = std::max(std::abs(chebyshev[k_last - 2]), std::abs(chebyshev[k_last - 3]));
+  if (last == 0.0) return 0.0;
+  const double fall = std::min(k_slowest_fall, before > 0.0 ? std::sqrt(last / before) : k_slowest_fall);
+  return k_safety * 2.0 * fall / (1.0 - fall) * last;
+}
+
+double horner(const std::array<double, k_last + 1>& c, double s) {
+  double sum = c[k_last];
+  for (int k = k_last - 1; k >= 0; --k) sum = sum * s + c[k];
+  return sum;
+}
+
+double size_of(const std::array<double, k_last + 1>& c) {
+  double sum = 0.0;
+  for (const double x : c) sum += std::abs(x);
+  return sum;
+}
+
+} // namespace
+
+OperandCurves::OperandCurves(std::vector<FormulaChannel::Leaf> leaves)
+    : leaves_(std::move(leaves)), nodes_(k_nodes, std::vector<double>(leaves_.size())), check_(leaves_.size()), first_(leaves_.size()),
+      middle_(leaves_.size()), last_(leaves_.size()) {}
+
+void OperandCurves::read(const Snapshot& snapshot, double* values) const {
+  for (std::size_t i = 0; i < leaves_.size(); ++i) values[i] = leaves_[i].factor * leaves_[i].value(snapshot);
+}
+
+int OperandCurves::add_panel(double begin, double end, int depth, int whole) {
+  panels_.push_back({begin, end, -1, depth});
+  curves_.resize(panels_.size() * leaves_.size());
+  if (whole >= 0 && panels_[static_cast<std::size_t>(whole)].half < 0) panels_[static_cast<std::size_t>(whole)].half = panels() - 1;
+  return panels() - 1;
+}
+
+void OperandCurves::begin_straight(const double* first, const double* last, const double* error) {
+  panels_.clear();
+  curves_.clear();
+  (void)add_panel(0.0, 1.0, 0, -1);
+  for (std::size_t i = 0; i < leaves_.size(); ++i) {
+    Curve& curve = curves_[i] = {};
+    curve.lacks_values = std::isnan(first[i]) || std::isnan(last[i]);
+    curve.is_smooth = std::isfinite(first[i]) && std::isfinite(last[i]);
+    curve.hull = {std::fmin(first[i], last[i]), std::fmax(first[i], last[i])};
+    curve.c[0] = 0.5 * (first[i] + last[i]);
+    curve.c[1] = 0.5 * (last[i] - first[i]);
+    curve.error = error[i] + k_floor * (std::abs(first[i]) + std::abs(last[i]));
+    curve.floor = curve.error;
+  }
+}
+
+void OperandCurves::begin(const double* first, const double* last, const Look& look) {
+  panels_.clear();
+  curves_.clear();
+  sample(add_panel(0.0, 1.0, 0, -1), look, first, last);
+  for (std::size_t i = 0; i < leaves_.size(); ++i) fit(0, i, -1, check_[i]);
+}
+
+void OperandCurves::halve(int panel, const Look& look) {
+  const Panel whole = panels_[static_cast<std::size_t>(panel)];
+  const double middle = 0.5 * (whole.begin + whole.end);
+  // Values of what was looked at before are not kept: three more looks are a small part of what is to come.
+  read(look(whole.begin), first_.data());
+  read(look(middle), middle_.data());
+  read(look(whole.end), last_.data());
+  for (const bool is_second : {false, true}) {
+    const int half = is_second ? add_panel(middle, whole.end, whole.depth + 1, panel) : add_panel(whole.begin, middle, whole.depth + 1, panel);
+    sample(half, look, is_second ? middle_.data() : first_.data(), is_second ? last_.data() : middle_.data());
+    for (std::size_t i = 0; i < leaves_.size(); ++i) fit(half, i, panel, check_[i]);
+  }
+}
+
+void OperandCurves::sample(int panel, const Look& look, const double* first, const double* last) {
+  const Panel p = panels_[static_cast<std::size_t>(panel)];
+  const double middle = 0.5 * (p.begin + p.end), half = 0.5 * (p.end - p.begin);
+  std::copy_n(first, leaves_.size(), nodes_.front().begin());
+  std::copy_n(last, leaves_.size(), nodes_.back().begin());
+  for (int i = 1; i < k_last; ++i) read(look(middle + half * k_tables.node[i]), nodes_[i].data());
+  read(look(p.begin + k_check * (p.end - p.begin)), check_.data());
+}
+
+void OperandCurves::fit(int panel, std::size_t leaf, int whole, double checked) {
+  std::array<double, k_nodes> value;
+  Interval seen = interval::k_none;
+  Curve curve;
+  bool is_finite = true;
+  const auto see = [&](double x) {
+    curve.lacks_values = curve.lacks_values || std::isnan(x);
+    is_finite = is_finite && std::isfinite(x);
+    if (!std::isnan(x)) seen = interval::hull(seen, {x, x});
+  };
+  for (int i = 0; i < k_nodes; ++i) see(value[i] = nodes_[i][leaf]);
+  see(checked);
+  const double width = seen.high - seen.low, spread = std::isfinite(width) ? width : 0.0;
+  curve.hull = seen.is_empty() ? seen : Interval{seen.low - spread, seen.high + spread};
+  if (is_finite) {
+    std::array<double, k_nodes> chebyshev{};
+    for (int k = 0; k < k_nodes; ++k)
+      for (int i = 0; i < k_nodes; ++i) chebyshev[k] += k_tables.transform[k][i] * value[i];
+    for (int k = 0; k < k_nodes; ++k)
+      for (int p = 0; p <= k; ++p) curve.c[p] += k_tables.powers[k][p] * chebyshev[k];
+    const double off = std::abs(horner(curve.c, 2.0 * k_check - 1.0) - checked);
+    curve.floor = k_floor * std::max(std::abs(seen.low), std::abs(seen.high));
+    curve.error = std::max(left_out(chebyshev), k_safety * off) + curve.floor;
+    curve.is_smooth = curve.error <= std::max(k_rough * spread, 4.0 * curve.floor);
+  }
+  if (whole >= 0) {
+    const Curve& before = this->curve(whole, leaf);
+    const double now = curve.is_smooth ? curve.error : curve.hull.radius(), then = before.is_smooth ? before.error : before.hull.radius();
+    curve.is_halving = curve.lacks_values || !(now > k_halved * then);
+  }
+  curves_[static_cast<std::size_t>(panel) * leaves_.size() + leaf] = curve;
+}
+
+bool OperandCurves::can_improve(int panel, std::size_t leaf) const {
+  const Curve& c = curve(panel, leaf);
+  if (c.hull.is_empty() || !c.is_halving) return false;
+  return c.is_smooth ? c.error > 2.0 * c.floor : !(c.hull.radius() <= 2.0 * c.floor);
+}
+
+Enclosure<OperandCurves::k_degree> OperandCurves::over(int panel, std::size_t leaf, double begin, double end) const {
+  const Curve& curve = this->curve(panel, leaf);
+  if (!curve.is_smooth) return Enclosure<k_degree>::of_range(curve.hull, curve.lacks_values);
+  const Panel& p = this->panel(panel);
+  const double scale = 2.0 / (p.end - p.begin), middle = std::clamp(scale * (0.5 * (begin + end) - p.begin) - 1.0, -1.0, 1.0);
+  std::array<double, k_nodes> c = curve.c;
+  for (int k = 0; k < k_degree; ++k) // about the middle, by repeated division
+    for (int i = k_degree - 1; i >= k; --i) c[i] += middle * c[i + 1];
+  // Ends are rounded in s by a few units: as much wider counts.
+  const double half = 0.5 * scale * (end - begin) + 4.0 * k_ulp;
+  double power = 1.0;
+  for (double& x : c) {
+    x *= power;
+    power *= half;
+  }
+  return Enclosure<k_degree>::of_polynomial(c, curve.error + k_shift_rounding * size_of(curve.c));
+}
+
+Enclosure<0> OperandCurves::at(int panel, std::size_t leaf, double theta) const {
+  const Curve& curve = this->curve(panel, leaf);
+  if (!curve.is_smooth) return Enclosure<0>::of_range(curve.hull, curve.lacks_values);
+  const Panel& p = this->panel(panel);
+  const double s = std::clamp(2.0 * (theta - p.begin) / (p.end - p.begin) - 1.0, -1.0, 1.0);
+  return Enclosure<0>::of_polynomial({horner(curve.c, s)}, curve.error + k_shift_rounding * size_of(curve.c));
+}
+
+} // namespace steplap

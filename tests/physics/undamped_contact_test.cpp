@@ -1,0 +1,137 @@
+// Contacts with little damping or none: what closes at the speed v opens at a time that is a closed form, loses the energy
+// that the damper takes and never gains any, whatever element presses and wherever it stands.
+//
+// With m δ̈ = −k δ − c δ̇, ω² = k/m, ζ = c/(2 m ω) = sin φ and ω_d = ω cos φ the force ends (π − 2φ)/ω_d after closing, with the
+// share e = exp(−ζ ω (π − 2φ)/ω_d) of the speed left, and the gap opens 2ζ/ω later.
+#include "tests/physics/scene.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <sstream>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+struct Bounce {
+  std::string element;
+  double mass, frequency, damping_ratio, speed, gap; ///< frequency: ω
+  Vec2 place, along;                                 ///< where the mass is at the start; unit vector away from what it hits
+  double turn;                                       ///< of the direction
+  bool is_guided = false;
+
+  [[nodiscard]] double closes() const { return gap / speed; }
+  [[nodiscard]] double pressed_for() const {
+    const double phi = std::asin(damping_ratio);
+    return (damping_ratio < 1.0 ? (std::numbers::pi - 2.0 * phi) / std::cos(phi) : 2.0) / frequency;
+  }
+  [[nodiscard]] double opens() const { return closes() + pressed_for() + 2.0 * damping_ratio / frequency; }
+  [[nodiscard]] double lost() const {
+    return 0.5 * mass * speed * speed * -std::expm1(-2.0 * damping_ratio * frequency * pressed_for());
+  }
+};
+
+std::string point(const Vec2& p) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "[" << p.x() << ", " << p.y() << "]";
+  return out.str();
+}
+
+// Ropes and ties that pull are hit by what moves away.
+bool pulls(const Bounce& b) { return b.element == "rope" || b.element == "tension"; }
+
+std::string element_text(const Bounce& b) {
+  std::ostringstream out;
+  out.precision(17);
+  const Vec2 across(-b.along.y(), b.along.x());
+  const double radius = 0.02 + 5.0 * b.speed / b.frequency; // nothing presses in as deep as that
+  const auto ground = [](const Vec2& p) { return "b = { body = \"ground\", at = " + point(p) + " }\n"; };
+  out << "[[element]]\nname = \"stop\"\na = \"ball\"\n";
+  if (b.element == "contact" || b.element == "ended") {
+    out << "kind = \"unilateral_contact\"\nnormal = " << point(b.along) << "\ngap = " << b.gap << "\n" << ground(b.place - b.gap * b.along);
+    if (b.element == "ended") out << "ends = [-0.5, 0.5]\n";
+  } else if (b.element == "limit") {
+    out << "kind = \"limit\"\nb = \"axes\"\ncoordinate = \"x\"\nlower = " << -b.gap << "\n";
+  } else if (b.element == "tension" || b.element == "compression") {
+    out << "kind = \"tie\"\nacts = \"" << b.element << "\"\naxis = " << point(b.along) << "\nslack = " << b.gap << "\n" << ground(b.place - b.along);
+  } else if (b.element == "rope") {
+    out << "kind = \"rope\"\nslack = " << b.gap << "\n" << ground(b.place - b.along);
+  } else if (b.element == "circle") {
+    out << "kind = \"circle_contact\"\nradius_a = " << radius << "\nradius_b = " << radius << "\n"
+        << ground(b.place - (b.gap + 2.0 * radius) * b.along);
+  } else {
+    const Vec2 middle = -(b.gap + radius) * b.along;
+    out << "kind = \"segment_contact\"\nradius = " << radius << "\nfrom = " << point(middle - across) << "\nto = " << point(middle + across) << "\n"
+        << ground(b.place);
+  }
+  out << "stiffness = " << b.mass * b.frequency * b.frequency << "\ndamping = " << 2.0 * b.damping_ratio * b.mass * b.frequency << "\n";
+  return out.str();
+}
+
+std::string text_of(const Bounce& b) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "gravity = [0.0, 0.0]\n[[body]]\nname = \"ball\"\nmass = " << b.mass << "\ninertia = " << 0.1 * b.mass << "\nposition = " << point(b.place)
+      << "\nvelocity = " << point((pulls(b) ? b.speed : -b.speed) * b.along) << "\n[[marker]]\nname = \"axes\"\nbody = \"ground\"\nat = "
+      << point(b.place) << "\nangle = " << b.turn << "\n";
+  if (b.is_guided) out << "[[element]]\nkind = \"prismatic\"\nname = \"guide\"\na = \"ball\"\nb = \"axes\"\n";
+  out << element_text(b) << "[simulation]\nstep = 1e-3\n";
+  return out.str();
+}
+
+Bounce random_bounce(std::mt19937& random) {
+  const auto between = [&random](double low, double high) { return low + (high - low) * (static_cast<double>(random()) / 4294967296.0); };
+  const auto power = [&](double low, double high) { return std::pow(10.0, between(low, high)); };
+  static const char* const k_elements[] = {"contact", "ended", "limit", "tension", "compression", "rope", "circle", "segment"};
+  Bounce b;
+  b.element = k_elements[random() % 8];
+  b.mass = power(-1.0, 4.0);
+  b.frequency = power(1.0, 3.5);
+  b.damping_ratio = random() % 6 == 0 ? 0.0 : std::min(1.0, power(-13.0, 0.5));
+  b.speed = power(-1.0, 0.7);
+  b.gap = between(0.05, 0.5);
+  b.turn = random() % 4 == 0 ? 0.5 * std::numbers::pi * static_cast<double>(random() % 4) : between(-3.0, 3.0);
+  b.along = Vec2(std::cos(b.turn), std::sin(b.turn));
+  const double away = random() % 3 == 0 ? 300.0 : 1.0;
+  b.place = Vec2(between(-away, away), between(-away, away));
+  b.is_guided = random() % 2 == 0;
+  return b;
+}
+
+} // namespace
+
+TEST_CASE("a contact opens when its force has ended and its gap is gone, however little is damped") {
+  std::mt19937 random(24);
+  const struct {
+    const char* name;
+    double tolerance;
+  } methods[] = {{"dop853", 1e-10}, {"tsit5", 1e-8}, {"rodas5p", 1e-8}, {"dop853", 1e-6}};
+  for (int i = 0; i < 400; ++i) {
+    const Bounce b = random_bounce(random);
+    const auto& method = methods[i % 4];
+    CAPTURE(i);
+    CAPTURE(b.element);
+    CAPTURE(b.damping_ratio);
+    CAPTURE(std::string(method.name));
+    CAPTURE(b.frequency);
+    CAPTURE(b.speed);
+    const Run r = run(scene(text_of(b)), {method.name, method.tolerance, 1.3 * b.opens()});
+    std::vector<double> opens;
+    for (const Event& event : r.result.events)
+      if (event.kind == EventKind::opens || event.kind == EventKind::leaves_stop || event.kind == EventKind::enters_gap) opens.push_back(event.t);
+    REQUIRE(opens.size() == 1);
+    // What the method is allowed in each step, of the contact's length; and rounding of the place, passed at the speed.
+    const double left = b.speed * std::exp(-b.damping_ratio * b.frequency * b.pressed_for());
+    const double rounding = 1e-14 * (1.0 + b.place.norm()) / left;
+    CHECK(std::abs(opens[0] - b.opens()) < 300.0 * method.tolerance / b.frequency + rounding);
+    const double energy = 0.5 * b.mass * b.speed * b.speed;
+    CHECK(r.result.statistics.dissipated >= -1e-12 * energy);
+    CHECK(std::abs(r.result.statistics.dissipated - b.lost()) < (1e3 * method.tolerance + 1e-11) * energy);
+    CHECK(r.result.events.size() <= 3); // closes, its force ends, opens
+  }
+}
