@@ -1,11 +1,12 @@
 #include "elements/step_lap_joint.h"
 
-#include "mbd/base/shown_text.h"
+#include "elements/step_lap_criteria.h"
 #include "elements/step_lap_edges.h"
 #include "elements/step_lap_elastic.h"
 #include "elements/step_lap_friction.h"
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_shares.h"
+#include "mbd/base/shown_text.h"
 
 #include <algorithm>
 #include <limits>
@@ -495,6 +496,8 @@ const ElementKind& step_lap_joint_kind() {
     k.holds<T>();
     k.compile = compile_joint;
     k.example = k_example;
+    k.judge = judge_step_lap_joint;
+    k.channels_of_trust = trust_of_step_lap_joint;
     return k;
   }();
   return kind;

@@ -1,6 +1,7 @@
 #include "elements/tie.h"
 
 #include "elements/contact_laws.h"
+#include "mbd/acceptance/element_judgement.h"
 #include "mbd/system/system.h"
 
 #include <cmath>
@@ -247,6 +248,32 @@ void compile_tie(const Element& element, SystemBuilder& builder) {
   add(e, builder, a.body, b.body, DistanceMeasure{a.point, b.point});
 }
 
+// Of a tie that has a strength: that it does not break.
+ElementJudgement judge_tie(const Element& element, const Model&, const RunResult& run) {
+  const auto& tie = static_cast<const Tie&>(element);
+  if (!tie.strength || tie.consequence == "none") return {};
+  CriterionResult result;
+  result.name = result.where = tie.name;
+  result.text = "the tie does not break: its force, of its strength < 1";
+  result.consequence = tie.consequence == "inspect" ? Verdict::inspect : Verdict::reject;
+  result.outcome = Verdict::open;
+  result.limit = 1.0;
+  if (const ChannelRange* share = find_range(run, tie.name + ".strength_share"); share && !std::isnan(share->high.value)) {
+    result.outcome = Verdict::hold;
+    result.value = share->high.value;
+    result.t = share->high.t;
+    result.channel = share->channel->name;
+    result.reserve = 1.0 - share->high.value;
+  }
+  for (const Event& event : run.events)
+    if (event.kind == EventKind::breaks && event.element == tie.name) {
+      result.outcome = result.consequence;
+      result.t = event.t;
+      result.reserve.reset(); // that it broke is no matter of digits
+    }
+  return {{std::move(result)}, {}, ""};
+}
+
 } // namespace
 
 const ElementKind& tie_kind() {
@@ -277,6 +304,7 @@ const ElementKind& tie_kind() {
         .doc("what its breaking means for the verdict; none: it is meant to give way first, such as resin");
     k.holds<T>();
     k.compile = compile_tie;
+    k.judge = judge_tie;
     return k;
   }();
   return kind;

@@ -413,4 +413,12 @@ CrossCheck cross_check(const System& system, const State& initial, const Simulat
   return check;
 }
 
+SimulationOptions sampled_for_comparison(const Model& model) {
+  constexpr double k_most_samples = 2000.0, k_least_samples = 400.0;
+  SimulationOptions options = options_of(model);
+  options.output_step = std::clamp(options.output_step, options.end / k_most_samples, options.end / k_least_samples);
+  options.has_extremes = true; // verdicts are judged by them
+  return options;
+}
+
 } // namespace steplap

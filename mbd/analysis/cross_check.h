@@ -113,4 +113,7 @@ inline constexpr double k_vague = 0.1;
 [[nodiscard]] CrossCheck cross_check(const System& system, const State& initial, const SimulationOptions& base,
                                      const CrossCheckOptions& options);
 
+/// What the model asks for, with samples as often as a comparison needs and can bear.
+[[nodiscard]] SimulationOptions sampled_for_comparison(const Model& model);
+
 } // namespace steplap

@@ -1,10 +1,12 @@
-// What goes wrong, said once and clearly: errors in a model (all of them together, each with its
-// place) and failures of a computation (with time, element and advice).
+// What goes wrong, said once and clearly: errors in a model (all of them together, each with its place), failures of a
+// computation (with time, element and advice), files that cannot be used. Nothing else is thrown on purpose.
 #pragma once
 
+#include <cstddef>
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace steplap {
@@ -42,6 +44,21 @@ private:
 class NumericalFailure : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
+};
+
+/// A file that cannot be written, or that is not what it should be; the message names it, the cause and what to do. Exit code 2.
+class FileError : public std::runtime_error {
+public:
+  /// `line` counts from 1, 0: the file as a whole.
+  FileError(std::string path, const std::string& message, std::size_t line = 0)
+      : std::runtime_error(message), path_(std::move(path)), line_(line) {}
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::size_t line() const { return line_; }
+
+private:
+  std::string path_;
+  std::size_t line_ = 0;
 };
 
 /// The nearest of `known` to `word` by edit distance, or "" if none is near enough to be meant.

@@ -18,7 +18,7 @@ namespace {
 [[noreturn]] void fail(const std::string& path, int code) {
   std::string advice;
   if (code == ENOSPC || code == EDQUOT) advice = ": free some space and run again";
-  throw FileError("cannot write '" + path + "': " + std::strerror(code) + advice);
+  throw FileError(path, "cannot write '" + path + "': " + std::strerror(code) + advice);
 }
 
 // The temporary file: closed and removed unless it was renamed.
@@ -67,7 +67,7 @@ public:
   }
 
   [[noreturn]] static void refuse(const std::string& path) {
-    throw FileError("'" + path + "' exists already and is not overwritten");
+    throw FileError(path, "'" + path + "' exists already and is not overwritten");
   }
 
 private:
@@ -86,7 +86,7 @@ void write_file(const std::string& path, const FileContent& content, IfExists if
   if (if_exists == IfExists::refuse && std::filesystem::exists(path)) TemporaryFile::refuse(path);
   std::error_code ignored;
   if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path, ignored)) // a device would become a file
-    throw FileError("cannot write '" + path + "': it is there, but is no file");
+    throw FileError(path, "cannot write '" + path + "': it is there, but is no file");
   TemporaryFile file(path);
   content([&file](std::string_view part) { file.write(part); });
   file.finish();

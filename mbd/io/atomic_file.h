@@ -2,18 +2,13 @@
 // folder, brought to disk, then renamed.
 #pragma once
 
+#include "mbd/base/diagnostics.h"
+
 #include <functional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace steplap {
-
-/// A file that could not be written; the message names the file and the cause.
-class FileError : public std::runtime_error {
-public:
-  using std::runtime_error::runtime_error;
-};
 
 enum class IfExists { refuse, replace };
 

@@ -5,9 +5,9 @@
 #pragma once
 
 #include "mbd/base/diagnostics.h"
+#include "mbd/base/types.h"
 #include "mbd/model/fields.h"
 #include "mbd/model/signal.h"
-#include "mbd/base/types.h"
 
 #include <map>
 #include <memory>
@@ -19,7 +19,9 @@
 namespace steplap {
 
 class SystemBuilder;
+struct ElementJudgement;
 struct Model;
+struct RunResult;
 
 /// A rigid body. Its frame has the origin `position` and the angle `angle` in the reference pose (the
 /// pose the file gives); its centre of gravity lies at `cg` in that frame.
@@ -79,6 +81,10 @@ struct ElementKind {
   std::shared_ptr<Element> (*copy)(const Element& element) = nullptr;
   /// Adds the element to the system; reports what is wrong through the builder's errors.
   void (*compile)(const Element& element, SystemBuilder& builder) = nullptr;
+  /// What is asked of every element of the kind in every run, if anything (mbd/acceptance/element_judgement.h).
+  ElementJudgement (*judge)(const Element& element, const Model& model, const RunResult& result) = nullptr;
+  /// Names of the channels whose extremes `judge` needs to tell whether the run can be trusted.
+  std::vector<std::string> (*channels_of_trust)(const Element& element) = nullptr;
 
   /// Its elements are of type T.
   template <class T> void holds() {

@@ -62,29 +62,29 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
       {"mbd/analysis/accuracy_study.h", "the two that make references"},
       {"mbd/analysis/cross_check.cpp", "the plan of a cross check, method by method"},
       {"transformer/verdict.cpp", "what to try instead"},
-      {"tools/steplap/second_opinion.cpp", "the two that share least: which one is asked hangs on which one ran"},
+      {"run/second_opinion.cpp", "the two that share least: which one is asked hangs on which one ran"},
   };
   REQUIRE(methods().size() >= 6);
   for (const Method& m : methods()) {
     const std::string name = m.name;
     // "auto" is a word of others, too: of drawings.
     Reasons reasons = by_right;
-    if (name == "auto") reasons.insert({{"mbd/model/model.cpp", "how an element is drawn"}, {"tools/steplap/symbols.cpp", "how an element is drawn"}});
+    if (name == "auto") reasons.insert({{"mbd/model/model.cpp", "how an element is drawn"}, {"run/symbols.cpp", "how an element is drawn"}});
     check_places(name, {"mbd/integrators/methods.cpp", "mbd/integrators/" + (name == "auto" ? "automatic" : name) + ".cpp"}, reasons, sources);
   }
 }
 
 TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
   const auto sources = product_sources();
-  const Reasons by_right = {{"tools/steplap/symbols.cpp", "symbols: a kind without one is drawn by diamonds at its markers"},
+  const Reasons by_right = {{"run/symbols.cpp", "symbols: a kind without one is drawn by diamonds at its markers"},
                             {"tools/steplap/joint.cpp", "what bears beside a joint, for a remark"}};
   // Names that are words of others, too, or that somebody asks for all the same.
   const std::map<std::string, Reasons> besides = {
-      {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"tools/study/needs.cpp", "what is made rigid is welded"}}},
-      {"limit", {{"tools/steplap/summary_json.cpp", "of a criterion"}}},
+      {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"study/needs.cpp", "what is made rigid is welded"}}},
+      {"limit", {{"run/summary_json.cpp", "of a criterion"}}},
       {"distance", {{"elements/motor.cpp", "a coordinate"}, {"elements/prescribed_motion.cpp", "a coordinate"},
                     {"elements/limit.cpp", "a coordinate"}, {"elements/joint_friction.cpp", "a coordinate"}}},
-      {"step_lap_joint", {{"tools/study/scene.cpp", "channels that every verdict needs"}}},
+      {"step_lap_joint", {{"study/scene.cpp", "channels that every verdict needs"}}},
       {"spring_damper", {{"mbd/model/model.h", "an example"}}},
   };
   int kinds = 0;

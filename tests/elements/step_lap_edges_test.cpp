@@ -1,7 +1,7 @@
 // Edges of core sheets that bear on each other, against closed forms of a Winkler bed and a sum over the line.
+#include "elements/step_lap_assessment.h"
 #include "elements/step_lap_edges.h"
 #include "tests/elements/step_lap_scene.h"
-#include "transformer/joint_assessment.h"
 
 #include <doctest/doctest.h>
 

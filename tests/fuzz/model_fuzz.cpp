@@ -1,12 +1,11 @@
 // Model files: read, compiled, joints closed, run for a short while and judged.
-#include "tests/fuzz/fuzz.h"
-
+#include "mbd/acceptance/judge.h"
 #include "mbd/analysis/assembly.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "tests/fuzz/fuzz.h"
 #include "transformer/catalog.h"
-#include "transformer/verdict.h"
 
 #include <algorithm>
 #include <utility>

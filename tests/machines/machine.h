@@ -1,7 +1,7 @@
 // The models of models/machines, as a user runs them.
 #pragma once
 
-#include "tools/steplap/run.h"
+#include "run/run.h"
 
 #include <algorithm>
 #include <memory>

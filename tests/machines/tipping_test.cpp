@@ -1,7 +1,7 @@
 // What stands, and how far it is from tipping over, against closed forms.
 #include "mbd/io/reader.h"
+#include "run/tipping.h"
 #include "tests/machines/machine.h"
-#include "tools/steplap/tipping.h"
 
 #include <doctest/doctest.h>
 

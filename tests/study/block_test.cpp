@@ -1,10 +1,10 @@
 // A block on a deck that is accelerated for a while: everything is known in closed form.
 //   D(A, t, mu) = (A t)²/(2 mu g) (1 − mu g/A), if A > mu g
-#include "tests/study/block_scene.h"
-#include "tests/study/study_bench.h"
 #include "mbd/analysis/start.h"
 #include "mbd/model/completion.h"
-#include "tools/study/law.h"
+#include "study/law.h"
+#include "tests/study/block_scene.h"
+#include "tests/study/study_bench.h"
 
 using namespace steplap;
 using namespace steplap::testing;

@@ -1,6 +1,6 @@
 // What happens to a store: threads, ranks, interruptions, changed studies, disks that cannot be written.
+#include "study/study_reader.h"
 #include "tests/study/study_bench.h"
-#include "tools/study/study_reader.h"
 
 #include <fcntl.h>
 #include <signal.h>

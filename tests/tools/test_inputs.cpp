@@ -1,8 +1,8 @@
 // What goes in and what comes out: records, models through pipes, results that know their inputs and whether they are whole.
 #include "mbd/io/csv.h"
+#include "run/results.h"
 #include "tests/tools/workbench.h"
 #include "tools/steplap/command.h"
-#include "tools/steplap/results.h"
 
 #include <doctest/doctest.h>
 
@@ -146,7 +146,7 @@ TEST_CASE("results of which one byte is another, or is missing, are not shown") 
       bench.write(path, text);
       try {
         static_cast<void>(read_results(bench.at("out/a")));
-      } catch (const UsageError& error) {
+      } catch (const FileError& error) {
         return has(error.what(), name) && has(error.what(), "is not as steplap wrote it");
       }
       return false;

@@ -1,4 +1,4 @@
-#include "tools/steplap/measured_text.h"
+#include "run/measured_text.h"
 
 #include <doctest/doctest.h>
 

@@ -1,16 +1,16 @@
 // Results read back, thinned, made into a page and into images.
 #include "mbd/io/reader.h"
+#include "report/figure.h"
+#include "report/report_data.h"
+#include "report/report_page.h"
+#include "report/thinning.h"
+#include "run/catalogue.h"
+#include "run/drawing.h"
+#include "run/result_files.h"
+#include "run/results.h"
+#include "run/symbols.h"
 #include "tests/tools/workbench.h"
-#include "tools/steplap/catalogue.h"
 #include "tools/steplap/command.h"
-#include "tools/steplap/drawing.h"
-#include "tools/steplap/figure.h"
-#include "tools/steplap/report_data.h"
-#include "tools/steplap/report_page.h"
-#include "tools/steplap/results.h"
-#include "tools/steplap/symbols.h"
-#include "tools/steplap/result_files.h"
-#include "tools/steplap/thinning.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -48,7 +48,7 @@ Results made_results(std::size_t rows) {
 std::string usage_error(const std::string& folder) {
   try {
     static_cast<void>(read_results(folder));
-  } catch (const UsageError& error) {
+  } catch (const FileError& error) {
     return error.what();
   }
   return "";

@@ -1,7 +1,6 @@
 // steplap simulate: options, files, exit codes.
+#include "run/results.h"
 #include "tests/tools/workbench.h"
-
-#include "tools/steplap/results.h"
 
 #include <doctest/doctest.h>
 #include <sys/wait.h>
@@ -308,7 +307,7 @@ TEST_CASE("samples meet the joints, where their rows depend on each other, too")
   REQUIRE(steplap_does({"simulate", bench.write("a.toml", text.str()), "-o", bench.at("out"), "--no-estimate"}).code == 0);
   const steplap::Results results = steplap::read_results(bench.at("out/a"));
   const auto value = [&results](const std::string& name, std::size_t row) {
-    return steplap::find_channels(results, {name}).front()->values[row];
+    return steplap::matching_channels(results, name).front()->values[row];
   };
   // A point of a body, given from its centre of gravity in its own axes.
   const auto place = [&](const std::string& body, double x, double y, std::size_t row) {

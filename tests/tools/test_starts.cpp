@@ -1,8 +1,8 @@
 // Starts that contradict what the file says: each sort is found by its code, and sound ones say nothing.
+#include "run/findings.h"
+#include "run/run.h"
 #include "tests/random/random_number.h"
 #include "tests/tools/workbench.h"
-#include "tools/steplap/findings.h"
-#include "tools/steplap/run.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,3 +1,4 @@
+#include "run/quantity_text.h"
 #include "tools/steplap/text_table.h"
 
 #include <doctest/doctest.h>

@@ -1,11 +1,11 @@
 // Cores that hold and cores that do not: random sound ones hold, and none of them does any more once one corner, one packet or one clamp
 // is bad, whatever the rest of the joint makes good in a sum.
+#include "mbd/acceptance/judge.h"
 #include "mbd/analysis/assembly.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "tests/random/random_number.h"
 #include "transformer/catalog.h"
-#include "transformer/verdict.h"
 
 #include <doctest/doctest.h>
 

@@ -1,9 +1,9 @@
 // What a run is said to have done to each step-lap joint, against its events and its channels.
+#include "elements/step_lap_assessment.h"
 #include "elements/step_lap_joint.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "transformer/catalog.h"
-#include "transformer/joint_assessment.h"
 
 #include <doctest/doctest.h>
 

@@ -1,11 +1,11 @@
 // The verdict on a run: criteria of the model, and the step-lap joints' own.
-#include "mbd/io/reader.h"
+#include "mbd/acceptance/judge.h"
+#include "mbd/acceptance/weighed_errors.h"
 #include "mbd/io/presentation.h"
+#include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
-#include "transformer/catalog.h"
-#include "transformer/verdict.h"
-#include "transformer/verdict_error.h"
 #include "tests/transformer/swing.h"
+#include "transformer/catalog.h"
 
 #include <doctest/doctest.h>
 

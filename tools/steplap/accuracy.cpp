@@ -2,12 +2,12 @@
 
 #include "mbd/analysis/accuracy_study.h"
 #include "mbd/analysis/global_error.h"
-#include "mbd/io/atomic_file.h"
 #include "mbd/base/number_text.h"
+#include "mbd/io/atomic_file.h"
+#include "run/prominence.h"
+#include "run/run.h"
 #include "tools/steplap/accuracy_report.h"
 #include "tools/steplap/log.h"
-#include "tools/steplap/run.h"
-#include "tools/steplap/summary.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -126,7 +126,7 @@ void write_files(const AccuracyCommand& command, const LoadedModel& loaded,
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
-    throw FileError("cannot write results to '" + folder.string() + "': " + error.message());
+    throw FileError(folder.string(), "cannot write results to '" + folder.string() + "': " + error.message());
   const IfExists if_exists = command.is_overwriting ? IfExists::replace : IfExists::refuse;
   const std::string title =
       loaded.model.header.title.empty() ? loaded.name : loaded.model.header.title;

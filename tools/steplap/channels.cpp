@@ -3,7 +3,7 @@
 #include "mbd/base/name_pattern.h"
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/csv.h"
-#include "tools/steplap/run.h"
+#include "run/run.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>

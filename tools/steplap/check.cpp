@@ -6,10 +6,11 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/model/validate.h"
 #include "mbd/system/one_sided_row.h"
+#include "run/findings.h"
+#include "run/quantity_text.h"
+#include "run/run.h"
+#include "run/start_contacts.h"
 #include "tools/steplap/cross.h"
-#include "tools/steplap/findings.h"
-#include "tools/steplap/run.h"
-#include "tools/steplap/start_contacts.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/atomic_file.h"
+#include "run/version.h"
 #include "tools/steplap/commands.h"
 #include "tools/steplap/log.h"
-#include "tools/steplap/version.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,8 +1,9 @@
 #include "tools/steplap/core.h"
 
 #include "mbd/base/number_text.h"
-#include "tools/steplap/core_drawing.h"
-#include "tools/steplap/run.h"
+#include "run/core_drawing.h"
+#include "run/quantity_text.h"
+#include "run/run.h"
 #include "tools/steplap/text_table.h"
 #include "transformer/core_builder.h"
 #include "transformer/core_geometry.h"

@@ -1,9 +1,11 @@
 #include "tools/steplap/cross.h"
 
+#include "mbd/acceptance/judge.h"
 #include "mbd/analysis/cross_check.h"
 #include "mbd/base/number_text.h"
+#include "run/prominence.h"
+#include "run/quantity_text.h"
 #include "tools/steplap/log.h"
-#include "tools/steplap/summary.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
@@ -17,7 +19,6 @@ namespace {
 using Align = TextTable::Align;
 
 constexpr std::size_t k_shown_disagreements = 6;
-constexpr double k_most_samples = 2000.0, k_least_samples = 400.0;
 
 std::string where_text(const Disagreement& d) {
   if (d.ratio == 0.0) return "-";
@@ -73,19 +74,21 @@ std::string conclusion(const CrossCheck& check, double end) {
   return "all agree; the worst disagreement is " + small_text(check.worst_ratio) + " of what the estimates allow";
 }
 
-CrossCheckOptions options_for(const LoadedModel& loaded, double cpu_limit) {
+CrossCheckOptions options_for(const LoadedModel& loaded, const System& system, double cpu_limit) {
   CrossCheckOptions options;
   options.cpu_limit = cpu_limit;
   options.is_event_counted = is_main_event;
-  options.free_groups = free_groups(loaded.model, *loaded.system);
-  options.verdict = [&loaded](const RunResult& run) { return std::string(name_of(judge(loaded.model, *loaded.system, run, "").verdict)); };
+  options.free_groups = free_groups(loaded.model, system);
+  options.verdict = [&loaded, &system](const RunResult& run) { return std::string(name_of(judge(loaded.model, system, run, "").verdict)); };
   options.progress = [](const std::string& text) { log_detail(text); };
   return options;
 }
 
 bool cross_check_one(const LoadedModel& loaded, double cpu_limit, Console& console) {
   const SimulationOptions base = sampled_for_comparison(loaded.model);
-  const CrossCheck check = cross_check(*loaded.system, initial_state_of(loaded), base, options_for(loaded, cpu_limit));
+  const std::unique_ptr<System> system = compile(loaded.model); // with channels of its own
+  add_audit_channels(*system, loaded.model);
+  const CrossCheck check = cross_check(*system, initial_state_of(loaded), base, options_for(loaded, *system, cpu_limit));
   const bool is_trusted = check.outcome != CrossOutcome::disagree && finished_runs(check) >= 2;
   for (const CrossRun& run : check.runs)
     if (!run.failure.empty()) log_warning("'" + loaded.path + "': " + run.setting.text() + ": " + run.failure);
@@ -99,13 +102,6 @@ bool cross_check_one(const LoadedModel& loaded, double cpu_limit, Console& conso
 
 } // namespace
 
-SimulationOptions sampled_for_comparison(const Model& model) {
-  SimulationOptions options = options_of(model);
-  options.output_step = std::clamp(options.output_step, options.end / k_most_samples, options.end / k_least_samples);
-  options.has_extremes = true; // verdicts are judged by them
-  return options;
-}
-
 ExitCode cross_check_models(const std::vector<std::shared_ptr<const LoadedModel>>& models, double cpu_limit, Console& console) {
   ExitCode code = ExitCode::done;
   const double start = thread_cpu_seconds();
@@ -113,7 +109,6 @@ ExitCode cross_check_models(const std::vector<std::shared_ptr<const LoadedModel>
   for (const auto& loaded : models) {
     const double granted = (cpu_limit - (thread_cpu_seconds() - start)) / models_left--;
     try {
-      add_audit_channels(*loaded->system, loaded->model);
       if (!cross_check_one(*loaded, granted, console)) code = ExitCode::numerical_failure;
     } catch (const NumericalFailure& failure) {
       log_error("'" + loaded->path + "': " + failure.what());

@@ -1,13 +1,10 @@
 // `steplap check --cross`: every model run by methods that share little, and what they disagree on.
 #pragma once
 
+#include "run/run.h"
 #include "tools/steplap/command.h"
-#include "tools/steplap/run.h"
 
 namespace steplap {
-
-/// What the model asks for, with samples as often as a comparison needs and can bear.
-[[nodiscard]] SimulationOptions sampled_for_comparison(const Model& model);
 
 /// Runs and prints one table for each model, all of them within `cpu_limit`, s. Exit code 4 if anything disagrees beyond the estimates, or if there are
 /// no two opinions.

@@ -2,7 +2,7 @@
 
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/reference.h"
-#include "tools/steplap/catalogue.h"
+#include "run/catalogue.h"
 
 #include <memory>
 #include <ostream>

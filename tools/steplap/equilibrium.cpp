@@ -2,12 +2,13 @@
 
 #include "mbd/analysis/statics.h"
 #include "mbd/base/shown_text.h"
-#include "tools/steplap/edges.h"
+#include "run/edges.h"
+#include "run/prominence.h"
+#include "run/quantity_text.h"
+#include "run/run.h"
 #include "tools/steplap/log.h"
-#include "tools/steplap/run.h"
-#include "tools/steplap/summary.h"
 #include "tools/steplap/text_table.h"
-#include "tools/steplap/tipping.h"
+#include "tools/steplap/tipping_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,7 +72,9 @@ private:
   std::vector<const Signal*> drives_;
 };
 
-void print_reactions(std::ostream& out, System& system, State found) {
+void print_reactions(std::ostream& out, const Model& model, State found) {
+  const std::unique_ptr<System> own = compile(model); // its drives are held
+  System& system = *own;
   std::fill(found.v.begin(), found.v.end(), 0.0);
   const HeldDrives held(system, found);
   Dynamics dynamics(system);
@@ -110,7 +113,7 @@ void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equil
       << counted(static_cast<std::size_t>(found.iterations), "iteration", "iterations") << "; acceleration left "
       << small_text(found.residual) << " m/s²; moved at most " << quantity_text(found.moved, "m", k_unit) << "\n\n";
   print_poses(out, *loaded.system, loaded.system->initial_state(), found.state);
-  print_reactions(out, *loaded.system, found.state);
+  print_reactions(out, loaded.model, found.state);
   print_margins(out, *loaded.system, found.margins);
   print_tipping(out, loaded, found.state);
   std::vector<std::string> remarks = remarks_on(*loaded.system, found);
@@ -125,8 +128,8 @@ ExitCode equilibrium(const EquilibriumOptions& options, Console& console) {
     try {
       const Equilibrium found = equilibrium_of(*loaded);
       if (console.verbosity != Verbosity::quiet) print_equilibrium(console.out, *loaded, found);
-      for (const std::string& text : feet_beyond_edges(*loaded, found.state))
-        log_warning("'" + loaded->path + "': at rest " + text);
+      for (const Finding& finding : feet_beyond_edges(*loaded, found.state))
+        log_warning("'" + loaded->path + "': at rest " + text_with_place(finding));
     } catch (const NumericalFailure& failure) {
       log_error("'" + loaded->path + "': " + failure.what());
       code = ExitCode::numerical_failure;

@@ -1,13 +1,9 @@
 #include "tools/steplap/interruption.h"
 
-#include "mbd/base/diagnostics.h"
-#include "mbd/base/number_text.h"
-
 #include <poll.h>
 
 #include <array>
 #include <csignal>
-#include <string>
 
 namespace steplap {
 
@@ -66,10 +62,7 @@ void end_if_nobody_reads(int descriptor) {
 
 int noted_signal() { return noted; }
 
-void stop_if_interrupted(double t) {
-  if (noted == 0) return;
-  throw NumericalFailure(std::string("stopped by ") + name_of_signal(noted) + " at t = " + number_text(t) + " s.");
-}
+std::string interruption() { return noted == 0 ? "" : std::string("stopped by ") + name_of_signal(noted); }
 
 void end_by_noted_signal() {
   if (noted == 0) return;

@@ -1,6 +1,8 @@
 // A run that is stopped from outside, by Ctrl-C or by whoever ends the session, is saved as far as it came.
 #pragma once
 
+#include <string>
+
 namespace steplap {
 
 /// While one of these lives, the first SIGINT, SIGTERM, SIGHUP or SIGXCPU is noted instead of ending the program; a second one ends
@@ -21,8 +23,8 @@ void end_if_nobody_reads(int descriptor);
 
 /// The signal noted, 0 if there was none.
 [[nodiscard]] int noted_signal();
-/// Throws NumericalFailure, which says so, if one was noted; `t`: how far the run is, s.
-void stop_if_interrupted(double t);
+/// Why to stop: "stopped by SIGINT"; "" if no signal was noted (RunOptions::stop).
+[[nodiscard]] std::string interruption();
 /// Ends the program by the signal noted, as if nobody had minded it: so that a shell's loop ends, too. Nothing if none was.
 void end_by_noted_signal();
 

@@ -2,9 +2,10 @@
 
 #include "elements/step_lap_friction.h"
 #include "elements/step_lap_joint.h"
-#include "mbd/io/units.h"
 #include "mbd/base/number_text.h"
-#include "tools/steplap/run.h"
+#include "mbd/io/units.h"
+#include "run/quantity_text.h"
+#include "run/run.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>

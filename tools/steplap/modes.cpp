@@ -1,11 +1,11 @@
 #include "tools/steplap/modes.h"
 
+#include "mbd/analysis/modes.h"
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/csv.h"
-#include "mbd/analysis/modes.h"
+#include "report/modes_page.h"
+#include "run/run.h"
 #include "tools/steplap/log.h"
-#include "tools/steplap/modes_page.h"
-#include "tools/steplap/run.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>

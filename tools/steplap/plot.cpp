@@ -2,7 +2,7 @@
 
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/atomic_file.h"
-#include "tools/steplap/figure.h"
+#include "report/figure.h"
 
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
@@ -51,6 +51,14 @@ std::vector<Wanted> plots_of_model(const Results& run, const std::vector<std::st
   return wanted;
 }
 
+std::vector<const ResultChannel*> asked_channels(const Results& run, const std::string& pattern) {
+  const std::vector<const ResultChannel*> found = matching_channels(run, pattern);
+  if (!found.empty()) return found;
+  std::vector<std::string> known;
+  for (const ResultChannel& channel : run.channels) known.push_back(channel.name);
+  throw UsageError("'" + run.folder + "': no channel matches '" + pattern + "'" + did_you_mean(pattern, known));
+}
+
 void add_curves(const Results& run, const std::string& suffix, int dash, const Wanted& wanted, Panel& panel) {
   int colour = 0;
   const auto add = [&](const ResultChannel& channel, const std::string& label, int its_colour, int its_dash, double sign) {
@@ -60,10 +68,10 @@ void add_curves(const Results& run, const std::string& suffix, int dash, const W
     panel.unit = channel.unit;
     panel.curves.push_back({label, &run.times, &channel.values, its_colour, its_dash, sign});
   };
-  for (const ResultChannel* channel : find_channels(run, wanted.channels))
-    add(*channel, channel->name + suffix, colour++, dash, 1.0);
+  for (const std::string& pattern : wanted.channels)
+    for (const ResultChannel* channel : asked_channels(run, pattern)) add(*channel, channel->name + suffix, colour++, dash, 1.0);
   for (const std::string& bound : wanted.bounds)
-    for (const ResultChannel* channel : find_channels(run, {bound})) {
+    for (const ResultChannel* channel : asked_channels(run, bound)) {
       add(*channel, "± " + channel->name + suffix, 6, 2, 1.0);
       add(*channel, "", 6, 2, -1.0);
     }
@@ -97,7 +105,7 @@ class Scratch {
 public:
   Scratch() {
     std::string name = (fs::temp_directory_path() / "steplap-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw FileError("cannot write to '" + fs::temp_directory_path().string() + "'");
+    if (!::mkdtemp(name.data())) throw FileError(name, "cannot write to '" + fs::temp_directory_path().string() + "'");
     path_ = name;
   }
   Scratch(const Scratch&) = delete;
@@ -120,7 +128,7 @@ void draw(const Figure& figure, const std::string& ending, const std::string& ou
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == 127) throw UsageError("gnuplot is not there: install it (Debian: apt-get install gnuplot-nox)");
   if (code != 0 || !fs::exists(image))
-    throw FileError("gnuplot could not draw '" + output + "': " + read_text(scratch.at("said")));
+    throw FileError(output, "gnuplot could not draw '" + output + "': " + read_text(scratch.at("said")));
   write_file(output, read_text(image), is_overwriting ? IfExists::replace : IfExists::refuse);
 }
 

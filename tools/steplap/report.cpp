@@ -1,7 +1,7 @@
 #include "tools/steplap/report.h"
 
 #include "mbd/io/atomic_file.h"
-#include "tools/steplap/report_page.h"
+#include "report/report_page.h"
 
 #include <filesystem>
 #include <memory>

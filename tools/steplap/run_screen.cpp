@@ -1,12 +1,14 @@
 #include "tools/steplap/run_screen.h"
 
+#include "elements/step_lap_assessment.h"
+#include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/math/portable_math.h"
-#include "mbd/base/number_text.h"
 #include "mbd/model/validate.h"
-#include "tools/steplap/measured_text.h"
+#include "run/measured_text.h"
+#include "run/prominence.h"
+#include "run/quantity_text.h"
 #include "tools/steplap/text_table.h"
-#include "transformer/joint_assessment.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,29 +30,29 @@ std::string rough_text(double value) {
   return text;
 }
 
-void print_no_estimate(std::ostream& out, const RunSummary& summary) {
-  if (summary.global_error) return;
+void print_no_estimate(std::ostream& out, const Report& report) {
+  if (report.estimate.errors) return;
   out << "  error not estimated: ";
-  if (!summary.estimate_cost) out << summary.no_estimate << "\n";
-  else out << "would take about " << rough_text(*summary.estimate_cost) << " s; ask with --estimate-error\n";
+  if (!report.estimate.cost) out << report.estimate.reason << "\n";
+  else out << "would take about " << rough_text(*report.estimate.cost) << " s; ask with --estimate-error\n";
 }
 
 void print_heading(std::ostream& out, const FinishedRun& finished) {
-  const LoadedModel& loaded = *finished.run.loaded;
+  const LoadedModel& loaded = *finished.report.run.loaded;
   const SimulationSettings& s = loaded.model.simulation;
   out << loaded.name;
   if (!loaded.model.header.title.empty()) out << ": " << loaded.model.header.title;
   out << "\n  " << s.integrator;
   if (s.step && has_fixed_step(s.integrator)) out << ", step " << number_text(*s.step) << " s";
   if (s.tolerance && !has_fixed_step(s.integrator)) out << ", tolerance " << number_text(*s.tolerance);
-  out << ", t = 0 to " << number_text(finished.run.result.final_state.t) << " s\n";
-  if (!finished.run.failure.empty())
-    out << "  STOPPED before the end: " << finished.run.failure << "\n";
-  print_no_estimate(out, finished.summary);
+  out << ", t = 0 to " << number_text(finished.report.run.result.final_state.t) << " s\n";
+  if (finished.report.run.failure)
+    out << "  STOPPED before the end: " << finished.report.run.failure->text << "\n";
+  print_no_estimate(out, finished.report);
 }
 
 void print_events(std::ostream& out, const FinishedRun& finished) {
-  const std::vector<Event>& events = finished.run.result.events;
+  const std::vector<Event>& events = finished.report.run.result.events;
   const auto main = std::count_if(events.begin(), events.end(), is_main_event);
   out << "\nEvents: " << (events.empty() ? "none" : std::to_string(events.size()));
   if (main < static_cast<long>(events.size()))
@@ -62,7 +64,7 @@ void print_events(std::ostream& out, const FinishedRun& finished) {
     const Event& event = events[i];
     if (!is_main_event(event)) continue;
     if (shown++ < k_most_events_shown)
-      table.add_row({measured_time_text(event.t, finished.summary.event_error(i)), event.element, event.words()});
+      table.add_row({measured_time_text(event.t, finished.report.event_error(i)), event.element, event.words()});
   }
   out << table;
   if (shown > k_most_events_shown)
@@ -75,9 +77,9 @@ bool is_shown(const ChannelRange& range) {
 }
 
 // What is rounding beside the channel's largest value is zero; an error says so itself.
-std::string value_text(const RunSummary& summary, const ChannelRange& range, const Extreme& extreme) {
+std::string value_text(const Report& report, const ChannelRange& range, const Extreme& extreme) {
   const std::string& unit = range.channel->unit;
-  const auto error = summary.error_of(range, &extreme == &range.low ? &ChannelError::low : &ChannelError::high);
+  const auto error = report.error_of(range, &extreme == &range.low ? &ChannelError::low : &ChannelError::high);
   const bool is_singular = &extreme == &range.low ? range.is_low_singular : range.is_high_singular;
   if (is_singular && error && std::isnan(*error)) return "diverges at a singular pose";
   return error ? measured_text(extreme.value, error, unit) : quantity_text(extreme.value, unit, range.largest().value);
@@ -87,8 +89,8 @@ std::string extreme_time_text(double t, std::optional<double> error) {
   return error ? measured_time_text(t, error) : quantity_text(t, "s");
 }
 
-std::string time_of_text(const RunSummary& summary, const ChannelRange& range, const Extreme& extreme) {
-  return extreme_time_text(extreme.t, summary.error_of(range, &extreme == &range.low ? &ChannelError::t_low : &ChannelError::t_high));
+std::string time_of_text(const Report& report, const ChannelRange& range, const Extreme& extreme) {
+  return extreme_time_text(extreme.t, report.error_of(range, &extreme == &range.low ? &ChannelError::t_low : &ChannelError::t_high));
 }
 
 // Of a joint that bears nothing but rounding, digits of its margin would say something that is not so.
@@ -102,15 +104,15 @@ std::string small_margin_text(double margin, std::optional<double> error) {
   return text;
 }
 
-void print_reactions(std::ostream& out, const RunSummary& summary) {
+void print_reactions(std::ostream& out, const Report& report) {
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
   table.add_row({"", "lowest", "at", "highest", "at"});
   bool is_any = false;
-  for (const ChannelRange& range : summary.ranges) {
+  for (const ChannelRange& range : report.ranges()) {
     if (!is_shown(range)) continue;
     is_any = true;
-    table.add_row({range.channel->name, value_text(summary, range, range.low), time_of_text(summary, range, range.low),
-                   value_text(summary, range, range.high), time_of_text(summary, range, range.high)});
+    table.add_row({range.channel->name, value_text(report, range, range.low), time_of_text(report, range, range.low),
+                   value_text(report, range, range.high), time_of_text(report, range, range.high)});
   }
   if (is_any) out << "\nReactions and required pressures, extremes of the whole run\n" << table;
 }
@@ -122,29 +124,29 @@ bool is_requested(const ChannelRange& range) {
 constexpr std::size_t k_most_requested = 24;
 
 // What the model asks for besides, in the order in which it is made: formulas come last, and are the last to be left out.
-void print_requested(std::ostream& out, const RunSummary& summary) {
+void print_requested(std::ostream& out, const Report& report) {
   std::vector<const ChannelRange*> asked;
-  for (const ChannelRange& range : summary.ranges)
+  for (const ChannelRange& range : report.ranges())
     if (is_requested(range)) asked.push_back(&range);
   const std::size_t left_out = asked.size() > k_most_requested ? asked.size() - k_most_requested : 0;
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
   table.add_row({"", "lowest", "at", "highest", "at"});
   for (std::size_t i = left_out; i < asked.size(); ++i) {
     const ChannelRange& range = *asked[i];
-    table.add_row({range.channel->name, value_text(summary, range, range.low), time_of_text(summary, range, range.low),
-                   value_text(summary, range, range.high), time_of_text(summary, range, range.high)});
+    table.add_row({range.channel->name, value_text(report, range, range.low), time_of_text(report, range, range.low),
+                   value_text(report, range, range.high), time_of_text(report, range, range.high)});
   }
   if (asked.empty()) return;
   out << "\nChannels on request, extremes of the whole run\n" << table;
   if (left_out > 0) out << "  and " << left_out << " more: see summary.json\n";
 }
 
-void print_slides(std::ostream& out, const RunSummary& summary) {
+void print_slides(std::ostream& out, const Report& report) {
   TextTable table({Align::left, Align::right, Align::right});
-  for (const ChannelRange& range : summary.ranges)
+  for (const ChannelRange& range : report.ranges())
     if (is_slide(*range.channel))
-      table.add_row({range.channel->name, value_text(summary, range, range.largest()),
-                     "at " + time_of_text(summary, range, range.largest())});
+      table.add_row({range.channel->name, value_text(report, range, range.largest()),
+                     "at " + time_of_text(report, range, range.largest())});
   if (!table.is_empty()) out << "\nLargest slides\n" << table;
 }
 
@@ -166,14 +168,14 @@ void print_beside(std::ostream& out, const JointAssessment& a, const std::option
 }
 
 void print_joints(std::ostream& out, const FinishedRun& finished) {
-  const auto joints = assess_joints(finished.run.loaded->model, finished.run.result);
+  const auto& joints = finished.report.joints;
   TextTable table({Align::left, Align::left, Align::right, Align::right, Align::right, Align::right,
                    Align::right, Align::right});
   table.add_row({"", "verdict", "first slip", "largest p_req", "at", "margin", "slid", "area lost"});
   for (const JointAssessment& a : joints) {
     std::optional<JointErrors> e;
-    if (const auto& estimate = finished.summary.global_error)
-      e = joint_errors(a, *finished.run.loaded->system, finished.run.result, *estimate);
+    if (const auto& estimate = finished.report.estimate.errors)
+      e = joint_errors(a, *finished.report.run.loaded->system, finished.report.run.result, *estimate);
     const auto error = [&e](double JointErrors::*which) { return e ? std::optional((*e).*which) : std::nullopt; };
     const double slid = portable::hypot(a.slid_x, a.slid_y);
     const auto slid_error = e ? std::optional(portable::hypot(e->slid_x, e->slid_y)) : std::nullopt;
@@ -187,8 +189,8 @@ void print_joints(std::ostream& out, const FinishedRun& finished) {
   if (!joints.empty()) out << "\nStep-lap joints\n" << table;
   for (const JointAssessment& a : joints) {
     std::optional<JointErrors> e;
-    if (const auto& estimate = finished.summary.global_error)
-      e = joint_errors(a, *finished.run.loaded->system, finished.run.result, *estimate);
+    if (const auto& estimate = finished.report.estimate.errors)
+      e = joint_errors(a, *finished.report.run.loaded->system, finished.report.run.result, *estimate);
     print_beside(out, a, e);
   }
 }
@@ -207,11 +209,11 @@ void print_second_opinion(std::ostream& out, const SecondOpinion& opinion, doubl
 }
 
 void print_judgement(std::ostream& out, const FinishedRun& finished) {
-  const Judgement& judgement = finished.summary.judgement;
+  const Judgement& judgement = finished.report.judgement;
   if (!judgement.distrust.empty()) out << "\nNOT TO BE TRUSTED: " << judgement.distrust << "\n";
   if (!judgement.has_criteria) return;
   out << "\nVerdict by the criteria of the model: " << name_of(judgement.verdict);
-  if (!finished.run.failure.empty()) out << "; the run broke off, until then: " << name_of(judgement.so_far);
+  if (finished.report.run.failure) out << "; the run broke off, until then: " << name_of(judgement.so_far);
   out << "\n";
   for (const std::string& why : judgement.caps) out << "  It cannot be \"hold\": " << why << "\n";
   TextTable table({Align::left, Align::left, Align::left, Align::right, Align::right});
@@ -223,9 +225,9 @@ void print_judgement(std::ostream& out, const FinishedRun& finished) {
     if (!c.doubt.empty()) out << "  '" << c.name << "', " << c.text << ": " << c.doubt << "\n";
   const bool is_in_doubt = std::any_of(judgement.criteria.begin(), judgement.criteria.end(),
                                        [](const CriterionResult& c) { return !c.doubt.empty(); });
-  if (!finished.summary.global_error) out << "  judged without the errors of the numbers: " << finished.summary.no_estimate << "\n";
+  if (!finished.report.estimate.errors) out << "  judged without the errors of the numbers: " << finished.report.estimate.reason << "\n";
   if (is_in_doubt) out << "  A smaller tolerance or step decides.\n";
-  if (finished.summary.second_opinion) print_second_opinion(out, *finished.summary.second_opinion, finished.run.result.final_state.t);
+  if (finished.report.second_opinion) print_second_opinion(out, *finished.report.second_opinion, finished.report.run.result.final_state.t);
 }
 
 // "rk4, step 5e-05 s and 2.5e-05 s"
@@ -241,13 +243,13 @@ std::string finer_text(const std::vector<SimulationOptions>& finer, const Simula
 
 // What moves and what is exchanged is rounding: it has no range by which an error could be measured.
 bool rests(const FinishedRun& f) {
-  const RunStatistics& s = f.run.result.statistics;
-  return s.energy_exchanged <= s.energy_rounding && f.run.loaded->system->kinetic_energy(f.run.result.final_state) <= s.energy_rounding;
+  const RunStatistics& s = f.report.run.result.statistics;
+  return s.energy_exchanged <= s.energy_rounding && f.report.run.loaded->system->kinetic_energy(f.report.run.result.final_state) <= s.energy_rounding;
 }
 
 void print_global_error(std::ostream& out, const FinishedRun& finished) {
-  if (!finished.summary.global_error) return;
-  const GlobalErrorEstimate& estimate = *finished.summary.global_error;
+  if (!finished.report.estimate.errors) return;
+  const GlobalErrorEstimate& estimate = *finished.report.estimate.errors;
   if (rests(finished)) {
     out << "\nThe machine rests: nothing moves but by rounding, so that errors have no range to be measured by\n";
     return;
@@ -256,7 +258,7 @@ void print_global_error(std::ostream& out, const FinishedRun& finished) {
     out << "\nGlobal error: unknown; " << estimate.unknown_because << "\n";
     return;
   }
-  const SimulationOptions asked = options_of(finished.run.loaded->model);
+  const SimulationOptions asked = options_of(finished.report.run.loaded->model);
   out << "\nGlobal error, estimated from " << (estimate.finer.size() > 1 ? "finer runs (" : "a finer run (")
       << finer_text(estimate.finer, asked) << "); of each channel's range\n";
   TextTable table({Align::left, Align::right, Align::left});
@@ -280,13 +282,13 @@ struct Figure {
 };
 
 const RunStatistics& statistics(const FinishedRun& f) {
-  return f.run.result.statistics;
+  return f.report.run.result.statistics;
 }
 
 // Of kinetic energy, work or dissipation, the balance of which is known to the residual.
 std::optional<double> exchanged_error(const FinishedRun& f) {
-  if (!f.summary.global_error) return {};
-  return larger_error(larger_error(*f.summary.dissipated_error(), *f.summary.work_error()), statistics(f).energy_residual);
+  if (!f.report.estimate.errors) return {};
+  return larger_error(larger_error(*f.report.dissipated_error(), *f.report.work_error()), statistics(f).energy_residual);
 }
 
 const std::vector<Figure>& accuracy_and_cost() {
@@ -296,9 +298,9 @@ const std::vector<Figure>& accuracy_and_cost() {
       {"energy exchanged",
        [](const FinishedRun& f) { return measured_text(statistics(f).energy_exchanged, exchanged_error(f), "J"); }},
       {"energy dissipated",
-       [](const FinishedRun& f) { return measured_text(statistics(f).dissipated, f.summary.dissipated_error(), "J"); }},
+       [](const FinishedRun& f) { return measured_text(statistics(f).dissipated, f.report.dissipated_error(), "J"); }},
       {"energy residual, relative",
-       [](const FinishedRun& f) { return rests(f) ? "nothing is exchanged" : small_text(f.summary.relative_energy_residual); }},
+       [](const FinishedRun& f) { return rests(f) ? "nothing is exchanged" : small_text(f.report.relative_energy_residual); }},
       {"constraint residual, m or rad",
        [](const FinishedRun& f) { return small_text(statistics(f).max_position_residual); }},
       {"constraint residual, per s",
@@ -313,9 +315,9 @@ const std::vector<Figure>& accuracy_and_cost() {
 }
 
 void print_place(std::ostream& out, const FinishedRun& finished) {
-  const Trajectory& trajectory = *finished.run.result.trajectory;
+  const Trajectory& trajectory = *finished.report.run.result.trajectory;
   if (finished.folder.empty()) return;
-  const char* const part = finished.run.failure.empty() ? "" : "partial_";
+  const char* const part = !finished.report.run.failure ? "" : "partial_";
   out << "Written to " << finished.folder << ": " << part << "trajectory.csv (" << counted(trajectory.size(), "row", "rows") << ", "
       << counted(trajectory.channels().size(), "channel", "channels") << ")";
   for (const char* file : {"events.csv", "summary.json", "model.toml", "drawing.json"}) out << ", " << part << file;
@@ -335,7 +337,7 @@ template <class Predicate>
 std::vector<std::string> channel_names(const std::vector<FinishedRun>& runs, Predicate is_wanted) {
   std::vector<std::string> names;
   for (const FinishedRun& run : runs)
-    for (const ChannelRange& range : run.summary.ranges)
+    for (const ChannelRange& range : run.report.ranges())
       if (is_wanted(range) &&
           std::find(names.begin(), names.end(), range.channel->name) == names.end())
         names.push_back(range.channel->name);
@@ -346,9 +348,9 @@ std::vector<std::string> channel_names(const std::vector<FinishedRun>& runs, Pre
 void add_range_row(TextTable& table, const std::vector<FinishedRun>& runs, const std::string& name) {
   std::vector<std::string> row{name};
   for (const FinishedRun& run : runs) {
-    const ChannelRange* range = run.summary.find(name);
-    row.push_back(range ? value_text(run.summary, *range, range->low) : "–");
-    row.push_back(range ? value_text(run.summary, *range, range->high) : "–");
+    const ChannelRange* range = run.report.find(name);
+    row.push_back(range ? value_text(run.report, *range, range->low) : "–");
+    row.push_back(range ? value_text(run.report, *range, range->high) : "–");
   }
   table.add_row(row);
 }
@@ -360,7 +362,7 @@ void print_side_by_side(std::ostream& out, const std::vector<FinishedRun>& runs,
   TextTable table(columns);
   std::vector<std::string> models{""}, heads{""};
   for (const FinishedRun& run : runs) {
-    models.insert(models.end(), {run.run.loaded->name, ""});
+    models.insert(models.end(), {run.report.run.loaded->name, ""});
     heads.insert(heads.end(), {"lowest", "highest"});
   }
   table.add_row(models);
@@ -383,9 +385,9 @@ void print_requested_side_by_side(std::ostream& out, const std::vector<FinishedR
 void print_run(std::ostream& out, const FinishedRun& finished) {
   print_heading(out, finished);
   print_events(out, finished);
-  print_reactions(out, finished.summary);
-  print_slides(out, finished.summary);
-  print_requested(out, finished.summary);
+  print_reactions(out, finished.report);
+  print_slides(out, finished.report);
+  print_requested(out, finished.report);
   print_joints(out, finished);
   print_judgement(out, finished);
   print_global_error(out, finished);
@@ -408,12 +410,12 @@ void print_comparison(std::ostream& out, const std::vector<FinishedRun>& runs) {
   std::vector<Align> columns(runs.size() + 1, Align::right);
   columns.front() = Align::left;
   TextTable table(columns);
-  table.add_row(cells("", runs, [](const FinishedRun& run) { return run.run.loaded->name; }));
+  table.add_row(cells("", runs, [](const FinishedRun& run) { return run.report.run.loaded->name; }));
   for (const std::string& name :
        channel_names(runs, [](const ChannelRange& r) { return is_slide(*r.channel); }))
     table.add_row(cells(name + ", largest", runs, [&](const FinishedRun& run) -> std::string {
-      const ChannelRange* range = run.summary.find(name);
-      return range ? value_text(run.summary, *range, range->largest()) : "–";
+      const ChannelRange* range = run.report.find(name);
+      return range ? value_text(run.report, *range, range->largest()) : "–";
     }));
   for (const Figure& figure : accuracy_and_cost())
     table.add_row(cells(figure.name, runs, figure.text));

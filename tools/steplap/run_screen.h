@@ -1,16 +1,15 @@
 // What a run, or several side by side, came to: one screen.
 #pragma once
 
-#include "tools/steplap/summary.h"
+#include "run/report.h"
 
 #include <iosfwd>
 
 namespace steplap {
 
-/// A run, what it came to and where its files are.
+/// A run and where its files are.
 struct FinishedRun {
-  Run run;
-  RunSummary summary;
+  Report report;
   std::string folder;
 };
 

@@ -1,7 +1,7 @@
 #include "tools/steplap/schema.h"
 
 #include "mbd/io/json_schema.h"
-#include "tools/steplap/catalogue.h"
+#include "run/catalogue.h"
 #include "tools/steplap/study.h"
 
 #include <memory>

@@ -1,21 +1,15 @@
 #include "tools/steplap/simulate.h"
 
-#include "mbd/analysis/assembly.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/base/team.h"
-#include "mbd/model/validate.h"
-#include "tools/steplap/edges.h"
-#include "tools/steplap/far_joints.h"
-#include "tools/steplap/plausible_scene.h"
-#include "tools/steplap/seams.h"
+#include "run/quantity_text.h"
+#include "run/report.h"
+#include "run/result_files.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/progress.h"
 #include "tools/steplap/report.h"
-#include "tools/steplap/result_files.h"
 #include "tools/steplap/run_screen.h"
-#include "tools/steplap/stepped_feet.h"
-#include "tools/steplap/text_table.h"
 
 #include <algorithm>
 #include <charconv>
@@ -90,126 +84,45 @@ void check_folders(const SimulateOptions& options, const Models& models) {
                      "overwrite it with --force");
 }
 
-// From finer runs; where one fails the run stands, but nothing of it can be called known.
-void make_estimate(FinishedRun& finished, int threads, double most_evaluations) {
-  const LoadedModel& loaded = *finished.run.loaded;
-  const RunResult& result = finished.run.result;
-  SimulationOptions as_run = options_of(loaded.model);
-  as_run.progress = stop_if_interrupted;
-  as_run.threads = threads;
-  try {
-    finished.summary.global_error = estimate_global_error(*loaded.system, initial_state_of(loaded), as_run, result, is_main_event, most_evaluations);
-    weigh_errors(finished.summary.judgement, loaded.model, *loaded.system, result, *finished.summary.global_error);
-  } catch (const EstimateTooDear& stopped) {
-    finished.summary.no_estimate = std::string(stopped.what()) + "; ask with --estimate-error";
-  } catch (const NumericalFailure& failure) {
-    finished.summary.no_estimate = std::string("the finer run failed: ") + failure.what();
-    leave_open(finished.summary.judgement, "the finer run failed");
-    log_warning("'" + loaded.path + "': the error is not known: " + finished.summary.no_estimate);
-  }
+RunOptions run_options(const SimulateOptions& options, const LoadedModel& loaded) {
+  RunOptions run;
+  run.threads = options.thread_count();
+  run.estimating = options.is_estimate_left_out ? Estimating::never : options.is_error_estimated ? Estimating::always : Estimating::cheap;
+  run.has_second_opinion = options.is_hold_required;
+  run.stop = interruption;
+  run.note = [&loaded](const Finding& finding) {
+    const std::string text = "'" + loaded.path + "': " + text_with_place(finding);
+    if (finding.level == FindingLevel::warning) log_warning(text);
+    else log_info(text);
+  };
+  return run;
 }
 
-// By default only where it costs little: a second or so. Work is counted, not timed: criteria are judged by the errors, and a
-// verdict may not hang on how fast or how busy the computer is. A part takes some 40 to 300 ns, where much slides more.
-void estimate_error(const SimulateOptions& options, FinishedRun& finished) {
-  constexpr double k_little = 1e7; // parts evaluated
-  constexpr double k_most = 3.0;   // times that: finer runs that turn out to need more are given up
-  const LoadedModel& loaded = *finished.run.loaded;
-  std::string& why_not = finished.summary.no_estimate;
-  if (!finished.run.failure.empty() || noted_signal() != 0) {
-    why_not = "the run broke off";
-    return;
-  }
-  if (options.is_estimate_left_out) {
-    why_not = "left out with --no-estimate";
-    return;
-  }
-  const RunStatistics& statistics = finished.run.result.statistics;
-  const double times = times_of_finer_runs(*loaded.system, options_of(loaded.model));
-  const double parts = parts_evaluated(*loaded.system, statistics);
-  if (times * parts < k_little || options.is_error_estimated) {
-    const double granted = k_most * k_little * static_cast<double>(statistics.evaluations) / std::max(parts, 1.0);
-    make_estimate(finished, options.thread_count(), options.is_error_estimated ? std::numeric_limits<double>::infinity() : std::floor(granted));
-    return;
-  }
-  finished.summary.estimate_cost = times * statistics.cpu_seconds;
-  why_not = "would take long; ask with --estimate-error";
+void log_run(const Report& report) {
+  const LoadedModel& loaded = *report.run.loaded;
+  if (report.estimate.status == EstimateStatus::failed)
+    log_warning("'" + loaded.path + "': the error is not known: " + report.estimate.reason);
+  for (const Event& event : report.run.result.events) log_detail("t = " + time_text(event.t) + " s: '" + event.element + "' " + event.words());
 }
 
-// Only a verdict that holds has anything to lose.
-void ask_second_opinion(FinishedRun& finished) {
-  Judgement& judgement = finished.summary.judgement;
-  if (judgement.verdict != Verdict::hold || noted_signal() != 0) return;
-  const SecondOpinion opinion = second_opinion(*finished.run.loaded, finished.run.result);
-  if (!opinion.disagreement.empty()) distrust(judgement, "a second method disagrees beyond both errors: " + opinion.disagreement);
-  finished.summary.second_opinion = opinion;
-}
-
-// How bodies were moved: poses given to the digits of a file need no mention, nor do velocities that a drive or a joint sets.
-bool has_moved(const LoadedModel& loaded) {
-  constexpr double k_noticeable = 1e-5; // m, rad
-  const System& system = *loaded.system;
-  auto moves = assembly_moves(system.initial_state(), loaded.assembled, k_noticeable);
-  std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });
-  if (moves.empty()) return false;
-  log_info("'" + loaded.path + "': assembling the joints moved " + counted(moves.size(), "body", "bodies") +
-           ", most of all '" + system.bodies[moves.front().body].name + "' by " +
-           quantity_text(moves.front().shift, "m", 1e-3) + " and " + quantity_text(moves.front().turn, "rad", 1e-3) +
-           "; steplap check lists them");
-  return true;
-}
-
-// What is hardly meant, and bears on what a run can say: told before it begins, and beside its verdict.
-std::vector<Finding> findings_before(const LoadedModel& loaded) {
-  std::vector<Finding> findings = doubled_corners(loaded);
-  const auto append = [&findings](const std::vector<Finding>& more) { findings.insert(findings.end(), more.begin(), more.end()); };
-  append(start_findings(loaded));
-  append(implausible_findings(loaded));
-  if (has_moved(loaded)) {
-    append(stepped_feet(loaded));
-    append(far_joints(loaded));
-  }
-  for (const Finding& finding : findings) log_warning("'" + loaded.path + "': " + text_with_place(finding));
-  return findings;
-}
-
-void warn_of_missing_values(const LoadedModel& loaded, const RunResult& result) {
-  for (const ChannelRange& range : result.ranges)
-    if (range.channel->is_on_request && range.had_no_value)
-      log_warning("'" + loaded.path + "': channel '" + range.channel->name +
-                  "' had no value at some time (a division by zero, a root of what is negative): its extremes are of the other times");
-}
-
-FinishedRun run_one(const SimulateOptions& options,
-                    const std::shared_ptr<const LoadedModel>& loaded, Console& console) {
+FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const LoadedModel>& loaded, Console& console) {
   log_detail("'" + loaded->name + "': " + counted(static_cast<std::size_t>(loaded->system->body_count() - 1), "body", "bodies") + ", " +
              counted(loaded->system->rows.size(), "constraint row", "constraint rows") + ", " +
              counted(loaded->system->frictions.size(), "joint with friction", "joints with friction"));
-  const std::vector<Finding> findings = findings_before(*loaded);
   FinishedRun finished;
   {
     Progress progress(console, loaded->name, loaded->model.simulation.end);
-    finished.run = run_model(loaded, std::ref(progress), options.thread_count());
+    RunOptions asked = run_options(options, *loaded);
+    asked.progress = std::ref(progress);
+    finished.report = judged_run(loaded, asked);
   }
-  for (const std::string& text : feet_beyond_edges(*loaded, finished.run.result.final_state))
-    log_warning("'" + loaded->path + "': at the end " + text);
-  warn_of_missing_values(*loaded, finished.run.result);
-  for (const std::string& text : contacts_too_deep(*loaded, finished.run.result.ranges))
-    log_warning("'" + loaded->path + "': " + text);
-  finished.summary = summarise(finished.run);
-  finished.summary.findings = findings;
-  for (const Finding& finding : findings)
-    if (caps_verdict(finding)) add_cap(finished.summary.judgement, text_with_place(finding));
-  estimate_error(options, finished);
-  if (options.is_hold_required) ask_second_opinion(finished);
+  const Report& report = finished.report;
+  log_run(report);
   finished.folder = options.folder_of(*loaded);
-  for (const Event& event : finished.run.result.events)
-    log_detail("t = " + time_text(event.t) + " s: '" + event.element + "' " + event.words());
-  write_results(finished.folder, result_files(finished.run, finished.summary),
-                options.is_overwriting);
-  if (!finished.run.failure.empty())
-    log_error("'" + loaded->path + "': " + finished.run.failure + (finished.run.failure.ends_with('.') ? "" : ".") +
-              " What was computed up to there is in '" + finished.folder + "' as partial_*");
+  report.write(finished.folder, options.is_overwriting);
+  if (const std::optional<Failure>& failure = report.run.failure)
+    log_error("'" + loaded->path + "': " + failure->text + (failure->text.ends_with('.') ? "" : ".") + " What was computed up to there is in '" +
+              finished.folder + "' as partial_*");
   return finished;
 }
 
@@ -236,7 +149,7 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
     if (noted_signal() != 0) break;
     try {
       runs.push_back(run_one(options, loaded, console));
-      if (!runs.back().run.failure.empty()) code = ExitCode::numerical_failure;
+      if (runs.back().report.run.failure) code = ExitCode::numerical_failure;
     } catch (const NumericalFailure& failure) { // it could not even begin
       log_error("'" + loaded->path + "': " + failure.what());
       code = ExitCode::numerical_failure;
@@ -244,10 +157,10 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
   }
   if (runs.empty()) return code;
   const bool is_held = std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) {
-    return run.summary.judgement.verdict == Verdict::hold;
+    return run.report.judgement.verdict == Verdict::hold;
   });
   const bool is_trusted = std::all_of(runs.begin(), runs.end(), [](const FinishedRun& run) {
-    return run.summary.judgement.distrust.empty();
+    return run.report.judgement.distrust.empty();
   });
   if (options.is_hold_required && !is_held && code == ExitCode::done)
     code = is_trusted ? ExitCode::criterion_failed : ExitCode::numerical_failure;

@@ -4,14 +4,13 @@
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/csv.h"
 #include "mbd/model/model_path.h"
+#include "study/export.h"
+#include "study/kinds.h"
+#include "study/report_about.h"
+#include "study/report_page.h"
 #include "tools/steplap/command_line.h"
 #include "tools/steplap/log.h"
-#include "tools/steplap/text_table.h"
-#include "tools/study/export.h"
-#include "tools/study/kinds.h"
 #include "tools/study/progress_line.h"
-#include "tools/study/report_about.h"
-#include "tools/study/report_page.h"
 #include "tools/study/show.h"
 
 #include <charconv>

@@ -1,8 +1,8 @@
 // steplap study: its sub-commands.
 #pragma once
 
+#include "study/ranks.h"
 #include "tools/steplap/command_line.h"
-#include "tools/study/ranks.h"
 
 namespace steplap::study {
 

@@ -2,8 +2,8 @@
 // estimate.
 #pragma once
 
+#include "study/evaluator.h"
 #include "tools/steplap/console.h"
-#include "tools/study/evaluator.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // A store for people: samples, reasons of runs that failed, findings.
 #pragma once
 
-#include "tools/study/store.h"
+#include "study/store.h"
 
 #include <iosfwd>
 

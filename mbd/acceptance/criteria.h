@@ -1,0 +1,14 @@
+// The criteria that a model states: [[acceptance]].
+//
+// Channels are judged by their extremes over the whole run (mbd/simulation/extremes.h), whatever is written of them.
+#pragma once
+
+#include "mbd/acceptance/judgement.h"
+#include "mbd/model/model.h"
+#include "mbd/simulation/simulation.h"
+
+namespace steplap {
+
+[[nodiscard]] CriterionResult judge_criterion(const Criterion& criterion, const RunResult& result);
+
+} // namespace steplap

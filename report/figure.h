@@ -1,0 +1,34 @@
+// Time histories as a gnuplot script: for papers and scripts, where no browser is at hand.
+#pragma once
+
+#include "run/results.h"
+
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+struct Curve {
+  std::string label;
+  const std::vector<double>* times = nullptr;
+  const std::vector<double>* values = nullptr; ///< SI
+  int colour = 0, dash = 0;
+  double sign = 1.0;
+};
+
+struct Panel {
+  std::string title, unit;
+  std::vector<Curve> curves;
+};
+
+struct Figure {
+  std::vector<Panel> panels; ///< row by row
+  int columns = 1;
+  int panel_width = 760, panel_height = 300; ///< pixels
+};
+
+/// Draws `figure` into the image `file` when gnuplot runs it; `ending` is svg, png or pdf. Names are text,
+/// whatever they hold. Curves of more samples than can be seen are thinned, peaks kept.
+[[nodiscard]] std::string gnuplot_script(const Figure& figure, const std::string& ending, const std::string& file);
+
+} // namespace steplap

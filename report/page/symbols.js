@@ -1,0 +1,388 @@
+// What acts on the bodies: springs, ropes, contacts with their half-planes, joints, motors, loads, forces with their
+// values. Each type of shape of drawing.json (run/symbols.h) has one method of Symbols.
+steplap.Symbols = (() => {
+  const make = steplap.make, { turn, add, minus, scaled, dot, length, unit, seenIn } = steplap.geometry;
+  const path = (points, isClosed) => 'M' + points.map((p) => `${p[0].toFixed(2)} ${p[1].toFixed(2)}`).join('L') + (isClosed ? 'Z' : '');
+  const across = (d) => [-d[1], d[0]];
+  const flipped = (d) => [d[0], -d[1]]; // a direction of the plane on the screen, and back
+  const along = (a, b, k) => add(a, scaled(minus(b, a), k));
+  const arrowHead = (tip, d, size) => path([add(tip, add(scaled(d, -size), scaled(across(d), 0.45 * size))), tip, add(tip, add(scaled(d, -size), scaled(across(d), -0.45 * size)))], true);
+
+  class Symbols {
+    constructor(scene) {
+      this.scene = scene;
+      this.values = []; // of arrows: { name, text(t), place(t) }
+      this.planes = (scene.run.drawing.planes || []).map((plane) => ({ ...plane, feet: [] }));
+      for (const element of scene.elements)
+        for (const shape of element.shapes) {
+          if (!this.planes[shape.plane]) continue;
+          const own = shape.type === 'faces' && shape.at.length === 2 ? scene.body(shape.at[0].body).points.map((point) => ({ body: shape.at[0].body, point })) : null;
+          this.planes[shape.plane].feet.push(...(own || shape.at.slice(0, -1)));
+        }
+      this.frictions = scene.elements.filter((e) => e.shapes.some((shape) => shape.type === 'friction')).length;
+      this.planes.forEach((plane) => this.halfPlane(plane));
+      this.sheets();
+      for (const element of scene.elements)
+        for (const shape of element.shapes) {
+          const draw = Symbols.types[shape.type] || (shape.at.length ? Symbols.types.neutral : null);
+          if (draw && (shape.at.length || shape.type === 'friction')) draw.call(this, element, shape);
+        }
+    }
+    get u() { return this.scene.u; }
+    screen(place, pose) { return this.scene.toScreen(this.scene.placed(place, pose)); }
+    ends(shape, pose) { const at = shape.at.map((a) => this.screen(a, pose)); return at.length > 1 ? at : [at[0], at[0]]; }
+    // Of the screen; along x if the shape has none.
+    direction(shape, pose) { const last = shape.at[shape.at.length - 1]; return flipped(turn(shape.direction || [1, 0], pose(last.body)[2])); }
+    update(f) { this.scene.updaters.push(f); }
+    channel(element, shape) { return shape.quantity ? this.scene.run.channel(`${element.name}.${shape.quantity}`) : undefined; }
+    piece(element, attributes, layer = this.scene.elementLayer, name = 'path') {
+      const node = make(name, { class: 'symbol', 'data-element': element.name, ...attributes }, make('title', {}, element.name));
+      layer.append(node);
+      return node;
+    }
+    // Of a channel what an arrow of it takes on the screen: all forces of all scenes to one scale.
+    arrowLength(force) { return (8 * this.u * Math.abs(force)) / (this.scene.largestForce || 1); }
+    // A force whose arrow ends (or begins) at a place, with its value on demand. `where` gives { at, d, force }: it acts
+    // at `at` along d, on the screen.
+    force(element, shape, where, isPulling = false) {
+      const channel = this.channel(element, shape);
+      if (!channel) return;
+      const arrow = this.piece(element, { class: 'force' }, this.scene.forceLayer);
+      const text = this.value(element);
+      this.update((t, pose) => {
+        const { at, d, force } = where(t, pose, channel);
+        const size = this.arrowLength(force), tip = isPulling ? add(at, scaled(d, size)) : at, tail = isPulling ? at : minus(at, scaled(d, size));
+        arrow.setAttribute('d', size > 0.5 ? path([tail, tip]) + arrowHead(tip, d, Math.min(0.7 * this.u, size)) : 'M0 0');
+        this.showValue(text, Math.abs(force) > 1e-6 * this.scene.largestForce ? steplap.data.quantity(Math.abs(force), channel.unit, 4) : '', isPulling ? tip : tail, isPulling ? d : scaled(d, -1));
+      });
+    }
+    value(element) {
+      const text = make('text', { class: 'value-text', 'data-value-of': element.name });
+      this.scene.textLayer.append(text);
+      return text;
+    }
+    // At the tip of an arrow along d, or as near as there is room.
+    showValue(text, content, at, d) {
+      text.textContent = this.scene.withValues ? content : '';
+      if (!text.textContent) return;
+      const width = 6.9 * content.length, side = Math.abs(d[0]) < 0.5 ? 0 : Math.sign(d[0]);
+      const x = at[0] + side * (0.6 * this.u + 0.5 * width), y = at[1] + (side ? 0 : d[1] > 0 ? 10 : -9);
+      this.put(text, [x, y], [width, 12], [[0, 0], [0, -14], [0, 14], [0.7 * width, 0], [-0.7 * width, 0], [0, -28], [0, 28], [0.7 * width, 14], [-0.7 * width, 14]]);
+    }
+    // Moves a text's middle by the first of the shifts that leaves it clear of marks and texts, and onto the picture.
+    put(text, [x, y], [width, height], shifts) {
+      const { scene } = this;
+      const isFree = ([dx, dy]) => scene.takenTexts.length > 300 || scene.takenTexts.every(([qx, qy, w, h]) => Math.abs(qy - y - dy) >= 0.5 * (h + height) || Math.abs(qx - x - dx) >= 0.5 * (w + width));
+      const [dx, dy] = shifts.find(isFree) || shifts[0], half = 0.5 * width + 2;
+      const place = [Math.min(Math.max(x + dx, half), Math.max(half, scene.width - half)), Math.min(Math.max(y + dy, 0.5 * height + 1), scene.height - 0.5 * height - 2)];
+      scene.takenTexts.push([...place, width, height]);
+      text.setAttribute('x', place[0].toFixed(1));
+      text.setAttribute('y', (place[1] + 0.32 * height).toFixed(1));
+    }
+
+    // --- half-planes --------------------------------------------------------------------------------------
+    // As far as what touches them comes, hatched on the solid side; of a body with an outline the outline shows it.
+    halfPlane(plane) {
+      const scene = this.scene;
+      if (scene.body(plane.body).is_outline_given || !plane.feet.length) return;
+      const line = make('path', { class: 'plane', 'data-plane-of': plane.body }), hatch = make('path', { class: 'hatch' });
+      scene.groundLayer.append(line, hatch);
+      const tangent = across(plane.normal);
+      plane.fit = () => {
+        plane.range = plane.ends ? [-plane.ends[1], -plane.ends[0]] : [Infinity, -Infinity];
+        if (plane.ends) return;
+        for (const pose of scene.poses)
+          for (const foot of plane.feet) {
+            const s = dot(tangent, minus(seenIn(pose(plane.body), scene.placed(foot, pose)), plane.point));
+            plane.range = [Math.min(plane.range[0], s), Math.max(plane.range[1], s)];
+          }
+      };
+      this.update((t, pose) => {
+        const middle = this.screen(plane, pose), d = flipped(turn(tangent, pose(plane.body)[2])), down = scaled(flipped(turn(plane.normal, pose(plane.body)[2])), -1);
+        // Not further than the picture: zoomed in, a floor is long.
+        const centre = dot(d, minus([scene.width / 2, scene.height / 2], middle)), reach = scene.width + scene.height;
+        const beyond = plane.ends ? 0 : 3 * this.u, from = Math.max(plane.range[0] * scene.scale - beyond, centre - reach), to = Math.min(plane.range[1] * scene.scale + beyond, centre + reach);
+        if (!(to > from)) { line.setAttribute('d', 'M0 0'); hatch.setAttribute('d', 'M0 0'); return; }
+        const at = (s) => add(middle, scaled(d, s)), slant = scaled(add(scaled(d, -0.7), down), 0.8 * this.u);
+        let strokes = '';
+        for (let s = Math.ceil(from / (0.9 * this.u)) * 0.9 * this.u; s < to; s += 0.9 * this.u) strokes += path([at(s), add(at(s), slant)]);
+        line.setAttribute('d', path([at(from), at(to)]));
+        hatch.setAttribute('d', strokes || 'M0 0');
+      });
+    }
+    fit() { for (const plane of this.planes) if (plane.fit) plane.fit(); }
+
+    // Corners of step-lap joints: the sheets that overlap there.
+    sheets() {
+      const { scene } = this;
+      for (const sheet of steplap.data.corners(scene.run))
+        for (const [name, owner, ring] of [['yoke', sheet.active_part, sheet.yoke], ['limb', sheet.limb, sheet.limb_sheet]]) {
+          const outline = make('path', { class: `sheet ${name}`, 'data-sheet': sheet.name });
+          scene.bodyLayer.append(outline);
+          this.update((t, pose) => outline.setAttribute('d', path(ring.map((point) => this.screen({ body: owner, point }, pose)), true)));
+        }
+    }
+
+    // --- springs, ropes ---------------------------------------------------------------------------------------
+    // From b to a. One along a fixed axis is drawn at a, as long as the distance along the axis and at least so long that
+    // it can be seen.
+    spring(element, shape) {
+      const bar = this.piece(element, { class: `symbol ${shape.style || ''}` });
+      const sideOf = (pose) => { const [a, b] = this.ends(shape, pose); return dot(this.direction(shape, pose), minus(a, b)); };
+      const ends = (pose) => {
+        let [a, b] = this.ends(shape, pose);
+        if (shape.direction) {
+          const axis = this.direction(shape, pose), still = sideOf((name) => this.scene.reference(name)), way = sideOf(pose);
+          b = minus(a, scaled(axis, way + Math.max(0, 3 * this.u - Math.abs(still)) * (still < 0 ? -1 : 1)));
+        }
+        return [a, b];
+      };
+      const drawn = { '': zigzag, both: (a, b, u) => shifted(a, b, 0.7 * u, zigzag, 0.6 * u) + shifted(a, b, -0.7 * u, dashpot, 0.6 * u) + yokes(a, b, 0.7 * u), damper: dashpot, tie: plates, cylinder }[shape.style || ''] || zigzag;
+      this.update((t, pose) => { const [a, b] = ends(pose); bar.setAttribute('d', drawn(a, b, this.u)); });
+      const channel = this.channel(element, shape);
+      if (!channel) return;
+      const text = this.value(element);
+      this.update((t, pose) => {
+        const [a, b] = ends(pose);
+        this.showValue(text, steplap.data.quantity(channel.at(t), channel.unit, 4), add(along(a, b, 0.5), [1.1 * this.u, 0]), [1, 0]);
+      });
+    }
+    rope(element, shape) {
+      const line = this.piece(element, { class: 'symbol rope' }), tension = this.channel(element, shape), text = this.value(element);
+      this.update((t, pose) => {
+        const centres = shape.at.map((a) => this.screen(a, pose)), force = tension ? tension.at(t) : 1;
+        const points = shape.sizes ? this.tangent(centres, shape.sizes) : centres;
+        line.setAttribute('d', path(points));
+        line.classList.toggle('slack', !(force > 0));
+        this.showValue(text, tension ? steplap.data.quantity(force, tension.unit, 4) : '', along(points[0], points[1], 0.5), [1, 0]);
+      });
+      for (const pulley of shape.at.slice(1, -1)) this.dot(element, pulley, 'pulley', 0.6);
+    }
+
+    // Where a rope leaves two wheels; radii are positive where counter-clockwise winds it up (elements/wound_rope.h).
+    tangent([a, b], [ra, rb]) {
+      const d = scaled(flipped(minus(b, a)), 1 / this.scene.scale), square = dot(d, d), c = ra + rb, length = Math.sqrt(Math.max(0, square - c * c));
+      if (!(square > 0)) return [a, b];
+      const n = scaled([c * d[0] - length * d[1], c * d[1] + length * d[0]], this.scene.scale / square);
+      return [add(a, flipped(scaled(n, ra))), minus(b, flipped(scaled(n, rb)))];
+    }
+
+    // --- contacts ---------------------------------------------------------------------------------------------
+    // A wedge at what touches, filled while it presses; a tick of the line under it; the force on what touches.
+    contact(element, shape) {
+      const tick = this.piece(element, { class: 'surface' }), wedge = this.piece(element, { class: 'contact' }), force = this.channel(element, shape);
+      const hasLine = shape.plane !== undefined && !this.scene.body(this.planes[shape.plane].body).is_outline_given;
+      const places = (pose) => {
+        const [a, b] = this.ends(shape, pose), n = shape.direction ? this.direction(shape, pose) : unit(minus(a, b));
+        return { a, n, foot: minus(a, scaled(n, dot(n, minus(a, b)))) };
+      };
+      this.update((t, pose) => {
+        const { a, n, foot } = places(pose), w = 0.75 * this.u;
+        wedge.setAttribute('d', path([a, add(a, add(scaled(n, 1.1 * w), scaled(across(n), 0.6 * w))), add(a, add(scaled(n, 1.1 * w), scaled(across(n), -0.6 * w)))], true));
+        wedge.classList.toggle('closed', Boolean(force) && force.at(t) > 0);
+        if (!hasLine) tick.setAttribute('d', path([add(foot, scaled(across(n), 1.4 * w)), minus(foot, scaled(across(n), 1.4 * w))]));
+      });
+      this.force(element, shape, (t, pose, channel) => { const { a, n } = places(pose); return { at: add(a, scaled(n, 0.85 * this.u)), d: n, force: channel.at(t) }; }, true);
+    }
+    // Outlines on outlines: the force on a in the middle of what touches (its line of action is not recorded: on a face
+    // that is pressed more at one end it lies nearer to that end).
+    faces(element, shape) {
+      const places = shape.at.slice(0, -1), frame = shape.at[shape.at.length - 1];
+      const corners = (own, pose) => own.map((place) => this.screen(place, pose));
+      const outline = (name) => { const body = this.scene.body(name); return (body.outline.length ? body.outline : body.polygons.flat()).map((point) => ({ body: name, point })); };
+      const of = { a: places.length > 2 ? places : outline(places[0].body), b: shape.direction ? [] : outline(frame.body) };
+      this.force(element, shape, (t, pose, channel) => {
+        const a = corners(of.a, pose), origin = this.screen(frame, pose);
+        const found = shape.direction ? steplap.geometry.lowest(this.direction(shape, pose), origin, a) : steplap.geometry.facing(a, corners(of.b, pose));
+        return found ? { at: found.at, d: found.n, force: channel.at(t) } : { at: origin, d: [0, -1], force: 0 };
+      }, true);
+    }
+    // Round on round, round on edge: a dot where they touch while they press, and the force on a.
+    touching(element, shape, where) {
+      const dot = this.dotOf(element, 'touch'), force = this.channel(element, shape);
+      this.update((t, pose) => {
+        const { at } = where(pose), isClosed = Boolean(force) && force.at(t) > 0;
+        dot.setAttribute('cx', at[0]); dot.setAttribute('cy', at[1]); dot.setAttribute('r', isClosed ? 0.3 * this.u : 0);
+      });
+      this.force(element, shape, (t, pose, channel) => { const { at, n } = where(pose); return { at, d: n, force: channel.at(t) }; }, true);
+    }
+    touch(element, shape) {
+      if (shape.style === 'gear') return;
+      const [ra, rb, isInside] = shape.sizes;
+      this.touching(element, shape, (pose) => {
+        const [a, b] = this.ends(shape, pose), away = unit(minus(a, b)), n = isInside ? scaled(away, -1) : away;
+        return { at: add(b, scaled(away, rb * this.scene.scale)), n, ra };
+      });
+    }
+    edge_touch(element, shape) {
+      const [, x0, y0, x1, y1, thickness] = shape.sizes, frame = shape.at[1].body, end = (x, y) => ({ body: frame, point: [x, y] });
+      this.touching(element, shape, (pose) => {
+        const a = this.screen(shape.at[0], pose), from = this.screen(end(x0, y0), pose), to = this.screen(end(x1, y1), pose), d = minus(to, from);
+        const s = Math.min(1, Math.max(0, dot(d, minus(a, from)) / (dot(d, d) || 1))), nearest = add(from, scaled(d, s)), n = unit(minus(a, nearest));
+        return { at: add(nearest, scaled(n, 0.5 * thickness * this.scene.scale)), n };
+      });
+    }
+    // What friction does, in words, between the contacts it sits on.
+    friction(element, shape) {
+      const { scene } = this, names = element.contacts || [];
+      const places = element.contacts ? names.map((name) => scene.byName.get(name)).filter((e) => e && e.at.length).map((e) => e.at[0]) : element.at;
+      const rate = scene.run.channel(`${element.name}.slip_rate`), force = this.channel(element, shape);
+      if (!places.length || !scene.run.channel(`${element.name}.mode`) || this.frictions > 30) return; // more words than room
+      const text = make('text', { class: 'state-text', 'data-element': element.name });
+      scene.textLayer.append(text);
+      this.update((t, pose) => {
+        const sum = places.map((p) => scene.placed(p, pose)).reduce(add);
+        const [x, y] = scene.toScreen(scaled(sum, 1 / places.length)), m = scene.run.modeAt(element.name, t);
+        const state = m === 1 ? 'sticks' : m === 2 ? 'slips' : 'free';
+        const arrow = m === 2 && rate ? (rate.at(t) >= 0 ? ' →' : ' ←') : '';
+        const isSaid = m === 2 || this.frictions <= 6; // of many, only those that slip
+        const isFelt = scene.withValues && force && Math.abs(force.at(t)) > 1e-6 * scene.largestForce; // as with arrows, less is rounding
+        text.textContent = !isSaid ? '' : `${element.name}: ${state}${arrow}${isFelt ? `, ${steplap.data.quantity(force.at(t), force.unit, 4)}` : ''}`;
+        text.setAttribute('class', `state-text ${state}`);
+        const width = 8.4 * text.textContent.length, ways = [14, 32, -16, 50, -34, 68, 86, 104];
+        this.put(text, [x, y], [width, 18], [...ways.map((dy) => [0, dy]), ...ways.map((dy) => [0.6 * width, dy]), ...ways.map((dy) => [-0.6 * width, dy])]);
+      });
+    }
+
+    // --- joints -------------------------------------------------------------------------------------------------
+    dotOf(element, kind) { return this.piece(element, { class: `dot ${kind}` }, this.scene.elementLayer, 'circle'); }
+    dot(element, place, kind, size) {
+      const circle = this.dotOf(element, kind);
+      this.update((t, pose) => {
+        const [x, y] = this.screen(place, pose);
+        circle.setAttribute('cx', x); circle.setAttribute('cy', y); circle.setAttribute('r', size * this.u);
+      });
+    }
+    // On something that is held it stands on a bearing block.
+    pin(element, shape) {
+      const held = shape.at.find((place) => this.scene.isHeld(place.body));
+      if (held && held.body === 'ground') {
+        const block = this.piece(element, { class: 'bearing' });
+        this.update((t, pose) => {
+          const [x, y] = this.screen(held, pose), w = 1.1 * this.u;
+          const foot = [-1, -0.5, 0, 0.5, 1].map((k) => path([[x + k * w, y + 1.3 * w], [x + (k - 0.35) * w, y + 1.7 * w]])).join('');
+          block.setAttribute('d', path([[x, y], [x - 0.8 * w, y + 1.3 * w], [x + 0.8 * w, y + 1.3 * w]], true) + path([[x - 1.2 * w, y + 1.3 * w], [x + 1.2 * w, y + 1.3 * w]]) + foot);
+        });
+      }
+      this.dot(element, shape.at[0], 'pin', 0.42);
+    }
+    bushing(element, shape) { this.dot(element, shape.at[0], 'bushing', 0.75); this.dot(element, shape.at[0], 'pin', 0.35); }
+    weld(element, shape) {
+      const square = this.piece(element, { class: 'symbol weld' });
+      this.update((t, pose) => { const [x, y] = this.screen(shape.at[0], pose), h = 0.32 * this.u; square.setAttribute('d', `M${x - h} ${y - h}h${2 * h}v${2 * h}h${-2 * h}Z`); });
+    }
+    // The line that is free, dashed, with a block on it where the guided marker is.
+    rail(element, shape) {
+      const line = this.piece(element, { class: 'symbol rail' }), block = this.piece(element, { class: 'symbol block' });
+      this.update((t, pose) => {
+        const [a, b] = this.ends(shape, pose), d = this.direction(shape, pose), way = dot(d, minus(a, b)), reach = 4 * this.u;
+        line.setAttribute('d', path([add(b, scaled(d, Math.min(0, way) - reach)), add(b, scaled(d, Math.max(0, way) + reach))]));
+        const on = add(b, scaled(d, way)), x = scaled(d, 0.9 * this.u), y = scaled(across(d), 0.45 * this.u);
+        block.setAttribute('d', path([add(add(on, x), y), add(minus(on, x), y), minus(minus(on, x), y), minus(add(on, x), y)], true));
+      });
+    }
+    rod(element, shape) {
+      const line = this.piece(element, { class: 'symbol rod' });
+      this.update((t, pose) => line.setAttribute('d', path(this.ends(shape, pose))));
+      for (const place of shape.at) this.dot(element, place, 'pin', 0.3);
+    }
+    // A kind that says nothing of its looks.
+    neutral(element, shape) {
+      const line = this.piece(element, { class: 'symbol neutral' });
+      this.update((t, pose) => {
+        const points = shape.at.map((a) => this.screen(a, pose)), w = 0.5 * this.u;
+        line.setAttribute('d', points.map(([x, y]) => path([[x - w, y], [x, y - w], [x + w, y], [x, y + w]], true)).join('') + (points.length > 1 ? path(points) : ''));
+      });
+    }
+
+    // --- what drives, stops, loads ---------------------------------------------------------------------------------
+    arc(element, shape) {
+      const style = shape.style || '', symbol = this.piece(element, { class: `symbol arc ${style}` }), channel = this.channel(element, shape), text = this.value(element);
+      const drawn = { spring: spiral, limit: stops, brake: shoes }[style];
+      this.update((t, pose) => {
+        const at = this.screen(shape.at[0], pose), turned = -pose(shape.at[0].body)[2], couple = channel ? channel.at(t) : 0;
+        symbol.setAttribute('d', drawn ? drawn(at, this.u, turned) : turning(at, 1.7 * this.u, turned, couple < 0));
+        this.showValue(text, channel ? steplap.data.quantity(couple, channel.unit, 4) : '', add(at, [1.9 * this.u, -1.2 * this.u]), [1, 0]);
+      });
+    }
+    arrow(element, shape) {
+      if (shape.style === 'load') { this.load(element, shape); return; }
+      const symbol = this.piece(element, { class: 'symbol drive' }), channel = this.channel(element, shape), text = this.value(element);
+      this.update((t, pose) => {
+        const at = this.screen(shape.at[0], pose), d = this.direction(shape, pose), tip = add(at, scaled(d, 4.5 * this.u));
+        symbol.setAttribute('d', path([at, tip]) + arrowHead(tip, d, 0.9 * this.u));
+        this.showValue(text, channel ? steplap.data.quantity(channel.at(t), channel.unit, 4) : '', tip, d);
+      });
+    }
+    load(element, shape) {
+      const x = this.scene.run.channel(`${element.name}.force_x`), y = this.scene.run.channel(`${element.name}.force_y`);
+      if (!x || !y) return;
+      this.force(element, shape, (t, pose) => {
+        const force = [x.at(t), y.at(t)];
+        return { at: this.screen(shape.at[0], pose), d: flipped(unit(force)), force: length(force) };
+      });
+    }
+  }
+
+  // --- lines between two points of the screen, from b to a ---------------------------------------------------------
+  function zigzag(a, b, u) {
+    const d = minus(a, b), n = scaled(unit(across(d)), 0.55 * u), points = [b, add(b, scaled(d, 0.15))];
+    for (let k = 0; k < 8; ++k) points.push(add(add(b, scaled(d, 0.2 + (0.6 * k) / 7)), scaled(n, k % 2 ? -1 : 1)));
+    return path([...points, add(b, scaled(d, 0.85)), a]);
+  }
+  function dashpot(a, b, u) {
+    const d = unit(minus(a, b)), n = scaled(across(d), 0.5 * u), m = along(b, a, 0.5), back = scaled(d, -0.9 * u), front = scaled(d, 0.9 * u);
+    return path([b, add(m, back)]) + path([add(add(m, front), n), add(add(m, back), n), minus(add(m, back), n), minus(add(m, front), n)]) + path([add(m, scaled(n, 0.75)), minus(m, scaled(n, 0.75))]) + path([m, a]);
+  }
+  function shifted(a, b, by, draw, u) { const n = scaled(unit(across(minus(a, b))), by), p = add(along(b, a, 0.9), n), q = add(along(b, a, 0.1), n); return draw(p, q, u); }
+  function yokes(a, b, w) {
+    const n = scaled(unit(across(minus(a, b))), w);
+    return [[b, 0.1], [a, 0.9]].map(([end, k]) => { const m = along(b, a, k); return path([add(m, n), minus(m, n)]) + path([m, end]); }).join('');
+  }
+  function plates(a, b, u) { const n = scaled(unit(across(minus(a, b))), 0.6 * u); return path([a, b]) + path([add(a, n), minus(a, n)]) + path([add(b, n), minus(b, n)]); }
+  function cylinder(a, b, u) {
+    const n = scaled(unit(across(minus(a, b))), 0.6 * u), m = along(b, a, 0.6);
+    return path([add(b, n), add(m, n), minus(m, n), minus(b, n)], true) + path([m, a]);
+  }
+  // --- about a point ------------------------------------------------------------------------------------------------
+  const onCircle = (at, r, angle) => add(at, [r * Math.cos(angle), r * Math.sin(angle)]);
+  const arcPath = (at, r, from, to) => { const p = onCircle(at, r, from), q = onCircle(at, r, to); return `M${p.map((v) => v.toFixed(2)).join(' ')}A${r} ${r} 0 ${Math.abs(to - from) > Math.PI ? 1 : 0} ${to > from ? 1 : 0} ${q.map((v) => v.toFixed(2)).join(' ')}`; };
+  function turning(at, r, turned, isClockwise) {
+    const sign = isClockwise ? 1 : -1, end = turned + sign * 2.4, d = scaled(across([Math.cos(end), Math.sin(end)]), sign);
+    return arcPath(at, r, turned - sign * 2.0, end) + arrowHead(add(onCircle(at, r, end), scaled(d, 0.35 * r)), d, 0.6 * r);
+  }
+  function spiral(at, u, turned) {
+    const points = [];
+    for (let k = 0; k <= 40; ++k) points.push(onCircle(at, u * (0.5 + k / 35), turned + (4 * Math.PI * k) / 40));
+    return path(points);
+  }
+  function stops(at, u, turned) { return arcPath(at, 1.5 * u, turned - 0.9, turned + 0.9) + [-0.9, 0.9].map((w) => path([onCircle(at, 1.1 * u, turned + w), onCircle(at, 1.9 * u, turned + w)])).join(''); }
+  function shoes(at, u, turned) { return arcPath(at, 1.1 * u, turned - 0.6, turned + 0.6) + arcPath(at, 1.1 * u, turned + Math.PI - 0.6, turned + Math.PI + 0.6); }
+
+  Symbols.types = {};
+  for (const type of ['spring', 'rope', 'contact', 'touch', 'faces', 'edge_touch', 'friction', 'pin', 'bushing', 'weld', 'rail', 'rod', 'neutral', 'arc', 'arrow']) Symbols.types[type] = Symbols.prototype[type];
+  Symbols.types.joint = () => {}; // its sheets are drawn
+
+  Object.assign(steplap.Scene.prototype, {
+    buildSymbols() {
+      this.takenTexts = [];
+      // Room for texts: not on the marks of bodies, nor on texts that are there before.
+      this.updaters.push((t, pose) => { this.takenTexts = [...this.marks].map(([name, mark]) => [...add(this.toScreen(pose(name)), mark.shift), 20, 20]); });
+      this.symbols = new Symbols(this);
+    },
+    fitSymbols() { this.symbols.fit(); },
+    // The largest force of those that are drawn as arrows.
+    ownLargestForce() {
+      let largest = 0;
+      for (const e of this.elements)
+        for (const shape of e.shapes)
+          if (['contact', 'touch', 'edge_touch', 'faces'].includes(shape.type) || shape.style === 'load')
+            for (const quantity of shape.style === 'load' ? ['force_x', 'force_y'] : [shape.quantity]) {
+              const extreme = this.run.summary.extremes[`${e.name}.${quantity}`];
+              if (extreme) largest = Math.max(largest, Math.abs(extreme.min), Math.abs(extreme.max));
+            }
+      return largest;
+    },
+  });
+  return Symbols;
+})();

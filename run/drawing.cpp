@@ -1,0 +1,265 @@
+#include "run/drawing.h"
+
+#include "elements/step_lap_interface.h"
+#include "elements/step_lap_joint.h"
+#include "run/core_drawing.h"
+#include "run/symbols.h"
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json point_json(const Vec2& p) { return Json::array({p.x(), p.y()}); }
+
+Json outline_json(const std::vector<Vec2>& outline) {
+  Json json = Json::array();
+  for (const Vec2& p : outline)
+    json.push_back(point_json(p));
+  return json;
+}
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// Convex hull, counter-clockwise (A. M. Andrew, Inf. Process. Lett. 9 (1979) 216); two points of a line.
+std::vector<Vec2> hull(std::vector<Vec2> points) {
+  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  std::vector<Vec2> chain;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t begin = chain.size();
+    for (const Vec2& p : points) {
+      while (chain.size() >= begin + 2 && cross(chain.back() - chain[chain.size() - 2], p - chain.back()) <= 0.0)
+        chain.pop_back();
+      chain.push_back(p);
+    }
+    chain.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return chain;
+}
+
+// A length or direction as a whole number of a billionth: what is equal but for rounding is the same plane.
+long long coarse(double value) { return std::llround(1e9 * value); }
+
+class Drawing {
+public:
+  explicit Drawing(const Model& model) : model_(model) {
+    for (const Body& body : model.bodies)
+      bodies_[body.name] = &body;
+    for (const Marker& marker : model.markers)
+      markers_[marker.name] = &marker;
+  }
+
+  Json json() {
+    Json elements = Json::array();
+    for (const ElementEntry& entry : model_.elements)
+      elements.push_back(element_json(entry));
+    return {{"bodies", bodies_json()}, // after the elements, which tell of their geometry
+            {"elements", std::move(elements)},
+            {"ground", ground_json()},
+            {"planes", planes_},
+            {"sheets", sheets_json()},
+            {"plots", plots_json()},
+            {"cores", cores_json()},
+            {"seen_from", model_.output.seen_from}};
+  }
+
+private:
+  [[nodiscard]] Json cores_json() const {
+    Json cores = Json::array();
+    for (const TableEntry& entry : model_.tables)
+      if (const auto* core = dynamic_cast<const Core*>(entry.table.get()))
+        cores.push_back({{"name", core->name}, {"svg", core_svg(*core, model_)}});
+    return cores;
+  }
+  [[nodiscard]] const Body* body(const std::string& name) const {
+    const auto found = bodies_.find(name);
+    return found == bodies_.end() ? nullptr : found->second;
+  }
+
+  // From the ground frame of the reference pose, or from the frame of a body.
+  [[nodiscard]] static Vec2 about_centre(const Vec2& p, bool is_in_ground, const Body* body) {
+    if (!body) return p;
+    if (!is_in_ground) return p - body->cg;
+    const Vec3 pose = body->reference_pose();
+    return rotated(p - Vec2(pose.x(), pose.y()), -pose.z());
+  }
+
+  [[nodiscard]] MarkerPlace place_of(const std::string& name) const {
+    const Marker& marker = *markers_.at(name);
+    const bool is_in_ground = !marker.point;
+    return {marker.body, about_centre(is_in_ground ? *marker.at : *marker.point, is_in_ground, body(marker.body)),
+            marker.angle};
+  }
+
+  [[nodiscard]] static Json places_json(const std::vector<MarkerPlace>& places) {
+    Json json = Json::array();
+    for (const MarkerPlace& place : places)
+      json.push_back({{"body", place.body}, {"point", point_json(place.point)}});
+    return json;
+  }
+
+  Json element_json(const ElementEntry& entry) {
+    Sketch sketch(entry, [this](const std::string& marker) { return place_of(marker); },
+                  [this](const std::string& body) -> BodyGeometry& { return geometry_[body]; });
+    draw_element(sketch);
+    Json json{{"name", entry.element->name},
+              {"kind", entry.kind->name},
+              {"symbol", sketch.shapes().empty() ? "hidden" : sketch.shapes().front().type}};
+    Json shapes = Json::array();
+    for (const Shape& shape : sketch.shapes())
+      shapes.push_back(shape_json(shape));
+    json["shapes"] = std::move(shapes);
+    for (const Field& field : entry.kind->fields.fields()) {
+      if (field.type == FieldType::body) json[field.name] = std::get<std::string>(field.get(entry.element.get()));
+      if (field.type == FieldType::elements) json[field.name] = std::get<std::vector<std::string>>(field.get(entry.element.get()));
+    }
+    json["at"] = places_json(sketch.places());
+    return json;
+  }
+
+  Json shape_json(const Shape& shape) {
+    Json json{{"type", shape.type}, {"at", places_json(shape.at)}};
+    if (!shape.style.empty()) json["style"] = shape.style;
+    if (!shape.quantity.empty()) json["quantity"] = shape.quantity;
+    if (shape.direction) json["direction"] = point_json(*shape.direction);
+    if (!shape.sizes.empty()) json["sizes"] = shape.sizes;
+    const bool has_plane = shape.type == "contact" || shape.type == "faces";
+    if (has_plane && shape.direction && !shape.at.empty()) json["plane"] = plane_of(shape.at.back(), *shape.direction, shape.sizes);
+    return json;
+  }
+
+  // All that touches one line of one body shares one half-plane.
+  std::size_t plane_of(const MarkerPlace& place, const Vec2& normal, const std::vector<double>& ends) {
+    std::vector<long long> key{coarse(normal.x()), coarse(normal.y()), coarse(normal.dot(place.point))};
+    const double along = Vec2(normal.y(), -normal.x()).dot(place.point);
+    for (const double end : ends)
+      key.push_back(coarse(along + end));
+    const auto [found, is_new] = plane_numbers_.try_emplace({place.body, std::move(key)}, planes_.size());
+    if (is_new) planes_.push_back({{"body", place.body}, {"point", point_json(place.point)}, {"normal", point_json(normal)}});
+    if (is_new && !ends.empty()) planes_.back()["ends"] = ends;
+    return found->second;
+  }
+
+  // Of the places where elements act those that the body's own circles do not cover, and its centre of gravity.
+  [[nodiscard]] static std::vector<Vec2> outline_of(const Body& body, const BodyGeometry& geometry) {
+    std::vector<Vec2> outline;
+    for (const Vec2& p : body.outline)
+      outline.push_back(p - body.cg);
+    if (!outline.empty() || !geometry.polygons.empty()) return outline;
+    const auto is_covered = [&](const Vec2& p) {
+      return std::any_of(geometry.circles.begin(), geometry.circles.end(), [&](const std::array<double, 4>& circle) {
+        return (p - Vec2(circle[0], circle[1])).norm() <= circle[2] * (1.0 + 1e-9);
+      });
+    };
+    std::vector<Vec2> places;
+    for (const Vec2& p : geometry.places)
+      if (!is_covered(p)) places.push_back(p);
+    if (places.empty()) return {};
+    places.push_back(Vec2::Zero());
+    outline = hull(std::move(places));
+    return outline.size() < 2 ? std::vector<Vec2>() : outline;
+  }
+
+  static void add_geometry(const BodyGeometry& geometry, Json& json) {
+    json["circles"] = geometry.circles;
+    json["segments"] = geometry.segments;
+    json["polygons"] = geometry.polygons;
+  }
+
+  Json bodies_json() {
+    Json json = Json::array();
+    for (const Body& body : model_.bodies) {
+      const Vec3 pose = body.reference_pose();
+      const BodyGeometry& geometry = geometry_[body.name];
+      json.push_back({{"name", body.name},
+                      {"label", body.label},
+                      {"pose", {pose.x(), pose.y(), pose.z()}},
+                      {"fixed", body.fixed},
+                      {"is_outline_given", !body.outline.empty()},
+                      {"outline", outline_json(outline_of(body, geometry))}});
+      add_geometry(geometry, json.back());
+    }
+    return json;
+  }
+
+  Json ground_json() {
+    Json json = Json::object();
+    add_geometry(geometry_["ground"], json);
+    return json;
+  }
+
+  [[nodiscard]] std::vector<Vec2> sheet(const std::vector<Vec2>& corners, const std::string& frame,
+                                        const std::string& owner) const {
+    std::vector<Vec2> local;
+    for (const Vec2& p : corners)
+      local.push_back(about_centre(p, frame == "ground", body(owner)));
+    return local;
+  }
+
+  // Of one sheet: round holes, as the polygons that count, and cutouts.
+  [[nodiscard]] Json holes_json(const StepLapInterface& face, bool is_yoke, const std::string& owner) const {
+    Json json = Json::array();
+    for (const Vec2& centre : sheet(is_yoke ? face.yoke_holes : face.limb_holes, face.frame, owner))
+      json.push_back(outline_json(round_hole(centre, face.hole_diameter, face.hole_sides)));
+    for (const std::vector<Vec2>& cutout : is_yoke ? face.yoke_cutouts : face.limb_cutouts)
+      json.push_back(outline_json(sheet(cutout, face.frame, owner)));
+    return json;
+  }
+
+  Json sheets_json() const {
+    std::map<std::string, const StepLapJoint*> joints;
+    for (const ElementEntry& entry : model_.elements)
+      if (const auto* joint = dynamic_cast<const StepLapJoint*>(entry.element.get())) joints[joint->name] = joint;
+    Json json = Json::array();
+    for (const ElementEntry& entry : model_.elements) {
+      const auto* face = dynamic_cast<const StepLapInterface*>(entry.element.get());
+      if (!face || joints.count(face->joint) == 0) continue;
+      const StepLapJoint& joint = *joints[face->joint];
+      json.push_back({{"name", face->name},
+                      {"joint", joint.name},
+                      {"limb", joint.limb},
+                      {"active_part", joint.active_part},
+                      {"count", face->count},
+                      {"yoke", outline_json(sheet(face->yoke, face->frame, joint.active_part))},
+                      {"limb_sheet", outline_json(sheet(face->limb, face->frame, joint.limb))},
+                      {"yoke_holes", holes_json(*face, true, joint.active_part)},
+                      {"limb_holes", holes_json(*face, false, joint.limb)}});
+    }
+    return json;
+  }
+
+  Json plots_json() const {
+    Json json = Json::array();
+    for (const Plot& plot : model_.plots)
+      json.push_back({{"name", plot.name}, {"title", plot.title}, {"channels", plot.channels}, {"bounds", plot.bounds}});
+    return json;
+  }
+
+  const Model& model_;
+  std::map<std::string, const Body*> bodies_;
+  std::map<std::string, const Marker*> markers_;
+  std::unordered_map<std::string, BodyGeometry> geometry_; ///< per body, the ground included
+  std::map<std::pair<std::string, std::vector<long long>>, std::size_t> plane_numbers_;
+  Json planes_ = Json::array();
+};
+
+} // namespace
+
+std::string drawing_json(const Model& model) {
+  return Drawing(model).json().dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace steplap

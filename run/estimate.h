@@ -1,0 +1,27 @@
+// How far the numbers of a run are known: from finer runs (mbd/analysis/global_error.h), where these are worth their cost.
+#pragma once
+
+#include "mbd/analysis/global_error.h"
+#include "run/run.h"
+
+namespace steplap {
+
+enum class EstimateStatus {
+  known,
+  left_out, ///< not asked for, or the run broke off
+  too_dear, ///< nobody insisted, and finer runs would take long
+  failed    ///< a finer run could not be finished
+};
+
+struct Estimate {
+  EstimateStatus status = EstimateStatus::left_out;
+  std::string reason;                        ///< why there is none
+  std::optional<double> cost;                ///< s of computing that it would take, where it was not begun for that
+  std::optional<GlobalErrorEstimate> errors; ///< if known
+};
+
+/// Cheap is counted in work, not in time: criteria are judged by the errors, and a verdict may not hang on how fast or how busy
+/// the computer is.
+[[nodiscard]] Estimate estimate_errors(const Run& run, const RunOptions& options);
+
+} // namespace steplap

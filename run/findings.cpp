@@ -1,0 +1,328 @@
+#include "run/findings.h"
+
+#include "mbd/analysis/assembly.h"
+#include "mbd/analysis/freedom.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/events/event_handler.h"
+#include "mbd/math/portable_math.h"
+#include "mbd/model/signal_network.h"
+#include "mbd/model/validate.h"
+#include "mbd/simulation/simulation.h"
+#include "run/edges.h"
+#include "run/far_joints.h"
+#include "run/plausible_scene.h"
+#include "run/quantity_text.h"
+#include "run/seams.h"
+#include "run/start_contacts.h"
+#include "run/stepped_feet.h"
+#include "transformer/plausible.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace steplap {
+
+namespace {
+
+using Names = std::unordered_set<std::string>;
+
+// Names that fields of elements refer to, by what they refer to.
+struct References {
+  Names signals, markers, bodies;
+};
+
+References references_of(const Model& model) {
+  References found;
+  const auto use_signals = [&](const FieldTable& fields, const void* object) {
+    for (const std::string& name : parts_of(fields, object)) found.signals.insert(name);
+  };
+  for (const SignalEntry& entry : model.signals) use_signals(entry.kind->fields, entry.definition.get());
+  for (const ElementEntry& entry : model.elements) use_signals(entry.kind->fields, entry.element.get());
+  for (const ElementEntry& entry : model.elements)
+    for (const Field& field : entry.kind->fields.fields()) {
+      Names* names = nullptr;
+      if (field.type == FieldType::marker) names = &found.markers;
+      if (field.type == FieldType::body) names = &found.bodies;
+      if (names) names->insert(std::get<std::string>(field.get(entry.element.get())));
+      if (field.name == "over" && field.type == FieldType::texts) { // what a rope runs over
+        const auto over = std::get<std::vector<std::string>>(field.get(entry.element.get()));
+        found.markers.insert(over.begin(), over.end());
+      }
+    }
+  for (const Marker& marker : model.markers)
+    if (found.markers.count(marker.name) > 0) found.bodies.insert(marker.body);
+  return found;
+}
+
+using Findings = std::vector<Finding>;
+
+void warn(Findings& findings, const char* code, std::string text, const Location& where = {}) {
+  findings.push_back({code, FindingLevel::warning, std::move(text), where});
+}
+
+constexpr std::size_t k_most_names = 8;
+
+// "'a' (force_x), 'b' and 'c'"
+std::string list_of(const System& system, const std::vector<SharedReaction>& reactions) {
+  std::string text;
+  const std::size_t shown = std::min(reactions.size(), k_most_names);
+  for (std::size_t i = 0; i < shown; ++i) {
+    text += i == 0 ? "'" : i + 1 == reactions.size() ? " and '" : ", '";
+    text += system.element_names[reactions[i].element] + "'";
+    const char* before = " (";
+    for (const std::string& quantity : reactions[i].quantities) {
+      text += before + quantity;
+      before = ", ";
+    }
+    if (!reactions[i].quantities.empty()) text += ")";
+  }
+  return shown < reactions.size()
+             ? text + " and " + std::to_string(reactions.size() - shown) + " more"
+             : text;
+}
+
+// Between two places of one body, or of two that do not move, nothing has an effect (joints and drives refuse it).
+void warn_of_idle_elements(const Model& model, Findings& findings) {
+  std::unordered_map<std::string, std::string> body_of; // by marker and body; "" does not move
+  body_of["ground"] = "";
+  for (const Body& body : model.bodies) body_of[body.name] = body.fixed ? "" : body.name;
+  for (const Marker& marker : model.markers)
+    if (const auto found = body_of.find(marker.body); found != body_of.end()) body_of[marker.name] = std::string(found->second);
+  for (const ElementEntry& entry : model.elements) {
+    const auto text_of = [&entry](const char* name) {
+      const Field* const field = entry.kind->fields.find(name);
+      return field && field->type == FieldType::marker ? std::get<std::string>(field->get(entry.element.get())) : std::string();
+    };
+    const std::string a = text_of("a"), b = text_of("b");
+    const Field* const over = entry.kind->fields.find("over");
+    if (a.empty() || b.empty() || body_of.count(a) == 0 || body_of.count(b) == 0 || body_of[a] != body_of[b]) continue;
+    if (over && !std::get<std::vector<std::string>>(over->get(entry.element.get())).empty()) continue;
+    warn(findings, "idle_element",
+         entry.kind->name + " '" + entry.element->name + "' acts between two places " + (body_of[a].empty() ? "that do not move" : "of '" + body_of[a] + "'") +
+             ": it moves nothing",
+         entry.element->where);
+  }
+}
+
+// Loads that constraints can share in more than one way.
+void warn_of_shared_reactions(const System& system, Findings& findings) {
+  const Freedom freedom = count_freedom(system);
+  if (!freedom.shared.empty())
+    warn(findings, "shared_reactions",
+        "the reactions of " + list_of(system, freedom.shared) +
+        " are not unique: their constraints depend on each other, and how they share a load is not "
+        "determined; the motion is. Reported is the sharing with the least forces");
+  if (freedom.shared_sticking.size() > freedom.shared.size())
+    warn(findings, "shared_friction", "while all friction sticks the reactions of " +
+                       list_of(system, freedom.shared_sticking) +
+                       " are not unique: they hold together as long as any way to share the load is "
+                       "admissible. Reported is one of those ways, in proportion to the capacities where that will do");
+}
+
+// Does a load or a drive that changes with time act at the start, or begin to?
+bool is_driven_at_start(const Model& model, const Names& used) {
+  SignalNetwork network(model); // some are made of others
+  return std::any_of(model.signals.begin(), model.signals.end(), [&](const SignalEntry& entry) {
+    if (used.count(entry.definition->name) == 0) return false;
+    const Signal* const signal = network.build(entry.definition->name);
+    return signal && !signal->is_constant() && (signal->value(0.0) != 0.0 || signal->drive(0.0, DriveLevel::position).rate != 0.0);
+  });
+}
+
+// Accelerations with which the run begins, and what presses then.
+struct Start {
+  std::vector<double> acceleration; ///< per body, m/s²: of its centre of gravity, or of its turning at the radius of gyration
+  std::vector<ContactAtStart> contacts;
+  std::vector<PairJacobian> springs;
+};
+
+Start start_of(const LoadedModel& loaded, const State& initial) {
+  const System& system = *loaded.system;
+  Dynamics dynamics(system);
+  EventHandler handler(system, dynamics);
+  State state = initial;
+  start_drives(system, state);
+  const auto limit = std::upper_bound(system.breakpoints.begin(), system.breakpoints.end(), state.t);
+  dynamics.set_time_limit(limit == system.breakpoints.end() ? system.drives_end : *limit);
+  handler.start(state);
+  dynamics.set_state(state);
+  std::vector<double> y(static_cast<std::size_t>(system.largest_dimension())), dy(y.size());
+  dynamics.pack(state, y.data());
+  dynamics.rates(state.t, y.data(), dy.data());
+  const Snapshot snapshot = dynamics.snapshot(dy.data());
+  Start start;
+  for (int i = 0; i < system.body_count(); ++i) {
+    const BodyData& body = system.bodies[i];
+    const double* a = &snapshot.acceleration[3 * i];
+    const double radius = body.mass > 0.0 ? std::sqrt(body.inertia / body.mass) : 0.0;
+    start.acceleration.push_back(std::max(portable::hypot(a[0], a[1]), radius * std::abs(a[2])));
+  }
+  start.contacts = contacts_at(loaded, initial);
+  for (const auto& group : system.groups) group->add_jacobian(dynamics.evaluation(), start.springs);
+  return start;
+}
+
+std::string short_number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+constexpr double k_near = 0.5;     // of a body's size: what falls from higher is dropped
+constexpr double k_settles = 1e-3; // of a body's size: what gives way by less only settles under its load
+
+// Why a body starts, if that says anything: contacts near it that do not carry it, springs that are out of balance. What joints
+// lead is let go, what falls from higher than half its size is dropped,
+// what stands settles.
+std::string cause_of(const System& system, const Start& start, int body) {
+  const double size = size_of_pair(system, body, k_ground);
+  const ContactAtStart* nearest = nullptr;
+  for (const ContactAtStart& contact : start.contacts)
+    if ((contact.a == body || contact.b == body) && (!nearest || contact.gap < nearest->gap)) nearest = &contact;
+  if (nearest && nearest->gap <= k_settles * size) return "";
+  if (nearest && nearest->gap <= k_near * size)
+    return "no contact carries it, the nearest, '" + nearest->entry->element->name + "', is " + quantity_text(nearest->gap, "m", 1e-3) +
+           " away. If that is not meant, check its gaps";
+  double stiffness = 0.0;
+  for (const PairJacobian& part : start.springs) {
+    if (part.contact >= 0 || (part.a != body && part.b != body)) continue;
+    const Eigen::Matrix3d own = part.a == body ? part.stiffness.topLeftCorner<3, 3>() : part.stiffness.bottomRightCorner<3, 3>();
+    stiffness = std::max({stiffness, std::abs(own(0, 0)), std::abs(own(1, 1)), std::abs(own(2, 2)) / (size * size)});
+  }
+  const double gives = stiffness > 0.0 ? system.bodies[body].mass * start.acceleration[static_cast<std::size_t>(body)] / stiffness : 0.0;
+  if (!(gives > k_settles * size)) return "";
+  return "the springs on it do not balance its loads. If that is not meant, check their preloads (one may lack its answer at the other end)";
+}
+
+// At rest, and yet about to move by itself, where something near should hold it.
+void note_restless_start(const LoadedModel& loaded, Findings& findings) {
+  constexpr double k_felt = 1e-3; // of gravity: from there on it is seen beside what drives do to a machine
+  if (loaded.model.simulation.initial == "equilibrium" || is_driven_at_start(loaded.model, references_of(loaded.model).signals)) return;
+  const System& system = *loaded.system;
+  const State initial = assembled_start(system, loaded.assembled);
+  if (std::any_of(initial.v.begin(), initial.v.end(), [](double v) { return v != 0.0; })) return;
+  Start start;
+  try {
+    start = start_of(loaded, initial);
+  } catch (const NumericalFailure&) {
+    return; // the run will say what is wrong
+  }
+  int worst = -1;
+  std::string cause;
+  for (int i = 1; i < system.body_count(); ++i) {
+    const double own = start.acceleration[static_cast<std::size_t>(i)];
+    if (!(own > k_felt * system.gravity.norm()) || !(own > 0.0) || (worst >= 0 && own <= start.acceleration[static_cast<std::size_t>(worst)])) continue;
+    if (std::string text = cause_of(system, start, i); !text.empty()) {
+      worst = i;
+      cause = std::move(text);
+    }
+  }
+  if (worst < 0) return;
+  const std::string& name = system.bodies[worst].name;
+  const Body* const body = loaded.model.find_body(name);
+  findings.push_back({"restless_start", FindingLevel::note,
+                      "At t = 0 '" + name + "' accelerates at " + short_number(start.acceleration[static_cast<std::size_t>(worst)]) + " m/s²: " + cause +
+                          ", or use initial = \"equilibrium\"",
+                      body ? body->where : Location{}});
+}
+
+void warn_of_unused(const Model& model, Findings& findings) {
+  const References used = references_of(model);
+  for (const SignalEntry& entry : model.signals)
+    if (used.signals.count(entry.definition->name) == 0)
+      warn(findings, "unused_signal", "signal '" + entry.definition->name + "' is used by nothing", entry.definition->where);
+  Names body_names;
+  for (const Body& body : model.bodies) body_names.insert(body.name);
+  for (const Marker& marker : model.markers) // a marker named as its body is the reader's own
+    if (used.markers.count(marker.name) == 0 && body_names.count(marker.name) == 0 && marker.name != "ground")
+      warn(findings, "unused_marker", "marker '" + marker.name + "' is used by nothing", marker.where);
+  for (const Body& body : model.bodies)
+    if (used.bodies.count(body.name) == 0) warn(findings, "loose_body", "no element is attached to body '" + body.name + "'", body.where);
+}
+
+void append(Findings& findings, Findings more) {
+  findings.insert(findings.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+} // namespace
+
+std::vector<Finding> implausible_findings(const LoadedModel& loaded) {
+  Findings findings;
+  for (std::string& message : implausible_cores(loaded.model)) warn(findings, "unusual_core", std::move(message));
+  append(findings, implausible_loads(loaded));
+  append(findings, implausible_sizes(loaded));
+  return findings;
+}
+
+namespace {
+
+// Poses given to the digits of a file need no mention, nor do velocities that a drive or a joint sets.
+std::optional<Finding> note_of_moves(const LoadedModel& loaded) {
+  constexpr double k_noticeable = 1e-5; // m, rad
+  const System& system = *loaded.system;
+  auto moves = assembly_moves(system.initial_state(), loaded.assembled, k_noticeable);
+  std::erase_if(moves, [](const AssemblyMove& m) { return m.shift <= k_noticeable && std::abs(m.turn) <= k_noticeable; });
+  if (moves.empty()) return std::nullopt;
+  return Finding{"assembly_moved", FindingLevel::note,
+                 "assembling the joints moved " + counted(moves.size(), "body", "bodies") + ", most of all '" +
+                     system.bodies[moves.front().body].name + "' by " + quantity_text(moves.front().shift, "m", 1e-3) + " and " +
+                     quantity_text(moves.front().turn, "rad", 1e-3) + "; steplap check lists them",
+                 {}};
+}
+
+} // namespace
+
+std::vector<Finding> findings_before(const LoadedModel& loaded) {
+  Findings findings = doubled_corners(loaded);
+  append(findings, start_findings(loaded));
+  append(findings, implausible_findings(loaded));
+  if (const std::optional<Finding> moved = note_of_moves(loaded)) {
+    findings.push_back(*moved);
+    append(findings, stepped_feet(loaded));
+    append(findings, far_joints(loaded));
+  }
+  return findings;
+}
+
+std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& result) {
+  Findings findings = feet_beyond_edges(loaded, result.final_state);
+  for (Finding& finding : findings) finding.text = "at the end " + finding.text;
+  for (const ChannelRange& range : result.ranges)
+    if (range.channel->is_on_request && range.had_no_value)
+      warn(findings, "channel_without_value",
+           "channel '" + range.channel->name +
+               "' had no value at some time (a division by zero, a root of what is negative): its extremes are of the other times");
+  append(findings, contacts_too_deep(loaded, result.ranges));
+  return findings;
+}
+
+std::vector<Finding> findings_of(const LoadedModel& loaded) {
+  const Model& model = loaded.model;
+  Findings findings;
+  append(findings, start_findings(loaded));
+  warn_of_unused(model, findings);
+  const SimulationSettings& s = model.simulation;
+  if (s.step && !s.tolerance && !has_fixed_step(s.integrator))
+    warn(findings, "unused_step",
+         "'step' of [simulation] is not used: '" + s.integrator + "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"", s.where);
+  warn_of_idle_elements(model, findings);
+  append(findings, far_joints(loaded));
+  append(findings, stepped_feet(loaded));
+  append(findings, doubled_corners(loaded));
+  append(findings, implausible_findings(loaded));
+  warn_of_shared_reactions(*loaded.system, findings);
+  const Trajectory written(*loaded.system, model.output.channels);
+  if (written.channels().empty())
+    warn(findings, "no_channel", "no channel matches 'channels' of [output]: the trajectory will hold the time only", model.output.where);
+  for (const std::string& name : loaded.plots_left_out)
+    warn(findings, "plot_left_out", "plot '" + name + "' is left out: not all of its channels are in 'channels' of [output]");
+  note_restless_start(loaded, findings);
+  return findings;
+}
+
+} // namespace steplap

@@ -1,0 +1,25 @@
+// What is found in a model before it runs and in a run when it has ended: for the screen, for results, for whoever shows it
+// beside a verdict.
+#pragma once
+
+#include "run/finding.h"
+#include "run/loaded_model.h"
+
+#include <vector>
+
+namespace steplap {
+
+struct RunResult;
+
+/// All that `steplap check` finds, in its order. Runs nothing but the start.
+[[nodiscard]] std::vector<Finding> findings_of(const LoadedModel& loaded);
+/// Of these what bears on what a run can say.
+[[nodiscard]] std::vector<Finding> findings_before(const LoadedModel& loaded);
+/// What a run came to: feet beyond the parts they stood on, contacts through each other, channels without a value.
+[[nodiscard]] std::vector<Finding> findings_after(const LoadedModel& loaded, const RunResult& result);
+/// Those about where the run begins: contacts and stops that contradict the poses, inertias that contradict outlines.
+[[nodiscard]] std::vector<Finding> start_findings(const LoadedModel& loaded);
+/// Those about values unlike any: cores, loads that do nothing, sizes apart (plausible_scene.h).
+[[nodiscard]] std::vector<Finding> implausible_findings(const LoadedModel& loaded);
+
+} // namespace steplap

@@ -1,0 +1,101 @@
+#include "run/loaded_model.h"
+
+#include "mbd/analysis/assembly.h"
+#include "mbd/analysis/start.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/io/presentation.h"
+#include "mbd/io/read_input.h"
+#include "mbd/io/reader.h"
+#include "run/catalogue.h"
+#include "run/failure.h"
+#include "run/tipping.h"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+namespace steplap {
+
+namespace {
+
+// "wagon" of "models/wagon.toml". A name of dots alone would be another folder: it keeps its ending.
+std::string name_of_model(const std::string& path) {
+  if (has_control_character(path)) throw ModelError({path, 0, 0}, "the name '" + shown(path) + "' of a model file holds control characters: rename the file");
+  if (is_standard_input(path)) return "stdin";
+  const std::filesystem::path file(path);
+  const std::string stem = file.stem().string();
+  return stem.find_first_not_of('.') == std::string::npos ? file.filename().string() : stem;
+}
+
+// A step given in the wrong unit would fill the disk.
+void refuse_endless_output(const Model& model, const System& system) {
+  const double numbers = trajectory_numbers(model, system);
+  if (!(numbers > model.output.most_numbers)) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "the trajectory would have %.3g numbers (%.3g GB while it runs, some %.3g GB of text), more than the %.3g of 'most_numbers'",
+                numbers, 8e-9 * numbers, 20e-9 * numbers, model.output.most_numbers);
+  throw ModelError(model.output.where, std::string(text) + ": choose a larger 'step', fewer 'channels', or raise 'most_numbers' of [output]");
+}
+
+} // namespace
+
+double trajectory_numbers(const Model& model, const System& system) {
+  const Trajectory trajectory(system, model.output.channels);
+  return (std::floor(model.simulation.end / model.output.step) + 1.0) * (1.0 + static_cast<double>(trajectory.channels().size()));
+}
+
+std::shared_ptr<const LoadedModel> load_model(const std::string& path,
+                                              const std::vector<std::string>& overrides) {
+  auto loaded = std::make_shared<LoadedModel>();
+  loaded->path = path;
+  loaded->name = name_of_model(path);
+  loaded->overrides = overrides;
+  const InputFiles read; // until its signals are built
+  loaded->model = read_model(path, program_catalogue(), overrides, &loaded->text);
+  loaded->system = compile(loaded->model);
+  loaded->inputs = read.files();
+  refuse_endless_output(loaded->model, *loaded->system);
+  loaded->plots_left_out = check_presentation(loaded->model, *loaded->system);
+  loaded->assembled = assemble(loaded->model, *loaded->system); // joints that cannot be met are the model's error
+  return loaded;
+}
+
+std::vector<std::shared_ptr<const LoadedModel>>
+load_models(const std::vector<std::string>& paths, const std::vector<std::string>& overrides) {
+  std::vector<std::shared_ptr<const LoadedModel>> models;
+  std::vector<Diagnostic> problems;
+  for (const std::string& path : paths) {
+    try {
+      models.push_back(load_model(path, overrides));
+    } catch (const ModelError& error) {
+      problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  }
+  if (!problems.empty()) throw ModelError(std::move(problems));
+  return models;
+}
+
+namespace {
+
+// What finds no rest says where in the model's file, and what tips over as it is given.
+template <class Work> auto placed(const LoadedModel& loaded, const Work& work) {
+  try {
+    return work();
+  } catch (const NumericalFailure& failure) {
+    std::string text = failure_of(failure, loaded.model, *loaded.system, 0.0).text;
+    for (const std::string& tips : tipping_over(loaded, loaded.assembled)) text += "; " + tips;
+    throw NumericalFailure(text);
+  }
+}
+
+} // namespace
+
+Equilibrium equilibrium_of(const LoadedModel& loaded) {
+  return placed(loaded, [&] { return equilibrium_at_start(*loaded.system, loaded.assembled); });
+}
+
+State initial_state_of(const LoadedModel& loaded) {
+  return placed(loaded, [&] { return start_of(loaded.model, *loaded.system, loaded.assembled); });
+}
+
+} // namespace steplap

@@ -1,0 +1,43 @@
+// A model read, compiled and put together, with what the files of its results need to know about it.
+#pragma once
+
+#include "mbd/analysis/equilibrium.h"
+#include "mbd/io/input_files.h"
+#include "mbd/model/model.h"
+#include "mbd/system/system.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+struct LoadedModel {
+  std::string path;                   ///< as given
+  std::string name;                   ///< of the file, without folder and ending
+  std::vector<std::string> overrides; ///< "path=value", laid over the file
+  std::string text;                   ///< the effective model as TOML that stands alone
+  std::vector<InputFile> inputs;      ///< all that it was read from
+  Model model;
+  std::vector<std::string> plots_left_out; ///< of channels that are not written
+  std::shared_ptr<const System> system;
+  State assembled; ///< given poses and velocities moved onto the joints
+};
+
+/// How many numbers the trajectory of a run will hold, times included.
+[[nodiscard]] double trajectory_numbers(const Model& model, const System& system);
+
+/// Throws ModelError with all that is wrong with the model, and for a trajectory beyond `most_numbers` of [output].
+[[nodiscard]] std::shared_ptr<const LoadedModel>
+load_model(const std::string& path, const std::vector<std::string>& overrides = {});
+/// All of them, or a ModelError with what is wrong with any of them.
+[[nodiscard]] std::vector<std::shared_ptr<const LoadedModel>>
+load_models(const std::vector<std::string>& paths, const std::vector<std::string>& overrides = {});
+
+/// Where the model rests, found from its poses without its initial velocities, which are given back
+/// with the pose. Throws NumericalFailure if there is no equilibrium.
+[[nodiscard]] Equilibrium equilibrium_of(const LoadedModel& loaded);
+/// The state a run of the model begins at. Throws NumericalFailure if there is no equilibrium.
+[[nodiscard]] State initial_state_of(const LoadedModel& loaded);
+
+} // namespace steplap

@@ -1,0 +1,107 @@
+#include "run/plausible_scene.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/model/signal_network.h"
+#include "run/loaded_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace steplap {
+
+namespace {
+
+// Beyond these nothing that is transported goes; positions of 1e6 m are known to 0.2 nm, which still is rounding.
+constexpr double k_far = 1e6;   // m
+constexpr double k_fast = 1e4;  // m/s
+// Numbers of sixteen digits that differ by more leave the smaller one less than four.
+constexpr double k_apart = 1e12;
+
+Finding warning(const char* code, std::string text, const Location& where) {
+  return {code, FindingLevel::warning, std::move(text), where};
+}
+
+// Are values and rates zero at every breakpoint, and between them?
+bool is_zero(const Signal& signal, double end) {
+  std::vector<double> times = {0.0, end};
+  for (const double t : signal.breakpoints())
+    if (t > 0.0 && t < end) times.push_back(t);
+  std::sort(times.begin(), times.end());
+  constexpr int k_looks = 16; // a piece is a polynomial and some harmonics: one that is zero so often is zero
+  for (std::size_t i = 0; i + 1 < times.size(); ++i)
+    for (int k = 0; k <= k_looks; ++k)
+      if (signal.value(times[i] + (times[i + 1] - times[i]) * (k + 0.37) / (k_looks + 1.0)) != 0.0) return false;
+  return true;
+}
+
+bool is_used(const Model& model, const std::string& name) {
+  const auto names_it = [&name](const FieldTable& fields, const void* object) {
+    return std::any_of(fields.fields().begin(), fields.fields().end(), [&](const Field& field) {
+      return field.type == FieldType::signal && std::get<std::string>(field.get(object)) == name;
+    });
+  };
+  return std::any_of(model.elements.begin(), model.elements.end(),
+                     [&](const ElementEntry& entry) { return names_it(entry.kind->fields, entry.element.get()); });
+}
+
+// The two bodies that move whose values differ most, as smaller and larger.
+template <class Value> std::pair<const Body*, const Body*> extremes_of(const Model& model, const Value& value) {
+  const Body *least = nullptr, *most = nullptr;
+  for (const Body& body : model.bodies) {
+    if (body.fixed || !(value(body) > 0.0)) continue;
+    if (!least || value(body) < value(*least)) least = &body;
+    if (!most || value(body) > value(*most)) most = &body;
+  }
+  return {least, most};
+}
+
+} // namespace
+
+std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
+  const Model& model = loaded.model;
+  const double end = model.simulation.end;
+  std::vector<Finding> findings;
+  SignalNetwork network(model);
+  for (const SignalEntry& entry : model.signals) {
+    const std::string& name = entry.definition->name;
+    const Signal* const signal = is_used(model, name) ? network.build(name) : nullptr;
+    if (!signal || signal->is_constant() || !is_zero(*signal, end)) continue; // a constant of zero is meant to be none
+    const std::vector<double>& breaks = signal->breakpoints();
+    const auto next = std::upper_bound(breaks.begin(), breaks.end(), 0.0);
+    if (next != breaks.end() && *next >= end)
+      findings.push_back(warning("load_behind_end", "signal '" + name + "' begins at t = " + number_text(*next) +
+                                                        " s, but the run ends at " + number_text(end) + " s: it does nothing",
+                                 entry.definition->where));
+    else // of no consequence if something else loads the machine, which joints tell themselves
+      findings.push_back(warning("load_is_zero", "signal '" + name + "' is zero throughout the run: what it drives is not loaded",
+                                 entry.definition->where));
+  }
+  return findings;
+}
+
+std::vector<Finding> implausible_sizes(const LoadedModel& loaded) {
+  const Model& model = loaded.model;
+  std::vector<Finding> findings;
+  for (const Body& body : model.bodies) {
+    const double far = body.position.lpNorm<Eigen::Infinity>(), fast = body.velocity.lpNorm<Eigen::Infinity>();
+    if (far > k_far)
+      findings.push_back(warning("far_away", "body '" + body.name + "' lies " + number_text(far) + " m from the origin: is the unit meant?", body.where));
+    if (fast > k_fast)
+      findings.push_back(warning("very_fast", "body '" + body.name + "' moves with " + number_text(fast) + " m/s: is the unit meant?", body.where));
+  }
+  const auto compare = [&](const char* code, const char* what, const char* unit, const auto& value) {
+    const auto [least, most] = extremes_of(model, value);
+    if (!least || value(*most) <= k_apart * value(*least)) return;
+    findings.push_back(warning(code, std::string(what) + " of body '" + least->name + "', " + number_text(value(*least)) + " " + unit + ", is less than 1e-12 of that of '" +
+                                         most->name + "', " + number_text(value(*most)) + " " + unit + ": their motions are not known beside each other",
+                               least->where));
+  };
+  compare("masses_apart", "the mass", "kg", [](const Body& body) { return body.mass; });
+  compare("inertias_apart", "the inertia", "kg m²", [](const Body& body) { return body.inertia; });
+  return findings;
+}
+
+} // namespace steplap

@@ -1,0 +1,12 @@
+// Is a scene one that somebody meant? Loads that begin behind the end of the run or are nothing throughout; places, speeds, masses
+// and inertias so far beyond each other that rounding of the large ones is the size of the small ones.
+#pragma once
+
+#include "run/findings.h"
+
+namespace steplap {
+
+[[nodiscard]] std::vector<Finding> implausible_loads(const LoadedModel& loaded);
+[[nodiscard]] std::vector<Finding> implausible_sizes(const LoadedModel& loaded);
+
+} // namespace steplap

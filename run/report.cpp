@@ -1,0 +1,104 @@
+#include "run/report.h"
+
+#include "mbd/acceptance/judge.h"
+#include "mbd/acceptance/weighed_errors.h"
+#include "run/findings.h"
+#include "run/result_files.h"
+
+namespace steplap {
+
+const ChannelRange* Report::find(const std::string& channel) const {
+  for (const ChannelRange& range : ranges())
+    if (range.channel->name == channel) return &range;
+  return nullptr;
+}
+
+// Ranges are of all channels, in their order.
+std::optional<double> Report::error_of(const ChannelRange& range, double ChannelError::*which) const {
+  if (!estimate.errors) return {};
+  return estimate.errors->channels[static_cast<std::size_t>(&range - ranges().data())].*which;
+}
+
+std::optional<double> Report::event_error(std::size_t i) const {
+  return estimate.errors ? std::optional(estimate.errors->event_times[i]) : std::nullopt;
+}
+
+std::optional<double> Report::dissipated_error() const {
+  return estimate.errors ? std::optional(estimate.errors->dissipated) : std::nullopt;
+}
+
+std::optional<double> Report::work_error() const {
+  return estimate.errors ? std::optional(estimate.errors->work) : std::nullopt;
+}
+
+Columns Report::columns() const {
+  const Trajectory& trajectory = *run.result.trajectory;
+  Columns block{{"t"}, {"s"}, {}};
+  for (const Channel* channel : trajectory.channels()) {
+    block.names.push_back(channel->name);
+    block.units.push_back(channel->unit);
+  }
+  block.values.resize(static_cast<Eigen::Index>(trajectory.size()), static_cast<Eigen::Index>(block.names.size()));
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const auto row = trajectory.row(i);
+    for (std::size_t c = 0; c < row.size(); ++c) block.values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) = row[c];
+  }
+  return block;
+}
+
+std::string Report::json() const { return summary_json(*this, {}); }
+
+void Report::write(const std::string& folder, bool is_overwriting) const { write_results(folder, result_files(*this), is_overwriting); }
+
+namespace {
+
+// An estimate that failed leaves nothing known; one that was not asked for takes nothing back.
+void weigh(Report& report) {
+  const Run& run = report.run;
+  if (report.estimate.errors) weigh_errors(report.judgement, run.loaded->model, *run.loaded->system, run.result, *report.estimate.errors);
+  if (report.estimate.status == EstimateStatus::failed) leave_open(report.judgement, "the finer run failed");
+}
+
+// Only a verdict that holds has anything to lose.
+void ask_second_opinion(Report& report, const RunOptions& options) {
+  const bool is_stopped = options.stop && !options.stop().empty();
+  if (!options.has_second_opinion || report.judgement.verdict != Verdict::hold || is_stopped) return;
+  report.second_opinion = second_opinion(report.run, options);
+  if (const std::string& what = report.second_opinion->disagreement; !what.empty())
+    distrust(report.judgement, "a second method disagrees beyond both errors: " + what);
+}
+
+} // namespace
+
+Report report_on(Run run, std::vector<Finding> before, const RunOptions& options) {
+  Report report;
+  report.run = std::move(run);
+  const LoadedModel& loaded = *report.run.loaded;
+  const RunResult& result = report.run.result;
+  report.findings = std::move(before);
+  for (Finding& finding : findings_after(loaded, result)) {
+    if (options.note) options.note(finding);
+    report.findings.push_back(std::move(finding));
+  }
+  for (const Event& event : result.events) ++report.event_counts[words_of(event.kind)];
+  const RunStatistics& s = result.statistics;
+  if (s.energy_exchanged > 0.0) report.relative_energy_residual = s.energy_residual / s.energy_exchanged;
+  report.judgement = judge(loaded.model, *loaded.system, result, report.run.failure ? report.run.failure->text : "");
+  report.joints = assess_joints(loaded.model, result);
+  for (const Finding& finding : report.findings)
+    if (caps_verdict(finding)) add_cap(report.judgement, text_with_place(finding));
+  report.estimate = estimate_errors(report.run, options);
+  weigh(report);
+  ask_second_opinion(report, options);
+  return report;
+}
+
+Report judged_run(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options) {
+  std::vector<Finding> before = findings_before(*loaded);
+  if (options.note)
+    for (const Finding& finding : before) options.note(finding);
+  Run run = run_model(std::move(loaded), options);
+  return report_on(std::move(run), std::move(before), options);
+}
+
+} // namespace steplap

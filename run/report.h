@@ -1,0 +1,54 @@
+// What a run came to: the same for the screen, for summary.json, for pages, for studies and for programs that link the library.
+#pragma once
+
+#include "elements/step_lap_assessment.h"
+#include "mbd/acceptance/judgement.h"
+#include "run/estimate.h"
+#include "run/finding.h"
+#include "run/run.h"
+#include "run/second_opinion.h"
+
+#include <map>
+
+namespace steplap {
+
+/// Rows of a trajectory as one block, for programs that calculate with all of it.
+struct Columns {
+  std::vector<std::string> names, units; ///< "t" first, then the channels written
+  MatX values;                           ///< SI; a row a sample, a column a name
+};
+
+struct Report {
+  Run run;
+  Estimate estimate;
+  Judgement judgement;
+  std::vector<JointAssessment> joints;         ///< of all step-lap joints
+  std::vector<Finding> findings;               ///< before and after the run: those that forbid "hold" stand in the judgement, too
+  std::optional<SecondOpinion> second_opinion; ///< if one was asked for
+  std::map<std::string, long> event_counts;    ///< by the words of the kind
+  double relative_energy_residual = 0.0;       ///< of the energy exchanged
+
+  /// Of all channels of the system, written or not (mbd/simulation/extremes.h).
+  [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return run.result.ranges; }
+  /// nullptr if there is no such channel.
+  [[nodiscard]] const ChannelRange* find(const std::string& channel) const;
+  /// Of one of the ranges; empty without an estimate.
+  [[nodiscard]] std::optional<double> error_of(const ChannelRange& range, double ChannelError::*which) const;
+  /// Of the i-th event of the run.
+  [[nodiscard]] std::optional<double> event_error(std::size_t i) const;
+  [[nodiscard]] std::optional<double> dissipated_error() const;
+  [[nodiscard]] std::optional<double> work_error() const;
+
+  [[nodiscard]] Columns columns() const;
+  /// The text of summary.json, without the files that it lists where it is written.
+  [[nodiscard]] std::string json() const;
+  /// All files of the run into a folder, or none of them (result_files.h). Throws FileError.
+  void write(const std::string& folder, bool is_overwriting = false) const;
+};
+
+/// Runs the model and finds out all that is known about the run. Throws NumericalFailure if nothing could be run.
+[[nodiscard]] Report judged_run(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options = {});
+/// The same of a run that has been made with `options`. `before`: what was found in its model.
+[[nodiscard]] Report report_on(Run run, std::vector<Finding> before, const RunOptions& options);
+
+} // namespace steplap

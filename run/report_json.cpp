@@ -1,0 +1,307 @@
+#include "elements/step_lap_assessment.h"
+#include "mbd/io/digest.h"
+#include "run/ordered_json.h"
+#include "run/result_files.h"
+#include "run/version.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <unordered_map>
+
+namespace steplap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The last entry, which is of all text before it.
+constexpr std::string_view k_before_checksum = ",\n  \"checksum\": \"", k_after_checksum = "\"\n}\n";
+
+Json inputs_json(const std::vector<InputFile>& inputs) {
+  Json json = Json::array();
+  for (const InputFile& input : inputs)
+    json.push_back({{"file", input.path}, {"path", absolute_path(input)}, {"bytes", input.bytes}, {"sha256", input.sha256}});
+  return json;
+}
+
+Json files_json(const FileRecords& files) {
+  Json json = Json::object();
+  for (const FileRecord& file : files) append(json, file.name) = {{"bytes", file.bytes}, {"sha256", file.sha256}};
+  return json;
+}
+
+Json findings_json(const std::vector<Finding>& findings) {
+  Json json = Json::array();
+  for (const Finding& f : findings)
+    json.push_back({{"code", f.code}, {"level", f.level == FindingLevel::warning ? "warning" : "note"}, {"text", f.text}, {"file", f.where.file}, {"line", f.where.line}});
+  return json;
+}
+
+Json settings_json(const Model& model) {
+  const SimulationSettings& s = model.simulation;
+  Json json;
+  json["end"] = s.end;
+  json["step"] = s.step ? Json(*s.step) : Json();
+  json["tolerance"] = s.tolerance ? Json(*s.tolerance) : Json();
+  json["initial"] = s.initial;
+  json["projection_tolerance"] = s.projection_tolerance;
+  json["output_step"] = model.output.step;
+  return json;
+}
+
+// Without the CPU time, which no two runs share.
+Json statistics_json(const RunStatistics& s) {
+  return {{"steps", s.steps},
+          {"rejections", s.rejections},
+          {"evaluations", s.evaluations},
+          {"events", s.events}};
+}
+
+// Numbers that do not exist (no such channel, an infinite margin, no extremes) are null.
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+// Of a number whose error is estimated; null: unknown.
+void add_error(Json& json, const char* key, std::optional<double> error) {
+  if (error) json[key] = number_json(*error);
+}
+
+Json accuracy_json(const RunStatistics& s, const Report& report) {
+  Json json{{"energy_residual", s.energy_residual},
+            {"energy_exchanged", s.energy_exchanged},
+            {"relative_energy_residual", report.relative_energy_residual},
+            {"dissipated", s.dissipated},
+            {"work", s.work},
+            {"max_position_residual", s.max_position_residual},
+            {"max_velocity_residual", s.max_velocity_residual}};
+  add_error(json, "error_dissipated", report.dissipated_error());
+  add_error(json, "error_work", report.work_error());
+  return json;
+}
+
+// Errors scaled as in mbd/analysis/run_comparison.h.
+Json global_error_json(const GlobalErrorEstimate& estimate) {
+  Json json;
+  for (std::size_t k = 0; k < k_error_kinds; ++k) {
+    const WorstError& worst = estimate.error.worst[k];
+    json[name_of(static_cast<ErrorKind>(k))] = {{"error", number_json(worst.value)}, {"where", worst.where}, {"t", worst.t}};
+  }
+  if (!estimate.unknown_because.empty()) json["unknown_because"] = estimate.unknown_because;
+  json["unmatched_events"] = estimate.error.unmatched_events;
+  json["evaluations_of_finer_runs"] = estimate.cost.evaluations;
+  return json;
+}
+
+// Each text once, and its place in the list for every channel: few are as many as the kinds of elements have.
+class Meanings {
+public:
+  [[nodiscard]] std::size_t place_of(const Channel& channel) {
+    std::string text = channel.doc;
+    for (const std::string* more : {&channel.sign, &channel.codes})
+      if (!more->empty()) text += "; " + *more;
+    const auto [place, is_new] = places_.try_emplace(std::move(text), places_.size());
+    if (is_new) list_.push_back(place->first);
+    return place->second;
+  }
+  [[nodiscard]] const Json& list() const { return list_; }
+
+private:
+  std::unordered_map<std::string, std::size_t> places_;
+  Json list_ = Json::array();
+};
+
+Json extremes_json(const Report& report, Meanings& meanings) {
+  Json json = Json::object();
+  const auto time = [](const Extreme& extreme) { return std::isnan(extreme.value) ? Json() : Json(extreme.t); };
+  for (const ChannelRange& range : report.ranges()) {
+    Json& entry = append(json, range.channel->name);
+    entry = {{"unit", range.channel->unit},
+             {"meaning", meanings.place_of(*range.channel)},
+             {"min", number_json(range.low.value)},
+             {"t_min", time(range.low)},
+             {"max", number_json(range.high.value)},
+             {"t_max", time(range.high)},
+             {"final", number_json(range.final)}};
+    if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // a formula's division by zero
+    const auto add = [&](const char* key, double ChannelError::*which) { add_error(entry, key, report.error_of(range, which)); };
+    add("error_min", &ChannelError::low);
+    add("error_t_min", &ChannelError::t_low);
+    add("error_max", &ChannelError::high);
+    add("error_t_max", &ChannelError::t_high);
+    add("error_final", &ChannelError::final);
+  }
+  return json;
+}
+
+void add_errors(Json& entry, const JointAssessment& a, const JointErrors& e) {
+  entry["error_first_slip"] = a.first_slip ? number_json(e.first_slip) : Json();
+  entry["error_largest_required_pressure"] = number_json(e.largest_required_pressure);
+  entry["error_t_largest_required_pressure"] = number_json(e.time_of_largest);
+  entry["error_smallest_margin"] = number_json(e.smallest_margin);
+  entry["error_slid_x"] = number_json(e.slid_x);
+  entry["error_slid_y"] = number_json(e.slid_y);
+  entry["error_slid_angle"] = number_json(e.slid_angle);
+  entry["error_area_lost"] = number_json(e.area_lost);
+  entry["error_largest_slide_share"] = number_json(e.slid_share);
+  entry["error_least_overlap_left"] = number_json(e.overlap_left);
+  entry["error_least_clearance_left"] = number_json(e.clearance_left);
+  if (!a.has_edges) return;
+  entry["error_largest_edge_load"] = number_json(e.edge_load);
+  if (a.allowed_line_load) entry["error_largest_edge_share"] = number_json(e.edge_share);
+}
+
+// Of a joint whose edges can bear; the margin is infinite, null, while none does.
+void add_edges(Json& entry, const JointAssessment& a) {
+  if (!a.has_edges) return;
+  entry["largest_edge_load"] = number_json(a.edge_load.value);
+  entry["t_largest_edge_load"] = a.edge_load.t;
+  entry["largest_edge_pressure"] = number_json(a.edge_pressure.value);
+  entry["allowed_line_load"] = a.allowed_line_load ? Json(*a.allowed_line_load) : Json();
+  if (!a.allowed_line_load) return;
+  entry["largest_edge_share"] = number_json(a.edge_share.value);
+  entry["smallest_edge_margin"] = number_json(a.edge_margin());
+  entry["crushed_edges"] = std::isnan(a.edge_share.value) ? Json() : Json(a.has_crushed_edges());
+}
+
+// Of a joint with others beside it: its figures are of its own share of the load.
+void add_shared(Json& entry, const JointAssessment& a) {
+  if (a.shared_with.empty()) return;
+  entry["shares_before_it_slides"] = a.is_elastic;
+  entry["shared_with"] = Json::array();
+  for (const SharedLoad& shared : a.shared_with)
+    entry["shared_with"].push_back({{"element", shared.element}, {"largest_force", number_json(shared.largest)}});
+}
+
+Json joints_json(const Report& report) {
+  const Run& run = report.run;
+  Json json = Json::object();
+  for (const JointAssessment& a : report.joints) {
+    Json& entry = append(json, a.joint);
+    entry = {{"verdict", words_of(a.verdict)},
+                     {"outcome", name_of(outcome_of(a.verdict))},
+                     {"slipped", a.has_slipped},
+                     {"monitored", a.is_monitored},
+                     {"first_slip", a.first_slip ? Json(*a.first_slip) : Json()},
+                     {"largest_required_pressure", number_json(a.largest_required_pressure)},
+                     {"t_largest_required_pressure", a.time_of_largest},
+                     {"smallest_margin", number_json(a.smallest_margin)},
+                     {"least_margin_asked", a.least_margin},
+                     {"least_pressure", number_json(a.least_pressure.value)},
+                     {"smallest_corner_margin", number_json(a.corner_margin.value)},
+                     {"smallest_packet_margin", number_json(a.part_margin.value)},
+                     {"largest_demand", number_json(a.largest_demand)},
+                     {"limb_weight", number_json(a.weight)},
+                     {"was_loaded", a.is_loaded},
+                     {"slid_x", number_json(a.slid_x)},
+                     {"slid_y", number_json(a.slid_y)},
+                     {"slid_angle", number_json(a.slid_angle)},
+                     {"area_lost", number_json(a.area_lost)},
+                     {"largest_slide_share", number_json(a.slid_share.value)},
+                     {"most_slide_share", a.most_slide},
+                     {"least_overlap_left", number_json(a.overlap_left.value)},
+                     {"least_clearance_left", number_json(a.clearance_left.value)}};
+    add_edges(entry, a);
+    add_shared(entry, a);
+    if (report.estimate.errors)
+      add_errors(entry, a, joint_errors(a, *run.loaded->system, run.result, *report.estimate.errors));
+  }
+  return json;
+}
+
+Json judgement_json(const Judgement& judgement) {
+  const auto optional = [](const std::optional<double>& value) { return value ? number_json(*value) : Json(); };
+  Json criteria = Json::array();
+  for (const CriterionResult& c : judgement.criteria)
+    criteria.push_back({{"name", c.name},
+                        {"criterion", c.text},
+                        {"reason", c.reason},
+                        {"is_met", c.outcome == Verdict::open ? Json() : Json(c.outcome == Verdict::hold)},
+                        {"consequence", name_of(c.consequence)},
+                        {"where", c.where},
+                        {"value", optional(c.value)},
+                        {"limit", optional(c.limit)},
+                        {"unit", c.unit},
+                        {"t", optional(c.t)},
+                        {"error", optional(c.error)},
+                        {"error_t", optional(c.t_error)},
+                        {"doubt", c.doubt}});
+  return {{"verdict", name_of(judgement.verdict)}, {"so_far", name_of(judgement.so_far)}, {"distrust", judgement.distrust}, {"capped_by", judgement.caps}, {"criteria", std::move(criteria)}};
+}
+
+Json second_opinion_json(const SecondOpinion& opinion) {
+  return {{"method", opinion.method},
+          {"agrees", opinion.none_because.empty() ? Json(opinion.disagreement.empty()) : Json()},
+          {"disagreement", opinion.disagreement},
+          {"none_because", opinion.none_because},
+          {"worst_ratio", number_json(opinion.worst_ratio)},
+          {"known_until", opinion.known_until}};
+}
+
+Json state_json(const System& system, const State& state, const Report& report) {
+  Json bodies = Json::object(), errors = Json::object();
+  std::unordered_map<std::string, const ChannelRange*> ranges;
+  for (const ChannelRange& range : report.ranges()) ranges.emplace(range.channel->name, &range);
+  for (std::size_t i = 1; i < system.bodies.size(); ++i) {
+    const double* q = &state.q[3 * i];
+    const double* v = &state.v[3 * i];
+    append(bodies, system.bodies[i].name) = {{"x", q[0]},  {"y", q[1]},  {"theta", q[2]},
+                                             {"vx", v[0]}, {"vy", v[1]}, {"omega", v[2]}};
+    if (!report.estimate.errors) continue;
+    Json error = Json::object();
+    for (const char* part : {"x", "y", "theta", "vx", "vy", "omega"})
+      if (const auto range = ranges.find(system.bodies[i].name + "." + part); range != ranges.end())
+        add_error(error, part, report.error_of(*range->second, &ChannelError::final));
+    if (!error.empty()) append(errors, system.bodies[i].name) = std::move(error);
+  }
+  Json json{{"t", state.t}, {"bodies", std::move(bodies)}};
+  if (report.estimate.errors) json["errors"] = std::move(errors);
+  return json;
+}
+
+} // namespace
+
+std::string summary_json(const Report& report, const FileRecords& files) {
+  const Run& run = report.run;
+  const LoadedModel& loaded = *run.loaded;
+  const RunStatistics& statistics = run.result.statistics;
+  Json json;
+  json["program"] = {{"name", "steplap"}, {"version", k_version}};
+  json["model"] = {{"file", loaded.path},
+                   {"title", loaded.model.header.title},
+                   {"overrides", loaded.overrides},
+                   {"inputs", inputs_json(loaded.inputs)}};
+  json["completed"] = !run.failure;
+  if (run.failure) json["failure"] = run.failure->text;
+  json["findings"] = findings_json(report.findings);
+  json["integrator"] = loaded.model.simulation.integrator;
+  json["settings"] = settings_json(loaded.model);
+  json["statistics"] = statistics_json(statistics);
+  json["accuracy"] = accuracy_json(statistics, report);
+  if (report.estimate.errors) json["global_error"] = global_error_json(*report.estimate.errors);
+  else json["error_not_estimated"] = report.estimate.reason;
+  json["events"] = {{"count", run.result.events.size()}, {"by_kind", report.event_counts}};
+  if (Json joints = joints_json(report); !joints.empty()) json["joints"] = std::move(joints);
+  // Without criteria there is nothing to say, unless the run itself is not to be trusted.
+  if (report.judgement.has_criteria || !report.judgement.distrust.empty()) json["judgement"] = judgement_json(report.judgement);
+  if (report.second_opinion) json["second_opinion"] = second_opinion_json(*report.second_opinion);
+  Meanings meanings;
+  json["extremes"] = extremes_json(report, meanings);
+  json["meanings"] = meanings.list();
+  json["final_state"] = state_json(*loaded.system, run.result.final_state, report);
+  json["files"] = files_json(files);
+  // Names may hold bytes that are no UTF-8: replaced, not an exception at the end of a long run.
+  std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  text.resize(text.size() - 2); // "\n}"
+  return text + std::string(k_before_checksum) + sha256(text) + std::string(k_after_checksum);
+}
+
+std::string_view checked_summary(std::string_view text) {
+  constexpr std::size_t k_digits = 64;
+  const std::size_t tail = k_before_checksum.size() + k_digits + k_after_checksum.size();
+  if (text.size() < tail) return {};
+  const std::string_view content = text.substr(0, text.size() - tail);
+  const std::string wanted = std::string(k_before_checksum) + sha256(content) + std::string(k_after_checksum);
+  return text.substr(content.size()) == wanted ? content : std::string_view{};
+}
+
+} // namespace steplap

@@ -1,0 +1,229 @@
+#include "run/result_files.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/io/atomic_file.h"
+#include "mbd/io/csv.h"
+#include "mbd/io/digest.h"
+#include "run/drawing.h"
+#include "run/version.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+namespace steplap {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* k_names[] = {"trajectory.csv", "events.csv", "model.toml", "drawing.json", "summary.json"};
+// Made from the others later: goes with them when they are replaced.
+constexpr const char* k_report = "report.html";
+constexpr const char* k_partial = "partial_";
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names;
+  for (const char* name : k_names) {
+    names.emplace_back(name);
+    names.push_back(std::string(k_partial) + name);
+  }
+  return names;
+}
+
+[[noreturn]] void fail(const std::string& folder, const std::string& cause) {
+  throw FileError(folder, "cannot write results to '" + folder + "': " + cause);
+}
+
+// The nearest folder above that exists.
+fs::path existing_part(fs::path path) {
+  path = fs::absolute(path);
+  std::error_code ignored;
+  while (!fs::exists(path, ignored) && path.has_parent_path() && path != path.parent_path())
+    path = path.parent_path();
+  return path;
+}
+
+// A folder beside the wanted one in which files are gathered; removed with all that is left in it.
+// So is the parent folder, if it was made for this and is still empty.
+class Staging {
+public:
+  explicit Staging(const fs::path& folder) {
+    fs::path parent = folder.parent_path();
+    if (parent.empty()) parent = ".";
+    std::error_code error;
+    if (fs::create_directories(parent, error)) made_ = parent;
+    if (error) fail(folder.string(), error.message());
+    path_ = parent / (".steplap-" + std::to_string(::getpid()));
+    fs::remove_all(path_, error); // of a process long gone
+    fs::create_directory(path_, error);
+    if (error) fail(folder.string(), error.message());
+  }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+  ~Staging() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    if (!made_.empty()) fs::remove(made_, ignored);
+  }
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+private:
+  fs::path path_, made_;
+};
+
+// Messages name the place where the user looks for the file.
+void write_all(const fs::path& staging, const fs::path& folder,
+               const std::vector<ResultFile>& files) {
+  for (const ResultFile& file : files) {
+    const std::string path = (staging / file.name).string();
+    try {
+      if (file.parts) write_file(path, file.parts);
+      else write_file(path, file.content);
+    } catch (const FileError& error) {
+      std::string message = error.what();
+      if (const auto at = message.find(path); at != std::string::npos)
+        message.replace(at, path.size(), (folder / file.name).string());
+      throw FileError((folder / file.name).string(), message);
+    }
+  }
+}
+
+// File by file into a folder that exists; what an earlier run left there goes, the summary comes last.
+void move_into(const fs::path& staging, const fs::path& folder,
+               const std::vector<ResultFile>& files) {
+  std::error_code error;
+  std::vector<std::string> outdated = all_names();
+  outdated.emplace_back(k_report);
+  for (const std::string& name : outdated)
+    if (fs::remove(folder / name, error); error) fail(folder.string(), error.message());
+  for (const ResultFile& file : files)
+    if (fs::rename(staging / file.name, folder / file.name, error); error)
+      fail(folder.string(), error.message());
+}
+
+} // namespace
+
+namespace {
+
+std::string error_field(double error) { return std::isnan(error) ? "unknown" : number_text(error); }
+
+std::vector<double> column_errors(const Report& report) {
+  std::vector<double> errors;
+  if (!report.estimate.errors) return errors;
+  const Channel* first = report.run.loaded->system->channels.data();
+  for (const Channel* channel : report.run.result.trajectory->channels())
+    errors.push_back(report.estimate.errors->channels[static_cast<std::size_t>(channel - first)].curve);
+  return errors;
+}
+
+} // namespace
+
+void write_trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors, const FileSink& put) {
+  constexpr std::size_t k_part = 1 << 16; // bytes, about: what a cache holds
+  std::vector<std::string> header{"t [s]"};
+  for (const Channel* channel : trajectory.channels())
+    header.push_back(channel->name + (channel->unit.empty() ? "" : " [" + channel->unit + "]"));
+  CsvText csv(header);
+  if (!errors.empty()) {
+    std::string comment = "# error estimate";
+    for (const double error : errors) comment += "," + error_field(error);
+    csv.add_comment(comment);
+  }
+  for (std::size_t row = 0; row < trajectory.size(); ++row) {
+    csv.add_row(trajectory.row(row));
+    if (csv.text().size() < k_part) continue;
+    put(csv.text());
+    csv.clear();
+  }
+  put(csv.text());
+}
+
+std::string trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors) {
+  std::string text;
+  write_trajectory_csv(trajectory, errors, [&text](std::string_view part) { text += part; });
+  return text;
+}
+
+std::string events_csv(const std::vector<Event>& events, const std::vector<double>* errors) {
+  std::string text = errors ? "t [s],element,event,error of t [s]\n" : "t [s],element,event\n";
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Event& event = events[i];
+    text += number_text(event.t) + "," + csv_field(event.element) + "," + csv_field(event.words());
+    if (errors) text += "," + error_field((*errors)[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+namespace {
+
+// Notes what passes through it; what it noted is whole when the content has been put.
+ResultFile noted(std::string name, FileContent content, const std::shared_ptr<FileRecords>& records) {
+  FileContent put_and_note = [name, content = std::move(content), records](const FileSink& put) {
+    FileRecord record{name, 0, ""};
+    Sha256 digest;
+    content([&](std::string_view part) {
+      record.bytes += part.size();
+      digest.add(part);
+      put(part);
+    });
+    record.sha256 = digest.hex();
+    records->push_back(std::move(record));
+  };
+  return {std::move(name), "", std::move(put_and_note)};
+}
+
+FileContent whole(std::string text) {
+  return [text = std::move(text)](const FileSink& put) { put(text); };
+}
+
+} // namespace
+
+std::vector<ResultFile> result_files(const Report& report) {
+  const Run& run = report.run;
+  const std::string prefix = run.failure ? k_partial : "";
+  const std::string head = "# Effective model of '" + run.loaded->path + "', written by steplap " +
+                           k_version + ".\n\n";
+  const auto rows = [&run, errors = column_errors(report)](const FileSink& put) {
+    write_trajectory_csv(*run.result.trajectory, errors, put);
+  };
+  const auto records = std::make_shared<FileRecords>();
+  const auto events = events_csv(run.result.events, report.estimate.errors ? &report.estimate.errors->event_times : nullptr);
+  return {noted(prefix + "trajectory.csv", rows, records),
+          noted(prefix + "events.csv", whole(events), records),
+          noted(prefix + "model.toml", whole(head + run.loaded->text), records),
+          noted(prefix + "drawing.json", whole(drawing_json(run.loaded->model)), records),
+          {prefix + "summary.json", "", [&report, records](const FileSink& put) { put(summary_json(report, *records)); }}};
+}
+
+void check_result_folder(const std::string& folder, bool is_overwriting) {
+  std::error_code ignored;
+  for (const std::string& name : all_names())
+    if (!is_overwriting && fs::exists(fs::path(folder) / name, ignored))
+      throw FileError(folder, "'" + folder + "' holds the results of an earlier run: choose another " +
+                       "folder with -o, or overwrite them with --force");
+  const fs::path existing = existing_part(folder);
+  if (!fs::is_directory(existing)) fail(folder, "'" + existing.string() + "' is not a folder");
+  if (::access(existing.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
+}
+
+void write_results(const std::string& folder, const std::vector<ResultFile>& files,
+                   bool is_overwriting) {
+  check_result_folder(folder, is_overwriting);
+  const Staging staging(folder);
+  write_all(staging.path(), folder, files);
+  std::error_code error;
+  fs::rename(staging.path(), folder, error); // succeeds onto nothing or an empty folder
+  if (!error) return;
+  if (!fs::is_directory(folder)) fail(folder, error.message());
+  check_result_folder(folder, is_overwriting); // somebody else may have been quicker
+  move_into(staging.path(), folder, files);
+}
+
+} // namespace steplap

@@ -1,0 +1,54 @@
+// The files of a run, and the folder they stand in: all there or none.
+//
+//   trajectory.csv  time histories, units in the header row: "t [s],active part.x [m]"; where errors are estimated, below
+//                   it a comment: "# error estimate," and the error of each column ("unknown" where it is)
+//   events.csv      what happened when: "t [s],element,event", and ",error of t [s]" where errors are estimated
+//   model.toml      the effective model, extended files and overrides merged, its records by absolute path and SHA-256
+//   drawing.json    what the machine looks like (drawing.h)
+//   summary.json    settings, statistics, extremes of every channel, final state; inputs and the files above with their SHA-256,
+//                   and at its end a SHA-256 of itself, so that whoever reads results knows whether they are whole
+// Nothing in them depends on the clock or the machine: two runs of a model give the same bytes; but whether errors are
+// estimated hangs on the computing time, unless the user says. A run
+// that did not reach its end is saved as partial_trajectory.csv and so on.
+#pragma once
+
+#include "mbd/io/atomic_file.h"
+#include "run/report.h"
+
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+struct ResultFile {
+  std::string name; ///< in the folder of the run
+  std::string content;
+  FileContent parts{}; ///< of what is too large to be held: given part by part instead of `content`
+};
+
+/// `errors`: of the columns, none if they were not estimated; not-a-number is unknown.
+void write_trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors, const FileSink& put);
+[[nodiscard]] std::string trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors = {});
+[[nodiscard]] std::string events_csv(const std::vector<Event>& events, const std::vector<double>* errors = nullptr);
+/// A file that was written, as summary.json lists it.
+struct FileRecord {
+  std::string name;
+  std::size_t bytes = 0;
+  std::string sha256;
+};
+using FileRecords = std::vector<FileRecord>;
+[[nodiscard]] std::string summary_json(const Report& report, const FileRecords& files);
+/// What comes before the checksum at the end of a summary; empty where that is not there or is not its own.
+[[nodiscard]] std::string_view checked_summary(std::string_view text);
+/// To be written in their order: the last one tells of the others. They refer to `report`, which has to outlive them.
+[[nodiscard]] std::vector<ResultFile> result_files(const Report& report);
+
+/// Throws FileError if results stand in `folder` that may not be overwritten, FileError if it cannot
+/// be written: to be asked before a long run.
+void check_result_folder(const std::string& folder, bool is_overwriting);
+/// Writes all files, or none; earlier results in `folder` are replaced if `is_overwriting`, files of
+/// other names stay. Throws FileError.
+void write_results(const std::string& folder, const std::vector<ResultFile>& files,
+                   bool is_overwriting);
+
+} // namespace steplap

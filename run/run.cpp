@@ -1,0 +1,48 @@
+#include "run/run.h"
+
+#include "mbd/base/number_text.h"
+
+#include <stdexcept>
+
+namespace steplap {
+
+namespace {
+
+void stop_if_asked(const RunOptions& options, double t) {
+  if (!options.stop) return;
+  if (const std::string why = options.stop(); !why.empty()) throw RunStopped(why + " at t = " + number_text(t) + " s.");
+}
+
+} // namespace
+
+SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions& options) {
+  if (options.threads < 1) throw std::invalid_argument("RunOptions::threads is less than 1");
+  SimulationOptions simulation = options_of(loaded.model);
+  simulation.threads = options.threads;
+  simulation.has_extremes = options.has_extremes;
+  simulation.progress = [options](double t) { stop_if_asked(options, t); };
+  return simulation;
+}
+
+Run run_model(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options) {
+  SimulationOptions simulation_asked = simulation_options(*loaded, options);
+  bool is_over = false; // the last state is sampled after a failure, too
+  simulation_asked.progress = [&is_over, &options](double t) {
+    if (options.progress) options.progress(t);
+    if (!is_over) stop_if_asked(options, t);
+  };
+  Simulation simulation(*loaded->system, options.start ? *options.start : initial_state_of(*loaded), std::move(simulation_asked));
+  Run run;
+  try {
+    simulation.run();
+  } catch (const NumericalFailure& failure) {
+    run.failure = failure_of(failure, loaded->model, *loaded->system, 0.0);
+    is_over = true;
+  }
+  run.result = std::move(simulation).result();
+  if (run.failure) run.failure->t = run.result.final_state.t;
+  run.loaded = std::move(loaded);
+  return run;
+}
+
+} // namespace steplap

@@ -1,0 +1,31 @@
+// How a model is run and what is found out about it. Method, steps, tolerance, end and output are the model's own
+// ([simulation], [output]): who wants others lays them over it (load_model), so that results say what they were made with.
+#pragma once
+
+#include "mbd/system/system.h"
+#include "run/finding.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace steplap {
+
+enum class Estimating {
+  never,
+  cheap, ///< where finer runs cost a second or so: counted in evaluations, not timed
+  always
+};
+
+struct RunOptions {
+  int threads = 1;                     ///< at least 1: SimulationOptions::threads
+  bool has_extremes = true;            ///< without them nothing is judged: the verdict is open
+  std::optional<State> start;          ///< where the run begins; the model's own start if not given
+  Estimating estimating = Estimating::cheap;
+  bool has_second_opinion = false;     ///< for a verdict that holds (second_opinion.h)
+  std::function<void(double t)> progress;            ///< called at every step with its time, s
+  std::function<std::string()> stop;                 ///< asked at every step; what it says is why the run ends there, "" lets it go on
+  std::function<void(const Finding&)> note;          ///< told of each finding when it is found
+};
+
+} // namespace steplap

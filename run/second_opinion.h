@@ -1,0 +1,26 @@
+// What a method that shares little with the one used makes of the same run: asked for where a verdict has to hold.
+//
+// Beside moreau, which locates no events, stands the method that was used; a run by moreau is compared with dop853. Both are
+// made at two or three settings and compared as `steplap check --cross` does (mbd/analysis/cross_check.h): every channel,
+// event and energy, beyond the errors that both methods tell of themselves. Whether it had time is counted in evaluations,
+// not seconds, for an exit code hangs on it.
+#pragma once
+
+#include "run/run.h"
+
+#include <string>
+
+namespace steplap {
+
+struct SecondOpinion {
+  std::string method;        ///< with its step or tolerance: "moreau@0.0005"
+  std::string none_because;  ///< not empty: it has no opinion, and why
+  std::string disagreement;  ///< not empty: what differs by more than both errors
+  double worst_ratio = 0.0;  ///< of differences over what the errors allow
+  double known_until = 0.0;  ///< s: from there on it is too coarse to tell
+};
+
+/// `run` reached its end; it was made with `options`.
+[[nodiscard]] SecondOpinion second_opinion(const Run& run, const RunOptions& options);
+
+} // namespace steplap

@@ -1,0 +1,237 @@
+#include "run/symbols.h"
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+// --- what elements press, pull and turn with ------------------------------------------------------
+
+std::string style_of_spring(const Sketch& s) {
+  const bool has_spring = s.number("stiffness") > 0.0 || !s.points("force_table").empty();
+  const bool has_damper = s.number("damping") > 0.0 || !s.points("damping_table").empty();
+  return has_damper ? (has_spring ? "both" : "damper") : "";
+}
+
+void spring_damper(Sketch& s) { s.draw({"spring", style_of_spring(s), "force", s.places(), s.direction("axis"), {}}); }
+
+void rotational_spring_damper(Sketch& s) { s.draw({"arc", "spring", "couple", s.places(), {}, {}}); }
+
+void bushing(Sketch& s) { s.draw({"bushing", "", "", s.places(), {}, {}}); }
+
+void tie(Sketch& s) { s.draw({"spring", "tie", "force", s.places(), s.direction("axis"), {}}); }
+
+void rope(Sketch& s) {
+  Shape shape{"rope", "", "tension", {}, {}, {}};
+  if (const auto a = s.place("a")) shape.at.push_back(*a);
+  for (const std::string& marker : s.texts("over"))
+    shape.at.push_back(s.place_of(marker));
+  if (const auto b = s.place("b")) shape.at.push_back(*b);
+  for (const MarkerPlace& place : shape.at)
+    s.note_place(place);
+  s.draw(std::move(shape));
+}
+
+void wound_rope(Sketch& s) {
+  const auto a = s.place("a"), b = s.place("b");
+  if (!a || !b) return;
+  const double radius_a = s.number("radius_a"), radius_b = s.number("radius_b");
+  if (radius_a != 0.0) s.circle(*a, std::abs(radius_a));
+  if (radius_b != 0.0) s.circle(*b, std::abs(radius_b));
+  s.draw({"rope", "", "tension", {*a, *b}, {}, {radius_a, radius_b}});
+}
+
+void load(Sketch& s) {
+  const auto force = s.vector("force");
+  const bool has_force = (force && force->norm() > 0.0) || s.is_given("force_x") || s.is_given("force_y");
+  if (has_force) s.draw({"arrow", "load", "force_x", s.places(), {}, {}});
+  if (s.number("couple") != 0.0 || s.is_given("torque")) s.draw({"arc", "couple", "torque", s.places(), {}, {}});
+}
+
+// --- contacts -------------------------------------------------------------------------------------
+
+void unilateral_contact(Sketch& s) {
+  Shape& shape = s.draw({"contact", "", "force", s.places(), s.direction("normal"), {}});
+  if (const auto ends = s.vector("ends")) shape.sizes = {ends->x(), ends->y()};
+}
+
+void polygon_contact(Sketch& s) {
+  const auto a = s.place("a"), b = s.place("b");
+  if (!a || !b) return;
+  s.polygon(*a, s.points("outline_a"));
+  s.polygon(*b, s.points("outline_b"));
+  Shape shape{"faces", "", "force", {}, s.direction("normal"), {}};
+  if (!shape.direction && b->body == "ground" && s.points("outline_b").empty()) shape.direction = b->turned(Vec2(0.0, 1.0));
+  for (const Vec2& corner : s.points("outline_a"))
+    shape.at.push_back({a->body, a->in_body(corner), a->angle});
+  if (shape.at.empty()) shape.at.push_back(*a);
+  shape.at.push_back(*b);
+  s.draw(std::move(shape));
+  if (s.number("static_friction") > 0.0) s.draw({"friction", "", "friction", {}, {}, {}});
+}
+
+void circle_contact(Sketch& s) {
+  const auto a = s.place("a"), b = s.place("b");
+  if (!a || !b) return;
+  const bool is_inside = s.is("inside");
+  if (s.number("radius_a") > 0.0) s.circle(*a, s.number("radius_a"));
+  if (s.number("radius_b") > 0.0) s.circle(*b, s.number("radius_b"), is_inside);
+  s.draw({"touch", "", "force", {*a, *b}, {}, {s.number("radius_a"), s.number("radius_b"), is_inside ? 1.0 : 0.0}});
+}
+
+void segment_contact(Sketch& s) {
+  const auto a = s.place("a"), b = s.place("b");
+  const auto from = s.vector("from"), to = s.vector("to");
+  if (!a || !b || !from || !to) return;
+  if (s.number("radius") > 0.0) s.circle(*a, s.number("radius"));
+  s.segment(*b, *from, *to, s.number("thickness"));
+  const Vec2 first = b->in_body(*from), last = b->in_body(*to);
+  s.draw({"edge_touch", "", "force", {*a, *b}, {},
+          {s.number("radius"), first.x(), first.y(), last.x(), last.y(), s.number("thickness")}});
+}
+
+void friction(Sketch& s) { s.draw({"friction", "", "friction", {}, {}, {}}); }
+
+// --- joints ---------------------------------------------------------------------------------------
+
+void pin(Sketch& s) { s.draw({"pin", "", "", s.places(), {}, {}}); }
+void weld(Sketch& s) { s.draw({"weld", "", "", s.places(), {}, {}}); }
+void rod(Sketch& s) { s.draw({"rod", "", "", s.places(), {}, {}}); }
+void rail(Sketch& s) { s.draw({"rail", "", "", s.places(), s.direction("axis"), {}}); }
+
+void gear(Sketch& s) {
+  const auto a = s.place("a"), b = s.place("b");
+  if (!a || !b) return;
+  s.circle(*a, s.number("radius_a"));
+  s.circle(*b, s.number("radius_b"), s.is("inside"));
+  s.draw({"touch", "gear", "", {*a, *b}, {}, {s.number("radius_a"), s.number("radius_b"), s.is("inside") ? 1.0 : 0.0}});
+}
+
+void rack(Sketch& s) {
+  const auto a = s.place("a");
+  if (a) s.circle(*a, s.number("radius"));
+  rail(s);
+}
+
+// --- coordinates that something drives, stops or brakes -------------------------------------------
+
+void coordinate(Sketch& s, const std::string& style, const std::string& along, const std::string& about) {
+  const std::string which = s.text("coordinate");
+  if (which == "angle") s.draw({"arc", style, about, s.places(), {}, {}});
+  else if (which == "distance") s.draw({"spring", style == "limit" ? "tie" : "cylinder", along, s.places(), {}, {}});
+  else if (const auto b = s.place("b"))
+    s.draw({style == "limit" || style == "brake" ? "rail" : "arrow", style, along, s.places(),
+            b->turned(which == "y" ? Vec2(0.0, 1.0) : Vec2(1.0, 0.0)), {}});
+}
+
+void motor(Sketch& s) { coordinate(s, "motor", "force", "couple"); }
+void drive(Sketch& s) { coordinate(s, "drive", "reaction", "reaction"); }
+void limit(Sketch& s) { coordinate(s, "limit", "force", "couple"); }
+void brake(Sketch& s) { coordinate(s, "brake", "friction", "friction"); }
+
+// --- the table ------------------------------------------------------------------------------------
+
+void nothing(Sketch&) {}
+void step_lap_joint(Sketch& s) { s.draw({"joint", "", "", {}, {}, {}}); }
+void neutral(Sketch& s) { s.draw({"neutral", "", "", s.places(), {}, {}}); }
+
+using Symbol = void (*)(Sketch&);
+
+Symbol symbol_of(const std::string& kind) {
+  static const std::map<std::string, Symbol> symbols{
+      {"spring_damper", spring_damper}, {"rotational_spring_damper", rotational_spring_damper},
+      {"bushing", bushing}, {"tie", tie}, {"rope", rope}, {"wound_rope", wound_rope}, {"load", load},
+      {"unilateral_contact", unilateral_contact}, {"polygon_contact", polygon_contact}, {"circle_contact", circle_contact},
+      {"segment_contact", segment_contact}, {"coulomb_stick", friction},
+      {"step_lap_joint", step_lap_joint}, {"step_lap_interface", nothing},
+      {"revolute", pin}, {"prismatic", rail}, {"weld", weld}, {"distance", rod}, {"point_on_line", rail},
+      {"gear", gear}, {"rack", rack},
+      {"prescribed_motion", drive}, {"motor", motor}, {"limit", limit}, {"joint_friction", brake}};
+  const auto found = symbols.find(kind);
+  return found == symbols.end() ? neutral : found->second;
+}
+
+// As the field `draw` asks: what kind of element it is tells what it presses with, where it sits, along what.
+Shape asked_for(const Sketch& as_usual, const std::string& type) {
+  Shape shape{type, "", "", as_usual.places(), {}, {}};
+  for (const char* field : {"normal", "axis"})
+    if (!shape.direction) shape.direction = as_usual.direction(field);
+  if (!as_usual.shapes().empty()) shape.quantity = as_usual.shapes().front().quantity;
+  return shape;
+}
+
+} // namespace
+
+Sketch::Sketch(const ElementEntry& entry, PlaceOf place_of, GeometryOf geometry_of)
+    : entry_(&entry), place_of_(std::move(place_of)), geometry_of_(std::move(geometry_of)) {}
+
+template <class T> std::optional<T> Sketch::value(const char* field) const {
+  const Field* found = entry_->kind->fields.find(field);
+  if (!found) return std::nullopt;
+  const FieldValue value = found->get(entry_->element.get());
+  const T* held = std::get_if<T>(&value);
+  return held ? std::optional<T>(*held) : std::nullopt;
+}
+
+double Sketch::number(const char* field) const { return value<double>(field).value_or(0.0); }
+bool Sketch::is(const char* field) const { return value<bool>(field).value_or(false); }
+std::string Sketch::text(const char* field) const { return value<std::string>(field).value_or(""); }
+bool Sketch::is_given(const char* field) const { return !text(field).empty(); }
+std::optional<Vec2> Sketch::vector(const char* field) const { return value<Vec2>(field); }
+std::vector<Vec2> Sketch::points(const char* field) const { return value<std::vector<Vec2>>(field).value_or(std::vector<Vec2>()); }
+std::vector<std::string> Sketch::texts(const char* field) const {
+  return value<std::vector<std::string>>(field).value_or(std::vector<std::string>());
+}
+
+std::optional<MarkerPlace> Sketch::place(const char* field) const {
+  const std::string marker = text(field);
+  return marker.empty() ? std::nullopt : std::optional<MarkerPlace>(place_of_(marker));
+}
+
+std::vector<MarkerPlace> Sketch::places() const {
+  std::vector<MarkerPlace> places;
+  for (const Field& field : entry_->kind->fields.fields())
+    if (field.type == FieldType::marker)
+      if (const auto found = place(field.name.c_str())) places.push_back(*found);
+  return places;
+}
+
+std::optional<Vec2> Sketch::direction(const char* field) const {
+  const auto given = vector(field);
+  const auto b = place("b");
+  if (!given || !b || given->norm() == 0.0) return std::nullopt;
+  return b->turned(given->normalized());
+}
+
+Shape& Sketch::draw(Shape shape) { return shapes_.emplace_back(std::move(shape)); }
+
+void Sketch::circle(const MarkerPlace& centre, double radius, bool is_ring) {
+  geometry_of_(centre.body).circles.insert({centre.point.x(), centre.point.y(), radius, is_ring ? 1.0 : 0.0});
+}
+
+void Sketch::segment(const MarkerPlace& frame, const Vec2& from, const Vec2& to, double thickness) {
+  const Vec2 first = frame.in_body(from), last = frame.in_body(to);
+  geometry_of_(frame.body).segments.insert({first.x(), first.y(), last.x(), last.y(), thickness});
+}
+
+void Sketch::polygon(const MarkerPlace& frame, const std::vector<Vec2>& corners) {
+  std::vector<std::array<double, 2>> ring;
+  for (const Vec2& corner : corners) {
+    const Vec2 p = frame.in_body(corner);
+    ring.push_back({p.x(), p.y()});
+  }
+  if (!ring.empty()) geometry_of_(frame.body).polygons.insert(std::move(ring));
+}
+
+void draw_element(Sketch& sketch) {
+  for (const MarkerPlace& place : sketch.places())
+    sketch.note_place(place);
+  symbol_of(sketch.entry().kind->name)(sketch);
+  const std::string& asked = sketch.entry().element->draw;
+  if (asked != "auto") sketch.replace(asked == "hidden" ? std::vector<Shape>() : std::vector<Shape>{asked_for(sketch, asked)});
+}
+
+} // namespace steplap

@@ -1,0 +1,291 @@
+#include "study/scene.h"
+
+#include "mbd/acceptance/judge.h"
+#include "mbd/analysis/start.h"
+#include "mbd/base/event_kind.h"
+#include "mbd/base/name_pattern.h"
+#include "mbd/io/presentation.h"
+#include "mbd/model/completion.h"
+#include "mbd/model/model_path.h"
+#include "mbd/system/instance.h"
+#include "study/history.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace steplap::study {
+
+namespace {
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+
+bool needs_samples(const Response& r) { return r.what == "mean" || r.what == "path"; }
+
+// The outermost of all channels that match.
+Extreme extreme_of(const Response& r, const std::vector<ChannelRange>& ranges) {
+  const bool is_low = r.what.ends_with("lowest"), is_largest = r.what.ends_with("largest");
+  Extreme best;
+  for (const ChannelRange& range : ranges) {
+    if (!matches_pattern(range.channel->name, r.channel)) continue;
+    Extreme e = is_low ? range.low : is_largest ? range.largest() : range.high;
+    if (is_largest) e.value = std::abs(e.value);
+    if (std::isnan(e.value)) return {};
+    if (std::isnan(best.value) || (is_low ? e.value < best.value : e.value > best.value)) best = e;
+  }
+  return best;
+}
+
+const ChannelRange* range_of(const Response& r, const std::vector<ChannelRange>& ranges) {
+  for (const ChannelRange& range : ranges)
+    if (matches_pattern(range.channel->name, r.channel)) return &range;
+  return nullptr;
+}
+
+// Over the samples written: of curves between them nothing is known here.
+double along(const Response& r, const Trajectory& trajectory) {
+  const auto& channels = trajectory.channels();
+  const auto found = std::find_if(channels.begin(), channels.end(),
+                                  [&](const Channel* c) { return matches_pattern(c->name, r.channel); });
+  if (found == channels.end() || trajectory.size() < 2) return k_nan;
+  const auto column = static_cast<std::size_t>(found - channels.begin());
+  double sum = 0.0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const double before = trajectory.value(i - 1, column), after = trajectory.value(i, column);
+    sum += r.what == "path" ? std::abs(after - before)
+                            : 0.5 * (before + after) * (trajectory.time(i) - trajectory.time(i - 1));
+  }
+  return r.what == "path" ? sum : sum / (trajectory.time(trajectory.size() - 1) - trajectory.time(0));
+}
+
+double of_events(const Response& r, const std::vector<Event>& events) {
+  const EventKinds kinds = event_kinds_matching(r.event);
+  long count = 0;
+  for (const Event& event : events) {
+    if (!kinds.test(static_cast<std::size_t>(event.kind))) continue;
+    if (!r.element.empty() && !matches_pattern(event.element, r.element)) continue;
+    if (r.what == "time_of_first") return event.t;
+    ++count;
+  }
+  return r.what == "count" ? static_cast<double>(count) : r.otherwise.value_or(std::numeric_limits<double>::infinity());
+}
+
+double value_of(const Response& r, const RunResult& result, const Judgement& judgement) {
+  if (r.what == "verdict") return static_cast<double>(judgement.so_far);
+  if (r.what == "count" || r.what == "time_of_first") return of_events(r, result.events);
+  if (needs_samples(r)) return along(r, *result.trajectory);
+  if (r.what == "final" || r.what == "initial") {
+    const ChannelRange* range = range_of(r, result.ranges);
+    return !range ? k_nan : r.what == "final" ? range->final : range->first;
+  }
+  const Extreme e = extreme_of(r, result.ranges);
+  return r.what.starts_with("time_of") && !std::isnan(e.value) ? e.t : e.value;
+}
+
+void worsen(Outcome& outcome, SampleStatus status, const std::string& reason) {
+  if (outcome.status != SampleStatus::ok) return; // the first reason is told
+  outcome.status = status;
+  outcome.reason = reason;
+}
+
+} // namespace
+
+const char* name_of(SampleStatus status) {
+  static constexpr const char* k_names[] = {"ok", "stopped", "untrusted", "gave up", "impossible", "not a number"};
+  return k_names[static_cast<int>(status)];
+}
+
+Model model_with(const LoadedStudy& loaded, const StudyModel& model, const double* values) {
+  Model changed = model.given;
+  for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
+    const Variable& v = loaded.study.variables[i];
+    if (!is_set_in(v, model)) continue;
+    for (const std::string& path : v.paths)
+      set_value(changed, path, v.is_factor ? values[i] * number_of(model.given, path) : values[i]);
+  }
+  const std::size_t variant =
+      loaded.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded.study.variables.size() - 1]);
+  if (variant > 0) loaded.variants[variant - 1].apply(changed);
+  return changed;
+}
+
+// What is the same in all runs of a model. A quarter of a run's time would go into extremes of channels that nobody
+// asks for: only those asked for are made, and those that tell whether a run is to be trusted.
+struct Scene::Runner {
+  /// Number `variable` of the study is set at a path, times what the model has there or as it is.
+  struct Setting {
+    std::size_t variable;
+    double factor;
+  };
+  const StudyModel& model;
+  bool is_judged = false;             ///< a response is the verdict, for which criteria may look at any channel
+  std::vector<std::string> channels;  ///< names
+  std::set<std::string> extremes;     ///< of these, those whose extremes are asked for
+  std::vector<std::string> sampled;   ///< patterns
+  Sampling sampling;                  ///< for histories
+  std::vector<Setting> settings;
+  std::vector<double> numbers;        ///< for the settings
+  std::unique_ptr<Variants> variants;
+
+  Runner(const LoadedStudy& loaded, const StudyModel& which)
+      : model(which), sampling(sampling_of(loaded.study, which)) {
+    for (const Response& r : loaded.study.responses)
+      if (r.model == model.name && r.expression.empty()) ask(r);
+    for (const History& h : loaded.study.histories)
+      if (h.model == model.name) channels.push_back(h.channel), sampled.push_back(h.channel);
+    std::vector<std::string> paths;
+    for (std::size_t i = 0; i < loaded.study.variables.size(); ++i) {
+      const Variable& v = loaded.study.variables[i];
+      if (!is_set_in(v, model)) continue;
+      for (const std::string& path : v.paths) {
+        settings.push_back({i, v.is_factor ? number_of(model.given, path) : 1.0});
+        paths.push_back(path);
+      }
+    }
+    for (const std::string& name : channels_of_trust(completed(model.given))) {
+      channels.push_back(name);
+      extremes.insert(name);
+    }
+    numbers.resize(settings.size());
+    variants = std::make_unique<Variants>(model.given, std::move(paths), wanted());
+  }
+
+  [[nodiscard]] const std::vector<std::string>* wanted() const { return is_judged ? nullptr : &channels; }
+
+private:
+  void ask(const Response& r) {
+    is_judged = is_judged || r.what == "verdict";
+    if (needs_samples(r)) sampled.push_back(r.channel);
+    const bool is_extreme = r.what.find("est") != std::string::npos;
+    for (const Channel* c : channels_of(r, *model.system)) {
+      channels.push_back(c->name);
+      if (is_extreme) extremes.insert(c->name);
+    }
+  }
+};
+
+Scene::Scene(const LoadedStudy& loaded) : loaded_(loaded) {
+  std::vector<std::string> names = loaded.variable_names();
+  const Study& study = loaded.study;
+  for (std::size_t i = 0; i < study.responses.size(); ++i) {
+    const Response& r = study.responses[i];
+    if (!r.expression.empty()) expressions_.emplace_back(i, Expression(r.expression, names, r.where));
+    names.push_back(r.name);
+  }
+  for (std::size_t i = 0; i < study.limit_states.size(); ++i) {
+    const LimitState& l = study.limit_states[i];
+    expressions_.emplace_back(study.responses.size() + i, Expression(l.expression, names, l.where));
+    names.push_back(l.name);
+  }
+  values_.resize(names.size());
+  for (const auto& model : loaded.models) runners_.push_back(std::make_unique<Runner>(loaded, *model));
+}
+
+Scene::~Scene() = default;
+
+// The channels of histories at their times, in their places among all.
+void Scene::compare(const Runner& runner, const RunResult& result, Outcome& outcome) const {
+  std::size_t place = 0;
+  for (const History& h : loaded_.study.histories) {
+    if (h.model == runner.model.name) compare_times(h, runner.sampling, *result.trajectory, &outcome.curve[place]);
+    place += h.t.size();
+  }
+}
+
+void Scene::look(const Runner& runner, const Model& whole, const System& system, const RunResult& result,
+                 Outcome& outcome) {
+  const Judgement judgement = judge(whole, system, result, "");
+  if (!result.stop_reason.empty()) worsen(outcome, SampleStatus::stopped, result.stop_reason);
+  if (!judgement.distrust.empty()) worsen(outcome, SampleStatus::untrusted, judgement.distrust);
+  const RunStatistics& s = result.statistics;
+  if (s.energy_scale > 0.0) outcome.error = std::max(outcome.error, s.energy_residual / s.energy_scale);
+  for (std::size_t i = 0; i < loaded_.study.responses.size(); ++i) {
+    const Response& r = loaded_.study.responses[i];
+    if (r.expression.empty() && r.model == runner.model.name) outcome.numbers[i] = value_of(r, result, judgement);
+  }
+  if (!loaded_.study.histories.empty()) compare(runner, result, outcome);
+}
+
+void Scene::run_system(const Runner& runner, const Model& whole, System& system, Outcome& outcome) {
+  if (!runner.is_judged)
+    for (Channel& c : system.channels) c.has_extremes = c.has_extremes && runner.extremes.contains(c.name);
+  SimulationOptions options = options_of(whole);
+  options.channels = runner.sampled;
+  options.has_extremes = true;
+  if (runner.sampling.step > 0.0) options.output_step = runner.sampling.step;
+  else if (runner.sampled.empty()) options.output_step = 0.0;
+  Simulation simulation(system, start_of(whole, system), std::move(options));
+  std::string failure;
+  try {
+    simulation.run();
+  } catch (const NumericalFailure& error) {
+    failure = error.what();
+  }
+  const RunResult result = std::move(simulation).result();
+  outcome.evaluations += static_cast<double>(result.statistics.evaluations);
+  if (failure.empty()) look(runner, whole, system, result, outcome);
+  else worsen(outcome, SampleStatus::gave_up, failure);
+}
+
+void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
+  try {
+    const std::size_t variant =
+        loaded_.variants.empty() ? 0 : static_cast<std::size_t>(values[loaded_.study.variables.size() - 1]);
+    std::unique_ptr<System> system;
+    std::optional<Model> changed; // the variants' own model does where nothing of it is changed
+    if (variant == 0) {
+      for (std::size_t i = 0; i < runner.settings.size(); ++i)
+        runner.numbers[i] = runner.settings[i].factor * values[runner.settings[i].variable];
+      system = runner.variants->make(runner.numbers);
+      if (runner.is_judged) changed = runner.variants->model();
+    } else {
+      changed = completed(model_with(loaded_, runner.model, values));
+      system = compile(*changed, runner.wanted());
+    }
+    if (runner.is_judged) (void)check_presentation(*changed, *system); // reads the limits of criteria
+    run_system(runner, changed ? *changed : runner.variants->model(), *system, outcome);
+  } catch (const NumericalFailure& error) {
+    worsen(outcome, SampleStatus::gave_up, error.what());
+  } catch (const ModelError& error) {
+    worsen(outcome, SampleStatus::impossible,
+           error.diagnostics().empty() ? error.what() : error.diagnostics().front().message);
+  } catch (const std::exception& error) {
+    worsen(outcome, SampleStatus::gave_up, std::string("internal error: ") + error.what());
+  }
+}
+
+bool Scene::is_derived(const std::vector<double>& values, const Outcome& outcome) {
+  std::copy(values.begin(), values.end(), values_.begin());
+  std::copy(outcome.numbers.begin(), outcome.numbers.end(), values_.begin() + static_cast<long>(values.size()));
+  const auto is_same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  bool is_whole = true;
+  for (std::size_t i = loaded_.study.responses.size(); i < outcome.numbers.size(); ++i)
+    is_whole = is_whole && !std::isnan(outcome.numbers[i]);
+  return outcome.curve.size() == loaded_.curve_size() && (outcome.status != SampleStatus::ok || is_whole) &&
+         std::all_of(expressions_.begin(), expressions_.end(), [&](const auto& of) {
+           return is_same(of.second(values_.data()), outcome.numbers[of.first]);
+         });
+}
+
+void Scene::run(const double* values, Outcome& outcome) {
+  const std::size_t variables = loaded_.study.variables.size(), numbers = loaded_.number_count();
+  outcome.status = SampleStatus::ok;
+  outcome.reason.clear();
+  outcome.numbers.assign(numbers, k_nan);
+  outcome.curve.assign(loaded_.curve_size(), k_nan);
+  outcome.error = outcome.evaluations = outcome.cpu_seconds = 0.0;
+  const bool has_models = !runners_.empty();
+  const double begin = has_models ? thread_cpu_seconds() : 0.0;
+  for (const auto& runner : runners_) run_model(*runner, values, outcome);
+  std::copy(values, values + variables, values_.begin());
+  std::copy(outcome.numbers.begin(), outcome.numbers.end(), values_.begin() + static_cast<long>(variables));
+  for (const auto& [place, expression] : expressions_)
+    values_[variables + place] = outcome.numbers[place] = expression(values_.data());
+  for (std::size_t i = loaded_.study.responses.size(); i < numbers; ++i)
+    if (std::isnan(outcome.numbers[i]))
+      worsen(outcome, SampleStatus::not_a_number, "limit state '" + loaded_.number_names()[i] + "' has no value");
+  if (has_models) outcome.cpu_seconds = thread_cpu_seconds() - begin;
+}
+
+} // namespace steplap::study

@@ -1,7 +1,0 @@
-#include "tools/steplap/version.h"
-
-namespace steplap {
-
-const char* const k_version = STEPLAP_VERSION;
-
-} // namespace steplap
