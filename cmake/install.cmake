@@ -2,26 +2,55 @@
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
-# One name for all rooms below tools/. Whoever links it gets no options of ours, no warnings, and of other makers'
-# headers Eigen's alone, whose vectors our own types are made of.
+# One name for all rooms up to run/. Whoever links it gets no options of ours, no warnings, and of other makers'
+# headers Eigen's alone, whose vectors our own types are made of. With BUILD_SHARED_LIBS it is one shared library that shows
+# steplap's names and no other's (steplap.map); else the rooms' archives.
+set(rooms math tape mbd io patch_exact patch elements transformer run)
+list(TRANSFORM rooms PREPEND steplap_ OUTPUT_VARIABLE archives)
 add_library(steplap_library INTERFACE)
 add_library(steplap::steplap ALIAS steplap_library)
-target_link_libraries(steplap_library INTERFACE steplap_transformer)
 target_compile_features(steplap_library INTERFACE cxx_std_20)
-
-set(rooms math tape mbd io patch_exact patch elements transformer library)
-list(TRANSFORM rooms PREPEND steplap_ OUTPUT_VARIABLE libraries)
-foreach(room ${rooms})
-  set_target_properties(steplap_${room} PROPERTIES EXPORT_NAME ${room})
-endforeach()
 set_target_properties(steplap_library PROPERTIES EXPORT_NAME steplap)
+if(BUILD_SHARED_LIBS)
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/all_rooms.cpp CONTENT "// The shared library's sources are in the rooms' archives.\n")
+  add_library(steplap_shared SHARED ${CMAKE_CURRENT_BINARY_DIR}/all_rooms.cpp)
+  foreach(archive ${archives})
+    target_link_libraries(steplap_shared PRIVATE $<LINK_LIBRARY:WHOLE_ARCHIVE,${archive}>)
+  endforeach()
+  target_link_libraries(steplap_shared INTERFACE Eigen3::Eigen)
+  target_link_options(steplap_shared PRIVATE -Wl,--no-undefined -Wl,--version-script=${CMAKE_CURRENT_LIST_DIR}/steplap.map)
+  set_target_properties(steplap_shared PROPERTIES OUTPUT_NAME steplap VERSION ${PROJECT_VERSION}
+    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} EXPORT_NAME shared LINK_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/steplap.map)
+  target_link_libraries(steplap_library INTERFACE steplap_shared)
+  set(libraries steplap_shared steplap_library)
+  set(steplap_pc_libraries "-lsteplap")
+else()
+  target_link_libraries(steplap_library INTERFACE steplap_run)
+  set(libraries ${archives} steplap_library)
+  foreach(room ${rooms})
+    set_target_properties(steplap_${room} PROPERTIES EXPORT_NAME ${room})
+  endforeach()
+  list(REVERSE archives)
+  list(TRANSFORM archives PREPEND -l)
+  list(JOIN archives " " steplap_pc_libraries)
+  set(steplap_pc_libraries "-Wl,--start-group ${steplap_pc_libraries} -Wl,--end-group")
+  set(steplap_pc_private "-ltomlplusplus -ludunits2 -lexpat -lcrypto -lgmp -lmpfr -lpthread -ldl")
+  if(STEPLAP_MACHINE_CODE)
+    string(APPEND steplap_pc_private " -lasmjit")
+  endif()
+endif()
 
 # Headers include each other as "mbd/…", users write <steplap/mbd/…>.
 install(TARGETS ${libraries} EXPORT steplap
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${CMAKE_INSTALL_INCLUDEDIR}/steplap)
-install(DIRECTORY mbd elements transformer DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap
+install(DIRECTORY mbd elements transformer run DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap
   FILES_MATCHING PATTERN "*.h")
+configure_file(cmake/version.h.in version.h @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap)
+configure_file(cmake/steplap.pc.in steplap.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/steplap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(TARGETS steplap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # bin/steplap looks for it at ../libexec, in the build tree as well.
 if(TARGET steplap-study)

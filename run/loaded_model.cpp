@@ -6,6 +6,7 @@
 #include "mbd/io/presentation.h"
 #include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
+#include "mbd/model/completion.h"
 #include "run/catalogue.h"
 #include "run/failure.h"
 #include "run/tipping.h"
@@ -44,8 +45,18 @@ double trajectory_numbers(const Model& model, const System& system) {
   return (std::floor(model.simulation.end / model.output.step) + 1.0) * (1.0 + static_cast<double>(trajectory.channels().size()));
 }
 
-std::shared_ptr<const LoadedModel> load_model(const std::string& path,
-                                              const std::vector<std::string>& overrides) {
+namespace {
+
+// Joints that cannot be met are the model's error.
+void put_together(LoadedModel& loaded) {
+  refuse_endless_output(loaded.model, *loaded.system);
+  loaded.plots_left_out = check_presentation(loaded.model, *loaded.system);
+  loaded.assembled = assemble(loaded.model, *loaded.system);
+}
+
+} // namespace
+
+std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std::vector<std::string>& overrides) {
   auto loaded = std::make_shared<LoadedModel>();
   loaded->path = path;
   loaded->name = name_of_model(path);
@@ -54,9 +65,23 @@ std::shared_ptr<const LoadedModel> load_model(const std::string& path,
   loaded->model = read_model(path, program_catalogue(), overrides, &loaded->text);
   loaded->system = compile(loaded->model);
   loaded->inputs = read.files();
-  refuse_endless_output(loaded->model, *loaded->system);
-  loaded->plots_left_out = check_presentation(loaded->model, *loaded->system);
-  loaded->assembled = assemble(loaded->model, *loaded->system); // joints that cannot be met are the model's error
+  put_together(*loaded);
+  return loaded;
+}
+
+std::shared_ptr<const LoadedModel> load_given(const Model& given, const std::string& name) {
+  Model whole = completed(given);
+  std::shared_ptr<const System> system = compile(whole);
+  return load_completed(std::move(whole), std::move(system), name);
+}
+
+std::shared_ptr<const LoadedModel> load_completed(Model completed, std::shared_ptr<const System> system, const std::string& path) {
+  auto loaded = std::make_shared<LoadedModel>();
+  loaded->path = path;
+  loaded->name = name_of_model(path);
+  loaded->model = std::move(completed);
+  loaded->system = std::move(system);
+  put_together(*loaded);
   return loaded;
 }
 

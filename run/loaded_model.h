@@ -30,6 +30,11 @@ struct LoadedModel {
 /// Throws ModelError with all that is wrong with the model, and for a trajectory beyond `most_numbers` of [output].
 [[nodiscard]] std::shared_ptr<const LoadedModel>
 load_model(const std::string& path, const std::vector<std::string>& overrides = {});
+/// A model made in code, as given: completed, checked and compiled as if it had been read. It has no text, so a run of it cannot
+/// be written to files. Throws ModelError.
+[[nodiscard]] std::shared_ptr<const LoadedModel> load_given(const Model& given, const std::string& name);
+/// One that has been completed and compiled already; `path` is what messages call it.
+[[nodiscard]] std::shared_ptr<const LoadedModel> load_completed(Model completed, std::shared_ptr<const System> system, const std::string& path);
 /// All of them, or a ModelError with what is wrong with any of them.
 [[nodiscard]] std::vector<std::shared_ptr<const LoadedModel>>
 load_models(const std::vector<std::string>& paths, const std::vector<std::string>& overrides = {});

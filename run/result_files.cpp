@@ -187,6 +187,8 @@ FileContent whole(std::string text) {
 
 std::vector<ResultFile> result_files(const Report& report) {
   const Run& run = report.run;
+  if (run.loaded->text.empty())
+    throw FileError(run.loaded->path, "results of '" + run.loaded->name + "' cannot be written: it was made in code, and model.toml has to hold a model that can be run again");
   const std::string prefix = run.failure ? k_partial : "";
   const std::string head = "# Effective model of '" + run.loaded->path + "', written by steplap " +
                            k_version + ".\n\n";

@@ -105,13 +105,13 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
       if (!is_same(fetched_[i].values[j],
                    points[(from + i) * width + j])) { // a study that has changed goes another way from here
         if (!may_go_another_way())
-          throw StoreError("the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
+          throw StoreError(store_.path(), "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
                            " has other values than the study asks for; --restart makes it anew");
         store_.forget_from(fetched_[i].number);
         return;
       }
     if (!team_->is_derived(fetched_[i]))
-      throw StoreError("the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
+      throw StoreError(store_.path(), "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
                        " has numbers that do not follow from its values and responses; --restart makes it anew");
     rows_[from + i] = std::move(fetched_[i]);
     ++pace_.stored;
@@ -143,7 +143,7 @@ void Evaluator::run(std::size_t from, std::size_t count, const std::vector<doubl
     }
   }
   if (const std::string record = loaded_.changed_record(); !record.empty())
-    throw StoreError("'" + record + "' has changed while the study ran: what was run since is not kept; run it again");
+    throw StoreError(record, "'" + record + "' has changed while the study ran: what was run since is not kept; run it again");
   store_.append(&rows_[from], count);
 }
 

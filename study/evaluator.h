@@ -13,10 +13,10 @@
 
 namespace steplap::study {
 
-/// failed = "stop", and a sample's run did not reach its end. Exit code 4.
-class StudyStopped : public std::runtime_error {
+/// failed = "stop", and a sample's run did not reach its end; or somebody asked the study to stop. Exit code 4.
+class StudyStopped : public NumericalFailure {
 public:
-  using std::runtime_error::runtime_error;
+  using NumericalFailure::NumericalFailure;
 };
 
 /// How far a study is.

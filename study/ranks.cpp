@@ -4,34 +4,16 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 
 namespace steplap::study {
 
-namespace {
-
-// Set by mpirun and by srun (--mpi=pmix or pmi2) for each process they start.
-bool has_launcher() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
-    if (std::getenv(name)) return true;
-  return false;
-}
-
-} // namespace
-
-Ranks::Ranks() {
-  if (!has_launcher()) return;
-  int provided = 0;
-  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
-  is_begun_ = true;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
-  MPI_Comm_size(MPI_COMM_WORLD, &count_);
-}
-
-Ranks::~Ranks() {
-  if (is_begun_) MPI_Finalize();
+Ranks Ranks::of_world() {
+  Ranks ranks;
+  MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks.count_);
+  return ranks;
 }
 
 void Ranks::spread(std::vector<double>& data) const {

@@ -1,6 +1,7 @@
 // Processes of one study, by MPI: rank 0 asks, stores and answers; the others run samples for it.
 //
-// MPI is begun only where a launcher (mpirun, srun) has started the program; a lone process knows nothing of it.
+// A lone process knows nothing of MPI. Who wants several begins it (tools/study/mpi_session.h) and takes of_world(): a library
+// never does.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +11,10 @@ namespace steplap::study {
 
 class Ranks {
 public:
-  /// Begins MPI if a launcher is there.
-  Ranks();
-  Ranks(const Ranks&) = delete;
-  Ranks& operator=(const Ranks&) = delete;
-  ~Ranks();
+  /// This process alone.
+  Ranks() = default;
+  /// All processes of MPI's world; it has been begun, and is ended after the last use.
+  [[nodiscard]] static Ranks of_world();
 
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int count() const { return count_; }
@@ -29,7 +29,6 @@ public:
 
 private:
   int rank_ = 0, count_ = 1;
-  bool is_begun_ = false;
 };
 
 } // namespace steplap::study

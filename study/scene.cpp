@@ -4,10 +4,10 @@
 #include "mbd/analysis/start.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/name_pattern.h"
-#include "mbd/io/presentation.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
 #include "mbd/system/instance.h"
+#include "run/report.h"
 #include "study/history.h"
 
 #include <algorithm>
@@ -72,7 +72,7 @@ double of_events(const Response& r, const std::vector<Event>& events) {
 }
 
 double value_of(const Response& r, const RunResult& result, const Judgement& judgement) {
-  if (r.what == "verdict") return static_cast<double>(judgement.so_far);
+  if (r.what == "verdict") return static_cast<double>(judgement.verdict);
   if (r.what == "count" || r.what == "time_of_first") return of_events(r, result.events);
   if (needs_samples(r)) return along(r, *result.trajectory);
   if (r.what == "final" || r.what == "initial") {
@@ -193,9 +193,7 @@ void Scene::compare(const Runner& runner, const RunResult& result, Outcome& outc
   }
 }
 
-void Scene::look(const Runner& runner, const Model& whole, const System& system, const RunResult& result,
-                 Outcome& outcome) {
-  const Judgement judgement = judge(whole, system, result, "");
+void Scene::look(const Runner& runner, const Judgement& judgement, const RunResult& result, Outcome& outcome) {
   if (!result.stop_reason.empty()) worsen(outcome, SampleStatus::stopped, result.stop_reason);
   if (!judgement.distrust.empty()) worsen(outcome, SampleStatus::untrusted, judgement.distrust);
   const RunStatistics& s = result.statistics;
@@ -208,8 +206,7 @@ void Scene::look(const Runner& runner, const Model& whole, const System& system,
 }
 
 void Scene::run_system(const Runner& runner, const Model& whole, System& system, Outcome& outcome) {
-  if (!runner.is_judged)
-    for (Channel& c : system.channels) c.has_extremes = c.has_extremes && runner.extremes.contains(c.name);
+  for (Channel& c : system.channels) c.has_extremes = c.has_extremes && runner.extremes.contains(c.name);
   SimulationOptions options = options_of(whole);
   options.channels = runner.sampled;
   options.has_extremes = true;
@@ -224,8 +221,20 @@ void Scene::run_system(const Runner& runner, const Model& whole, System& system,
   }
   const RunResult result = std::move(simulation).result();
   outcome.evaluations += static_cast<double>(result.statistics.evaluations);
-  if (failure.empty()) look(runner, whole, system, result, outcome);
+  if (failure.empty()) look(runner, judge(whole, system, result, ""), result, outcome);
   else worsen(outcome, SampleStatus::gave_up, failure);
+}
+
+// A verdict is that of the command line, with all that weighs on it there: findings, and errors by finer runs where these are cheap.
+void Scene::run_judged(const Runner& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome) {
+  if (!whole.output.channels.empty()) whole.output.channels.insert(whole.output.channels.end(), runner.sampled.begin(), runner.sampled.end());
+  if (runner.sampling.step > 0.0) whole.output.step = runner.sampling.step;
+  const Report report = judged_run(load_completed(std::move(whole), std::move(system), runner.model.path));
+  const RunResult& result = report.run.result;
+  outcome.evaluations += static_cast<double>(result.statistics.evaluations);
+  if (report.estimate.errors) outcome.evaluations += static_cast<double>(report.estimate.errors->cost.evaluations);
+  if (report.run.failure) worsen(outcome, SampleStatus::gave_up, report.run.failure->text);
+  else look(runner, report.judgement, result, outcome);
 }
 
 void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
@@ -243,8 +252,8 @@ void Scene::run_model(Runner& runner, const double* values, Outcome& outcome) {
       changed = completed(model_with(loaded_, runner.model, values));
       system = compile(*changed, runner.wanted());
     }
-    if (runner.is_judged) (void)check_presentation(*changed, *system); // reads the limits of criteria
-    run_system(runner, changed ? *changed : runner.variants->model(), *system, outcome);
+    if (runner.is_judged) run_judged(runner, std::move(*changed), std::move(system), outcome);
+    else run_system(runner, changed ? *changed : runner.variants->model(), *system, outcome);
   } catch (const NumericalFailure& error) {
     worsen(outcome, SampleStatus::gave_up, error.what());
   } catch (const ModelError& error) {

@@ -1,6 +1,7 @@
 // One sample: the values of the variables put into the models, run, and looked at.
 #pragma once
 
+#include "mbd/acceptance/judgement.h"
 #include "mbd/simulation/simulation.h"
 #include "study/expression.h"
 #include "study/study_reader.h"
@@ -53,7 +54,8 @@ private:
   struct Runner;
   void run_model(Runner& runner, const double* values, Outcome& outcome);
   void run_system(const Runner& runner, const Model& whole, System& system, Outcome& outcome);
-  void look(const Runner& runner, const Model& whole, const System& system, const RunResult& result, Outcome& outcome);
+  void run_judged(const Runner& runner, Model whole, std::unique_ptr<System> system, Outcome& outcome);
+  void look(const Runner& runner, const Judgement& judgement, const RunResult& result, Outcome& outcome);
   void compare(const Runner& runner, const RunResult& result, Outcome& outcome) const;
 
   const LoadedStudy& loaded_;

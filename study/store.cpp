@@ -86,7 +86,7 @@ void Store::fail(const std::string& doing) {
   if (kind == SQLITE_NOTADB) why = "it is no store of a study";
   if (kind == SQLITE_CORRUPT) why = "it is damaged (" + why + ")";
   if (kind == SQLITE_BUSY) why = "another process holds it";
-  throw StoreError("the store '" + path_ + "' cannot be " + doing + ": " + why);
+  throw StoreError(path_, "the store '" + path_ + "' cannot be " + doing + ": " + why);
 }
 
 void Store::execute(const std::string& sql) {
@@ -117,9 +117,9 @@ void Store::commit_if_due() {
 void Store::lock() {
   lock_file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_file_ < 0)
-    throw StoreError("the store '" + path_ + "' cannot be written: " + std::string(std::strerror(errno)));
+    throw StoreError(path_, "the store '" + path_ + "' cannot be written: " + std::string(std::strerror(errno)));
   if (flock(lock_file_, LOCK_EX | LOCK_NB) != 0)
-    throw StoreError("another process is writing to the store '" + path_ + "': wait for it, or choose another with -o");
+    throw StoreError(path_, "another process is writing to the store '" + path_ + "': wait for it, or choose another with -o");
 }
 
 // A process was killed, or the disk was full, while it wrote: what it wrote last is to be taken back, and that is writing.
@@ -131,7 +131,7 @@ bool Store::is_cut_off() {
 void Store::open(const std::string& path, bool is_writing) {
   path_ = path;
   if (is_writing) lock();
-  else if (!std::filesystem::exists(path)) throw StoreError("there is no store '" + path + "'");
+  else if (!std::filesystem::exists(path)) throw StoreError(path, "there is no store '" + path + "'");
   const int flags = is_writing ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   if (sqlite3_open_v2(path.c_str(), &database_, flags, nullptr) != SQLITE_OK) fail("opened");
   if (!is_writing && is_cut_off()) { // puts it in order, which takes back the batch that was not finished
@@ -166,7 +166,7 @@ Store::Store(const std::string& path) : Store() {
 
 Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode mode) : Store() {
   if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
-    throw StoreError("'" + path + "' is no file: a store cannot be kept there");
+    throw StoreError(path, "'" + path + "' is no file: a store cannot be kept there");
   open(path, true);
   const bool is_there = !is_empty();
   if (mode == StoreMode::restart && is_there) {
@@ -181,18 +181,18 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
   read_identity();
   check();
   if (identity_.version != identity.version)
-    throw StoreError("the store '" + path + "' was made by version " + identity_.version + ", this is " +
+    throw StoreError(path, "the store '" + path + "' was made by version " + identity_.version + ", this is " +
                      identity.version + ": --restart begins anew, or choose another store with -o");
   if (identity_.scene != identity.scene || identity_.variables != identity.variables ||
       identity_.numbers != identity.numbers)
-    throw StoreError("the store '" + path +
+    throw StoreError(path, "the store '" + path +
                      "' is of another study: its models, variables, responses or limit states are not those of the "
                      "study file any more" +
                      changed_files(identity) + ". --restart begins anew and drops its " +
                      std::to_string(size_) + " samples; -o names another store");
   if (identity_.study != identity.study || identity_.kind != identity.kind) {
     if (mode == StoreMode::run)
-      throw StoreError("the study has changed since the store '" + path + "' was made" + changed_files(identity) +
+      throw StoreError(path, "the study has changed since the store '" + path + "' was made" + changed_files(identity) +
                        ": --changed goes on with those of its " + std::to_string(size_) +
                        " samples that are the same, --restart begins anew, -o names another store");
     set("study", identity.study);
@@ -297,9 +297,9 @@ void Store::hold() {
 }
 
 void Store::check_kind() {
-  if (pragma("application_id") != k_application) throw StoreError("'" + path_ + "' is no store of a study");
+  if (pragma("application_id") != k_application) throw StoreError(path_, "'" + path_ + "' is no store of a study");
   if (const long layout = pragma("user_version"); layout != k_layout)
-    throw StoreError("the store '" + path_ + "' has the layout " + std::to_string(layout) +
+    throw StoreError(path_, "the store '" + path_ + "' has the layout " + std::to_string(layout) +
                      "; this program reads layout " + std::to_string(k_layout));
 }
 

@@ -5,11 +5,10 @@
 // that is damaged is refused (store_check.cpp).
 #pragma once
 
+#include "mbd/base/diagnostics.h"
 #include "mbd/io/input_files.h"
 #include "study/finding.h"
 #include "study/scene.h"
-
-#include <stdexcept>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -17,9 +16,9 @@ struct sqlite3_stmt;
 namespace steplap::study {
 
 /// The store cannot be used: its message says why and what helps. Exit code 2.
-class StoreError : public std::runtime_error {
+class StoreError : public FileError {
 public:
-  using std::runtime_error::runtime_error;
+  using FileError::FileError;
 };
 
 /// run: goes on with what is there, unless the study has changed; changed: even then, with those samples that are the
@@ -55,6 +54,7 @@ public:
   ~Store();
 
   [[nodiscard]] const StoreIdentity& identity() const { return identity_; }
+  [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] long size() const { return size_; } ///< samples
   /// The study was changed, and not ended since: some samples may be of what it was before.
   [[nodiscard]] bool may_hold_others() { return !setting("changed").empty(); }

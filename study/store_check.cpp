@@ -59,7 +59,7 @@ long Store::fingerprint_of(long place, const CurvePoint& p) {
 }
 
 void Store::damaged(const std::string& why) const {
-  throw StoreError("the store '" + path_ + "' is damaged, or was edited: " + why +
+  throw StoreError(path_, "the store '" + path_ + "' is damaged, or was edited: " + why +
                    ". Take a copy of it, or let the study make it anew with --restart");
 }
 

@@ -95,6 +95,7 @@ FieldLocator own_places(const Model& model) {
 } // namespace
 
 bool complete(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
+  if (model.is_completed) throw std::logic_error("a model is completed twice: it would have all that its tables stand for twice");
   add_body_markers(model);
   const std::vector<std::size_t> at_centres = unplaced_markers(model);
   place_at_centres(model, at_centres);
@@ -102,6 +103,7 @@ bool complete(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& 
                   places.locate ? places.locate : own_places(model), problems);
   const bool is_every_table_applied = apply_tables(model, places, problems);
   place_at_centres(model, at_centres); // tables may have moved a centre of gravity
+  model.is_completed = true;
   return is_every_table_applied;
 }
 

@@ -242,6 +242,7 @@ struct Model {
   std::vector<Plot> plots;
   std::vector<Criterion> criteria;
   std::vector<TableEntry> tables; ///< of other rooms, as given: complete() adds what they stand for
+  bool is_completed = false;      ///< by complete(): until then what its tables stand for is missing
 
   [[nodiscard]] const Body* find_body(const std::string& name) const;
 };

@@ -388,6 +388,9 @@ void SystemBuilder::error(const std::string& message) {
 }
 
 std::unique_ptr<System> compile(const Model& model, const std::vector<std::string>* wanted) {
+  if (!model.tables.empty() && !model.is_completed)
+    throw ModelError(model.tables.front().table->where,
+                     "the model is as given: what its tables stand for is missing, take completed() of it (mbd/model/completion.h)");
   SystemBuilder builder(model, wanted);
   RequestedChannels requested(builder);
   builder.compile_bodies();

@@ -26,7 +26,7 @@ namespace {
 std::map<std::string, std::string> product_sources() {
   const fs::path root = STEPLAP_SOURCE;
   std::map<std::string, std::string> sources;
-  for (const char* top : {"mbd", "elements", "transformer", "tools/steplap", "tools/study"})
+  for (const char* top : {"mbd", "elements", "transformer", "run", "report", "study", "tools/steplap", "tools/study"})
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
       std::string& text = sources[fs::relative(entry.path(), root).generic_string()];
@@ -61,7 +61,7 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
       {"mbd/simulation/simulation.h", "what a program that names none has"},
       {"mbd/analysis/accuracy_study.h", "the two that make references"},
       {"mbd/analysis/cross_check.cpp", "the plan of a cross check, method by method"},
-      {"transformer/verdict.cpp", "what to try instead"},
+      {"mbd/acceptance/trust.cpp", "what to try instead"},
       {"run/second_opinion.cpp", "the two that share least: which one is asked hangs on which one ran"},
   };
   REQUIRE(methods().size() >= 6);
@@ -81,7 +81,7 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
   // Names that are words of others, too, or that somebody asks for all the same.
   const std::map<std::string, Reasons> besides = {
       {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"study/needs.cpp", "what is made rigid is welded"}}},
-      {"limit", {{"run/summary_json.cpp", "of a criterion"}}},
+      {"limit", {{"run/report_json.cpp", "of a criterion"}}},
       {"distance", {{"elements/motor.cpp", "a coordinate"}, {"elements/prescribed_motion.cpp", "a coordinate"},
                     {"elements/limit.cpp", "a coordinate"}, {"elements/joint_friction.cpp", "a coordinate"}}},
       {"step_lap_joint", {{"study/scene.cpp", "channels that every verdict needs"}}},

@@ -17,8 +17,8 @@ namespace {
 // In the order of the data: a model is read, compiled, moved, asked.
 const std::vector<std::string> k_rooms = {
     "mbd/math",   "mbd/base",       "mbd/formula",  "mbd/algebra",  "mbd/tape",       "mbd/model",  "mbd/system", "mbd/dynamics", "mbd/friction", "mbd/integrators",
-    "mbd/events", "mbd/simulation", "mbd/ensemble", "mbd/analysis", "mbd/io",     "elements/patch", "elements",     "transformer",
-    "tools"};
+    "mbd/events", "mbd/simulation", "mbd/ensemble", "mbd/analysis", "mbd/acceptance", "mbd/io", "elements/patch", "elements", "transformer",
+    "run", "report", "study", "tools"};
 
 // Headers of libraries, of which one file of the product knows.
 const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/", "fmt/"};
@@ -44,7 +44,7 @@ Source source_of(const fs::path& root, const fs::path& file) {
 std::vector<Source> all_sources() {
   const fs::path root = STEPLAP_SOURCE;
   std::vector<Source> sources;
-  for (const char* top : {"mbd", "elements", "transformer", "tools"})
+  for (const char* top : {"mbd", "elements", "transformer", "run", "report", "study", "tools"})
     for (const auto& entry : fs::recursive_directory_iterator(root / top))
       if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h") sources.push_back(source_of(root, entry.path()));
   return sources;
@@ -134,7 +134,8 @@ TEST_CASE("a heavy header is known to one file") {
       if (std::any_of(source.foreign.begin(), source.foreign.end(), [&](const std::string& name) { return name.starts_with(heavy); }))
         users.push_back(source.path);
     CAPTURE(heavy);
-    CHECK(users.size() == 1);
+    // MPI is begun by a program and used by a library.
+    CHECK(users.size() == (heavy == "mpi.h" ? 2 : 1));
     CHECK(users.front().ends_with(".cpp"));
   }
   for (const Source& source : all_sources()) // CGAL has many headers

@@ -21,7 +21,7 @@ struct MachineRun {
 
   explicit MachineRun(const std::string& name, const std::vector<std::string>& overrides = {})
       : loaded(machine(name, overrides)), run(run_model(loaded)) {}
-  [[nodiscard]] bool is_complete() const { return run.failure.empty() && run.result.stop_reason.empty(); }
+  [[nodiscard]] bool is_complete() const { return !run.failure && run.result.stop_reason.empty(); }
   [[nodiscard]] const std::vector<double>& times() const { return run.result.trajectory->times(); }
   [[nodiscard]] std::vector<double> series(const std::string& channel) const { return run.result.trajectory->series(channel); }
   /// At the sample nearest to t.

@@ -52,7 +52,7 @@ TEST_CASE("a load runs down from its drum as rope and inertias say") {
           body("load", "mass = 50.0; inertia = 1.0; position = [" + radius + ", 4.0]") +
           element("wound_rope", "rope", "a = 'drum'; b = 'load'; radius_a = " + radius + "; stiffness = 2e5"));
       const Run run = run_model(model.loaded({"simulation.integrator=" + method}));
-      REQUIRE(run.failure.empty());
+      REQUIRE_FALSE(run.failure);
       // 14 swings at 1e-10 a step; positions of metres.
       CHECK(std::abs(last(run, "load.y") - (4.0 - fallen)) < 1e-8);
       CHECK(std::abs(last(run, "drum.theta") + side * (fallen - stretch) / r) < 1e-7);
@@ -95,7 +95,7 @@ TEST_CASE("a pendulum whose thread winds itself on a cylinder") {
         element("wound_rope", "thread",
                 "a = 'ground'; b = 'bob'; radius_a = 0.1; damping = 2e3; stiffness = " + number(stiffness)));
     const Run run = run_model(model.loaded({"simulation.integrator=rodas5p"}));
-    REQUIRE(run.failure.empty());
+    REQUIRE_FALSE(run.failure);
     const double off = std::hypot(last(run, "bob.x") - expected[0], last(run, "bob.y") - expected[1]);
     CHECK(off < 20.0 * 2.0 * k_g / stiffness);
     CHECK(off < 0.2 * before); // and goes with it
@@ -121,7 +121,7 @@ TEST_CASE("a belt drive: bearings, its mode, and when its slack side goes slack"
   for (const std::string method : k_methods) {
     CAPTURE(method);
     const Run run = run_model(model.loaded({"simulation.integrator=" + method}));
-    REQUIRE(run.failure.empty());
+    REQUIRE_FALSE(run.failure);
     const auto slack = std::find_if(run.result.events.begin(), run.result.events.end(),
                                     [](const Event& e) { return e.kind == EventKind::enters_gap; });
     REQUIRE(slack != run.result.events.end());
@@ -160,7 +160,7 @@ TEST_CASE("a differential hoist holds its load with half the difference of its r
   const double sag = 0.5 * weight / 1e8;
   CHECK(std::abs(at_rest(*loaded, rest, "sheave.y") - (2.0 - sag)) < 1e-9);
   const Run run = run_model(loaded);
-  REQUIRE(run.failure.empty());
+  REQUIRE_FALSE(run.failure);
   // At its end the drive stands still and the load's last swing on a rope of 100 MN/m is below 1 µm.
   CHECK(std::abs(last(run, "sheave.y") - (2.0 - sag + 0.5 * (R - r) * turned)) < 1e-6);
   CHECK(std::abs(last(run, "sheave.theta") - 0.5 * (R + r) / 0.18 * turned) < 1e-5);
@@ -201,7 +201,7 @@ TEST_CASE("what a wound rope cannot be is refused") {
 TEST_CASE("a rope that is followed no further ends the run, and is named") {
   const auto failure_of = [](const std::string& text) {
     const Run run = run_model(Written(text).loaded());
-    return run.failure;
+    return run.failure ? run.failure->text : "";
   };
   const std::string round = failure_of(
       k_no_gravity + settings(4.0) +

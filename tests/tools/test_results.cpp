@@ -1,4 +1,5 @@
 // The library behind the command line, as other tools use it.
+#include "run/prominence.h"
 #include "run/result_files.h"
 #include "tests/tools/workbench.h"
 #include "tools/steplap/command.h"
@@ -9,9 +10,10 @@ using namespace steplap;
 using namespace steplap::testing;
 
 TEST_CASE("summary: extremes, slides and events of the paper's run") {
-  const Run run = run_model(load_model(STEPLAP_MODELS "/paper/no_interference.toml"));
-  CHECK(run.failure.empty());
-  const RunSummary summary = summarise(run);
+  RunOptions options;
+  options.estimating = Estimating::never;
+  const Report summary = judged_run(load_model(STEPLAP_MODELS "/paper/no_interference.toml"), options);
+  CHECK_FALSE(summary.run.failure);
   REQUIRE(summary.find("bottom arresting.force"));
   // Extremes of the same run sampled every microsecond.
   CHECK(summary.find("bottom arresting.force")->low.value == doctest::Approx(-193529.2594).epsilon(1e-7));

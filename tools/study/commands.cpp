@@ -5,9 +5,8 @@
 #include "mbd/io/csv.h"
 #include "mbd/model/model_path.h"
 #include "study/export.h"
-#include "study/kinds.h"
-#include "study/report_about.h"
 #include "study/report_page.h"
+#include "study/run_study.h"
 #include "tools/steplap/command_line.h"
 #include "tools/steplap/log.h"
 #include "tools/study/progress_line.h"
@@ -53,40 +52,6 @@ long whole_number(const std::string& text, const char* option, long least) {
   return value;
 }
 
-// What hangs on a distribution that its measurements contradict is not to be trusted.
-void add_fits(const JointLaw& law, Answer& answer) {
-  for (const JointLaw::Fit& fit : law.fits()) {
-    answer.notes.push_back("Variable '" + fit.variable + "': " + fit.text + ".");
-    if (fit.is_misfit) answer.degrade(Standing::not_trusted);
-  }
-}
-
-// Kinds that set variables themselves, one by one, do not draw them from their joint distribution.
-void add_correlations(const Study& study, Answer& answer) {
-  if (study.kind == "reliability" || study.kind == "sample") return;
-  for (const Correlation& c : study.correlations)
-    answer.notes.push_back("Variables are set one by one here, whatever the others are: the stated correlation of '" +
-                           c.between[0] + "' and '" + c.between[1] + "' plays no part in it.");
-}
-
-Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads, Console& console) {
-  std::vector<Diagnostic> problems;
-  const JointLaw law(loaded.study, loaded.nominal, problems); // checked by the reader
-  store.describe(about_of(loaded, law));
-  ProgressLine line(console);
-  Evaluator evaluator(loaded, store, ranks, threads, std::ref(line));
-  StudyRun run{loaded, law, evaluator, store};
-  for (const StudyKind& kind : study_kinds()) {
-    if (kind.name != loaded.study.kind) continue;
-    Answer answer = kind.run(run);
-    store.forget_from(evaluator.asked() + 1);
-    add_fits(law, answer);
-    add_correlations(loaded.study, answer);
-    return answer;
-  }
-  throw std::logic_error("a kind of study that the reader let pass is not there");
-}
-
 std::string page_of(const std::string& store) {
   return std::filesystem::path(store).replace_extension(".html").string();
 }
@@ -101,45 +66,32 @@ ExitCode code_of(Standing standing) {
   return standing == Standing::done ? ExitCode::done : ExitCode::numerical_failure;
 }
 
-ExitCode run_first(const Options& o, const LoadedStudy& loaded, const Ranks& ranks, int threads, Console& console) {
+StudyOptions study_options(const Options& o, const Ranks& ranks, ProgressLine& line) {
   if (o.is_restarted && o.is_changed) throw UsageError("--restart and --changed exclude each other");
+  StudyOptions options;
+  options.threads = o.threads ? static_cast<int>(whole_number(*o.threads, "--threads", 1)) : ranks.threads();
+  options.mode = o.is_restarted ? StoreMode::restart : o.is_changed ? StoreMode::changed : StoreMode::run;
+  options.progress = std::ref(line);
+  options.note = [](const std::string& text) { log_info(text); };
+  return options;
+}
+
+ExitCode tell(const Options& o, const LoadedStudy& loaded, const Answer& answer, Console& console) {
   const std::string path = store_of(o);
-  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw StoreError("the folder '" + folder.string() + "' cannot be made: " + error.message());
-  }
-  const StoreMode mode = o.is_restarted ? StoreMode::restart : o.is_changed ? StoreMode::changed : StoreMode::run;
-  Store store(path, identity_of(loaded), mode);
-  if (store.size() > 0) log_info("going on with the " + std::to_string(store.size()) + " samples in '" + path + "'");
-  const Answer answer = answer_of(loaded, store, ranks, threads, console);
-  store.set_findings(answer.findings, answer.notes, name_of(answer.standing));
-  if (console.verbosity != Verbosity::quiet) {
+  const bool is_told = console.verbosity != Verbosity::quiet;
+  if (is_told) {
+    Store store(path);
     show(store, loaded.study.title, console.out);
     console.out << "Store: " << path << "\n";
   }
   if (o.is_reported) {
     write_page(path, page_of(path), IfExists::replace);
-    if (console.verbosity != Verbosity::quiet) console.out << "Page: " << page_of(path) << "\n";
+    if (is_told) console.out << "Page: " << page_of(path) << "\n";
   }
   return code_of(answer.standing);
 }
 
-// What can go wrong with a store or a sample becomes an exit code here: the command line knows neither.
-template <class Work> ExitCode guarded(const Work& work) {
-  try {
-    return work();
-  } catch (const StoreError& error) {
-    log_error(error.what());
-    return ExitCode::usage;
-  } catch (const StudyStopped& error) {
-    log_error(error.what());
-    return ExitCode::numerical_failure;
-  }
-}
-
-ExitCode run_study(const Options& o, const Ranks& ranks, Console& console) {
-  const int threads = o.threads ? static_cast<int>(whole_number(*o.threads, "--threads", 1)) : ranks.threads();
+ExitCode run_command_of(const Options& o, const Ranks& ranks, Console& console) {
   std::optional<LoadedStudy> loaded;
   try {
     loaded = read_study(o.file);
@@ -147,18 +99,12 @@ ExitCode run_study(const Options& o, const Ranks& ranks, Console& console) {
     if (ranks.is_first()) throw;
     return ExitCode::model_error; // said by the first
   }
-  if (!ranks.is_first()) {
-    Evaluator::serve(*loaded, ranks, threads);
-    return ExitCode::done;
+  std::optional<Answer> answer;
+  {
+    ProgressLine line(console);
+    answer = run_study(*loaded, store_of(o), ranks, study_options(o, ranks, line));
   }
-  try {
-    const ExitCode code = guarded([&] { return run_first(o, *loaded, ranks, threads, console); });
-    Evaluator::dismiss(ranks);
-    return code;
-  } catch (...) {
-    Evaluator::dismiss(ranks);
-    throw;
-  }
+  return answer ? tell(o, *loaded, *answer, console) : ExitCode::done;
 }
 
 Option store_option(const std::shared_ptr<Options>& o) {
@@ -182,7 +128,7 @@ A study that was interrupted goes on when it is run again.
       {"--changed", &o->is_changed, "", "the study asks for something else now: keep the samples that are the same"},
       {"--report", &o->is_reported, "", "write the page of the study beside the store (see steplap study report)"},
       {"--threads", &o->threads, "N", "threads (default: all processors)"}};
-  command.run = [o, &ranks](Console& console) { return run_study(*o, ranks, console); };
+  command.run = [o, &ranks](Console& console) { return run_command_of(*o, ranks, console); };
   return command;
 }
 
@@ -193,11 +139,9 @@ Command show_command() {
   command.summary = "what a study has found so far";
   command.options = {{"FILE", &o->file, "FILE", "study file or store", true}, store_option(o)};
   command.run = [o](Console& console) {
-    return guarded([&] {
-      Store store(store_of(*o));
-      show(store, "", console.out);
-      return ExitCode::done;
-    });
+    Store store(store_of(*o));
+    show(store, "", console.out);
+    return ExitCode::done;
   };
   return command;
 }
@@ -217,12 +161,10 @@ has not ended is shown as far as it is. Without -o it is written beside the stor
                      {"-o,--output", &o->output, "PAGE", "the page (default: beside the store)"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite an earlier page"}};
   command.run = [o](Console& console) {
-    return guarded([&] {
-      const std::string store = store_of(*o), page = o->output.value_or(page_of(store));
-      write_page(store, page, o->is_overwriting ? IfExists::replace : IfExists::refuse);
-      if (console.verbosity != Verbosity::quiet) console.out << "Written to " << page << "\n";
-      return ExitCode::done;
-    });
+    const std::string store = store_of(*o), page = o->output.value_or(page_of(store));
+    write_page(store, page, o->is_overwriting ? IfExists::replace : IfExists::refuse);
+    if (console.verbosity != Verbosity::quiet) console.out << "Written to " << page << "\n";
+    return ExitCode::done;
   };
   return command;
 }
@@ -241,15 +183,13 @@ Command export_command() {
       {"--growth", &o->is_growth, "", "estimates as they grew instead of the samples"},
       {"--histories", &o->is_histories, "", "of a fit: what was measured, and what was found to fit it"}};
   command.run = [o](Console& console) {
-    return guarded([&] {
-      Store store(store_of(*o));
-      if (o->is_findings) export_findings(store.findings(), console.out);
-      else if (o->is_growth) export_findings(store.growth(), console.out);
-      else if (o->is_histories) export_histories(store.histories(), console.out);
-      else export_samples(store, console.out);
-      if (!console.out.flush()) throw UsageError("the export could not be written to its end");
-      return ExitCode::done;
-    });
+    Store store(store_of(*o));
+    if (o->is_findings) export_findings(store.findings(), console.out);
+    else if (o->is_growth) export_findings(store.growth(), console.out);
+    else if (o->is_histories) export_histories(store.histories(), console.out);
+    else export_samples(store, console.out);
+    if (!console.out.flush()) throw UsageError("the export could not be written to its end");
+    return ExitCode::done;
   };
   return command;
 }
@@ -262,7 +202,7 @@ ExitCode replay(const Options& o, Console& console) {
   if (number > store.size())
     throw UsageError("the store has " + std::to_string(store.size()) + " samples: there is no sample " + *o.sample);
   if (store.identity().scene != identity_of(loaded).scene)
-    throw StoreError("the models, variables or responses of '" + o.file +
+    throw StoreError(o.file, "the models, variables or responses of '" + o.file +
                      "' are not those of the store any more: its samples cannot be replayed");
   if (!loaded.variants.empty())
     throw UsageError("a sample of the kind 'needs' is another model, not other values of one: it cannot be replayed");
@@ -301,7 +241,7 @@ Command replay_command() {
                      {"--sample", &o->sample, "N", "its number, as show and export say", true},
                      {"--store", &o->store, "STORE", "file of the results (default: out/<name of the study>.sqlite)"},
                      {"-o,--output", &o->output, "DIR", "folder for the run (default: out/replay)"}};
-  command.run = [o](Console& console) { return guarded([&] { return replay(*o, console); }); };
+  command.run = [o](Console& console) { return replay(*o, console); };
   return command;
 }
 

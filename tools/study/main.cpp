@@ -2,6 +2,7 @@
 // other commands nothing at their start.
 #include "tools/steplap/command_line.h"
 #include "tools/study/commands.h"
+#include "tools/study/mpi_session.h"
 
 #include <unistd.h>
 
@@ -11,8 +12,8 @@
 int main(int argc, char** argv) {
   using namespace steplap;
   std::vector<std::string> arguments(argv + 1, argv + argc);
-  const study::Ranks ranks;
-  const Program program = study::study_program(ranks);
+  const study::MpiSession mpi;
+  const Program program = study::study_program(mpi.ranks());
   const bool is_file = !arguments.empty() && arguments.front().front() != '-' &&
                        std::none_of(program.commands.begin(), program.commands.end(),
                                     [&](const Command& c) { return c.name == arguments.front(); });
