@@ -21,7 +21,7 @@ namespace {
 
 // "wagon" of "models/wagon.toml". A name of dots alone would be another folder: it keeps its ending.
 std::string name_of_model(const std::string& path) {
-  if (has_control_character(path)) throw ModelError({path, 0, 0}, "the name '" + shown(path) + "' of a model file holds control characters: rename the file");
+  if (has_control_character(path)) throw FileError(path, "the name '" + shown(path) + "' of a model file holds control characters: rename the file");
   if (is_standard_input(path)) return "stdin";
   const std::filesystem::path file(path);
   const std::string stem = file.stem().string();

@@ -27,7 +27,8 @@ struct LoadedModel {
 /// How many numbers the trajectory of a run will hold, times included.
 [[nodiscard]] double trajectory_numbers(const Model& model, const System& system);
 
-/// Throws ModelError with all that is wrong with the model, and for a trajectory beyond `most_numbers` of [output].
+/// Throws ModelError with all that is wrong with the model, and for a trajectory beyond `most_numbers` of [output]; FileError
+/// for a name that no folder can have.
 [[nodiscard]] std::shared_ptr<const LoadedModel>
 load_model(const std::string& path, const std::vector<std::string>& overrides = {});
 /// A model made in code, as given: completed, checked and compiled as if it had been read. It has no text, so a run of it cannot

@@ -50,6 +50,9 @@ std::vector<Source> all_sources() {
   return sources;
 }
 
+// What cmake/install.cmake leaves out.
+const std::vector<std::string> k_not_installed = {"tools/", "study/", "report/", "run/ordered_json.h"};
+
 // The longest room that the path lies in; −1: none.
 int room_of(const std::string& path) {
   int best = -1;
@@ -117,7 +120,8 @@ TEST_CASE("the circle of headers is found where there is one") {
 TEST_CASE("headers of the library include no other maker's than Eigen's") {
   int headers = 0;
   for (const Source& source : all_sources()) {
-    if (!source.path.ends_with(".h") || source.path.starts_with("tools/")) continue;
+    const bool is_installed = std::none_of(k_not_installed.begin(), k_not_installed.end(), [&](const std::string& start) { return source.path.starts_with(start); });
+    if (!source.path.ends_with(".h") || !is_installed) continue;
     ++headers;
     for (const std::string& name : source.foreign) { // those of the standard library have neither folder nor ending
       const bool is_foreign = name.find_first_of("/.") != std::string::npos && !name.starts_with("Eigen/");
