@@ -56,8 +56,12 @@ public:
     const Vec2 arm = patch_.centroid();
     return Vec3(nu[0] - nu[2] * arm.y(), nu[1] + nu[2] * arm.x(), patch_.gyration() * nu[2]).norm();
   }
+  struct Step {
+    Motion6 end;
+    Vec3 velocity_error = Vec3::Zero(); ///< beside order 4
+  };
   /// One step of Dormand and Prince's order 5.
-  [[nodiscard]] Motion6 step(const Motion6& m, double h) const {
+  [[nodiscard]] Step step(const Motion6& m, double h) const {
     static constexpr double a[6][5] = {{0.0, 0.0, 0.0, 0.0, 0.0},
                                        {1.0 / 5, 0.0, 0.0, 0.0, 0.0},
                                        {3.0 / 40, 9.0 / 40, 0.0, 0.0, 0.0},
@@ -65,8 +69,10 @@ public:
                                        {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729, 0.0},
                                        {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656}};
     static constexpr double b[6] = {35.0 / 384, 0.0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84};
+    static constexpr double e[7] = {71.0 / 57600, 0.0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
     Vec3 rates[6], pulls[6];
-    Motion6 end = m;
+    Step made{m};
+    Motion6& end = made.end;
     for (int i = 0; i < 6; ++i) {
       Motion6 at = m;
       for (int j = 0; j < i; ++j) {
@@ -77,8 +83,10 @@ public:
       pulls[i] = acceleration(at);
       end.place += h * b[i] * rates[i];
       end.velocity += h * b[i] * pulls[i];
+      made.velocity_error += h * e[i] * pulls[i];
     }
-    return end;
+    made.velocity_error += h * e[6] * acceleration(end);
+    return made;
   }
 
 private:
@@ -91,13 +99,35 @@ void widen(const Vec3& w, SlipEnd::Range& range) {
   range.most = range.most.cwiseMax(w);
 }
 
+// What a step's tolerance lets through of the velocity of a joint's centre, m/s: tolerance × (that floor × size + |v|).
+double let_through(double tolerance, const SlidingSheet& sheet, double gyration, double fastest) {
+  constexpr double k_floor = 0.06; // 1/s
+  const double radius = std::sqrt(sheet.inertia / sheet.mass);
+  return tolerance * (k_floor * std::max(1.0, radius / gyration) * radius + fastest);
+}
+
+// What other directions of slip would have the joint bear where the speed is no more than what a run may be wrong by.
+void widen_by_errors(const Follower& follower, const Motion6& m, double speed, double velocity_error, SlipEnd::Range& range) {
+  constexpr double k_felt = 1e-3; // turned by less, a wrench is within what is allowed anyway
+  if (velocity_error < k_felt * speed) return;
+  for (int c = 0; c < 3; ++c)
+    for (const double sign : {-1.0, 1.0}) {
+      Motion6 wrong = m;
+      wrong.velocity[c] += sign * velocity_error / (c < 2 ? 1.0 : follower.patch().gyration());
+      widen(follower.wrench(wrong), range);
+    }
+}
+
 } // namespace
 
-// Steps are this share of speed over grip: direction and speed change by no more in one. Directions tend to their limit as
-// powers of the time left, some of them slow: they are followed to a speed below all that a run knows.
-SlipEnd follow(const SlidingSheet& sheet) {
-  constexpr double k_share = 0.1, k_known = 1e-6, k_last = 1e-12;
-  constexpr int k_most_steps = 4000;
+// Steps are this share of speed over grip, so that direction and speed change by no more in one, or shorter where the traction
+// turns faster: the centre of rotation passes by a corner or along a slender sheet. Directions tend to their limit as powers of the
+// time left, some of them slow: they are followed to a speed below all that a run knows.
+SlipEnd follow(const SlidingSheet& sheet, double tolerance) {
+  constexpr double k_share = 0.1, k_known = 1e-6, k_last = 1e-12, k_errors = 4.0;
+  constexpr double k_step_error = 1e-10; // of the speed: some hundred steps sum to less than 1e-7
+  constexpr double k_least_share = 1e-6; // a kink is passed by steps so short that it is nothing
+  constexpr int k_most_steps = 20000;
   const Follower follower(sheet);
   const Vec2 arm = follower.patch().centroid();
   const double gyration = follower.patch().gyration();
@@ -109,14 +139,22 @@ SlipEnd follow(const SlidingSheet& sheet) {
   end.size = gyration;
   end.surely = end.perhaps = {-sheet.load, -sheet.load}; // what it holds against at last
   const double first = follower.speed(m.velocity, 0.0);
-  double speed = first, fall = grip;
+  double speed = first, fall = grip, share = k_share;
   end.fastest = first;
+  const double unknown = k_errors * let_through(tolerance, sheet, gyration, first); // m/s, of the last few steps
   for (int steps = 0; speed > k_last * first; ++steps) {
     if (steps == k_most_steps) return end; // it does not come to rest
     if (speed > k_known * first) widen(follower.wrench(m), end.surely);
     widen(follower.wrench(m), end.perhaps);
-    const double h = k_share * speed / grip;
-    m = follower.step(m, h);
+    widen_by_errors(follower, m, speed, unknown, end.perhaps);
+    const Follower::Step step = follower.step(m, share * speed / grip);
+    if (follower.speed(step.velocity_error, m.place[2]) > k_step_error * speed && share > k_least_share) {
+      share *= 0.5;
+      continue;
+    }
+    const double h = share * speed / grip;
+    share = std::min(2.0 * share, k_share);
+    m = step.end;
     end.time += h;
     const double next = follower.speed(m.velocity, m.place[2]);
     fall = (speed - next) / h;
@@ -173,9 +211,11 @@ SlidingSheet random_sheet(RandomNumber& random, double time) {
   return sheet;
 }
 
+bool has_step(const SlipEndScene& scene) { return method(scene.integrator).has_fixed_step || method(scene.integrator).is_time_stepping; }
+
 std::vector<SlipEnd> ends_of(const SlipEndScene& scene) {
   std::vector<SlipEnd> ends;
-  for (const SlidingSheet& sheet : scene.sheets) ends.push_back(follow(sheet));
+  for (const SlidingSheet& sheet : scene.sheets) ends.push_back(follow(sheet, has_step(scene) ? 0.0 : scene.tolerance));
   return ends;
 }
 
@@ -183,9 +223,8 @@ std::string model_text(const SlipEndScene& scene, const std::vector<SlipEnd>& ex
   constexpr double k_held = 1.5; // of the time that sliding takes
   double end = 0.0;
   for (const SlipEnd& e : exact) end = std::max(end, k_held * e.time);
-  const bool has_step = method(scene.integrator).has_fixed_step || method(scene.integrator).is_time_stepping;
   std::string text = "gravity = [0.0, 0.0]\n[simulation]\nend = " + number(end) + "\nintegrator = \"" + scene.integrator + "\"\n";
-  text += has_step ? "step = " + number(scene.tolerance * exact[0].time) + "\n" : "tolerance = " + number(scene.tolerance) + "\n";
+  text += has_step(scene) ? "step = " + number(scene.tolerance * exact[0].time) + "\n" : "tolerance = " + number(scene.tolerance) + "\n";
   text += "[output]\n";
   for (std::size_t i = 0; i < scene.sheets.size(); ++i) {
     const SlidingSheet& s = scene.sheets[i];
@@ -209,16 +248,15 @@ std::string model_text(const SlipEndScene& scene, const std::vector<SlipEnd>& ex
   return text;
 }
 
-// What a run may be off by: errors of velocity that a step's tolerance, or k_slip_share of the speed, lets through, over how
-// fast the speed falls. They are summed over some tens of steps.
+// What a run may be off by: errors of velocity, or k_slip_share of the speed, over how fast the speed falls. They are summed
+// over some tens of steps.
 double time_slack(const SlipEndScene& scene, const SlipEnd& exact, const SlidingSheet& sheet) {
-  constexpr double k_steps = 30.0, k_floor = 0.06; // 1/s: velocities are known to tolerance × (that × size + |v|)
+  constexpr double k_steps = 30.0;
   const Method& m = method(scene.integrator);
   const double rounding = 1e-7 * exact.time; // of follow()
   if (m.is_time_stepping) return rounding + 4.0 * scene.tolerance * exact.time;
   if (m.has_fixed_step) return rounding + 1e-4 * exact.time;
-  const double size = std::max(1.0, std::sqrt(sheet.inertia / sheet.mass) / exact.size) * std::sqrt(sheet.inertia / sheet.mass);
-  return rounding + k_steps * scene.tolerance * (k_floor * size + exact.fastest) / exact.last_fall;
+  return rounding + k_steps * let_through(scene.tolerance, sheet, exact.size, exact.fastest) / exact.last_fall;
 }
 
 std::string compare(const SlipEndScene& scene, std::size_t i, const SlipEnd& exact, const RunResult& result) {

@@ -2,7 +2,7 @@
 //
 // A sheet slides on the ground under a force and a couple that its joint can bear: its overlap is always the whole sheet, so
 // that in the sheet's axes its limit surface never changes. Its motion to rest is then three numbers and an angle, which
-// follow() integrates by steps in proportion to the speed that is left: no event, no tolerance and no law of ends has a part in it.
+// follow() integrates by steps in proportion to the speed that is left: no event and no law of ends has a part in it.
 #pragma once
 
 #include "elements/patch/limit_surface.h"
@@ -29,14 +29,16 @@ struct SlipEnd {
   struct Range {
     Vec3 least = Vec3::Zero(), most = Vec3::Zero();
   };
-  /// Of the joint's wrench, the hold behind the end included: of all speeds that a run knows, and of any.
+  /// Of the joint's wrench, the hold behind the end included: of all speeds that a run knows, and of any, the directions included
+  /// that a run's errors make of the last speeds.
   Range surely, perhaps;
   double last_fall = 0.0;           ///< m/s²: of its speed at last
   double fastest = 0.0;             ///< m/s
   double size = 0.0;                ///< m: radius of gyration of the traction
 };
 
-[[nodiscard]] SlipEnd follow(const SlidingSheet& sheet);
+/// `tolerance`: of the steps of the run that is compared.
+[[nodiscard]] SlipEnd follow(const SlidingSheet& sheet, double tolerance = 0.0);
 
 struct SlipEndScene {
   std::vector<SlidingSheet> sheets;

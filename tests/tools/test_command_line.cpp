@@ -35,6 +35,7 @@ TEST_CASE("wrong usage is exit code 2 and one line") {
   CHECK(unknown.code == 2);
   CHECK(unknown.err == "steplap: error: there is no command 'simlate' (did you mean 'simulate'?); "
                        "see steplap --help\n");
+  CHECK(steplap_does({""}).err == "steplap: error: there is no command ''; see steplap --help\n");
   const Outcome option = steplap_does({"check", "--sideways", "x.toml"});
   CHECK(option.code == 2);
   CHECK(has(option.err, "--sideways"));

@@ -106,14 +106,14 @@ ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::strin
   std::vector<std::string> names;
   for (const Command& command : commands)
     names.push_back(command.name);
-  const bool is_unknown = !arguments.empty() && arguments.front().front() != '-' &&
+  const bool is_unknown = !arguments.empty() && !arguments.front().starts_with('-') &&
                           std::find(names.begin(), names.end(), arguments.front()) == names.end();
   if (is_unknown)
     log_error("there is no command '" + arguments.front() + "'" +
               did_you_mean(arguments.front(), names) + "; see " + program.name + " --help");
   else
     log_error(std::string(error.what()) + "; see " + program.name + " " +
-              (arguments.empty() || arguments.front().front() == '-' ? "" : arguments.front() + " ") +
+              (arguments.empty() || arguments.front().starts_with('-') ? "" : arguments.front() + " ") +
               "--help");
   return ExitCode::usage;
 }

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> arguments(argv + 1, argv + argc);
   const study::MpiSession mpi;
   const Program program = study::study_program(mpi.ranks());
-  const bool is_file = !arguments.empty() && arguments.front().front() != '-' &&
+  const bool is_file = !arguments.empty() && !arguments.front().starts_with('-') &&
                        std::none_of(program.commands.begin(), program.commands.end(),
                                     [&](const Command& c) { return c.name == arguments.front(); });
   if (is_file) arguments.insert(arguments.begin(), "run");
