@@ -9,20 +9,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap::testing {
 
 namespace {
 
-void compare(Difference& d, const ChannelRange& own, const ChannelRange& other, double factor, double largest_in_unit) {
+// `size`: what a channel's own values are measured against at least.
+void compare(Difference& d, const ChannelRange& own, const ChannelRange& other, double factor, double size) {
   const double pairs[][2] = {{own.low.value, other.low.value}, {own.high.value, other.high.value}, {own.final, other.final}};
-  double size = 1e-9 * largest_in_unit; // what is smaller is rounding of the others
   for (const auto& pair : pairs)
     if (std::isfinite(pair[0])) size = std::max(size, std::abs(pair[0]));
   for (const auto& pair : pairs) {
     const double a = pair[0], b = pair[1] / factor;
     if (a == b || (std::isnan(a) && std::isnan(b))) continue;
-    const double difference = size > 0.0 && std::isfinite(a) && std::isfinite(b) ? std::abs(a - b) / size : INFINITY;
+    const double difference = size > 0.0 && std::isfinite(a) && std::isfinite(b) ? std::abs(a - b) / size : std::numeric_limits<double>::infinity();
     if (difference <= d.value) continue;
     d.value = difference;
     d.channel = own.channel->name;
@@ -82,13 +83,16 @@ Difference Original::difference(const Scaling& by) const {
       d.first_event = mine[i].element + " " + words_of(mine[i].kind) + " but " + its[i].element + " " + words_of(its[i].kind);
     else d.event_time = std::max(d.event_time, std::abs(mine[i].t - its[i].t / by.time) / end);
   }
-  std::map<std::string, double> largest;
-  for (const ChannelRange& range : own_.result.ranges)
-    for (const double value : {range.low.value, range.high.value})
-      if (std::isfinite(value)) largest[range.channel->unit] = std::max(largest[range.channel->unit], std::abs(value));
+  // What bodies at rest still do is rounding, and so is a force of those: a thousandth of what there is in a scene of this length,
+  // rate and mass is measured against itself, less against that.
+  constexpr double k_least_share = 1e-3;
+  const SceneUnits& units = own_.system->scale;
+  double mass = 0.0;
+  for (const BodyData& body : own_.system->bodies) mass = std::max(mass, body.mass);
+  const Scaling scene{units.length, units.time(), mass};
   for (std::size_t c = 0; c < own_.result.ranges.size(); ++c) {
-    const ChannelRange& range = own_.result.ranges[c];
-    compare(d, range, other.result.ranges[c], by.factor(range.channel->unit), largest[range.channel->unit]);
+    const std::string& unit = own_.result.ranges[c].channel->unit;
+    compare(d, own_.result.ranges[c], other.result.ranges[c], by.factor(unit), k_least_share * scene.factor(unit));
   }
   return d;
 }

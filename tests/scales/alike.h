@@ -3,7 +3,6 @@
 
 #include "tests/scales/scaled_model.h"
 
-#include <map>
 #include <memory>
 
 namespace steplap::testing {
@@ -15,7 +14,7 @@ struct Difference {
   long events[2] = {0, 0};
   std::string first_event;    ///< that is not the same; "": all are
   double event_time = 0.0;    ///< largest difference, of the run's duration
-  double value = 0.0;         ///< of what channels end with and of their extremes, of the channel's largest
+  double value = 0.0;         ///< of what channels end with and of their extremes, of the larger of these and what there is in such a scene
   std::string channel;        ///< of that
   std::string verdict[2];
 
