@@ -1,6 +1,7 @@
 #include "mbd/integrators/integrator.h"
 
 #include "mbd/dynamics/parts.h"
+#include "mbd/integrators/time_size.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/system/element_failure.h"
 
@@ -11,10 +12,11 @@ namespace steplap {
 
 namespace {
 
-// Absolute part of the error scales: a thousandth of the bodies' size, and what it would be in motion
-// at 10 Hz. Beyond that errors are relative to displacement and velocity.
+// Absolute part of the error scales: a thousandth of the bodies' size, and what it would be in motion of so many times the
+// scene's own rate (SceneUnits): at 10 Hz, 60/s, for bodies of a metre that weigh, √(g/L) = 3.13/s. Beyond that errors are
+// relative to displacement and velocity.
 constexpr double k_displacement_floor = 1e-3;
-constexpr double k_rate_floor = 60.0;
+constexpr double k_rate_floor = 60.0 / 3.1320919526731650;
 // What projection takes away counts by this share: it leaves what directions turn by within a step, twice.
 constexpr double k_turned_share = 1e-4;
 // Merged joints far from their bounds are looked at about twice inside a step, so far apart, and not just before its end,
@@ -50,6 +52,7 @@ Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& setti
   for (const BodyData& body : system_.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
   length_scale_ = size > 0.0 ? size : 1.0;
+  rate_floor_ = k_rate_floor * system_.scale.rate;
 }
 
 void Integrator::begin_at(Dynamics& dynamics, double t, const double* y) {
@@ -104,7 +107,7 @@ double Integrator::rate_accuracy(const Dynamics& dynamics) const {
   double fastest = 0.0;
   for (int i = 0; i < m; ++i) fastest = std::max(fastest, std::abs(y1_[m + i]));
   const double tolerance = is_adaptive() ? std::max(settings_.tolerance, k_rounding) : k_rounding;
-  return tolerance * (k_rate_floor * k_displacement_floor * length_scale_ + fastest) + k_rounding;
+  return tolerance * (rate_floor_ * k_displacement_floor * length_scale_ + fastest) + k_rounding;
 }
 
 double Integrator::place_accuracy(const Dynamics& dynamics) const {
@@ -173,7 +176,7 @@ void Integrator::finish_step(Dynamics& dynamics) {
 
 bool Integrator::try_finish_step(Dynamics& dynamics) {
   // Where no step is short enough, the failure itself tells more than the step's length.
-  const bool is_shortest = h_ < k_shortest_try * std::max(std::abs(t0_), 1e-3);
+  const bool is_shortest = h_ < k_shortest_try * time_size(t0_, system_.scale);
   try {
     finish_step(dynamics);
     return true;
@@ -218,7 +221,7 @@ void Integrator::update_weights(Dynamics& dynamics) {
     if (scale.reach > 0.0) displacement = std::min(displacement, 1.0); // whatever it turns goes no further
     weight_[i] = is_locked ? 0.0 : 1.0 / (tolerance * (size + displacement));
     weight_[m + i] =
-        is_locked ? 0.0 : 1.0 / (tolerance * (k_rate_floor * size + std::abs(y0_[m + i])));
+        is_locked ? 0.0 : 1.0 / (tolerance * (rate_floor_ * size + std::abs(y0_[m + i])));
   };
   team_.stretches(m, [&](int from, int to) {
     for (int i = from; i < to; ++i) weigh(i);
@@ -233,7 +236,7 @@ void Integrator::update_weights(Dynamics& dynamics) {
     weight_[i] = 1.0 / (tolerance * (k_displacement_floor * std::min(length_scale_, 1.0) +
                                      std::abs(y0_[i] - system_.initial_inner[i - 2 * m])));
   // Dissipated energy and work: relative to the energy there is, was turned over, or would be in the floor's motion.
-  const double floor_rate = k_rate_floor * k_displacement_floor * length_scale_;
+  const double floor_rate = rate_floor_ * k_displacement_floor * length_scale_;
   double energy = std::abs(y0_[n_ - 2]) + std::abs(y0_[n_ - 1]);
   const double* v = dynamics.cluster_rates(y0_.data());
   for (int k = 0; k < layout.cluster_count(); ++k, v += 3) {

@@ -185,6 +185,7 @@ protected:
   long steps_ = 0, rejections_ = 0;
   Residual residual_;
   double length_scale_ = 1.0;
+  double rate_floor_ = 1.0; ///< 1/s: of what is too small for errors relative to it
 };
 
 /// One of methods() (mbd/model/method.h). Throws std::invalid_argument for an unknown name.
