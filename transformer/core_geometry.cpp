@@ -364,7 +364,11 @@ double CoreGeometry::yoke_cut(const LimbPlace& limb) const {
     const Mitre m = mitre(layer.shape.packet, limb.is_middle);
     const double half = 0.5 * m.limb_width, top = 0.5 * m.core_height, low = top - m.yoke_height;
     const double q = line(layer.shape, limb.is_middle) - 0.5 * stack_.book.clearance;
-    std::vector<Vec2> crossing = {{-half, low}, {half, low}, {half, top}, {-half, top}};
+    // A cut that lies on the yoke's side of the mitre leaves the yoke beside the limb: towards the window, by |q|/sin α.
+    const double beside = m.limb_width;
+    const double inner = half + beside, outer = limb.is_middle ? inner : half;
+    std::vector<Vec2> crossing = {{-inner, low}, {outer, low}, {outer, top}, {-inner, top}};
+    if (!limb.is_middle && limb.side < 0.0) crossing = {{-outer, low}, {inner, low}, {inner, top}, {-outer, top}};
     if (limb.is_middle) crossing = beyond(crossing, notch_frame(m, -1.0, 1.0), q);
     Moments taken;
     taken.add(beyond(crossing, limb.is_middle ? notch_frame(m, 1.0, 1.0) : corner_frame(m, limb.side, 1.0), q), 1.0);
