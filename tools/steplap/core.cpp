@@ -2,6 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "tools/steplap/core_drawing.h"
+#include "tools/steplap/findings.h"
 #include "tools/steplap/run.h"
 #include "tools/steplap/text_table.h"
 #include "transformer/core_builder.h"
@@ -229,7 +230,8 @@ ExitCode core(const CoreOptions& options, Console& console) {
     print_core(out, *cores[i], loaded->model);
     if (options.image) write_image(*options.image, i, *cores[i], loaded->model, out);
   }
-  for (const std::string& warning : implausible_cores(loaded->model)) out << "\n  warning: " << warning << "\n";
+  for (const CoreRemark& remark : implausible_cores(loaded->model))
+    out << (remark.is_note ? "\n  note: " : "\n  warning: ") << text_with_place({"", FindingLevel::warning, remark.text, remark.where}) << "\n";
   return ExitCode::done;
 }
 
