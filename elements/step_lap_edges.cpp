@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap {
 
@@ -14,21 +15,22 @@ using D12 = Dual<12>;
 // A side of the overlap belongs to the limb's end if its outward normal is within 60° of the way to the yoke.
 constexpr double k_facing = 0.5;
 
-/// ∂U/∂d of the smooth piece that `mode` names; beyond it, where d has another sign, the neighbouring piece.
+bool is_whole(double d1, double d2) { return d1 >= 0.0 && d2 >= 0.0; }
+
+/// ∂U/∂d of a line. A bed that bears wholly goes on as if all of it were pressed, whatever the sign of d: the smooth piece that an
+/// integrator sees until the event.
 template <class S> EdgePress<S> press(const S& d1, const S& d2, double k, double length, UnitMode mode) {
   EdgePress<S> out;
   const S unit(k * length / 6.0);
-  if (mode == 0) return out;
-  const bool is_whole = mode == (k_edge_end_1 | k_edge_end_2);
-  const int near = mode == k_edge_end_2 ? 1 : 0;
-  const S& d = near == 0 ? d1 : d2;
-  const S& far = near == 0 ? d2 : d1;
-  if (!is_whole && value_of(d) <= 0.0) return out;
-  if (is_whole || value_of(far) >= 0.0) {
+  if (mode == k_bed_whole || is_whole(value_of(d1), value_of(d2))) {
     out.force[0] = unit * (S(2) * d1 + d2);
     out.force[1] = unit * (d1 + S(2) * d2);
     return out;
   }
+  const int near = value_of(d1) > value_of(d2) ? 0 : 1;
+  const S& d = near == 0 ? d1 : d2;
+  const S& far = near == 0 ? d2 : d1;
+  if (value_of(d) <= 0.0) return out;
   const S share = d / (d - far); // of the length that bears
   out.force[near] = unit * share * share * (S(2) * d - S(3) * far);
   out.force[1 - near] = unit * share * share * d;
@@ -42,9 +44,22 @@ double energy(double d1, double d2, double k, double length) {
   return k * length * high * high * high / (6.0 * (high - low));
 }
 
-UnitMode mode_of(double d1, double d2) {
-  return (d1 > 0.0 ? k_edge_end_1 : 0) | (d2 > 0.0 ? k_edge_end_2 : 0);
-}
+// Gap and its rate at the end of a bed that is pressed in most, and at the one that is least.
+struct BedGaps {
+  double least = std::numeric_limits<double>::infinity(), least_rate = 0.0;
+  double most = -std::numeric_limits<double>::infinity(), most_rate = 0.0;
+
+  template <class Measured> void add(const Measured& gap) {
+    if (gap.value < least) {
+      least = gap.value;
+      least_rate = gap.rate;
+    }
+    if (gap.value > most) {
+      most = gap.value;
+      most_rate = gap.rate;
+    }
+  }
+};
 
 } // namespace
 
@@ -52,43 +67,48 @@ void EdgeGroup::add_forces(Evaluation& e) const {
   for (const Entry& entry : entries) {
     const Motion<double>& link = e.link_motion[entry.link];
     const UnitMode mode = e.mode[entry.unit];
-    const auto one = entry.gap[0].at<false, double>(link, Origin{}),
-               two = entry.gap[1].at<false, double>(link, Origin{});
-    double* const watch = e.watch + entry.watch;
-    double* const watch_rate = e.watch_rate + entry.watch;
-    const double sign[2] = {(mode & k_edge_end_1) != 0 ? -1.0 : 1.0, (mode & k_edge_end_2) != 0 ? -1.0 : 1.0};
-    watch[0] = sign[0] * one.value;
-    watch[1] = sign[1] * two.value;
-    watch_rate[0] = sign[0] * one.rate;
-    watch_rate[1] = sign[1] * two.rate;
-    if (mode == 0) continue;
-    const auto p = press(-one.value, -two.value, entry.stiffness, entry.length, mode);
-    apply_force(e.link_force[entry.link], one, p.force[0]);
-    apply_force(e.link_force[entry.link], two, p.force[1]);
+    BedGaps gaps;
+    for (const Line& line : entry.lines) {
+      const auto one = line.gap[0].at<false, double>(link, Origin{}), two = line.gap[1].at<false, double>(link, Origin{});
+      gaps.add(one);
+      gaps.add(two);
+      if (mode == k_bed_open) continue;
+      const auto p = press(-one.value, -two.value, line.stiffness, line.length, mode);
+      apply_force(e.link_force[entry.link], one, p.force[0]);
+      apply_force(e.link_force[entry.link], two, p.force[1]);
+    }
+    const double closing = mode == k_bed_open ? 1.0 : -1.0, filling = mode == k_bed_whole ? -1.0 : 1.0;
+    e.watch[entry.watch] = closing * gaps.least;
+    e.watch_rate[entry.watch] = closing * gaps.least_rate;
+    e.watch[entry.watch + 1] = filling * gaps.most;
+    e.watch_rate[entry.watch + 1] = filling * gaps.most_rate;
   }
 }
 
 double EdgeGroup::potential(const Motion<double>* motion) const {
   double sum = 0.0;
-  for (const Entry& entry : entries) {
-    const auto depth = [&](int end) {
-      return -entry.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
-    };
-    sum += energy(depth(0), depth(1), entry.stiffness, entry.length);
-  }
+  for (const Entry& entry : entries)
+    for (const Line& line : entry.lines) {
+      const auto depth = [&](int end) {
+        return -line.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
+      };
+      sum += energy(depth(0), depth(1), line.stiffness, line.length);
+    }
   return sum;
 }
 
 void EdgeGroup::add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const {
   for (const Entry& entry : entries) {
     const UnitMode mode = e.mode[entry.unit];
-    if (mode == 0) continue;
+    if (mode == k_bed_open) continue;
     const auto a = seeded(e.motion[entry.a], 0), b = seeded(e.motion[entry.b], 3);
-    const D12 gap[2] = {entry.gap[0].at<false, D12>(a, b).value, entry.gap[1].at<false, D12>(a, b).value};
-    const auto p = press(-gap[0], -gap[1], entry.stiffness, entry.length, mode);
-    for (int end = 0; end < 2; ++end)
-      add_pair_jacobian(
-          entry.a, entry.b, entry.gap[end], e, [&](const D12&, const D12&) { return p.force[end]; }, out);
+    for (const Line& line : entry.lines) {
+      const D12 gap[2] = {line.gap[0].at<false, D12>(a, b).value, line.gap[1].at<false, D12>(a, b).value};
+      const auto p = press(-gap[0], -gap[1], line.stiffness, line.length, mode);
+      for (int end = 0; end < 2; ++end)
+        add_pair_jacobian(
+            entry.a, entry.b, line.gap[end], e, [&](const D12&, const D12&) { return p.force[end]; }, out);
+    }
   }
 }
 
@@ -104,31 +124,35 @@ void EdgeGroup::enter_links(LinkTable& links) {
 
 UnitMode EdgeGroup::initial_mode(int element, const Evaluation& e) const {
   const Entry& entry = entries[element];
-  const auto depth = [&](int end) {
-    return -entry.gap[end].at<false, double>(e.motion[entry.a], e.motion[entry.b]).value;
-  };
-  return mode_of(depth(0), depth(1));
+  BedGaps gaps;
+  for (const Line& line : entry.lines)
+    for (const AxisMeasure& gap : line.gap) gaps.add(gap.at<false, double>(e.motion[entry.a], e.motion[entry.b]));
+  return gaps.most < 0.0 ? k_bed_whole : gaps.least < 0.0 ? k_bed_partly : k_bed_open;
 }
 
+// By the gap that changed its sign: the least one, or the largest.
 UnitMode EdgeGroup::next_mode(int, UnitMode mode, int slot, const Evaluation&) const {
-  return mode ^ (slot == 0 ? k_edge_end_1 : k_edge_end_2);
+  if (slot == 0) return mode == k_bed_open ? k_bed_partly : k_bed_open;
+  return mode == k_bed_whole ? k_bed_partly : k_bed_whole;
 }
 
 EventKind EdgeGroup::transition(UnitMode from, UnitMode to) const {
-  if (from == 0) return EventKind::closes;
-  return to == 0 ? EventKind::opens : EventKind::passes_kink;
+  if (from == k_bed_open) return EventKind::closes;
+  return to == k_bed_open ? EventKind::opens : EventKind::passes_kink;
 }
 
 EdgeGroup::Bearing EdgeGroup::bearing(int element, const Motion<double>* motion) const {
   const Entry& entry = entries[element];
-  double depth[2];
-  for (int end = 0; end < 2; ++end)
-    depth[end] = -entry.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
-  const auto p = press(depth[0], depth[1], entry.stiffness, entry.length, mode_of(depth[0], depth[1]));
   Bearing bearing;
-  bearing.force = p.force[0] + p.force[1];
-  for (int end = 0; end < 2; ++end)
-    bearing.load[end] = entry.stiffness * std::max(0.0, depth[end]);
+  for (const Line& line : entry.lines) {
+    double depth[2];
+    for (int end = 0; end < 2; ++end)
+      depth[end] = -line.gap[end].at<false, double>(motion[entry.a], motion[entry.b]).value;
+    const auto p = press(depth[0], depth[1], line.stiffness, line.length, k_bed_partly); // by the sign of the depths
+    bearing.force += p.force[0] + p.force[1];
+    for (int end = 0; end < 2; ++end)
+      bearing.load[end] += line.stiffness * std::max(0.0, depth[end]);
+  }
   return bearing;
 }
 

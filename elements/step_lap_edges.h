@@ -10,12 +10,19 @@
 //   both pressed:      U = k l (d₁² + d₁d₂ + d₂²)/6
 //   only end 1:        U = k l d₁³/(6 (d₁ − d₂)),   over the length l d₁/(d₁ − d₂)
 // and the force on the limb −∂U/∂(pose): exactly conservative, whatever the limb turns by. Nothing is lost, no force
-// acts along the line (friction of edges is left out: it would hold the limb back), and edges never pull. Events: where
-// either end of a line begins or ceases to bear.
+// acts along the line (friction of edges is left out: it would hold the limb back), and edges never pull.
+//
+// Lines of a corner that are parallel and have the same clearance are one *bed*. The gap of such lines is linear along
+// the mitre whatever the limb turns by, so that all of them close within the time in which the longest one does. Events
+// are those of the bed: its first end begins or its last end ceases to bear (closes, opens), all ends bear (passes a
+// kink). In between each line follows from its own depths: with one end alone its force grows as d₁², without a jump of
+// its slope, so that no event is needed there.
 #pragma once
 
 #include "elements/step_lap_interface.h"
 #include "mbd/system/system.h"
+
+#include <vector>
 
 namespace steplap {
 
@@ -24,15 +31,21 @@ template <class S> struct EdgePress {
   S force[2] = {S(0), S(0)};
 };
 
-inline constexpr UnitMode k_edge_end_1 = 1, k_edge_end_2 = 2; ///< bits of a line's mode: the end bears
+/// Of a bed: nothing of it bears, something does, all ends of all lines do.
+inline constexpr UnitMode k_bed_open = 0, k_bed_partly = 1, k_bed_whole = 2;
 
 class EdgeGroup final : public ForceGroup {
 public:
+  struct Line {
+    AxisMeasure gap[2];     ///< of its ends, m; pressed where negative
+    double stiffness = 0.0; ///< k, N/m²
+    double length = 0.0;    ///< m
+  };
+  /// A bed.
   struct Entry {
     int a = k_ground, b = k_ground; ///< limb, active part
-    AxisMeasure gap[2];             ///< of the line's ends, m; pressed where negative
-    double stiffness = 0.0;         ///< k, N/m²
-    double length = 0.0;            ///< m
+    double clearance = 0.0;         ///< m, of all its lines
+    std::vector<Line> lines;
     int link = 0, unit = 0, watch = 0;
   };
   static constexpr int k_watches = 2;
@@ -47,7 +60,7 @@ public:
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
   [[nodiscard]] EventKind transition(UnitMode from, UnitMode to) const override;
 
-  /// Of one line, at a motion: force on the limb off the yoke, N; line loads at both ends, N/m.
+  /// Of one bed, at a motion: force on the limb off the yoke, N; line loads at both ends, N/m, of its lines together.
   struct Bearing {
     double force = 0.0, load[2] = {0.0, 0.0};
   };

@@ -180,6 +180,11 @@ const ElementKind& step_lap_interface_kind() {
     f.add("transverse_pressure", &T::transverse_pressure).in("Pa s^2/m").doc(
         "by which the pressure grows per m/s² of the joint's transverse_acceleration: density × distance of this packet from "
         "the free side of the stack, less what it loses on the other; may be negative");
+    f.add("transverse_spread", &T::transverse_spread)
+        .in("Pa s^2/m")
+        .not_negative()
+        .doc("by how much more or less than that the pressure grows at the outermost of its sheets: density × half the depth "
+             "of this packet; tells when the first of them come loose");
     f.add("static_friction", &T::static_friction).positive().required().doc("mu_s");
     f.add("kinetic_friction", &T::kinetic_friction).positive().doc("mu_k; default: mu_s");
     f.add("count", &T::count).positive().doc("number of equal interfaces in the stack");

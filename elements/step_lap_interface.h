@@ -24,6 +24,7 @@ struct StepLapInterface : Element {
   double pressure = 0.0;          ///< Pa
   Vec2 pressure_gradient = Vec2::Zero(); ///< Pa/m along x and y of the corners' frame
   double transverse_pressure = 0.0; ///< Pa per m/s² of the joint's transverse acceleration
+  double transverse_spread = 0.0;   ///< by which that of the outermost of its sheets differs, either way
   double static_friction = 0.0;
   std::optional<double> kinetic_friction;
   double count = 1.0;             ///< of equal interfaces

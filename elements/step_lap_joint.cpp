@@ -230,9 +230,9 @@ bool make_elastic(const StepLapJoint& e, const Pose& reference, SystemBuilder& b
   return true;
 }
 
-// The edge lines of one corner, as indices of EdgeGroup.
+// The edges of one corner, as indices of EdgeGroup's beds.
 struct EdgeCorner {
-  std::vector<int> lines;
+  std::vector<int> beds;
   double count = 0.0;
   Vec2 middle = Vec2::Zero(); ///< of its first line, active part's axes
 };
@@ -240,8 +240,8 @@ struct EdgeCorner {
 // Along bands of a corner that lie side by side the loads are taken to act on one line.
 EdgeGroup::Bearing bearing_of(const EdgeGroup& group, const EdgeCorner& corner, const Motion<double>* motion) {
   EdgeGroup::Bearing sum;
-  for (const int line : corner.lines) {
-    const auto b = group.bearing(line, motion);
+  for (const int bed : corner.beds) {
+    const auto b = group.bearing(bed, motion);
     sum.force += b.force;
     for (int end = 0; end < 2; ++end)
       sum.load[end] += b.load[end];
@@ -289,6 +289,25 @@ void add_edge_channels(const StepLapJoint& e, SystemBuilder& builder, const Edge
                         });
 }
 
+// The bed of a corner that a line with this clearance belongs to: parallel lines of one clearance close together.
+EdgeGroup::Entry& bed_of(EdgeCorner& corner, const EdgeLine& line, double clearance, const StepLapFriction& friction,
+                         SystemBuilder& builder, EdgeGroup& group) {
+  constexpr double k_parallel = 1e-9; // rad: what rounding leaves of the directions of parallel lines
+  for (const int bed : corner.beds)
+    if (EdgeGroup::Entry& entry = group.entries[bed];
+        entry.clearance == clearance && std::abs(cross(entry.lines.front().gap[0].axis, line.off)) < k_parallel)
+      return entry;
+  EdgeGroup::Entry entry;
+  entry.a = friction.hold[0].a;
+  entry.b = friction.hold[0].b;
+  entry.clearance = clearance;
+  if (corner.beds.empty()) corner.middle = 0.5 * (line.ends[0] + line.ends[1]);
+  corner.beds.push_back(static_cast<int>(group.entries.size()));
+  group.entries.push_back(entry);
+  builder.add_unit(group, EdgeGroup::k_watches);
+  return group.entries.back();
+}
+
 bool add_edges(const StepLapJoint& e, const Pose& reference, SystemBuilder& builder, const StepLapFriction& friction) {
   const auto fails = [&builder](const char* message) {
     builder.error(message);
@@ -308,21 +327,16 @@ bool add_edges(const StepLapJoint& e, const Pose& reference, SystemBuilder& buil
     const EdgeLine line = find_edge_line(sheets[i], reference);
     if (!line.is_known()) continue; // no overlap
     EdgeCorner& corner = corners[overlaps.corner_of(i)];
-    EdgeGroup::Entry entry;
-    entry.a = friction.hold[0].a;
-    entry.b = friction.hold[0].b;
-    entry.stiffness = *e.edge_stiffness * sheets[i].count / corner.count;
-    entry.length = (line.ends[1] - line.ends[0]).norm();
+    EdgeGroup::Line own;
+    own.stiffness = *e.edge_stiffness * sheets[i].count / corner.count;
+    own.length = (line.ends[1] - line.ends[0]).norm();
     for (int end = 0; end < 2; ++end) {
       const Vec2 in_limb = rotated(line.ends[end] - Vec2(reference.x, reference.y), -reference.theta);
-      entry.gap[end] = {in_limb, line.ends[end] - *sheets[i].clearance * line.off, line.off};
+      own.gap[end] = {in_limb, line.ends[end] - *sheets[i].clearance * line.off, line.off};
     }
-    if (corner.lines.empty()) corner.middle = 0.5 * (line.ends[0] + line.ends[1]);
-    corner.lines.push_back(static_cast<int>(group.entries.size()));
-    group.entries.push_back(entry);
-    builder.add_unit(group, EdgeGroup::k_watches);
+    bed_of(corner, line, *sheets[i].clearance, friction, builder, group).lines.push_back(own);
   }
-  corners.erase(std::remove_if(corners.begin(), corners.end(), [](const EdgeCorner& c) { return c.lines.empty(); }),
+  corners.erase(std::remove_if(corners.begin(), corners.end(), [](const EdgeCorner& c) { return c.beds.empty(); }),
                 corners.end());
   if (corners.empty()) return fails("'edge_stiffness' needs the 'clearance' of its step_lap_interface elements");
   add_edge_channels(e, builder, group, corners);

@@ -32,6 +32,7 @@ private:
     double pressure = 0.0;   ///< Pa, least in its overlap
     double capacity = 0.0;   ///< N
     double transverse = 0.0; ///< as SheetPair
+    double spread = 0.0;     ///< as much more or less at the outermost of its sheets
   };
   struct Group {
     double share = 0.0;

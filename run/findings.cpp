@@ -253,7 +253,9 @@ void append(Findings& findings, Findings more) {
 
 std::vector<Finding> implausible_findings(const LoadedModel& loaded) {
   Findings findings;
-  for (std::string& message : implausible_cores(loaded.model)) warn(findings, "unusual_core", std::move(message));
+  for (CoreRemark& remark : implausible_cores(loaded.model))
+    findings.push_back({remark.is_note ? "mitre_not_45_degrees" : "unusual_core", remark.is_note ? FindingLevel::note : FindingLevel::warning,
+                        std::move(remark.text), std::move(remark.where)});
   append(findings, implausible_loads(loaded));
   append(findings, implausible_sizes(loaded));
   return findings;

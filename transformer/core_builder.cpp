@@ -71,6 +71,7 @@ private:
   void add_joint(std::size_t i, const CoreGeometry& geometry);
   void give_settings(StepLapJoint& joint, const CoreGeometry& geometry) const;
   void add_interface(std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry);
+  void check_packets(std::size_t i, const CoreCorner& corner, const CoreGeometry& geometry);
   void find_parts(std::size_t i, const CoreGeometry& geometry);
   void press(StepLapInterface& face, std::size_t i, const CoreCorner& corner, const Lap& lap, const CoreGeometry& geometry);
   void refuse_repetition(const StepLapInterface& face);
@@ -199,8 +200,23 @@ void CoreBuilder::add_joint(std::size_t i, const CoreGeometry& geometry) {
   const double reach = std::abs(middle_of_limb(core_, limb(i), active_part()).x());
   find_parts(i, geometry);
   for (const CoreCorner& corner :
-       geometry.corners(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()), reach))
+       geometry.corners(core_.is_middle(i), side_of_limb(core_, limb(i), active_part()), reach)) {
     for (const Lap& lap : corner.laps) add_interface(i, corner, lap, geometry);
+    check_packets(i, corner, geometry);
+  }
+}
+
+// Holes and edges of sheets may leave nothing of what the lines of a book promise.
+void CoreBuilder::check_packets(std::size_t i, const CoreCorner& corner, const CoreGeometry& geometry) {
+  const Stack& stack = geometry.stack();
+  if (core_.is_counted() || !problems_.empty()) return; // once is enough
+  for (std::size_t p = 0; p < stack.packets.size(); ++p) {
+    if (!stack.is_by_place && likeness(stack, p) != p) continue;
+    const auto holds = [&](const Lap& lap) { return !lap.is_between && geometry.packet_of(lap) == p && lap.area > 0.0; };
+    if (std::none_of(corner.laps.begin(), corner.laps.end(), holds))
+      return error("no two sheets of packet " + std::to_string(p + 1) + " overlap at " + corner.place + " of '" + limbs_[i] + "': nothing would hold them there",
+                   core_.packets.empty() ? "stack_depth" : "packets");
+  }
 }
 
 // Which packets the interfaces of a joint hold: where there is more than one, each has to be held by itself. Of a limb that several
@@ -232,6 +248,7 @@ void CoreBuilder::press(StepLapInterface& face, std::size_t i, const CoreCorner&
   face.pressure = pressure.middle;
   face.pressure_gradient = rotated(pressure.gradient, active_part().angle);
   face.transverse_pressure = pressure.transverse;
+  face.transverse_spread = pressure.transverse_spread;
   if (pressure.least >= 0.0) return;
   face.pressure = core_.pressure; // what is wrong with it is said here
   face.pressure_gradient = Vec2::Zero();

@@ -68,6 +68,7 @@ private:
   void check_angle(std::size_t packet, bool is_middle);
   void check_books();
   void check_ducts(const Stack& stack);
+  void check_laps(const Stack& stack, const CoreGeometry& geometry);
   void check_cuts();
   void check_cut(std::size_t packet, bool is_middle, double lowest, double highest);
   void check_tongue();
@@ -335,6 +336,21 @@ void DimensionCheck::check_books() {
                          " across the mitre ('step_pitch' " + metres(book.pitch) + " " + core_.pitch_direction + ")",
                      "clearance");
   check_ducts(stack);
+  if (problems_.empty()) check_laps(stack, geometry);
+}
+
+// Packets with mitres of their own have pitches of their own, and a duct may lie between any two layers of a thin one.
+void DimensionCheck::check_laps(const Stack& stack, const CoreGeometry& geometry) {
+  for (const bool is_middle : {false, true}) {
+    if ((is_middle ? core_.middle_limbs : core_.limbs).empty()) continue;
+    for (std::size_t p = 0; p < stack.packets.size(); ++p)
+      if (!geometry.overlaps_within(p, is_middle))
+        return error("no two layers of packet " + std::to_string(p + 1) + " overlap at " + (is_middle ? "a middle" : "an outer") +
+                         " limb: its steps are " + metres(geometry.pitch(p, is_middle)) + " across the mitre, 'clearance' is " +
+                         metres(stack.book.clearance) + (stack.ducts.empty() ? "" : ", and 'ducts' part layers") +
+                         "; nothing would hold its " + std::to_string(sheets_in(stack, stack.packets[p])) + " sheets",
+                     core_.packets.empty() ? "clearance" : "packets");
+  }
 }
 
 void DimensionCheck::check_ducts(const Stack& stack) {

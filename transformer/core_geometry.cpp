@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -127,6 +128,21 @@ double CoreGeometry::pitch(std::size_t packet, bool is_middle) const {
   return pitch;
 }
 
+bool CoreGeometry::overlaps_within(std::size_t packet, bool is_middle) const {
+  std::set<long> gaps;
+  for (const Duct& duct : stack_.ducts) gaps.insert(sheets_before(stack_, duct));
+  long before = 0;
+  for (std::size_t p = 0; p < packet; ++p) before += sheets_in(stack_, stack_.packets[p]);
+  Book book = stack_.book;
+  book.pitch = pitch(packet, is_middle);
+  for (long i = 0; i + 1 < layers_in(stack_, stack_.packets[packet]); ++i) {
+    if (gaps.count(before + (i + 1) * book.sheets_per_layer) > 0) continue;
+    const double apart = line_at(book, position_of(book, i + 1)) - line_at(book, position_of(book, i));
+    if (std::abs(apart) > book.clearance) return true;
+  }
+  return false;
+}
+
 double CoreGeometry::line(const LayerShape& shape, bool is_middle) const {
   Book book = stack_.book;
   book.pitch = pitch(shape.packet, is_middle);
@@ -235,6 +251,8 @@ void CoreGeometry::add_built(const End& end, std::vector<Lap>& laps) const {
     found.is_between = !is_one_packet;
     found.zone = pair.zone;
     found.before = pair.before;
+    found.first = pair.first;
+    found.last = pair.last;
     found.count = static_cast<double>(pair.count);
     found.pressure = 0.5 * (stack_.packets[yoke.packet].pressure + stack_.packets[limb.packet].pressure);
     laps.push_back(std::move(found));
@@ -255,8 +273,11 @@ void CoreGeometry::add_built(const End& end, std::vector<Lap>& laps) const {
 void CoreGeometry::merge(const End& end, std::size_t packet, std::size_t zone, std::vector<Lap>& laps) const {
   const auto is_own = [&](const Lap& lap) { return !lap.is_between && lap.packet == packet && lap.zone == zone; };
   double count = 0.0, area = 0.0, width = 0.0, before = 0.0;
+  long first = std::numeric_limits<long>::max(), last = 0;
   for (const Lap& lap : laps) {
     if (!is_own(lap)) continue;
+    first = std::min(first, lap.first);
+    last = std::max(last, lap.last);
     count += lap.count;
     area += lap.count * lap.area;
     width += lap.count * (lap.outer - lap.inner);
@@ -281,6 +302,8 @@ void CoreGeometry::merge(const End& end, std::size_t packet, std::size_t zone, s
   mean.packet = packet;
   mean.zone = zone;
   mean.before = before / area;
+  mean.first = first;
+  mean.last = last;
   mean.count = count;
   mean.pressure = stack_.packets[packet].pressure;
   laps.push_back(std::move(mean));
@@ -364,7 +387,11 @@ double CoreGeometry::yoke_cut(const LimbPlace& limb) const {
     const Mitre m = mitre(layer.shape.packet, limb.is_middle);
     const double half = 0.5 * m.limb_width, top = 0.5 * m.core_height, low = top - m.yoke_height;
     const double q = line(layer.shape, limb.is_middle) - 0.5 * stack_.book.clearance;
-    std::vector<Vec2> crossing = {{-half, low}, {half, low}, {half, top}, {-half, top}};
+    // A cut that lies on the yoke's side of the mitre leaves the yoke beside the limb: towards the window, by |q|/sin α.
+    const double beside = m.limb_width;
+    const double inner = half + beside, outer = limb.is_middle ? inner : half;
+    std::vector<Vec2> crossing = {{-inner, low}, {outer, low}, {outer, top}, {-inner, top}};
+    if (!limb.is_middle && limb.side < 0.0) crossing = {{-outer, low}, {inner, low}, {inner, top}, {-outer, top}};
     if (limb.is_middle) crossing = beyond(crossing, notch_frame(m, -1.0, 1.0), q);
     Moments taken;
     taken.add(beyond(crossing, limb.is_middle ? notch_frame(m, 1.0, 1.0) : corner_frame(m, limb.side, 1.0), q), 1.0);
@@ -391,7 +418,9 @@ LapPressure CoreGeometry::pressure(const CoreCorner& corner, const Lap& lap, dou
   if (!stack_.is_by_place) return pressure;
   const double all = static_cast<double>(sheets_in(stack_));
   const double held = core_.transverse_support == "front" ? all : core_.transverse_support == "back" ? 0.0 : 0.5 * all;
-  pressure.transverse = core_.density * stack_.sheet_thickness * (held - lap.before);
+  const double sheet = core_.density * stack_.sheet_thickness;
+  pressure.transverse = sheet * (held - lap.before);
+  pressure.transverse_spread = sheet * std::max(lap.before - static_cast<double>(lap.first), static_cast<double>(lap.last) - lap.before);
   return pressure;
 }
 

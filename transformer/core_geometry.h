@@ -26,6 +26,7 @@ struct Lap {
   bool is_between = false; ///< layers of two packets instead
   std::size_t zone = 0;   ///< of a stack by place (stack.h)
   double before = 0.0;    ///< sheets in front of it, in the mean; of a stack by place
+  long first = 0, last = 0; ///< sheets in front of the foremost and the rearmost of these interfaces
   Vec2 middle = Vec2::Zero();     ///< of the overlap
   std::vector<Vec2> overlap;      ///< its vertices
 };
@@ -45,6 +46,7 @@ struct LapPressure {
   Vec2 gradient = Vec2::Zero();  ///< Pa/m
   double least = 0.0;            ///< Pa, anywhere in the overlap
   double transverse = 0.0;       ///< Pa per m/s² of acceleration across the stack, from the front face to the back
+  double transverse_spread = 0.0; ///< the same, by which the outermost of these interfaces differs from their mean
 };
 
 struct LimbPlace {
@@ -72,6 +74,8 @@ public:
   [[nodiscard]] double angle(std::size_t packet, bool is_middle) const;
   /// From layer to layer, across the mitre, m.
   [[nodiscard]] double pitch(std::size_t packet, bool is_middle) const;
+  /// Do two layers of the packet overlap anywhere in it? Without that nothing holds its sheets but its neighbours'.
+  [[nodiscard]] bool overlaps_within(std::size_t packet, bool is_middle) const;
   /// Middle of the line at which sheets of that shape meet, across the mitre, m.
   [[nodiscard]] double line(const LayerShape& shape, bool is_middle) const;
 

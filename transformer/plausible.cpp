@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 namespace steplap {
 
@@ -21,9 +22,10 @@ constexpr double k_off_centre = 10e-3; // m, a given centre of gravity from that
 
 const char* const k_assumed = "assumed: nothing published was found";
 
-std::string line_of(const Location& where) {
-  return where.line > 0 ? " (line " + std::to_string(where.line) + ")" : "";
-}
+constexpr double k_shop_mitre = 0.25 * std::numbers::pi; // what workshops cut
+constexpr double k_same_angle = 0.05 * std::numbers::pi / 180.0; // angles are told to a tenth of a degree
+
+std::string degrees_text(double angle) { return number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) + "°"; }
 
 std::string rounded_text(double value) {
   char text[32];
@@ -33,19 +35,20 @@ std::string rounded_text(double value) {
 
 class Look {
 public:
-  Look(const Model& model, const Core& core, std::vector<std::string>& said)
+  Look(const Model& model, const Core& core, std::vector<CoreRemark>& said)
       : model_(model), core_(core), said_(said) {}
 
   void run() {
     look_at_fields();
     look_at_packets();
     look_at_shape();
+    note_mitre();
     if (!core_.has_strips()) look_at_steel();
   }
 
 private:
   void say(const std::string& field, const std::string& message) {
-    said_.push_back("core '" + core_.name + "'" + line_of(core_.place(field)) + ": " + message);
+    said_.push_back({core_.place(field), "core '" + core_.name + "': " + message});
   }
   void look_at(const std::string& field, double value, const std::string& unit, const std::string& name) {
     for (const UsualRange& usual : usual_ranges())
@@ -111,6 +114,27 @@ private:
               k_assumed + ")");
   }
 
+  // From corner to corner the angle is nobody's choice.
+  void note_mitre() {
+    if (core_.mitre_angle || core_.limbs.empty()) return;
+    const CoreGeometry geometry(core_);
+    const std::size_t packets = geometry.stack().packets.size();
+    double least = k_shop_mitre, most = k_shop_mitre;
+    std::string each;
+    for (std::size_t p = 0; p < packets; ++p) {
+      const double angle = geometry.angle(p, false);
+      least = std::min(least, angle);
+      most = std::max(most, angle);
+      each += (p == 0 ? "" : p + 1 == packets ? " and " : ", ") + degrees_text(angle);
+    }
+    if (k_shop_mitre - least < k_same_angle && most - k_shop_mitre < k_same_angle) return;
+    const bool is_one = packets == 1;
+    said_.push_back({core_.place("mitre_angle"),
+                     "core '" + core_.name + "': without 'mitre_angle' the mitre runs from corner to corner, here at " + each + " against the yoke" +
+                         (is_one ? "" : ", packet by packet") + ". Workshops cut 45°: if this core is cut so, give 'mitre_angle' = \"45 degree\"",
+                     true});
+  }
+
   void look_at_steel() {
     const CoreGeometry geometry(core_);
     const std::vector<std::string> limbs = core_.all_limbs();
@@ -118,31 +142,31 @@ private:
       if (count_cores_of(model_, limbs[i]) > 1) continue;
       const Body &limb = *model_.find_body(limbs[i]), &part = *model_.find_body(core_.active_part);
       const LimbSteel steel = geometry.limb_steel(core_.is_middle(i), side_of_limb(core_, limb, part));
-      const std::string body = "body '" + limb.name + "'" + line_of(limb.where);
+      const std::string body = "body '" + limb.name + "'";
       if (steel.mass > 0.0) {
-        compare(body + ": 'mass'", limb.mass, steel.mass, k_light, k_heavy, "kg");
-        compare(body + ": 'inertia'", limb.inertia, steel.inertia, k_small, k_large, "kg m²");
+        compare(limb.where, body + ": 'mass'", limb.mass, steel.mass, k_light, k_heavy, "kg");
+        compare(limb.where, body + ": 'inertia'", limb.inertia, steel.inertia, k_small, k_large, "kg m²");
       }
       const Vec2 centre = rotated(steel.centre, part.angle - limb.angle);
       if (core_.centre_of_gravity == "of_the_sheets" && (limb.cg - centre).norm() > k_off_centre)
-        said_.push_back(body + ": 'cg' = [" + number_text(limb.cg.x()) + ", " +
-                        number_text(limb.cg.y()) + "] m, the sheets of core '" + core_.name +
-                        "' have theirs at [" + rounded_text(centre.x()) + ", " +
-                        rounded_text(centre.y()) + "] m from the middle of the limb");
+        said_.push_back({limb.where, body + ": 'cg' = [" + number_text(limb.cg.x()) + ", " +
+                                         number_text(limb.cg.y()) + "] m, the sheets of core '" + core_.name +
+                                         "' have theirs at [" + rounded_text(centre.x()) + ", " +
+                                         rounded_text(centre.y()) + "] m from the middle of the limb"});
     }
   }
 
-  void compare(const std::string& what, double given, double steel, double low, double high, const char* unit) {
+  void compare(const Location& where, const std::string& what, double given, double steel, double low, double high, const char* unit) {
     if (given >= low * steel && given <= high * steel) return;
-    said_.push_back(what + " = " + number_text(given) + " " + unit + ", the sheets of core '" +
-                    core_.name + "' make it " + rounded_text(steel) + " " + unit +
-                    (given < steel ? ": too light a limb takes too little friction to be held"
-                                   : ": more than tie plates and bindings usually add"));
+    said_.push_back({where, what + " = " + number_text(given) + " " + unit + ", the sheets of core '" +
+                                core_.name + "' make it " + rounded_text(steel) + " " + unit +
+                                (given < steel ? ": too light a limb takes too little friction to be held"
+                                               : ": more than tie plates and bindings usually add")});
   }
 
   const Model& model_;
   const Core& core_;
-  std::vector<std::string>& said_;
+  std::vector<CoreRemark>& said_;
 };
 
 } // namespace
@@ -182,8 +206,8 @@ const std::vector<UsualRange>& usual_ranges() {
   return ranges;
 }
 
-std::vector<std::string> implausible_cores(const Model& model) {
-  std::vector<std::string> said;
+std::vector<CoreRemark> implausible_cores(const Model& model) {
+  std::vector<CoreRemark> said;
   for (const TableEntry& entry : model.tables)
     if (const auto* core = dynamic_cast<const Core*>(entry.table.get())) Look(model, *core, said).run();
   // Interfaces given one by one; those of a core stand where the core does.
@@ -201,9 +225,8 @@ std::vector<std::string> implausible_cores(const Model& model) {
                                          {"kinetic_friction", face->kinetic_friction.value_or(face->static_friction)}})
         if (field == usual.field && (value < usual.low || value > usual.high) &&
             (field != "kinetic_friction" || face->kinetic_friction))
-          said.push_back("step_lap_interface '" + face->name + "'" + line_of(face->where) + ": '" +
-                         field + "' = " + number_text(value) + (field == "pressure" ? " Pa" : "") +
-                         " is unusual: " + usual.text + " are usual (" + usual.source + ")");
+          said.push_back({face->where, "step_lap_interface '" + face->name + "': '" + field + "' = " + number_text(value) +
+                                                  (field == "pressure" ? " Pa" : "") + " is unusual: " + usual.text + " are usual (" + usual.source + ")"});
   }
   return said;
 }

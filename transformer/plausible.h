@@ -21,8 +21,15 @@ struct UsualRange {
 /// Of all fields that have one.
 [[nodiscard]] const std::vector<UsualRange>& usual_ranges();
 
+struct CoreRemark {
+  Location where;   ///< in the model's file: of the field if the table gives it, else of the table
+  std::string text; ///< without the place
+  /// What may well be meant, and is worth knowing: no doubt of the core.
+  bool is_note = false;
+};
+
 /// Of a completed model: each names the value, what is usual and by which source; given masses that hardly agree
-/// with the sheets', too.
-[[nodiscard]] std::vector<std::string> implausible_cores(const Model& model);
+/// with the sheets', too. A mitre that nobody gave and that is not cut at 45° is a note.
+[[nodiscard]] std::vector<CoreRemark> implausible_cores(const Model& model);
 
 } // namespace steplap

@@ -44,6 +44,8 @@ public:
       if (gaps.count(before) > 0) return;
       LayerPair& pair = found.try_emplace({zone, shapes}, LayerPair{shapes.first, shapes.second, 0, zone, 0.0}).first->second;
       pair.before += static_cast<double>(before); // a sum until the end
+      if (pair.count == 0) pair.first = before; // they come from the front to the back
+      pair.last = before;
       ++pair.count;
     };
     const auto slices = static_cast<std::size_t>(stack_.slices);

@@ -56,6 +56,7 @@ struct LayerPair {
   long count = 0; ///< times in the stack
   std::size_t zone = 0; ///< of a stack by place: packet · slices + slice
   double before = 0.0;  ///< of a stack by place: sheets in front of it, in the mean
+  long first = 0, last = 0; ///< of a stack by place: sheets in front of the foremost and of the rearmost such pair
 };
 
 struct LayerCount {

@@ -1,11 +1,11 @@
 #include "tests/scales/alike.h"
 
+#include "mbd/acceptance/judge.h"
 #include "mbd/analysis/assembly.h"
 #include "mbd/analysis/equilibrium.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "transformer/catalog.h"
-#include "transformer/verdict.h"
 
 #include <algorithm>
 #include <cmath>

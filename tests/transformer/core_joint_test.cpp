@@ -372,7 +372,7 @@ TEST_CASE("masses that a core would have given are not asked for while its own f
 TEST_CASE("stiffnesses, losses and shares that no core has are told of") {
   const auto said = [](const std::string& more) {
     std::string all;
-    for (const std::string& text : implausible_cores(model_of(more))) all += text + "\n";
+    for (const CoreRemark& remark : implausible_cores(model_of(more))) all += remark.text + "\n";
     return all;
   };
   CHECK(said("") == "");

@@ -431,7 +431,8 @@ TEST_CASE("stepped sections with ducts: packets, and where they meet") {
     const double widths[] = {0.4, 0.5, 0.56, 0.5, 0.4};
     double depth = 0;
     for (const double w : widths) {
-      const double d = static_cast<double>(c.per_layer * c.steps + dice.one_of(12)) * k_thickness;
+      // Three layers at least: of two a duct may leave none that overlap, and such a packet is refused.
+      const double d = static_cast<double>(c.per_layer * std::max(3L, c.steps) + dice.one_of(12)) * k_thickness;
       c.packets.emplace_back(w, d);
       c.yokes.push_back(is_round ? w : w + 0.02);
       depth += d;

@@ -2,6 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "run/core_drawing.h"
+#include "run/findings.h"
 #include "run/quantity_text.h"
 #include "run/run.h"
 #include "tools/steplap/text_table.h"
@@ -230,7 +231,8 @@ ExitCode core(const CoreOptions& options, Console& console) {
     print_core(out, *cores[i], loaded->model);
     if (options.image) write_image(*options.image, i, *cores[i], loaded->model, out);
   }
-  for (const std::string& warning : implausible_cores(loaded->model)) out << "\n  warning: " << warning << "\n";
+  for (const CoreRemark& remark : implausible_cores(loaded->model))
+    out << (remark.is_note ? "\n  note: " : "\n  warning: ") << text_with_place({"", FindingLevel::warning, remark.text, remark.where}) << "\n";
   return ExitCode::done;
 }
 
