@@ -23,7 +23,7 @@ namespace steplap {
 
 struct SimulationOptions {
   double end = 1.0;
-  std::string integrator = "rk4";
+  std::string integrator = "auto";
   IntegratorSettings settings;
   Coordinates coordinates = Coordinates::automatic; ///< moreau: always absolute
   StageCode stage_code = StageCode::when_it_pays;   ///< of explicit methods
