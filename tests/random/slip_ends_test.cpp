@@ -16,8 +16,7 @@ step_lap_scene::Run run_data(const char* file, const std::string& method, const 
 } // namespace
 
 TEST_CASE("random sheets that slide, turn or both come to rest when and as an integration of their own says") {
-  constexpr std::uint64_t k_seeds = steplap::testing::k_is_sanitized ? 8 : 200; // differing in numbers alone
-  for (std::uint64_t seed = 1; seed <= k_seeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const auto scene = steplap::random::slip_end_scene(seed);
     CAPTURE(seed);
     CAPTURE(scene.integrator);
