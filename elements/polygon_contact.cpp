@@ -200,6 +200,7 @@ public:
 
   static constexpr double k_dead_band = 1e-13; // m, as of feet
   static constexpr double k_same_face = 0.1;   // rad: two faces that lie on each other may be turned by less
+  static constexpr double k_most_error = 1e-6; // m/s: friction of a tenth of the weight takes that within a microsecond
 
   void make_places(int memory) {
     const int of_a = outlines->a.edge_count(), of_b = outlines->b.edge_count();
@@ -243,7 +244,8 @@ public:
   }
   // With w(x) the velocity of a against b: along a face both places lie within twice the depth of it, so that w along it
   // differs by ω times that on either side, and a face of the other body is turned by φ, through which some of w across it is
-  // seen as along it.
+  // seen as along it. A body that turns fast while it presses deep moves by more than an error of the place: to take that at
+  // once would be a blow, of which friction has no more than it bears; it slides until friction has taken it.
   [[nodiscard]] double rate_error(const Evaluation& e, const FrictionState& from, const FrictionState& to) const override {
     const Motion<double>&ma = e.motion[a], &mb = e.motion[b];
     const Placed<double, Motion<double>> placed(*outlines, ma, mb);
@@ -254,12 +256,12 @@ public:
     const double turned = std::abs(cross(normal_of(from), normal_of(to)));
     const double depth = std::max(0.0, -separation_of(placed.a, placed.b).gap), spin = std::abs(ma.omega - mb.omega);
     double error = 4.0 * depth * spin;
-    if (turned > k_same_face) return error;
+    if (turned > k_same_face) return std::min(error, k_most_error);
     const RowSpec& row = feet[to.foot];
     const Pair<double> lever_a = row.a == a ? to_ground(ma, row.point_a) : Pair<double>{mb.x - ma.x, mb.y - ma.y} + to_ground(mb, row.point_a);
     const Pair<double> lever_b = lever_a + Pair<double>{ma.x - mb.x, ma.y - mb.y};
     const Pair<double> w = Pair<double>{ma.vx - mb.vx, ma.vy - mb.vy} + ma.omega * perp(lever_a) - mb.omega * perp(lever_b);
-    return error + turned * (std::abs(w.x) + std::abs(w.y));
+    return std::min(error + turned * (std::abs(w.x) + std::abs(w.y)), k_most_error);
   }
 
 private:

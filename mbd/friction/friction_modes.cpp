@@ -26,6 +26,9 @@ constexpr double k_small_change = 1e-9;
 constexpr double k_rest_at_event = 1e-11;
 // Accelerations that a sweep still changes by more than this share have not settled.
 constexpr double k_settled_acceleration = 1e-7;
+// Of the second watch value of a group, 1 where its rows hold together exactly: what begins to move apart is at zero, and by
+// rounding on either side of it. It would be held again and let go without end.
+constexpr double k_surely_together = 0.5;
 // Times what an element had left of its rate as it came to rest: the rates of rows that depend on it are known no better.
 constexpr double k_rest_error = 2.0;
 
@@ -306,7 +309,7 @@ bool FrictionModes::rejoin(State& state) {
     (void)violated(trial);
     const LoadSharing* const sharing = dynamics_.sharing();
     const double* watch = &dynamics_.watch()[system_.frictions[f].watch];
-    const bool is_held = sharing && sharing->group_of(f) >= 0 && watch[0] >= 0.0 && watch[1] >= 0.0;
+    const bool is_held = sharing && sharing->group_of(f) >= 0 && watch[0] >= 0.0 && watch[1] >= k_surely_together;
     if (is_held) std::swap(state, trial);
     dynamics_.set_state(state);
     is_any = is_any || is_held;

@@ -31,7 +31,7 @@ void look_at(Honesty& h, const std::string& where, double value, double truth, d
     ++h.unknown;
     return;
   }
-  if (value == truth || (std::isnan(value) && std::isnan(truth)) || std::isnan(truth_known_to)) return;
+  if (value == truth || (std::isnan(value) && std::isnan(truth)) || !std::isfinite(truth_known_to)) return;
   const double error = std::abs(value - truth) - truth_known_to;
   if (error <= 0.0) return;
   const double ratio = estimate > 0.0 ? error / estimate : std::numeric_limits<double>::infinity();

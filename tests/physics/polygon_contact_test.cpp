@@ -425,3 +425,22 @@ TEST_CASE("outlines that are none are refused") {
   CHECK(has(error("[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]"), "scene.toml:"));
   CHECK(error("[[0.0, 0.0], [0.0, 1.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.5], [1.0, 0.0]]").empty()); // clockwise, repeated, straight
 }
+
+// It presses 5 cm deep and turns at 3.5 rad/s as the hold passes from a corner to the middle of an edge, which moves by 3 cm/s
+// where the corner rested. That is taken by what friction bears, not by a blow.
+TEST_CASE("friction that passes to another place of a body that turns takes what moves there by its force alone") {
+  const double inertia = 0.08717434, friction = 0.2865161, reach = 0.61, step = 1e-5;
+  const Run r = run("gravity = [0.0, -9.81]\n" +
+                        body("b", "mass = 0.5954125; inertia = " + number(inertia) + "; position = [-12.1, 1.024608]; velocity = [-2.953353, 0.0]; "
+                                  "outline = [[0.573, 0.194], [-0.199, 0.572], [-0.604, 0.0311], [-0.268, -0.542], [0.201, -0.571]]") +
+                        touch("b", "ground", "stiffness = 3989.479; static_friction = " + number(friction)),
+                    {"dop853", 1e-10, 0.365, step});
+  const std::vector<double> omega = r.series("b.omega"), force = r.series("b on ground.force");
+  const std::vector<double> changes = r.event_times("b on ground", "changes foot");
+  REQUIRE(changes.size() >= 2);
+  CHECK(std::abs(changes.back() - 0.3609) < 1e-4);
+  for (std::size_t i = 1; i < omega.size(); ++i) {
+    const double most = 1.1 * std::max(force[i], force[i - 1]); // the force changes little in a step
+    REQUIRE(std::abs(omega[i] - omega[i - 1]) <= most * (1.0 + friction) * reach / inertia * step + 1e-9);
+  }
+}

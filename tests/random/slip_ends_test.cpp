@@ -16,8 +16,7 @@ step_lap_scene::Run run_data(const char* file, const std::string& method, const 
 } // namespace
 
 TEST_CASE("random sheets that slide, turn or both come to rest when and as an integration of their own says") {
-  constexpr std::uint64_t k_seeds = steplap::testing::k_is_sanitized ? 25 : 200; // differing in numbers alone
-  for (std::uint64_t seed = 1; seed <= k_seeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const auto scene = steplap::random::slip_end_scene(seed);
     CAPTURE(seed);
     CAPTURE(scene.integrator);
@@ -27,8 +26,9 @@ TEST_CASE("random sheets that slide, turn or both come to rest when and as an in
 }
 
 TEST_CASE("a slip that static friction stops and kinetic would turn is not stepped over") {
+  const std::vector<const char*> tolerances = steplap::testing::k_is_sanitized ? std::vector{"1e-6"} : std::vector{"1e-5", "1e-6", "1e-8", "1e-10"};
   for (const char* method : {"auto", "dop853", "tsit5", "rodas5p"})
-    for (const char* tolerance : {"1e-5", "1e-6", "1e-8", "1e-10"}) {
+    for (const char* tolerance : tolerances) {
       CAPTURE(method);
       CAPTURE(tolerance);
       const auto ends = run_data("slip_past_its_end.toml", method, tolerance, "0.11").times("ste6", "sticks");
