@@ -162,11 +162,30 @@ void close_joints(const Model& model, const State& state, Dynamics& dynamics, st
   }
 }
 
+// Places so far apart that their squares are beyond all numbers: nothing that follows would be a number.
+void require_finite(const Model& model, const System& system, const State& state) {
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  const char* const remedy = ": distances are beyond what numbers hold; move bodies and markers nearer to each other";
+  for (std::size_t i = 0; i < state.q.size(); ++i) {
+    if (is_finite(state.q[i]) && is_finite(state.v[i])) continue;
+    const std::string& name = system.bodies[i / 3].name;
+    const Body* const body = model.find_body(name);
+    throw ModelError(body ? body->where : Location{}, "body '" + name + "' cannot be placed" + remedy);
+  }
+  for (const RowSpec& row : system.rows)
+    if (row.memory >= 0 && (!is_finite(state.memory[static_cast<std::size_t>(row.memory)]) || !is_finite(state.memory[static_cast<std::size_t>(row.memory) + 1])))
+      throw ModelError(model.elements[static_cast<std::size_t>(row.element)].element->where,
+                       "'" + system.element_names[static_cast<std::size_t>(row.element)] + "' has no length or angle" + remedy);
+  if (!std::all_of(state.memory.begin(), state.memory.end(), is_finite) || !std::all_of(state.inner.begin(), state.inner.end(), is_finite))
+    throw ModelError(Location{model.bodies.front().where.file}, std::string("the model cannot begin") + remedy);
+}
+
 } // namespace
 
 State assemble(const Model& model, const System& system) {
   State state = system.initial_state();
   start_drives(system, state);
+  require_finite(model, system, state);
   // Friction does not assemble anything: what holds by friction is where it is.
   for (FrictionState& friction : state.friction) friction.phase = FrictionPhase::free;
   Dynamics dynamics(system);
@@ -183,12 +202,13 @@ State assemble(const Model& model, const System& system) {
   } catch (const ConstraintFailure& failure) {
     const ElementEntry& entry = model.elements[failure.element];
     throw ModelError(entry.element->where,
-                     entry.kind->name + " '" + entry.element->name +
-                         "' cannot be assembled: with the other joints met it stays " +
-                         rounded_text(std::abs(failure.residual)) + (failure.is_angle ? " rad" : " m") +
-                         " off; move the bodies or change the joints");
+                     entry.kind->name + " '" + entry.element->name + "' cannot be assembled: " +
+                         (std::isfinite(failure.residual) ? "with the other joints met it stays " + rounded_text(std::abs(failure.residual)) +
+                                                                (failure.is_angle ? " rad" : " m") + " off; move the bodies or change the joints"
+                                                          : std::string("distances are beyond what numbers hold; move bodies and markers nearer to each other")));
   }
   dynamics.unpack(state.t, y.data(), state);
+  require_finite(model, system, state);
   return state;
 }
 

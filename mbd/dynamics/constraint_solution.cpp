@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace steplap {
 
@@ -283,12 +284,21 @@ void ConstraintSolution::compare(double t) {
   for_mechanisms([this](Mechanism& m) { m.reduce_rows(layout_->schur_rows.data() + m.first_row); });
 }
 
+namespace {
+
+// What is no number is no less than anything.
+void take_larger(double value, double& largest) {
+  if (!(value <= largest)) largest = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+}
+
+} // namespace
+
 Residual ConstraintSolution::residual() const {
   Residual residual;
   for (std::size_t r = 0; r < layout_->active.size(); ++r) {
     if (layout_->is_left_out(static_cast<int>(r))) continue;
-    residual.position = std::max(residual.position, std::abs(off_[r]));
-    residual.velocity = std::max(residual.velocity, std::abs(rate_off_[r]));
+    take_larger(std::abs(off_[r]), residual.position);
+    take_larger(std::abs(rate_off_[r]), residual.velocity);
   }
   return residual;
 }

@@ -8,6 +8,9 @@
 
 #include <doctest/doctest.h>
 
+#include <fstream>
+#include <sstream>
+
 using namespace steplap;
 using namespace steplap::testing;
 
@@ -63,6 +66,19 @@ void is_given_up(const std::string& text, const char* message) {
 }
 
 } // namespace
+
+// Their squares are infinite, and what is no number passes every comparison with a tolerance.
+TEST_CASE("joints and ropes at distances beyond all numbers are refused") {
+  std::ostringstream text;
+  text << std::ifstream(STEPLAP_TEST_DATA "/peers/iftomm_four_bar.toml").rdbuf();
+  std::string four_bar = text.str();
+  const std::string last = "b = { body = \"ground\", point = [1,0] }";
+  REQUIRE(has(four_bar, last));
+  four_bar.replace(four_bar.find(last), last.size(), "b = { body = \"ground\", point = [1e300,0] }");
+  is_refused(four_bar, "cannot be assembled: distances are beyond what numbers hold");
+  is_refused(scene("[[element]]\nkind = \"rope\"\nname = \"rope\"\na = \"mass\"\nb = { body = \"ground\", at = [-1e300, 0.0] }\ninextensible = true\n"),
+             "distances are beyond what numbers hold");
+}
 
 TEST_CASE("an initial pose that cannot be assembled is the model's error") {
   is_refused(scene(R"(

@@ -250,3 +250,16 @@ TEST_CASE("every file that a study or its models read belongs to what a store is
     CHECK(bench.samples() == anew.samples());
   }
 }
+
+// The same of the study's own file; of a record that a fit compares a channel with: fit_test.cpp.
+TEST_CASE("a store does not go on after its study's own file has changed") {
+  StudyBench bench;
+  const std::string file = bench.write("study.toml", k_small), store = bench.at("study.sqlite");
+  const int first = study_does({"run", file, "-o", store}).code;
+  REQUIRE(first != 2);
+  REQUIRE(first != 3);
+  CHECK(study_does({"run", file, "-o", store}).code == first);
+  replace(bench, "study.toml", "2*x", "2.5*x");
+  CHECK(study_does({"run", file, "-o", store}).code == 2);
+  CHECK(study_does({"run", file, "-o", store, "--restart"}).code != 2);
+}

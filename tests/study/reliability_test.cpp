@@ -376,6 +376,23 @@ TEST_CASE("first order is called off where it is, with the factor, and not where
   CHECK(factor.high < 0.9);
 }
 
+// A plane at a distance of four, 3.2e-5, and an island of radius 0.05 that has six times as much, 1.3e-4: importance sampling about the
+// plane's design point sees hardly anything of the island, sampling sees it, and first order knows the nearest point alone.
+TEST_CASE("methods that contradict each other: none of them is believed") {
+  StudyBench bench;
+  const Outcome outcome = bench.run("seed = 1\n" + standard_study(2, "min(4 - x1, sqrt((x1 + 1.5)^2 + (x2 + 1.5)^2) - 0.05)",
+                                                                  "methods = [\"form\", \"importance_sampling\", \"monte_carlo\"]\nsamples = 60000\ncov = 0.1\n"));
+  CHECK(outcome.code == 4);
+  CHECK(has(outcome.out, "monte_carlo and importance_sampling contradict each other: one of them has missed a part of the failures"));
+  CHECK(has(outcome.out, "not to be trusted"));
+  CHECK(has(bench.find("form", "probability", "g").status, "first order is off"));
+  // Where they agree nothing of the kind is said.
+  StudyBench plain;
+  const Outcome agreed = plain.run("seed = 1\n" + standard_study(2, "2 - x1 + 0*x2", "methods = [\"form\", \"importance_sampling\", \"monte_carlo\"]\ncov = 0.2\n"));
+  CHECK(!has(agreed.out, "contradict"));
+  CHECK(agreed.code != 4);
+}
+
 TEST_CASE("searches for design points take fewer samples than sampling does, and no more than they are given") {
   for (const KnownCase& c : known_cases()) {
     if (c.form_beta == 0.0) continue;

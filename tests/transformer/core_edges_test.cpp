@@ -4,6 +4,7 @@
 #include "mbd/analysis/equilibrium.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "tests/sanitized.h"
 #include "transformer/catalog.h"
 
 #include <doctest/doctest.h>
@@ -40,7 +41,8 @@ struct Run {
 
 } // namespace
 
-TEST_CASE("edges that butt from the start: a core at rest on them has the events of its corners alone") {
+TEST_CASE("edges that butt from the start: a core at rest on them has the events of its corners alone" *
+          doctest::skip(testing::k_is_sanitized)) { // the law itself: step_lap_edges_test.cpp
   // Two limbs, two corners each: of a bump of 3 g each corner may let go and close again once, with the moments at which all of it
   // bears. Line by line these were hundreds.
   const Run butting("0", "each", true, 0.065);
@@ -61,7 +63,8 @@ TEST_CASE("edges that butt from the start: a core at rest on them has the events
   CHECK(Run("0.01", "each", true, 0.065).result.events.empty());
 }
 
-TEST_CASE("a core that rattles on its edges has as many events with all kinds of interface as with their means") {
+TEST_CASE("a core that rattles on its edges has as many events with all kinds of interface as with their means" *
+          doctest::skip(testing::k_is_sanitized)) {
   // Weight comes at once, and nothing damps what follows: the corners bounce at a kilohertz. Twelve kinds of interface a corner are
   // one bed as the three means are.
   const Run each("0", "each", false, 0.004, "1e-12"), mean("0", "mean", false, 0.004, "1e-12");
