@@ -1,7 +1,7 @@
 #include "mbd/integrators/explicit_pair.h"
 
 #include "mbd/base/shown_text.h"
-#include "mbd/integrators/time_size.h"
+#include "mbd/integrators/scene_rate.h"
 #include "mbd/math/portable_math.h"
 
 #include <limits>
@@ -51,7 +51,7 @@ double ExplicitPair::error_inside(Dynamics& dynamics) {
 }
 
 void ExplicitPair::refuse_shorter_than_rounding(double h) const {
-  if (h < 16.0 * std::numeric_limits<double>::epsilon() * time_size(t0_, system_.scale))
+  if (h < 16.0 * std::numeric_limits<double>::epsilon() * time_size(t0_, system_))
     throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                            " s: the motion becomes singular there, or the tolerance is too small");
 }

@@ -1,7 +1,7 @@
 #include "mbd/integrators/integrator.h"
 
 #include "mbd/dynamics/parts.h"
-#include "mbd/integrators/time_size.h"
+#include "mbd/integrators/scene_rate.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/system/element_failure.h"
 
@@ -13,10 +13,9 @@ namespace steplap {
 namespace {
 
 // Absolute part of the error scales: a thousandth of the bodies' size, and what it would be in motion of so many times the
-// scene's own rate (SceneUnits): at 10 Hz, 60/s, for bodies of a metre that weigh, √(g/L) = 3.13/s. Beyond that errors are
-// relative to displacement and velocity.
+// scene's own rate: at 10 Hz, 60/s, for bodies of a metre. Beyond that errors are relative to displacement and velocity.
 constexpr double k_displacement_floor = 1e-3;
-constexpr double k_rate_floor = 60.0 / 3.1320919526731650;
+constexpr double k_rate_floor = 60.0 / k_metre_rate;
 // What projection takes away counts by this share: it leaves what directions turn by within a step, twice.
 constexpr double k_turned_share = 1e-4;
 // Merged joints far from their bounds are looked at about twice inside a step, so far apart, and not just before its end,
@@ -52,7 +51,7 @@ Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& setti
   for (const BodyData& body : system_.bodies)
     if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
   length_scale_ = size > 0.0 ? size : 1.0;
-  rate_floor_ = k_rate_floor * system_.scale.rate;
+  rate_floor_ = k_rate_floor * scene_rate(system_);
 }
 
 void Integrator::begin_at(Dynamics& dynamics, double t, const double* y) {
@@ -176,7 +175,7 @@ void Integrator::finish_step(Dynamics& dynamics) {
 
 bool Integrator::try_finish_step(Dynamics& dynamics) {
   // Where no step is short enough, the failure itself tells more than the step's length.
-  const bool is_shortest = h_ < k_shortest_try * time_size(t0_, system_.scale);
+  const bool is_shortest = h_ < k_shortest_try * time_size(t0_, system_);
   try {
     finish_step(dynamics);
     return true;

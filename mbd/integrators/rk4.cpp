@@ -5,6 +5,7 @@
 // divided by h), so that events located on it keep the order.
 #include "mbd/integrators/explicit_runge_kutta.h"
 #include "mbd/integrators/methods.h"
+#include "mbd/integrators/scene_rate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,7 @@ constexpr double k_decay_share = 0.5;
 // … and where a slip comes to rest, |ν| → 0, they shrink from this share of the scene's time on (0.25 ms for bodies of a
 // metre), as its power 3/4. The motion is one of powers of the time left, x^(1+λ) with λ > 0, and the sum of the steps'
 // errors h⁴ ∫ x³ x^(λ−4) dx stays of order 4.
-constexpr double k_rest_layer = 7e-4;
+constexpr double k_rest_layer = 2.5e-4 * k_metre_rate;
 
 class Rk4 final : public Integrator {
 public:
@@ -96,7 +97,7 @@ private:
     if (decay_rate_ == 0.0) return longest;
     const double h = std::min(longest, k_decay_share / decay_rate_);
     if (!is_coming_to_rest) return h;
-    const double share = 1.0 / (k_rest_layer * system_.scale.time() * decay_rate_);
+    const double share = scene_rate(system_) / (k_rest_layer * decay_rate_);
     return std::min(h, longest * std::sqrt(share * std::sqrt(share)));
   }
   // The quintic's derivative divides the rounding of positions by h: too much where steps are shortened by decades.

@@ -19,7 +19,7 @@
 #include "mbd/integrators/singular_crossing.h"
 #include "mbd/integrators/stage_system.h"
 #include "mbd/integrators/tableau_rodas5p.h"
-#include "mbd/integrators/time_size.h"
+#include "mbd/integrators/scene_rate.h"
 #include "mbd/math/portable_math.h"
 
 #include <limits>
@@ -307,7 +307,7 @@ void Rodas5p::step(Dynamics& dynamics, double t_limit) {
 }
 
 void Rodas5p::refuse_shorter_than_rounding(double h) const {
-  if (h < 16.0 * std::numeric_limits<double>::epsilon() * time_size(t0_, system_.scale))
+  if (h < 16.0 * std::numeric_limits<double>::epsilon() * time_size(t0_, system_))
     throw NumericalFailure("step size fell to " + rounded_text(h, 3) + " s at t = " + rounded_text(t0_, 12) +
                            " s: the motion becomes singular there, or the tolerance is too small");
 }

