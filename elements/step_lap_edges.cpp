@@ -61,6 +61,13 @@ struct BedGaps {
   }
 };
 
+BedGaps gaps_of(const EdgeGroup::Entry& bed, const Motion<double>* motion) {
+  BedGaps gaps;
+  for (const EdgeGroup::Line& line : bed.lines)
+    for (const AxisMeasure& gap : line.gap) gaps.add(gap.at<false, double>(motion[bed.a], motion[bed.b]));
+  return gaps;
+}
+
 } // namespace
 
 void EdgeGroup::add_forces(Evaluation& e) const {
@@ -123,17 +130,21 @@ void EdgeGroup::enter_links(LinkTable& links) {
 }
 
 UnitMode EdgeGroup::initial_mode(int element, const Evaluation& e) const {
-  const Entry& entry = entries[element];
-  BedGaps gaps;
-  for (const Line& line : entry.lines)
-    for (const AxisMeasure& gap : line.gap) gaps.add(gap.at<false, double>(e.motion[entry.a], e.motion[entry.b]));
+  const BedGaps gaps = gaps_of(entries[element], e.motion);
   return gaps.most < 0.0 ? k_bed_whole : gaps.least < 0.0 ? k_bed_partly : k_bed_open;
 }
 
-// By the gap that changed its sign: the least one, or the largest.
-UnitMode EdgeGroup::next_mode(int, UnitMode mode, int slot, const Evaluation&) const {
-  if (slot == 0) return mode == k_bed_open ? k_bed_partly : k_bed_open;
-  return mode == k_bed_whole ? k_bed_partly : k_bed_whole;
+// A gap that is zero now is pressed if it closes. A bed that comes or goes parallel to its yoke changes both at one instant, in
+// either order: what is found here is the same whichever is asked about.
+UnitMode EdgeGroup::next_mode(int element, UnitMode, int slot, const Evaluation& e) const {
+  constexpr double k_parallel = 1e-9; // rad
+  const Entry& entry = entries[element];
+  double length = 0.0;
+  for (const Line& line : entry.lines) length = std::max(length, line.length);
+  const BedGaps gaps = gaps_of(entry, e.motion);
+  const auto is_pressed = [&](double gap, double rate, bool is_asked) { return is_asked || std::abs(gap) < k_parallel * length ? rate < 0.0 : gap < 0.0; };
+  if (is_pressed(gaps.most, gaps.most_rate, slot == 1)) return k_bed_whole;
+  return is_pressed(gaps.least, gaps.least_rate, slot == 0) ? k_bed_partly : k_bed_open;
 }
 
 EventKind EdgeGroup::transition(UnitMode from, UnitMode to) const {

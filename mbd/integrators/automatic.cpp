@@ -31,6 +31,9 @@ constexpr double k_suspicious = 2.0;     // times that share, on average: hardly
 constexpr double k_memory = 1.0 / 16.0;  // weight of a step in averages
 constexpr int k_steps_before_trial = 32; // the first time, so that the averages are those of these steps
 constexpr long k_most_before_trial = 1024; // a trial in vain costs some 40 explicit steps: 4 % at most
+// However accurate its steps look, after so many the explicit method is compared: what an accurate share is, is known of
+// oscillations alone. After each trial in vain it has four times as many, so that all of them together cost a few percent of a long run.
+constexpr long k_steps_before_any = 128;
 constexpr int k_steps_to_grow = 8;       // of a method taken up again: steps grow sixfold each
 constexpr double k_grows = 1.2;          // from step to step: a trial behind an event begins with short ones
 
@@ -137,6 +140,7 @@ private:
   // Is the explicit method slower than accuracy asks for? Then its pace is what the implicit one has to beat.
   [[nodiscard]] bool is_trial_due() const {
     if (steps_explicit_ >= k_steps_to_grow && k_worth * h_ < implicit_step_ && k_worth * mean_step_ < implicit_step_) return true;
+    if (steps_explicit_ >= steps_before_any_ && mean_share_ > 0.5 * suspicious_share_) return true;
     return steps_explicit_ >= steps_before_trial_ && mean_share_ > suspicious_share_;
   }
 
@@ -150,6 +154,7 @@ private:
     if (!is_explicit) {
       const bool is_in_vain = implicit_->steps() - implicit_steps_before_ < k_steps_implicit / 2; // a handful of steps
       if (is_trial_) steps_before_trial_ = is_in_vain ? std::min(2 * steps_before_trial_, k_most_before_trial) : k_steps_before_trial;
+      if (is_trial_) steps_before_any_ = is_in_vain ? 4 * steps_before_any_ : k_steps_before_any;
       implicit_step_ = is_in_vain ? 0.0 : h_;
       active_ = explicit_.get();
       steps_explicit_ = 0;
@@ -171,6 +176,7 @@ private:
   double suspicious_share_;
   double mean_share_ = 0.0, mean_step_ = 0.0; ///< of explicit steps; s
   long steps_explicit_ = 0, steps_before_trial_ = k_steps_before_trial; ///< since the method was taken up again
+  long steps_before_any_ = k_steps_before_any;
   double last_step_ = 0.0;     ///< s
   double implicit_step_ = 0.0; ///< that the explicit method has to beat, s; 0: none known
   bool is_trial_ = false;
