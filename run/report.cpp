@@ -85,8 +85,10 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   if (s.energy_exchanged > 0.0) report.relative_energy_residual = s.energy_residual / s.energy_exchanged;
   report.judgement = judge(loaded.model, *loaded.system, result, report.run.failure ? report.run.failure->text : "");
   report.joints = assess_joints(loaded.model, result);
-  for (const Finding& finding : report.findings)
-    if (caps_verdict(finding)) add_cap(report.judgement, text_with_place(finding));
+  for (const Finding& finding : report.findings) {
+    if (finding.code == "contact_too_deep") distrust(report.judgement, text_with_place(finding));
+    else if (caps_verdict(finding)) add_cap(report.judgement, text_with_place(finding));
+  }
   report.estimate = estimate_errors(report.run, options);
   weigh(report);
   ask_second_opinion(report, options);

@@ -159,6 +159,7 @@ TEST_CASE("a contact that is pressed through a part is told, with its line and t
   CHECK(has(told("1e4"), "'blow' was pressed"));
   CHECK(has(told("1e4"), "a.toml:19)"));
   CHECK(has(told("1e4"), "beyond 50 mm one part is through the other"));
+  CHECK(has(text_of(bench.at("out/a/summary.json")), "one part is through the other, and what came after is not to be trusted"));
   CHECK_FALSE(has(told("1e6"), "through the other"));
 }
 

@@ -3,6 +3,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/base/team.h"
 #include "run/quantity_text.h"
+#include "run/findings.h"
 #include "run/report.h"
 #include "run/result_files.h"
 #include "tools/steplap/interruption.h"
@@ -109,13 +110,17 @@ FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const 
   log_detail("'" + loaded->name + "': " + counted(static_cast<std::size_t>(loaded->system->body_count() - 1), "body", "bodies") + ", " +
              counted(loaded->system->rows.size(), "constraint row", "constraint rows") + ", " +
              counted(loaded->system->frictions.size(), "joint with friction", "joints with friction"));
-  FinishedRun finished;
+  RunOptions asked = run_options(options, *loaded);
+  std::vector<Finding> before = findings_before(*loaded);
+  for (const Finding& finding : before) asked.note(finding);
+  Run run;
   {
-    Progress progress(console, loaded->name, loaded->model.simulation.end);
-    RunOptions asked = run_options(options, *loaded);
+    Progress progress(console, loaded->name, loaded->model.simulation.end); // its line is gone before anything else is told
     asked.progress = std::ref(progress);
-    finished.report = judged_run(loaded, asked);
+    run = run_model(loaded, asked);
+    asked.progress = nullptr;
   }
+  FinishedRun finished{report_on(std::move(run), std::move(before), asked), ""};
   const Report& report = finished.report;
   log_run(report);
   finished.folder = options.folder_of(*loaded);
