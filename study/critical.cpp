@@ -9,6 +9,19 @@ namespace steplap::study {
 
 namespace {
 
+FieldTable critical_fields() {
+  using S = CriticalSettings;
+  FieldTable t;
+  t.add("variable", &S::variable).required().doc("whose critical values are looked for, within its range");
+  t.add("expression", &S::expression).required().doc("of responses and variables: critical where it is zero");
+  t.add("points", &S::points)
+      .at_least(3)
+      .at_most(1e6)
+      .doc("of the first look along the range: closer pairs of crossings are not seen");
+  t.add("tolerance", &S::tolerance).positive().at_most(0.01).doc("of the critical value, of the range");
+  return t;
+}
+
 std::vector<std::string> names_of(const Study& study) {
   std::vector<std::string> names;
   for (const Variable& v : study.variables) names.push_back(v.name);
@@ -19,7 +32,7 @@ std::vector<std::string> names_of(const Study& study) {
 class Line {
 public:
   explicit Line(StudyRun& run)
-      : run_(run), variable_(static_cast<std::size_t>(run.study().index_of_variable(run.study().critical.variable))),
+      : run_(run), variable_(static_cast<std::size_t>(run.study().index_of_variable(settings_of<CriticalSettings>(run.study()).variable))),
         place_(static_cast<std::size_t>(run.loaded.index_of_number("critical"))) {}
 
   std::vector<double> at(const std::vector<double>& xs) {
@@ -157,10 +170,14 @@ void say_if_dense(std::size_t crossings, long points, Answer& answer) {
   answer.degrade(Standing::not_met);
 }
 
-} // namespace
+// To all that evaluates samples the expression is a limit state.
+void add_critical_expression(LoadedStudy& loaded) {
+  const auto& s = settings_of<CriticalSettings>(loaded.study);
+  loaded.study.limit_states.push_back({"critical", s.expression, s.where, true});
+}
 
 void check_critical(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
-  const CriticalSettings& s = loaded.study.critical;
+  const auto& s = settings_of<CriticalSettings>(loaded.study);
   const int v = loaded.study.index_of_variable(s.variable);
   if (v < 0)
     problems.push_back(
@@ -171,7 +188,7 @@ void check_critical(const LoadedStudy& loaded, std::vector<Diagnostic>& problems
 }
 
 Answer run_critical(StudyRun& run) {
-  const CriticalSettings& s = run.study().critical;
+  const auto& s = settings_of<CriticalSettings>(run.study());
   const Variable& v = run.study().variables[static_cast<std::size_t>(run.study().index_of_variable(s.variable))];
   const double low = v.range[0], width = v.range[1] - v.range[0];
   Line line(run);
@@ -221,6 +238,22 @@ Answer run_critical(StudyRun& run) {
     answer.degrade(Standing::not_met);
   }
   return answer;
+}
+
+} // namespace
+
+StudyKind critical_kind() {
+  StudyKind kind;
+  kind.name = "critical";
+  kind.doc = "the values of a variable at which an expression is zero";
+  kind.fields = critical_fields();
+  kind.holds<CriticalSettings>();
+  kind.shown = {"variable"};
+  kind.parts = {{"critical", "critical value", UnitOf::subject}};
+  kind.prepare = add_critical_expression;
+  kind.check = check_critical;
+  kind.run = run_critical;
+  return kind;
 }
 
 } // namespace steplap::study

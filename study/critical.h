@@ -1,13 +1,17 @@
-// The kinds "critical" and "map": where an expression is zero, along one variable or in the plane of two.
+// The kind "critical": the values of one variable at which an expression is zero.
 #pragma once
 
-#include "study/study_run.h"
+#include "study/study_kind.h"
 
 namespace steplap::study {
 
-void check_critical(const LoadedStudy& loaded, std::vector<Diagnostic>& problems);
-[[nodiscard]] Answer run_critical(StudyRun& run);
-void check_map(const LoadedStudy& loaded, std::vector<Diagnostic>& problems);
-[[nodiscard]] Answer run_map(StudyRun& run);
+struct CriticalSettings : KindSettings {
+  std::string variable;
+  std::string expression; ///< whose zeros are looked for
+  long points = 21;       ///< of the first look
+  double tolerance = 1e-9; ///< of the variable's range
+};
+
+[[nodiscard]] StudyKind critical_kind();
 
 } // namespace steplap::study

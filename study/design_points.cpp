@@ -1,6 +1,7 @@
 #include "study/design_points.h"
 
 #include "study/design_search.h"
+#include "study/reliability.h"
 
 #include <openturns/AbdoRackwitz.hxx>
 #include <openturns/CompositeRandomVector.hxx>
@@ -138,7 +139,7 @@ DesignPoint point_of(LimitFunction& limit, const SearchEnd& end, bool is_origin_
   point.breitung = point.hohenbichler = point.tvedt = std::nan("");
   point.g = end.g;
   point.off_surface = std::numeric_limits<double>::infinity();
-  const auto gradient = gradient_at(limit, point.u, limit.run().study().reliability.difference);
+  const auto gradient = gradient_at(limit, point.u, limit.settings().difference);
   const double steepness = gradient ? length_of(gradient->data(), n) : 0.0;
   if (!(steepness > 0.0)) return point;
   point.off_surface = std::abs(point.g) / steepness;
@@ -217,8 +218,7 @@ void sort_points(std::vector<DesignPoint>& points) {
 
 // For all searches together: a search takes some five steps of a gradient each, and most end at the first.
 long budget_of(const LimitFunction& limit) {
-  const ReliabilitySettings& settings = limit.study().reliability;
-  return settings.search_samples.value_or(300 + 50 * static_cast<long>(limit.dimension()));
+  return limit.settings().search_samples.value_or(300 + 50 * static_cast<long>(limit.dimension()));
 }
 
 // Directions that lie apart: of many random ones each time the one that is farthest from all taken before.
@@ -280,7 +280,7 @@ std::vector<std::vector<double>> starts_of(LimitFunction& limit, long count, con
 } // namespace
 
 DesignPoints find_design_points(LimitFunction& limit, bool is_second_order) {
-  const ReliabilitySettings& settings = limit.run().study().reliability;
+  const auto& settings = limit.settings();
   const std::vector<double> origin(limit.dimension(), 0.0);
   DesignPoints found;
   const long before = limit.asked(), last = before + budget_of(limit);

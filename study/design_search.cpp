@@ -1,5 +1,7 @@
 #include "study/design_search.h"
 
+#include "study/reliability.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -47,7 +49,7 @@ public:
     if (value.is_bad) return ended_badly();
     at_.g = value.g;
     for (int step = 0; step < k_most_steps; ++step) {
-      const auto gradient = gradient_at(limit_, at_.u, limit_.run().study().reliability.difference);
+      const auto gradient = gradient_at(limit_, at_.u, limit_.settings().difference);
       if (!gradient) return ended_badly();
       at_.gradient = *gradient;
       if (!(product(at_.gradient, at_.gradient) > 0.0)) return ended("the limit state is level where it stood");

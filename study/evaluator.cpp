@@ -120,7 +120,7 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
 
 // What ends by the clock asks for more or less each time.
 bool Evaluator::may_go_another_way() {
-  return store_.may_hold_others() || loaded_.study.reliability.seconds.has_value();
+  return store_.may_hold_others() || loaded_.study.settings->ends_by_clock();
 }
 
 void Evaluator::run(std::size_t from, std::size_t count, const std::vector<double>& points) {

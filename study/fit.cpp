@@ -13,6 +13,17 @@ namespace steplap::study {
 
 namespace {
 
+FieldTable fit_fields() {
+  FieldTable t;
+  t.add("starts", &FitSettings::starts)
+      .at_least(1)
+      .at_most(10000)
+      .doc("places looked at first; searches begin at the best of them");
+  t.add("iterations", &FitSettings::iterations).at_least(1).at_most(10000).doc("of one search, at most");
+  t.add("confidence", &FitSettings::confidence).at_least(0.5).at_most(0.9999).doc("of the intervals");
+  return t;
+}
+
 using Eigen::VectorXd;
 
 std::string in_words(const char* format, double a, double b = 0.0) {
@@ -39,7 +50,7 @@ public:
       for (const double y : h.measured) largest = std::max(largest, std::abs(y));
       problem_.floor += static_cast<double>(h.t.size()) * std::pow(run_error * largest / noise_of(h), 2);
     }
-    problem_.iterations = run.study().fit.iterations;
+    problem_.iterations = settings_of<FitSettings>(run.study()).iterations;
   }
   FitProblem(const FitProblem&) = delete;
   FitProblem& operator=(const FitProblem&) = delete;
@@ -108,7 +119,7 @@ struct Start {
 std::vector<Start> starts_of(StudyRun& run, const FitProblem& fit) {
   const CounterRandom random(static_cast<std::uint64_t>(run.study().seed), 11);
   std::vector<VectorXd> points{fit.nominal()};
-  for (long k = 1; k < run.study().fit.starts; ++k) {
+  for (long k = 1; k < settings_of<FitSettings>(run.study()).starts; ++k) {
     VectorXd z(fit.size());
     for (Eigen::Index i = 0; i < z.size(); ++i)
       z[i] = random.uniform(static_cast<std::uint64_t>(k), static_cast<std::uint32_t>(i));
@@ -165,7 +176,7 @@ public:
     const double found = std::max(best_.sum, fit.problem().floor) / freedom_;
     variance_ = fit.has_noise() ? 1.0 : found;
     told_ = identify(best_, variance_);
-    const double p = 0.5 * (1.0 + run.study().fit.confidence);
+    const double p = 0.5 * (1.0 + settings_of<FitSettings>(run.study()).confidence);
     quantile_ = fit.has_noise() ? normal_quantile(p) : student_quantile(freedom_, p);
     off_.resize(static_cast<std::size_t>(fit.size()));
   }
@@ -183,7 +194,7 @@ public:
     std::snprintf(text, sizeof text,
                   "Intervals of %g %%: of first order, by %s, for residuals that are independent and normal; %ld "
                   "measured values, %ld parameters.",
-                  100.0 * run_.study().fit.confidence,
+                  100.0 * settings_of<FitSettings>(run_.study()).confidence,
                   fit_.has_noise() ? "the normal distribution with the stated noise"
                                    : "Student's distribution with the noise found",
                   static_cast<long>(best_.residuals.size()), static_cast<long>(fit_.size()));
@@ -397,8 +408,6 @@ private:
   std::vector<std::string> off_; ///< what is wrong with the interval of a parameter
 };
 
-} // namespace
-
 void check_fit(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   const Study& study = loaded.study;
   if (study.histories.empty()) problems.push_back({study.where, "a study of the kind 'fit' needs a [[history]]"});
@@ -438,6 +447,28 @@ Answer run_fit(StudyRun& run) {
   answer.findings.push_back(f);
   answer.degrade(Standing::not_trusted);
   return answer;
+}
+
+} // namespace
+
+StudyKind fit_kind() {
+  StudyKind kind;
+  kind.name = "fit";
+  kind.doc = "parameters from measured histories by least squares, with what they are known to";
+  kind.fields = fit_fields();
+  kind.holds<FitSettings>();
+  kind.takes_histories = true;
+  kind.parts = {{"base", "value", UnitOf::subject},
+                {"moment", "standard deviation", UnitOf::subject, 4},
+                {"residual", "residual", UnitOf::subject, 4}, // of a measured record
+                {"sum of squares", "sum of squares"},         // of residuals over their noise
+                {"correlation", "correlation", UnitOf::none, 3},
+                {"condition", "condition", UnitOf::none, 3},
+                {"not told", "not told", UnitOf::none, 3},
+                {"another fit", "another fit", UnitOf::none, 3}};
+  kind.check = check_fit;
+  kind.run = run_fit;
+  return kind;
 }
 
 } // namespace steplap::study

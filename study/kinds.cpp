@@ -1,11 +1,15 @@
 #include "study/kinds.h"
 
 #include "study/critical.h"
-#include "study/designs.h"
 #include "study/fit.h"
+#include "study/map.h"
 #include "study/needs.h"
 #include "study/reliability.h"
+#include "study/sample.h"
 #include "study/sensitivity.h"
+#include "study/sweep.h"
+
+#include <stdexcept>
 
 namespace steplap::study {
 
@@ -19,17 +23,8 @@ const char* name_of(Standing standing) {
 }
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds{
-      {"sweep", "values tried one after the other: a grid, a list, one variable at a time", check_sweep, run_sweep},
-      {"sample", "samples drawn from the distributions: what the responses are like", check_sample, run_sample},
-      {"reliability", "how likely failure is, by sampling and by design points", check_reliability, run_reliability},
-      {"sensitivity", "how much each variable matters: elasticities, Morris' screening, Sobol indices, a tornado",
-       check_sensitivity, run_sensitivity},
-      {"critical", "the values of a variable at which an expression is zero", check_critical, run_critical},
-      {"map", "the curve in the plane of two variables on which an expression is zero", check_map, run_map},
-      {"needs", "what the scene needs: every element and body in turn left out, rigid or fixed", check_needs,
-       run_needs},
-      {"fit", "parameters from measured histories by least squares, with what they are known to", check_fit, run_fit}};
+  static const std::vector<StudyKind> kinds{sweep_kind(),    sample_kind(), reliability_kind(), sensitivity_kind(),
+                                            critical_kind(), map_kind(),    needs_kind(),       fit_kind()};
   return kinds;
 }
 
@@ -37,6 +32,17 @@ std::vector<std::string> kind_names() {
   std::vector<std::string> names;
   for (const StudyKind& kind : study_kinds()) names.push_back(kind.name);
   return names;
+}
+
+const StudyKind* find_kind(const std::string& name) {
+  for (const StudyKind& kind : study_kinds())
+    if (kind.name == name) return &kind;
+  return nullptr;
+}
+
+const StudyKind& kind_of(const Study& study) {
+  if (const StudyKind* kind = find_kind(study.kind)) return *kind;
+  throw std::logic_error("a kind of study that the reader let pass is not there");
 }
 
 } // namespace steplap::study

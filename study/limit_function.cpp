@@ -1,5 +1,7 @@
 #include "study/limit_function.h"
 
+#include "study/reliability.h"
+
 #include <cmath>
 
 namespace steplap::study {
@@ -10,8 +12,8 @@ double length_of(const double* u, std::size_t n) {
   return std::sqrt(sum);
 }
 
-LimitFunction::LimitFunction(StudyRun& run) : run_(run), is_any_(run.study().reliability.combination == "any") {
-  std::vector<std::string> names = run.study().reliability.limit_states;
+LimitFunction::LimitFunction(StudyRun& run) : run_(run), settings_(settings_of<ReliabilitySettings>(run.study())), is_any_(settings_.combination == "any") {
+  std::vector<std::string> names = settings_.limit_states;
   if (names.empty())
     for (const LimitState& l : run.study().limit_states) names.push_back(l.name);
   for (const std::string& name : names) places_.push_back(static_cast<std::size_t>(run.loaded.index_of_number(name)));

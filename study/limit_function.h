@@ -12,6 +12,8 @@ struct LimitValue {
   bool is_bad = false; ///< its run did not reach its end, or is not to be trusted: g says nothing
 };
 
+struct ReliabilitySettings;
+
 class LimitFunction {
 public:
   explicit LimitFunction(StudyRun& run);
@@ -23,6 +25,7 @@ public:
 
   [[nodiscard]] StudyRun& run() { return run_; }
   [[nodiscard]] const Study& study() const { return run_.study(); }
+  [[nodiscard]] const ReliabilitySettings& settings() const { return settings_; }
   [[nodiscard]] long asked() const { return run_.evaluator.asked(); }
   [[nodiscard]] const std::string& subject() const { return subject_; }
   [[nodiscard]] long bad() const { return bad_; } ///< met so far
@@ -32,6 +35,7 @@ public:
 
 private:
   StudyRun& run_;
+  const ReliabilitySettings& settings_;
   std::vector<std::size_t> places_; ///< of the system's limit states among the numbers
   bool is_any_;
   std::string subject_;

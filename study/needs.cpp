@@ -10,6 +10,15 @@ namespace steplap::study {
 
 namespace {
 
+FieldTable needs_fields() {
+  FieldTable t;
+  t.add("accuracy", &NeedsSettings::accuracy)
+      .positive()
+      .at_most(1)
+      .doc("changes of responses up to this share of them do not matter");
+  return t;
+}
+
 // What a model says about looking at its runs names channels that a variant may not have; it changes no motion.
 // Channels that it asks for stay, for responses may be of them; those of the element that is gone go.
 void drop_presentation(Model& model, const std::string& gone = "") {
@@ -68,8 +77,7 @@ struct Row {
   double change = 0.0;
 };
 
-} // namespace
-
+// All variants of a model, as given; their names are what findings are about.
 std::vector<ModelVariant> variants_of(const Model& model) {
   std::vector<ModelVariant> variants;
   for (std::size_t e = 0; e < model.elements.size(); ++e) {
@@ -96,6 +104,17 @@ std::vector<ModelVariant> variants_of(const Model& model) {
                         }});
   }
   return variants;
+}
+
+// A variable of its own says which variant runs.
+void add_variants(LoadedStudy& loaded) {
+  if (loaded.models.size() != 1) return;
+  loaded.variants = variants_of(loaded.models.front()->given);
+  Variable v;
+  v.name = "variant";
+  v.value = 0.0;
+  v.where = loaded.study.where;
+  loaded.study.variables.push_back(v);
 }
 
 void check_needs(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
@@ -153,7 +172,7 @@ Answer run_needs(StudyRun& run) {
     Finding f{"needs", row.name, "largest change"};
     f.samples = run.evaluator.asked();
     if (row.refused.empty()) f.value = row.change;
-    const bool is_small = row.refused.empty() && row.change <= run.study().needs.accuracy;
+    const bool is_small = row.refused.empty() && row.change <= settings_of<NeedsSettings>(run.study()).accuracy;
     dispensable += is_small;
     f.status = !row.refused.empty() ? row.refused : "of '" + row.response + "'" + (is_small ? "; may be" : "");
     answer.findings.push_back(f);
@@ -162,9 +181,25 @@ Answer run_needs(StudyRun& run) {
   std::snprintf(
       text, sizeof text,
       "%ld of %zu simplifications change no response by more than %g of its value, each by itself; together they may.",
-      dispensable, rows.size(), run.study().needs.accuracy);
+      dispensable, rows.size(), settings_of<NeedsSettings>(run.study()).accuracy);
   answer.notes.emplace_back(text);
   return answer;
+}
+
+} // namespace
+
+StudyKind needs_kind() {
+  StudyKind kind;
+  kind.name = "needs";
+  kind.doc = "what the scene needs: every element and body in turn left out, rigid or fixed";
+  kind.fields = needs_fields();
+  kind.holds<NeedsSettings>();
+  kind.shown = {"accuracy"};
+  kind.parts = {{"need", "largest change", UnitOf::none, 3}};
+  kind.prepare = add_variants;
+  kind.check = check_needs;
+  kind.run = run_needs;
+  return kind;
 }
 
 } // namespace steplap::study

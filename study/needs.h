@@ -2,14 +2,14 @@
 // body in turn is fixed. What changes in the responses by how much?
 #pragma once
 
-#include "study/study_run.h"
+#include "study/study_kind.h"
 
 namespace steplap::study {
 
-/// All variants of a model, as given; their names are what findings are about.
-[[nodiscard]] std::vector<ModelVariant> variants_of(const Model& model);
+struct NeedsSettings : KindSettings {
+  double accuracy = 0.01; ///< changes of responses up to this share of them do not matter
+};
 
-void check_needs(const LoadedStudy& loaded, std::vector<Diagnostic>& problems);
-[[nodiscard]] Answer run_needs(StudyRun& run);
+[[nodiscard]] StudyKind needs_kind();
 
 } // namespace steplap::study

@@ -1,6 +1,6 @@
 #include "study/reliability.h"
 
-#include "study/designs.h"
+#include "study/random_variables.h"
 #include "study/samplers.h"
 
 #include <algorithm>
@@ -10,9 +10,49 @@ namespace steplap::study {
 
 namespace {
 
+FieldTable reliability_fields() {
+  using S = ReliabilitySettings;
+  FieldTable t;
+  t.add("methods", &S::methods)
+      .doc(
+          "monte_carlo, form, sorm, importance_sampling, directional, subset; the first that samples gives the answer");
+  t.add("limit_states", &S::limit_states).doc("those that make the system; all if none is named");
+  t.add("combination", &S::combination)
+      .one_of({"any", "all"})
+      .doc("the system fails where any of them does, or where all do");
+  t.add("cov", &S::cov).positive().at_most(1).doc("sampling stops at this coefficient of variation of the probability");
+  t.add("samples", &S::samples).at_least(1).at_most(1e10).doc("and at this number of samples, for each method");
+  t.add("seconds", &S::seconds).in("s").positive().doc("and after this time, for each method");
+  t.add("difference", &S::difference)
+      .positive()
+      .at_most(0.5)
+      .doc("step of the difference quotients of FORM and SORM, in standard deviations");
+  t.add("starts", &S::starts).at_least(1).at_most(1000).doc("of the search for design points");
+  t.add("search_samples", &S::search_samples)
+      .at_least(10)
+      .at_most(1e7)
+      .doc("for all searches for design points together; 300 and 50 more for each variable if not given");
+  t.add("subset_samples", &S::subset_samples).at_least(100).at_most(1e7).doc("samples a level of subset simulation");
+  t.add("repetitions", &S::repetitions)
+      .at_least(2)
+      .at_most(1000)
+      .doc("of subset simulation; their scatter gives its interval");
+  t.add("confidence", &S::confidence).at_least(0.5).at_most(0.9999).doc("of all intervals");
+  return t;
+}
+
 const std::vector<std::string> k_methods{"monte_carlo", "form", "sorm", "importance_sampling", "directional", "subset"};
 
 constexpr double k_alarm = 0.01; // chance of a false alarm, of all comparisons of a study together
+
+SamplingTarget target_of(const ReliabilitySettings& s) {
+  SamplingTarget target;
+  target.cov = s.cov;
+  target.samples = s.samples;
+  target.seconds = s.seconds;
+  target.confidence = s.confidence;
+  return target;
+}
 
 std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0) {
   char text[240];
@@ -22,7 +62,7 @@ std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0
 
 class Reliability {
 public:
-  explicit Reliability(StudyRun& run) : run_(run), limit_(run), settings_(run.study().reliability), target_(target_of(settings_)) {}
+  explicit Reliability(StudyRun& run) : run_(run), limit_(run), settings_(settings_of<ReliabilitySettings>(run.study())), target_(target_of(settings_)) {}
 
   Answer answer() {
     const bool has_form = asks("form") || asks("sorm");
@@ -234,11 +274,9 @@ std::string list_text(const std::vector<std::string>& names) {
   return text;
 }
 
-} // namespace
-
 void check_reliability(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
   check_random(loaded, false, problems);
-  const ReliabilitySettings& s = loaded.study.reliability;
+  const auto& s = settings_of<ReliabilitySettings>(loaded.study);
   if (loaded.study.limit_states.empty())
     problems.push_back({loaded.study.where, "a study of the kind 'reliability' needs a [[limit_state]]"});
   if (s.methods.empty()) problems.push_back({s.where, "'methods' is empty; there are " + list_text(k_methods)});
@@ -254,5 +292,30 @@ void check_reliability(const LoadedStudy& loaded, std::vector<Diagnostic>& probl
 }
 
 Answer run_reliability(StudyRun& run) { return Reliability(run).answer(); }
+
+Drawn reliability_drawn(const ShownSettings& settings) {
+  return is_only(settings, "methods", "monte_carlo") ? Drawn::independently : Drawn::otherwise;
+}
+
+} // namespace
+
+StudyKind reliability_kind() {
+  StudyKind kind;
+  kind.name = "reliability";
+  kind.doc = "how likely failure is, by sampling and by design points";
+  kind.fields = reliability_fields();
+  kind.holds<ReliabilitySettings>();
+  kind.shown = {"methods", "limit_states", "combination", "cov", "confidence"};
+  kind.draws_jointly = true;
+  kind.parts = {{"probability", "probability", UnitOf::none, 4},
+                {"beta", "beta", UnitOf::none, 5},
+                {"importance", "importance of "},
+                {"factor", "factor"}}; // of a probability by theory to one by sampling
+  kind.points = {{"form", "design point"}};
+  kind.check = check_reliability;
+  kind.run = run_reliability;
+  kind.drawn = reliability_drawn;
+  return kind;
+}
 
 } // namespace steplap::study

@@ -1,8 +1,11 @@
 #include "study/report_about.h"
 
 #include "mbd/base/number_text.h"
+#include "study/kinds.h"
 
 #include <nlohmann/json.hpp>
+
+#include <stdexcept>
 
 namespace steplap::study {
 
@@ -63,11 +66,6 @@ std::string response_text(const Response& r) {
   return r.model.empty() ? text : text + ", " + r.model;
 }
 
-// An expression whose zeros a kind looks for stands among the limit states, but is no failure.
-bool is_border(const Study& study, const LimitState& l) {
-  return (study.kind == "critical" || study.kind == "map") && &l == &study.limit_states.back();
-}
-
 Json numbers_json(const LoadedStudy& loaded) {
   const Study& study = loaded.study;
   const std::vector<std::string> units = loaded.number_units();
@@ -78,7 +76,7 @@ Json numbers_json(const LoadedStudy& loaded) {
   for (const LimitState& l : study.limit_states)
     json.push_back({{"name", l.name},
                     {"unit", ""},
-                    {"role", is_border(study, l) ? "border" : "limit state"},
+                    {"role", l.is_border ? "border" : "limit state"},
                     {"is", l.expression}});
   return json;
 }
@@ -92,21 +90,22 @@ template <class AnyStudy> Json history_count_json(const AnyStudy& study) {
   return json;
 }
 
-Json settings_of(const Study& study) {
-  if (study.kind == "sweep") return {{"design", study.sweep.design}};
-  if (study.kind == "sample") return {{"design", study.sample.design}};
-  if (study.kind == "sensitivity")
-    return {{"method", study.sensitivity.method}, {"confidence", study.sensitivity.confidence}};
-  if (study.kind == "critical") return {{"variable", study.critical.variable}};
-  if (study.kind == "map") return {{"variables", study.map.variables}, {"logarithmic", study.map.is_logarithmic}};
-  if (study.kind == "needs") return {{"accuracy", study.needs.accuracy}};
-  if (study.kind != "reliability") return Json::object();
-  const ReliabilitySettings& r = study.reliability;
-  return {{"methods", r.methods},
-          {"limit_states", r.limit_states},
-          {"combination", r.combination},
-          {"cov", r.cov},
-          {"confidence", r.confidence}};
+Json value_json(const FieldValue& value) {
+  return std::visit(
+      []<class T>(const T& held) -> Json {
+        if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string> || std::is_same_v<T, std::vector<std::string>>)
+          return Json(held);
+        else throw std::logic_error("a setting of a type that no page tells");
+      },
+      value);
+}
+
+Json settings_json(const Study& study) {
+  const StudyKind& kind = kind_of(study);
+  Json json = Json::object();
+  for (const std::string& name : kind.shown)
+    json[name] = value_json(kind.fields.find(name)->get(fields_of(*study.settings)));
+  return json;
 }
 
 } // namespace
@@ -117,7 +116,7 @@ std::string about_of(const LoadedStudy& loaded, const JointLaw& law) {
   json["variables"] = Json::array();
   for (std::size_t i = 0; i < study.variables.size(); ++i) json["variables"].push_back(variable_json(loaded, law, i));
   json["numbers"] = numbers_json(loaded);
-  json["settings"] = settings_of(study);
+  json["settings"] = settings_json(study);
   json["histories"] = history_count_json(study);
   json["models"] = Json::array();
   for (const auto& m : loaded.models) json["models"].push_back(m->path);

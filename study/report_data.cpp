@@ -2,6 +2,7 @@
 
 #include "run/quantity_text.h"
 #include "run/version.h"
+#include "study/kinds.h"
 #include "study/report_findings.h"
 #include "study/report_tally.h"
 
@@ -189,18 +190,15 @@ Json tally_json(const std::string& name, const Tally& t) {
             {"high", t.histogram.high}}}};
 }
 
-// Whether samples are distributed as the study's variables are: drawn one by one, in a design, or neither (searches,
-// lines, grids: of these no distribution can be shown).
-enum class Drawn { independently, by_design, otherwise };
-
-Drawn drawn_how(const std::string& kind, const Json& settings) {
-  if (kind == "sample") return settings.value("design", "") == "monte_carlo" ? Drawn::independently : Drawn::by_design;
-  if (kind == "sensitivity") return settings.value("method", "") == "sobol" ? Drawn::by_design : Drawn::otherwise;
-  if (kind == "reliability" && settings.contains("methods")) {
-    const Json only = Json::array({"monte_carlo"});
-    if (settings["methods"] == only) return Drawn::independently;
+// The texts of the settings that the store tells.
+ShownSettings shown_settings(const Json& settings) {
+  ShownSettings shown;
+  for (const auto& [key, value] : settings.items()) {
+    std::vector<std::string>& texts = shown[key];
+    for (const Json& one : value.is_array() ? value : Json::array({value}))
+      if (one.is_string()) texts.push_back(one.get<std::string>());
   }
-  return Drawn::otherwise;
+  return shown;
 }
 
 Json distributions_json(const Samples& samples, Drawn drawn) {
@@ -432,8 +430,9 @@ std::string report_data(Store& store, const std::string& store_path, std::size_t
   const Json about = about_in(store);
   const StoreIdentity& identity = store.identity();
   const Samples samples = read_samples(store, about);
-  const Drawn drawn = drawn_how(identity.kind, about["settings"]);
-  const bool is_random_sample = identity.kind == "sample" && drawn == Drawn::independently;
+  const StudyKind* kind = find_kind(identity.kind); // none: of another version
+  const Drawn drawn = kind && kind->drawn ? kind->drawn(shown_settings(about["settings"])) : Drawn::otherwise;
+  const bool is_random_sample = kind && kind->shows_running_means && drawn == Drawn::independently;
   Json json{{"program", std::string("steplap ") + k_version},
             {"version", identity.version},
             {"kind", identity.kind},

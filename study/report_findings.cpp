@@ -1,6 +1,7 @@
 #include "study/report_findings.h"
 
 #include "run/quantity_text.h"
+#include "study/kinds.h"
 
 #include <charconv>
 #include <cmath>
@@ -20,43 +21,6 @@ std::string unit_of(const std::vector<ReportColumn>& columns, const std::string&
   return column ? column->unit : "";
 }
 
-enum class UnitOf { none, subject, variable, quotient, unknown };
-
-struct Part {
-  const char* role;
-  const char* quantity; ///< as it begins; what follows is the name of a variable if it ends with a blank
-  UnitOf unit;
-};
-
-constexpr Part k_parts[] = {
-    {"probability", "probability", UnitOf::none},
-    {"probability", "share of failures", UnitOf::none},
-    {"beta", "beta", UnitOf::none},
-    {"moment", "mean", UnitOf::subject},
-    {"moment", "standard deviation", UnitOf::subject},
-    {"extreme", "lowest", UnitOf::subject},
-    {"extreme", "highest", UnitOf::subject},
-    {"base", "value", UnitOf::subject},
-    {"critical", "critical value", UnitOf::subject},
-    {"elasticity", "elasticity to ", UnitOf::none},
-    {"elasticity", "derivative by ", UnitOf::quotient},
-    {"mu*", "mu* of ", UnitOf::subject},
-    {"sigma", "sigma of ", UnitOf::subject},
-    {"first order", "first order of ", UnitOf::none},
-    {"total", "total of ", UnitOf::none},
-    {"swing", "swing by ", UnitOf::subject},
-    {"importance", "importance of ", UnitOf::none},
-    {"need", "largest change", UnitOf::none},
-    {"residual", "residual", UnitOf::subject}, // of a measured record
-    {"sum of squares", "sum of squares", UnitOf::none}, // of residuals over their noise
-    {"correlation", "correlation", UnitOf::none},
-    {"condition", "condition", UnitOf::none},
-    {"not told", "not told", UnitOf::none},
-    {"another fit", "another fit", UnitOf::none},
-    {"factor", "factor", UnitOf::none}, // of a probability by theory to one by sampling
-    {"unseen", "unseen radius", UnitOf::none},
-};
-
 // "design point 2", "border 1 point 17": the number behind the first word or words.
 long place_in(const std::string& subject, const std::string& noun) {
   long place = 0;
@@ -71,31 +35,34 @@ std::string quotient(const std::string& above, const std::string& below) {
          (below.find(' ') == std::string::npos && below.find('/') == std::string::npos ? below : "(" + below + ")");
 }
 
-// The part, and the unit in SI.
-void find_part(const Finding& f, const std::vector<ReportColumn>& columns, FindingView& view) {
-  if (const ReportColumn* column = find_column(columns, f.quantity);
-      column && (f.method == "map" || f.method == "form")) {
-    view.role = f.method == "map" ? "border" : "design point";
-    view.variable = f.quantity;
-    view.unit = column->unit;
-    return;
-  }
-  if (f.quantity.ends_with(" quantile")) {
-    view.role = "quantile";
-    view.unit = unit_of(columns, f.subject);
-    return;
-  }
-  for (const Part& part : k_parts) {
-    const std::string begin = part.quantity;
-    if (!f.quantity.starts_with(begin)) continue;
-    if (part.unit == UnitOf::subject && !find_column(columns, f.subject)) continue; // of another kind's making
-    view.role = part.role;
-    if (begin.back() == ' ') view.variable = f.quantity.substr(begin.size());
-    if (part.unit == UnitOf::subject) view.unit = unit_of(columns, f.subject);
-    if (part.unit == UnitOf::quotient)
-      view.unit = quotient(unit_of(columns, f.subject), unit_of(columns, view.variable));
-    return;
-  }
+// As the quantity begins, or ends where the part begins with a blank.
+bool is_of(const Finding& f, const FindingPart& part) {
+  return part.quantity.front() == ' ' ? f.quantity.ends_with(part.quantity) : f.quantity.starts_with(part.quantity);
+}
+
+// The part, and the unit in SI. What one kind of study says of a quantity holds for all of them.
+void find_part(const Finding& f, const std::vector<ReportColumn>& columns, FindingView& view, int& digits) {
+  const ReportColumn* coordinate = find_column(columns, f.quantity);
+  for (const StudyKind& kind : study_kinds())
+    for (const PointRole& point : kind.points) {
+      if (!coordinate || f.method != point.method) continue;
+      view.role = point.role;
+      view.variable = f.quantity;
+      view.unit = coordinate->unit;
+      return;
+    }
+  for (const StudyKind& kind : study_kinds())
+    for (const FindingPart& part : kind.parts) {
+      if (!is_of(f, part)) continue;
+      if (part.unit == UnitOf::subject && !find_column(columns, f.subject)) continue; // of another kind's making
+      view.role = part.role;
+      digits = part.digits;
+      if (part.quantity.back() == ' ') view.variable = f.quantity.substr(part.quantity.size());
+      if (part.unit == UnitOf::subject) view.unit = unit_of(columns, f.subject);
+      if (part.unit == UnitOf::quotient)
+        view.unit = quotient(unit_of(columns, f.subject), unit_of(columns, view.variable));
+      return;
+    }
   view.role = "estimate";
   view.unit = "SI";
 }
@@ -158,16 +125,6 @@ bool last_place(double value, double low, double high, int& last) {
   return true;
 }
 
-int digits_of(const Finding& f, const std::string& role) {
-  constexpr int k_exact = 6, k_estimated = 4;
-  if (role == "beta") return 5;
-  if (role == "correlation" || role == "condition" || role == "not told" || role == "another fit") return 3;
-  if (role == "residual") return k_estimated;
-  return role == "moment" || role == "quantile" || role == "probability" || role == "sigma" ? k_estimated
-         : f.method == "needs"                                                              ? 3
-                                                                                            : k_exact;
-}
-
 } // namespace
 
 std::string estimate_text(double value, double low, double high, int digits) {
@@ -179,18 +136,20 @@ std::string estimate_text(double value, double low, double high, int digits) {
 
 FindingView view_of(const Finding& f, const std::vector<ReportColumn>& columns) {
   FindingView view;
-  find_part(f, columns, view);
-  view.place = std::max(place_in(f.subject, "border"), place_in(f.subject, "design point"));
+  int digits = 6;
+  find_part(f, columns, view, digits);
+  for (const StudyKind& kind : study_kinds())
+    for (const PointRole& point : kind.points) view.place = std::max(view.place, place_in(f.subject, point.role));
   const auto finite = [](double x) { return std::isfinite(x) ? std::abs(x) : 0.0; };
   const UnitPrefix prefix = prefix_for(std::max({finite(f.value), finite(f.low), finite(f.high)}), view.unit);
   const double factor = std::pow(10.0, prefix.exponent), low = factor * f.low, high = factor * f.high;
   view.unit = prefix.text + view.unit;
   if (view.role == "swing") { // between the ends of a bar, which are no interval
-    if (std::isfinite(f.value)) view.value = tidied(plain(factor * f.value, digits_of(f, view.role)));
+    if (std::isfinite(f.value)) view.value = tidied(plain(factor * f.value, digits));
     if (std::isfinite(f.value)) view.interval = tidied(plain(low, 6)) + " to " + tidied(plain(high, 6));
     return view;
   }
-  view.value = estimate_text(factor * f.value, low, high, digits_of(f, view.role));
+  view.value = estimate_text(factor * f.value, low, high, digits);
   int last = 0;
   if (std::isnan(f.low) && std::isnan(f.high)) return view;
   const bool is_known = last_place(factor * f.value, low, high, last);

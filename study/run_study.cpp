@@ -20,7 +20,7 @@ void add_fits(const JointLaw& law, Answer& answer) {
 
 // Kinds that set variables themselves, one by one, do not draw them from their joint distribution.
 void add_correlations(const Study& study, Answer& answer) {
-  if (study.kind == "reliability" || study.kind == "sample") return;
+  if (kind_of(study).draws_jointly) return;
   for (const Correlation& c : study.correlations)
     answer.notes.push_back("Variables are set one by one here, whatever the others are: the stated correlation of '" +
                            c.between[0] + "' and '" + c.between[1] + "' plays no part in it.");
@@ -37,15 +37,11 @@ Answer answer_of(const LoadedStudy& loaded, Store& store, const Ranks& ranks, co
       throw StudyStopped(why + " after " + std::to_string(pace.samples) + " samples; run again, the study goes on from there");
   });
   StudyRun run{loaded, law, evaluator, store};
-  for (const StudyKind& kind : study_kinds()) {
-    if (kind.name != loaded.study.kind) continue;
-    Answer answer = kind.run(run);
-    store.forget_from(evaluator.asked() + 1);
-    add_fits(law, answer);
-    add_correlations(loaded.study, answer);
-    return answer;
-  }
-  throw std::logic_error("a kind of study that the reader let pass is not there");
+  Answer answer = kind_of(loaded.study).run(run);
+  store.forget_from(evaluator.asked() + 1);
+  add_fits(law, answer);
+  add_correlations(loaded.study, answer);
+  return answer;
 }
 
 Answer run_first(const LoadedStudy& loaded, const std::string& path, const Ranks& ranks, const StudyOptions& options) {

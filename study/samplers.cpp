@@ -6,8 +6,6 @@
 
 namespace steplap::study {
 
-SamplingTarget target_of(const ReliabilitySettings& s) { return {s.cov, s.samples, s.seconds, s.confidence}; }
-
 namespace {
 
 // Of the less probable one of failing and holding. Runs without a result are no information about the probability.

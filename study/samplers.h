@@ -35,7 +35,6 @@ struct SamplingTarget {
   double confidence = 0.95;
   double test_confidence = 0.99; ///< of the intervals that estimates are compared by
 };
-[[nodiscard]] SamplingTarget target_of(const ReliabilitySettings& settings);
 
 [[nodiscard]] Estimate monte_carlo(LimitFunction& limit, const SamplingTarget& target);
 /// Around the design points, of which there is at least one. In two stages: the first, whose samples are not counted,

@@ -1,7 +1,7 @@
 #include "study/sensitivity.h"
 
 #include "study/counter_random.h"
-#include "study/designs.h"
+#include "study/random_variables.h"
 
 #include <openturns/ComposedDistribution.hxx>
 #include <openturns/Log.hxx>
@@ -16,6 +16,21 @@
 namespace steplap::study {
 
 namespace {
+
+FieldTable sensitivity_fields() {
+  using S = SensitivitySettings;
+  FieldTable t;
+  t.add("method", &S::method).one_of({"elasticity", "morris", "sobol", "tornado"}).doc("how sensitivities are found");
+  t.add("difference", &S::difference).positive().at_most(0.3).doc("relative step of elasticities; halved to check it");
+  t.add("samples", &S::samples)
+      .at_least(16)
+      .at_most(1e7)
+      .doc("base size of Sobol indices: the study takes (variables + 2) times as many");
+  t.add("trajectories", &S::trajectories).at_least(4).at_most(1e5).doc("of Morris' screening");
+  t.add("levels", &S::levels).at_least(4).at_most(100).doc("of the grid of Morris' screening, an even number");
+  t.add("confidence", &S::confidence).at_least(0.5).at_most(0.9999).doc("of the intervals");
+  return t;
+}
 
 // Numbers of a sample, not-a-number where its run has no result.
 std::vector<double> numbers_of(const StoredSample& sample, std::size_t count) {
@@ -61,7 +76,7 @@ Answer elasticities(StudyRun& run) {
   const double run_error = run_error_of(run.loaded);
   const std::vector<double>& nominal = run.law.nominal();
   const std::size_t n = nominal.size(), count = run.loaded.number_count();
-  const double h = run.study().sensitivity.difference;
+  const double h = settings_of<SensitivitySettings>(run.study()).difference;
   std::vector<double> points(nominal);
   std::vector<double> steps(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -142,7 +157,7 @@ struct Effects {
 
 // Trajectories on a grid of levels; each moves every variable once, by half of the levels, in a random order.
 Answer morris(StudyRun& run) {
-  const SensitivitySettings& s = run.study().sensitivity;
+  const auto& s = settings_of<SensitivitySettings>(run.study());
   const std::size_t n = run.law.dimension(), count = run.loaded.number_count();
   const CounterRandom random(static_cast<std::uint64_t>(run.study().seed), 6);
   const double p = static_cast<double>(s.levels), jump = p / (2.0 * (p - 1.0));
@@ -218,7 +233,7 @@ Answer morris(StudyRun& run) {
 
 Answer sobol(StudyRun& run) {
   OT::Log::Show(OT::Log::NONE);
-  const SensitivitySettings& s = run.study().sensitivity;
+  const auto& s = settings_of<SensitivitySettings>(run.study());
   const std::size_t n = run.law.dimension(), count = run.loaded.number_count();
   OT::RandomGenerator::SetSeed(static_cast<OT::UnsignedInteger>(run.study().seed));
   const OT::ComposedDistribution cube(OT::ComposedDistribution::DistributionCollection(n, OT::Uniform(0.0, 1.0)));
@@ -330,8 +345,10 @@ double run_error_of(const LoadedStudy& loaded) {
   return error;
 }
 
+namespace {
+
 void check_sensitivity(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
-  const SensitivitySettings& s = loaded.study.sensitivity;
+  const auto& s = settings_of<SensitivitySettings>(loaded.study);
   if (loaded.number_count() == 0)
     problems.push_back({loaded.study.where, "a study of the kind 'sensitivity' needs a [[response]]"});
   if (s.method == "elasticity") {
@@ -347,10 +364,37 @@ void check_sensitivity(const LoadedStudy& loaded, std::vector<Diagnostic>& probl
 }
 
 Answer run_sensitivity(StudyRun& run) {
-  const std::string& method = run.study().sensitivity.method;
+  const std::string& method = settings_of<SensitivitySettings>(run.study()).method;
   if (method == "morris") return morris(run);
   if (method == "sobol") return sobol(run);
   return method == "tornado" ? tornado(run) : elasticities(run);
+}
+
+Drawn sensitivity_drawn(const ShownSettings& settings) {
+  return is_only(settings, "method", "sobol") ? Drawn::by_design : Drawn::otherwise;
+}
+
+} // namespace
+
+StudyKind sensitivity_kind() {
+  StudyKind kind;
+  kind.name = "sensitivity";
+  kind.doc = "how much each variable matters: elasticities, Morris' screening, Sobol indices, a tornado";
+  kind.fields = sensitivity_fields();
+  kind.holds<SensitivitySettings>();
+  kind.shown = {"method", "confidence"};
+  kind.parts = {{"base", "value", UnitOf::subject},
+                {"elasticity", "elasticity to "},
+                {"elasticity", "derivative by ", UnitOf::quotient},
+                {"mu*", "mu* of ", UnitOf::subject},
+                {"sigma", "sigma of ", UnitOf::subject, 4},
+                {"first order", "first order of "},
+                {"total", "total of "},
+                {"swing", "swing by ", UnitOf::subject}};
+  kind.check = check_sensitivity;
+  kind.run = run_sensitivity;
+  kind.drawn = sensitivity_drawn;
+  return kind;
 }
 
 } // namespace steplap::study

@@ -6,6 +6,7 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/model/fields.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,74 +77,19 @@ struct LimitState {
   std::string name;
   std::string expression;
   Location where;
+  bool is_border = false; ///< a kind of study looks for its zeros: it is no failure
 };
 
-struct SweepSettings {
-  std::string design = "grid"; ///< grid, list, one_at_a_time
-  long points = 11;            ///< of a range or a distribution's 5 % to 95 %
-  Location where;
-};
+/// What the table of a kind says; each kind has its own (study_kind.h).
+struct KindSettings {
+  Location where; ///< of the table; of the study where it has none
 
-struct SampleSettings {
-  std::string design = "monte_carlo"; ///< monte_carlo, latin_hypercube, sobol, halton
-  long samples = 1000;
-  Location where;
-};
-
-struct ReliabilitySettings {
-  std::vector<std::string> methods{"form", "importance_sampling"};
-  std::vector<std::string> limit_states; ///< all if none
-  std::string combination = "any";       ///< the system fails where any, or where all of them are negative
-  double cov = 0.05;                     ///< sampling stops at this coefficient of variation of the probability
-  long samples = 100000;                 ///< and at this number of samples for each method
-  std::optional<double> seconds;         ///< and at this time for each method
-  double difference = 1e-3;              ///< step of difference in standard normal space
-  long starts = 8;                       ///< of the search for design points
-  std::optional<long> search_samples;    ///< for all searches together; 300 and 50 for each variable if not given
-  long subset_samples = 2000;            ///< a level
-  long repetitions = 4;                  ///< of subset simulation: its interval comes from their scatter
-  double confidence = 0.95;
-  Location where;
-};
-
-struct SensitivitySettings {
-  std::string method = "elasticity"; ///< elasticity, morris, sobol, tornado
-  double difference = 1e-3;          ///< relative step of an elasticity
-  long samples = 1000;               ///< base size of Sobol indices
-  long trajectories = 20;            ///< of Morris
-  long levels = 8;
-  double confidence = 0.95;
-  Location where;
-};
-
-struct CriticalSettings {
-  std::string variable;
-  std::string expression; ///< whose zeros are looked for
-  long points = 21;       ///< of the first look
-  double tolerance = 1e-9; ///< of the variable's range
-  Location where;
-};
-
-struct MapSettings {
-  std::vector<std::string> variables; ///< two
-  std::string expression;             ///< the border is where it is zero
-  double step = 0.02;                 ///< along the border, of the ranges
-  long points = 11;                   ///< a side, of the first look
-  double tolerance = 1e-9;
-  bool is_logarithmic = false;
-  Location where;
-};
-
-struct NeedsSettings {
-  double accuracy = 0.01; ///< changes of responses up to this share of them do not matter
-  Location where;
-};
-
-struct FitSettings {
-  long starts = 8;       ///< places where the search may begin; it does from the best of them
-  long iterations = 100; ///< of one search
-  double confidence = 0.95;
-  Location where;
+  KindSettings() = default;
+  KindSettings(const KindSettings&) = default;
+  KindSettings& operator=(const KindSettings&) = default;
+  virtual ~KindSettings() = default;
+  /// What the study asks for hangs on the time it has.
+  [[nodiscard]] virtual bool ends_by_clock() const { return false; }
 };
 
 struct Study {
@@ -159,19 +105,17 @@ struct Study {
   std::vector<Response> responses;
   std::vector<LimitState> limit_states;
   std::vector<History> histories;
-  SweepSettings sweep;
-  SampleSettings sample;
-  ReliabilitySettings reliability;
-  SensitivitySettings sensitivity;
-  CriticalSettings critical;
-  MapSettings map;
-  NeedsSettings needs;
-  FitSettings fit;
+  std::shared_ptr<const KindSettings> settings; ///< of its kind
   Location where;
 
   /// -1 if there is none.
   [[nodiscard]] int index_of_variable(const std::string& name) const;
 };
+
+/// The settings of a study whose kind has T. Throws std::bad_cast if its kind has others.
+template <class T> [[nodiscard]] const T& settings_of(const Study& study) {
+  return dynamic_cast<const T&>(*study.settings);
+}
 
 /// What a table of a study file may hold.
 struct StudyTable {
@@ -188,15 +132,7 @@ struct StudyTable {
 [[nodiscard]] FieldTable response_fields();
 [[nodiscard]] FieldTable limit_state_fields();
 [[nodiscard]] FieldTable history_fields();
-[[nodiscard]] FieldTable sweep_fields();
-[[nodiscard]] FieldTable sample_fields();
-[[nodiscard]] FieldTable reliability_fields();
-[[nodiscard]] FieldTable sensitivity_fields();
-[[nodiscard]] FieldTable critical_fields();
-[[nodiscard]] FieldTable map_fields();
-[[nodiscard]] FieldTable needs_fields();
-[[nodiscard]] FieldTable fit_fields();
-/// All of them, in the order of a file.
+/// All of them and those of the kinds, in the order of a file.
 [[nodiscard]] std::vector<StudyTable> study_tables();
 
 /// JSON Schema of study files.

@@ -1,5 +1,5 @@
-// The fields of study files, declared once: the reader and the schema are made of these tables.
-#include "study/study.h"
+// The fields of study files but those of their kinds, declared once: the reader and the schema are made of these tables.
+#include "study/kinds.h"
 
 namespace steplap::study {
 
@@ -122,134 +122,17 @@ FieldTable history_fields() {
   return t;
 }
 
-FieldTable sweep_fields() {
-  FieldTable t;
-  t.add("design", &SweepSettings::design)
-      .one_of({"grid", "list", "one_at_a_time"})
-      .doc("grid: all combinations; list: the first values of all, the second, ...; one at a time: the others stay at "
-           "their value");
-  t.add("points", &SweepSettings::points)
-      .at_least(2)
-      .at_most(1e6)
-      .doc("of a variable with a range, or a distribution (from 5 % to 95 %)");
-  return t;
-}
-
-FieldTable sample_fields() {
-  FieldTable t;
-  t.add("design", &SampleSettings::design)
-      .one_of({"monte_carlo", "latin_hypercube", "sobol", "halton"})
-      .doc("how samples are drawn");
-  t.add("samples", &SampleSettings::samples).at_least(1).at_most(1e9).doc("their number");
-  return t;
-}
-
-FieldTable reliability_fields() {
-  using S = ReliabilitySettings;
-  FieldTable t;
-  t.add("methods", &S::methods)
-      .doc(
-          "monte_carlo, form, sorm, importance_sampling, directional, subset; the first that samples gives the answer");
-  t.add("limit_states", &S::limit_states).doc("those that make the system; all if none is named");
-  t.add("combination", &S::combination)
-      .one_of({"any", "all"})
-      .doc("the system fails where any of them does, or where all do");
-  t.add("cov", &S::cov).positive().at_most(1).doc("sampling stops at this coefficient of variation of the probability");
-  t.add("samples", &S::samples).at_least(1).at_most(1e10).doc("and at this number of samples, for each method");
-  t.add("seconds", &S::seconds).in("s").positive().doc("and after this time, for each method");
-  t.add("difference", &S::difference)
-      .positive()
-      .at_most(0.5)
-      .doc("step of the difference quotients of FORM and SORM, in standard deviations");
-  t.add("starts", &S::starts).at_least(1).at_most(1000).doc("of the search for design points");
-  t.add("search_samples", &S::search_samples)
-      .at_least(10)
-      .at_most(1e7)
-      .doc("for all searches for design points together; 300 and 50 more for each variable if not given");
-  t.add("subset_samples", &S::subset_samples).at_least(100).at_most(1e7).doc("samples a level of subset simulation");
-  t.add("repetitions", &S::repetitions)
-      .at_least(2)
-      .at_most(1000)
-      .doc("of subset simulation; their scatter gives its interval");
-  t.add("confidence", &S::confidence).at_least(0.5).at_most(0.9999).doc("of all intervals");
-  return t;
-}
-
-FieldTable sensitivity_fields() {
-  using S = SensitivitySettings;
-  FieldTable t;
-  t.add("method", &S::method).one_of({"elasticity", "morris", "sobol", "tornado"}).doc("how sensitivities are found");
-  t.add("difference", &S::difference).positive().at_most(0.3).doc("relative step of elasticities; halved to check it");
-  t.add("samples", &S::samples)
-      .at_least(16)
-      .at_most(1e7)
-      .doc("base size of Sobol indices: the study takes (variables + 2) times as many");
-  t.add("trajectories", &S::trajectories).at_least(4).at_most(1e5).doc("of Morris' screening");
-  t.add("levels", &S::levels).at_least(4).at_most(100).doc("of the grid of Morris' screening, an even number");
-  t.add("confidence", &S::confidence).at_least(0.5).at_most(0.9999).doc("of the intervals");
-  return t;
-}
-
-FieldTable critical_fields() {
-  using S = CriticalSettings;
-  FieldTable t;
-  t.add("variable", &S::variable).required().doc("whose critical values are looked for, within its range");
-  t.add("expression", &S::expression).required().doc("of responses and variables: critical where it is zero");
-  t.add("points", &S::points)
-      .at_least(3)
-      .at_most(1e6)
-      .doc("of the first look along the range: closer pairs of crossings are not seen");
-  t.add("tolerance", &S::tolerance).positive().at_most(0.01).doc("of the critical value, of the range");
-  return t;
-}
-
-FieldTable map_fields() {
-  using S = MapSettings;
-  FieldTable t;
-  t.add("variables", &S::variables).required().doc("two variables with ranges");
-  t.add("expression", &S::expression).required().doc("of responses and variables: the border is where it is zero");
-  t.add("step", &S::step).at_least(1e-4).at_most(0.2).doc("along the border, of the ranges");
-  t.add("points", &S::points).at_least(3).at_most(1000).doc("a side, of the first look: smaller islands are not seen");
-  t.add("tolerance", &S::tolerance).positive().at_most(0.01).doc("of the border's points, of the ranges");
-  t.add("logarithmic", &S::is_logarithmic).doc("ranges are divided by ratios");
-  return t;
-}
-
-FieldTable needs_fields() {
-  FieldTable t;
-  t.add("accuracy", &NeedsSettings::accuracy)
-      .positive()
-      .at_most(1)
-      .doc("changes of responses up to this share of them do not matter");
-  return t;
-}
-
-FieldTable fit_fields() {
-  FieldTable t;
-  t.add("starts", &FitSettings::starts)
-      .at_least(1)
-      .at_most(10000)
-      .doc("places looked at first; searches begin at the best of them");
-  t.add("iterations", &FitSettings::iterations).at_least(1).at_most(10000).doc("of one search, at most");
-  t.add("confidence", &FitSettings::confidence).at_least(0.5).at_most(0.9999).doc("of the intervals");
-  return t;
-}
-
 std::vector<StudyTable> study_tables() {
-  return {{"", "top-level keys of a study file", false, header_fields()},
-          {"variable", "a number that is not known, or that is to be tried", true, variable_fields("*")},
-          {"correlation", "of two variables with distributions", true, correlation_fields()},
-          {"response", "a number made of a run", true, response_fields()},
-          {"limit_state", "fails where its expression is negative", true, limit_state_fields()},
-          {"history", "a measured record that a fit compares a channel with", true, history_fields()},
-          {"sweep", "settings of kind = \"sweep\"", false, sweep_fields()},
-          {"sample", "settings of kind = \"sample\"", false, sample_fields()},
-          {"reliability", "settings of kind = \"reliability\"", false, reliability_fields()},
-          {"sensitivity", "settings of kind = \"sensitivity\"", false, sensitivity_fields()},
-          {"critical", "settings of kind = \"critical\"", false, critical_fields()},
-          {"map", "settings of kind = \"map\"", false, map_fields()},
-          {"needs", "settings of kind = \"needs\"", false, needs_fields()},
-          {"fit", "settings of kind = \"fit\"", false, fit_fields()}};
+  std::vector<StudyTable> tables{
+      {"", "top-level keys of a study file", false, header_fields()},
+      {"variable", "a number that is not known, or that is to be tried", true, variable_fields("*")},
+      {"correlation", "of two variables with distributions", true, correlation_fields()},
+      {"response", "a number made of a run", true, response_fields()},
+      {"limit_state", "fails where its expression is negative", true, limit_state_fields()},
+      {"history", "a measured record that a fit compares a channel with", true, history_fields()}};
+  for (const StudyKind& kind : study_kinds())
+    tables.push_back({kind.name, "settings of kind = \"" + kind.name + "\"", false, kind.fields});
+  return tables;
 }
 
 } // namespace steplap::study

@@ -16,7 +16,6 @@
 #include "study/history.h"
 #include "study/kinds.h"
 #include "study/law.h"
-#include "study/needs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +35,13 @@ constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 std::string list_text(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "'" : ", '") + name + "'";
+  return text;
+}
+
+std::string kinds_with_histories() {
+  std::string text;
+  for (const StudyKind& kind : study_kinds())
+    if (kind.takes_histories) text += (text.empty() ? "'" : " or '") + kind.name + "'";
   return text;
 }
 
@@ -68,28 +74,19 @@ public:
     read_array("limit_state", [this](Node& entry) { read_limit_state(entry); });
     read_array("history", [this](Node& entry) { read_history(entry); });
     read_array("correlation", [this](Node& entry) { read_correlation(entry); });
-    read_settings("sweep", sweep_fields(), study_.sweep);
-    read_settings("sample", sample_fields(), study_.sample);
-    read_settings("reliability", reliability_fields(), study_.reliability);
-    read_settings("sensitivity", sensitivity_fields(), study_.sensitivity);
-    read_settings("critical", critical_fields(), study_.critical);
-    read_settings("map", map_fields(), study_.map);
-    read_settings("needs", needs_fields(), study_.needs);
-    read_settings("fit", fit_fields(), study_.fit);
+    for (const StudyKind& kind : study_kinds()) read_settings(kind);
     stop_if_wrong();
-    add_border();
-    add_variants();
+    loaded_.models.assign(models_.begin(), models_.end());
+    if (kind_->prepare) kind_->prepare(loaded_);
     const std::size_t known = problems_.size();
     check_names();
     const bool are_names_right = problems_.size() == known;
     find_nominal();
     if (are_names_right) check_expressions(); // what a wrong name makes of them is no mistake of theirs
     stop_if_wrong();
-    loaded_.study = std::move(study_);
     check_values();
     stop_if_wrong();
-    for (const StudyKind& kind : study_kinds())
-      if (kind.name == loaded_.study.kind) kind.check(loaded_, problems_);
+    kind_->check(loaded_, problems_);
     stop_if_wrong();
     return std::move(loaded_);
   }
@@ -130,7 +127,8 @@ private:
     read_table(document_.root, header_fields(), &study_, reading);
     if (study_.kind.empty()) return;
     const std::vector<std::string> kinds = kind_names();
-    if (std::find(kinds.begin(), kinds.end(), study_.kind) == kinds.end())
+    kind_ = find_kind(study_.kind);
+    if (!kind_)
       add(document_.root.find("kind")->where(), "there is no kind of study '" + study_.kind + "'" +
                                                     did_you_mean(study_.kind, kinds) +
                                                     "; those there are: " + list_text(kinds));
@@ -177,22 +175,25 @@ private:
     for (Node& entry : array->children) read(entry);
   }
 
-  template <class T> void read_settings(const std::string& name, const FieldTable& fields, T& target) {
+  void read_settings(const StudyKind& kind) {
+    const std::string& name = kind.name;
     const Node* table = document_.root.find(name);
-    target.where = study_.where;
+    const std::shared_ptr<KindSettings> settings = kind.create();
+    settings->where = study_.where;
+    if (&kind == kind_) study_.settings = settings;
     if (!table) {
-      if (name == study_.kind)
-        for (const Field& field : fields.fields())
+      if (&kind == kind_)
+        for (const Field& field : kind.fields.fields())
           if (field.is_required)
             return add(study_.where, "a study of the kind '" + name + "' needs a table [" + name + "]");
       return;
     }
     if (!table->is_table())
       return add(table->where_key(), "'" + name + "' must be a table, [" + name + "], not " + table->type_name());
-    target.where = table->where();
+    settings->where = table->where();
     TableReading reading;
     reading.subject = "[" + name + "]";
-    read_table(*table, fields, &target, reading);
+    read_table(*table, kind.fields, fields_of(*settings), reading);
   }
 
   // The unit of all paths of a variable, found in the models; "*" if any will do.
@@ -388,7 +389,7 @@ private:
     reading.subject = subject_text("history", entry_name(entry));
     const std::size_t before = problems_.size();
     read_table(entry, history_fields(), &h, reading);
-    if (study_.kind != "fit") add(h.where, "a [[history]] is for studies of the kind 'fit'");
+    if (!kind_->takes_histories) add(h.where, "a [[history]] is for studies of the kind " + kinds_with_histories());
     else if (models_.empty()) add(h.where, "the study has no model to compare history '" + h.name + "' with");
     else if (h.model.empty() && models_.size() > 1)
       add(h.where, "history '" + h.name + "': say which 'model' was measured: " + list_text(model_names()));
@@ -425,23 +426,6 @@ private:
       if (std::set(other.between.begin(), other.between.end()) == std::set(c.between.begin(), c.between.end()))
         return add(c.where, "the correlation of " + list_text(c.between) + " is given already");
     study_.correlations.push_back(std::move(c));
-  }
-
-  // Expressions that a kind looks for the zeros of are limit states to all that evaluates samples.
-  void add_border() {
-    if (study_.kind == "critical")
-      study_.limit_states.push_back({"critical", study_.critical.expression, study_.critical.where});
-    if (study_.kind == "map") study_.limit_states.push_back({"border", study_.map.expression, study_.map.where});
-  }
-
-  void add_variants() {
-    if (study_.kind != "needs" || models_.size() != 1) return;
-    loaded_.variants = variants_of(models_.front()->given);
-    Variable v;
-    v.name = "variant";
-    v.value = 0.0;
-    v.where = study_.where;
-    study_.variables.push_back(v);
   }
 
   void check_names() {
@@ -507,14 +491,12 @@ private:
         loaded_.nominal.push_back(k_nan);
       }
     }
-    loaded_.models.assign(models_.begin(), models_.end());
   }
 
   // That the models take the values: all that are listed, the ends of ranges, the point that studies stand at.
   void check_values() {
-    const Study& study = loaded_.study;
-    for (std::size_t i = 0; i < study.variables.size(); ++i) {
-      const Variable& v = study.variables[i];
+    for (std::size_t i = 0; i < study_.variables.size(); ++i) {
+      const Variable& v = study_.variables[i];
       std::vector<double> values = v.values;
       values.insert(values.end(), v.range.begin(), v.range.end());
       values.push_back(loaded_.nominal[i]);
@@ -532,7 +514,7 @@ private:
         }
     }
     std::vector<Diagnostic> wrong;
-    (void)JointLaw(study, loaded_.nominal, wrong);
+    (void)JointLaw(study_, loaded_.nominal, wrong);
     problems_.insert(problems_.end(), wrong.begin(), wrong.end());
   }
 
@@ -548,8 +530,9 @@ private:
   }
 
   Document document_;
-  Study study_;
   LoadedStudy loaded_;
+  Study& study_ = loaded_.study;
+  const StudyKind* kind_ = nullptr; ///< none before the header was read
   std::vector<std::shared_ptr<StudyModel>> models_;
   std::vector<Diagnostic> problems_;
 };

@@ -7,6 +7,7 @@
 //
 // Where most samples have one and the same value, as of a limit state that knows two values only, no level lies
 // between: what fails is counted there.
+#include "study/reliability.h"
 #include "study/sampling_course.h"
 
 #include <algorithm>
@@ -51,7 +52,7 @@ class Chains {
 public:
   Chains(LimitFunction& limit, bool is_bad_unsafe, long k)
       : limit_(limit), is_bad_unsafe_(is_bad_unsafe), n_(limit.dimension()),
-        size_(static_cast<std::size_t>(limit.run().study().reliability.subset_samples)),
+        size_(static_cast<std::size_t>(limit.settings().subset_samples)),
         random_(static_cast<std::uint64_t>(limit.run().study().seed), k_stream + static_cast<std::uint32_t>(k)) {}
 
   Repetition run() {
@@ -218,7 +219,7 @@ Estimate subset_simulation(LimitFunction& limit, const SamplingTarget& target) {
   SamplingCourse course(limit, target);
   const long bad = limit.bad();
   std::vector<Repetition> unsafe, safe;
-  for (long k = 0; k < study.reliability.repetitions && (k == 0 || !course.is_late()); ++k)
+  for (long k = 0; k < limit.settings().repetitions && (k == 0 || !course.is_late()); ++k)
     unsafe.push_back(Chains(limit, study.failed != "safe", k).run());
   Estimate e;
   e.bad = limit.bad() - bad;

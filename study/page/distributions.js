@@ -37,7 +37,7 @@ study.distributions = (() => {
   function draw() {
     const { drawn, of: list, left_out: leftOut } = data.distributions, section = document.getElementById('distributions');
     if (drawn === 'otherwise') {
-      if (data.kind !== 'reliability' || !data.about.variables.some((v) => v.law)) return;
+      if (!study.kind.showsLaws || !data.about.variables.some((v) => v.law)) return;
       section.hidden = false;
       section.append(make('p', { class: 'note' }, words.otherwise, ' These are the distributions that the study gives its variables.'));
       const box = make('div', { class: 'charts' });

@@ -8,7 +8,7 @@ study.estimates = (() => {
   const quantity = (f) => (f.text ? minus(f.text) + (f.unit ? `\u202f${data.pretty(f.unit)}` : '') : '–');
   const interval = (f) => (f.interval ? minus(f.interval) + (f.unit ? `\u202f${data.pretty(f.unit)}` : '') : '');
   const isJudged = new Set(['probability', 'beta', 'critical', 'elasticity', 'first order', 'total', 'estimate', 'swing', 'mu*']);
-  const status = (f) => ({ text: f.status, class: `words${f.status && (isJudged.has(f.role) || data.kind === 'fit') ? ' doubt' : ''}` });
+  const status = (f) => ({ text: f.status, class: `words${f.status && (isJudged.has(f.role) || study.kind.isJudged) ? ' doubt' : ''}` });
   const scroll = (...content) => make('div', { class: 'scroll' }, ...content);
   const heads = ['method', 'of', 'quantity', 'value', 'interval', 'samples', ''];
   const row = (f) => [f.method, f.subject, f.quantity, { text: quantity(f), class: 'value' }, interval(f), String(f.samples), status(f)];
@@ -40,11 +40,7 @@ study.estimates = (() => {
   const counted = { bounds: 'Probabilities are given between both: with them as safe and with them as failures.', unsafe: 'They count as failures.', safe: 'They count as safe.', stop: 'The study stops at the first.' };
 
   function main() {
-    const plain = data.findings.filter((f) => !f.place);
-    if (data.kind === 'reliability') return plain.filter((f) => f.role === 'probability' || f.role === 'beta');
-    if (data.kind === 'critical') return plain.filter((f) => f.role === 'critical');
-    if (data.kind === 'sample') return plain.filter((f) => f.role === 'probability' || f.quantity === 'mean');
-    return ['sweep', 'sensitivity', 'map', 'needs'].includes(data.kind) ? [] : plain;
+    return data.findings.filter((f) => !f.place && study.kind.isAnswer(f));
   }
   // On narrow screens a row is a paragraph, so that what is to be known about a number is never out of sight.
   function stacked(rows) {
@@ -72,7 +68,7 @@ study.estimates = (() => {
     if (!failed) return [make('p', { id: 'failed-runs' }, `Of ${data.samples.total} samples none failed to give a result.`)];
     const rows = list.map((r) => { const first = study.samples.button(r.first); return [r.status, { text: r.alike ? `${r.reason} (${r.alike} more alike, with other numbers)` : r.reason, class: 'words' }, String(r.count), first]; });
     const parts = [make('p', { id: 'failed-runs' }, make('strong', { class: 'doubt' }, `${told} gave no result that counts: `), 'their runs did not reach their end, or are not to be trusted. ',
-      ['reliability', 'sample'].includes(data.kind) ? counted[data.about.failed] || '' : ''),
+      study.kind.isCounted ? counted[data.about.failed] || '' : ''),
     scroll(table(['status', 'reason', 'samples', 'first'], rows, [2, 3]))];
     if (more) parts.push(make('p', { class: 'note' }, `and ${more} more kinds of reasons, of ${moreRuns} samples`));
     return parts;

@@ -1,11 +1,10 @@
 // The page from top to bottom.
 (() => {
   const { make, data } = study, at = (id) => document.getElementById(id);
-  const kinds = { sweep: 'sweep', sample: 'samples', reliability: 'reliability', sensitivity: 'sensitivity', critical: 'critical values', map: 'map', needs: 'what the scene needs', fit: 'fit' };
   const title = data.about.title || data.about.file || data.store;
   document.title = `steplap: ${title}`;
   at('title').textContent = title;
-  at('subtitle').textContent = [`Study: ${kinds[data.kind] || data.kind}`, ...(data.about.models.length ? [`of ${data.about.models.join(', ')}`] : []), `${data.samples.total} samples`, `steplap ${data.version}`].join(' · ');
+  at('subtitle').textContent = [`Study: ${study.kind.title}`, ...(data.about.models.length ? [`of ${data.about.models.join(', ')}`] : []), `${data.samples.total} samples`, `steplap ${data.version}`].join(' · ');
   if (!data.about.numbers.length && !data.about.variables.length) at('subtitle').append(' · The store was made before units were kept in it: numbers are in SI. Run the study again to have them.');
   study.estimates.answer();
   study.estimates.designPoints();

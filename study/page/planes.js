@@ -117,13 +117,10 @@ study.planes = (() => {
       layout: { xaxis: axis(x.head), yaxis: axis(y.head) } });
   }
 
-  // Designs that change one variable at a time show nothing in a plane.
-  const isOneByOne = data.kind === 'sensitivity' && ['tornado', 'elasticity'].includes(data.about.settings.method);
-
   // --- any two columns -------------------------------------------------------------------------------
   function scatter() {
     const all = data.columns.filter((c) => c.role !== 'cost' && (c.varies || c.role !== 'variable'));
-    if (all.length < 2 || data.shown < 2 || data.kind === 'needs' || isOneByOne) return;
+    if (all.length < 2 || data.shown < 2) return;
     const weights = (name) => data.findings.filter((f) => f.role === 'importance' && f.place === 1 && f.variable === name).reduce((sum, f) => sum + f.value, 0);
     const varying = all.filter((c) => c.role === 'variable').sort((a, b) => weights(b.name) - weights(a.name));
     const axes = [...varying, ...all.filter((c) => c.role !== 'variable')], box = start('Samples in a plane');
@@ -144,10 +141,8 @@ study.planes = (() => {
     build();
   }
   function draw() {
-    if (data.kind === 'map') map();
-    else if (data.kind === 'critical') critical();
-    else if (data.kind === 'sweep') sweep();
-    else scatter();
+    const drawings = { map, critical, sweep, scatter };
+    if (study.kind.plane) drawings[study.kind.plane]();
   }
   return { draw };
 })();

@@ -1,4 +1,4 @@
-// An integration method, a kind of element and a sub-command each are a file pair and a line in one list: where else is one
+// An integration method, a kind of element, a kind of study and a sub-command each are a file pair and a line in one list: where else is one
 // of them named? All sources are read. What names one by right stands here with its reason; a name anywhere else is a place
 // that whoever adds another would have to find.
 #include "elements/catalog.h"
@@ -9,9 +9,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -100,6 +102,38 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
     ++kinds;
   }
   CHECK(kinds > 20);
+}
+
+TEST_CASE("a kind of study is a file pair and a line in kinds.cpp") {
+  const auto sources = product_sources();
+  // What else is called so, and who reads a kind's settings besides the kind itself.
+  const std::map<std::string, Reasons> besides = {
+      {"sample", {{"study/store.cpp", "a table of the store"}}},
+      {"reliability", {{"study/limit_function.h", "hands its settings to the methods of reliability"}, {"study/limit_function.cpp", "the same"}}},
+  };
+  const std::string& list = sources.at("study/kinds.cpp");
+  const std::regex entry("(\\w+)_kind\\(\\)"); // read from the source: builds without studies have this test, too
+  int kinds = 0;
+  for (std::sregex_iterator found(list.begin(), list.end(), entry), end; found != end; ++found, ++kinds) {
+    const std::string name = (*found)[1].str(), file = "study/" + name;
+    CAPTURE(name);
+    const std::set<std::string> own = {file + ".cpp", file + ".h"};
+    const auto more = besides.find(name);
+    const Reasons reasons = more == besides.end() ? Reasons{} : more->second;
+    REQUIRE(sources.count(file + ".cpp") == 1);
+    CHECK(sources.at(file + ".cpp").find("kind.name = \"" + name + '"') != std::string::npos);
+    check_places(name, own, reasons, sources);
+    const std::regex settings("\\b" + std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])))) + name.substr(1) + "Settings\\b");
+    CHECK(std::regex_search(sources.at(file + ".h"), settings));
+    std::set<std::string> listed;
+    for (const auto& [path, text] : sources) {
+      if (text.find(name + "_kind()") != std::string::npos) listed.insert(path);
+      if (text.find("Settings") != std::string::npos && std::regex_search(text, settings))
+        CHECK_MESSAGE((own.count(path) > 0 || reasons.count(path) > 0), path << " names the settings of '" << name << "'");
+    }
+    CHECK(listed == std::set<std::string>{file + ".cpp", file + ".h", "study/kinds.cpp"});
+  }
+  CHECK(kinds >= 8);
 }
 
 TEST_CASE("a sub-command is a file pair and a line in commands.cpp") {

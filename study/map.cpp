@@ -2,7 +2,8 @@
 //
 // A grid is looked at first; wherever its lines cross the border the curve is followed in both directions: a step along
 // the tangent, then back to the border across it.
-#include "study/critical.h"
+#include "study/map.h"
+
 #include "study/crossing.h"
 
 #include <algorithm>
@@ -13,6 +14,18 @@
 namespace steplap::study {
 
 namespace {
+
+FieldTable map_fields() {
+  using S = MapSettings;
+  FieldTable t;
+  t.add("variables", &S::variables).required().doc("two variables with ranges");
+  t.add("expression", &S::expression).required().doc("of responses and variables: the border is where it is zero");
+  t.add("step", &S::step).at_least(1e-4).at_most(0.2).doc("along the border, of the ranges");
+  t.add("points", &S::points).at_least(3).at_most(1000).doc("a side, of the first look: smaller islands are not seen");
+  t.add("tolerance", &S::tolerance).positive().at_most(0.01).doc("of the border's points, of the ranges");
+  t.add("logarithmic", &S::is_logarithmic).doc("ranges are divided by ratios");
+  return t;
+}
 
 using Point = std::array<double, 2>; ///< both variables, their ranges as [0, 1]
 
@@ -31,7 +44,7 @@ struct Border {
 class Plane {
 public:
   explicit Plane(StudyRun& run)
-      : run_(run), settings_(run.study().map), place_(static_cast<std::size_t>(run.loaded.index_of_number("border"))) {
+      : run_(run), settings_(settings_of<MapSettings>(run.study())), place_(static_cast<std::size_t>(run.loaded.index_of_number("border"))) {
     for (int i = 0; i < 2; ++i)
       variable_[i] =
           static_cast<std::size_t>(run.study().index_of_variable(settings_.variables[static_cast<std::size_t>(i)]));
@@ -328,7 +341,7 @@ bool is_on(const Border& border, const Point& p, double near) {
 }
 
 void report(const Border& border, std::size_t number, Plane& plane, StudyRun& run, Answer& answer) {
-  const MapSettings& s = run.study().map;
+  const auto& s = settings_of<MapSettings>(run.study());
   for (std::size_t k = 0; k < border.points.size(); ++k)
     for (int i = 0; i < 2; ++i) {
       const double share = border.points[k][i];
@@ -364,10 +377,14 @@ void report_unseen(const Grid& grid, const Plane& plane, const StudyRun& run, An
   answer.notes.emplace_back(text);
 }
 
-} // namespace
+// To all that evaluates samples the expression is a limit state.
+void add_border(LoadedStudy& loaded) {
+  const auto& s = settings_of<MapSettings>(loaded.study);
+  loaded.study.limit_states.push_back({"border", s.expression, s.where, true});
+}
 
 void check_map(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
-  const MapSettings& s = loaded.study.map;
+  const auto& s = settings_of<MapSettings>(loaded.study);
   std::vector<std::string> names;
   for (const Variable& v : loaded.study.variables) names.push_back(v.name);
   if (s.variables.size() != 2 || s.variables[0] == s.variables[1]) {
@@ -389,7 +406,7 @@ void check_map(const LoadedStudy& loaded, std::vector<Diagnostic>& problems) {
 }
 
 Answer run_map(StudyRun& run) {
-  const MapSettings& s = run.study().map;
+  const auto& s = settings_of<MapSettings>(run.study());
   Plane plane(run);
   const Grid grid = grid_of(plane, s.points);
   std::vector<Point> seeds = seeds_on_grid(plane, grid, s.tolerance);
@@ -417,6 +434,23 @@ Answer run_map(StudyRun& run) {
     answer.notes.push_back(std::to_string(plane.bad()) +
                            " runs did not reach their end or are not to be trusted: borders beside them are not seen");
   return answer;
+}
+
+} // namespace
+
+StudyKind map_kind() {
+  StudyKind kind;
+  kind.name = "map";
+  kind.doc = "the curve in the plane of two variables on which an expression is zero";
+  kind.fields = map_fields();
+  kind.holds<MapSettings>();
+  kind.shown = {"variables", "logarithmic"};
+  kind.parts = {{"unseen", "unseen radius"}};
+  kind.points = {{"map", "border"}};
+  kind.prepare = add_border;
+  kind.check = check_map;
+  kind.run = run_map;
+  return kind;
 }
 
 } // namespace steplap::study

@@ -1,0 +1,20 @@
+// What the page does by the kind of study, and nowhere else: a kind that is not here is shown with all its estimates and
+// with samples in a plane.
+study.kind = (() => {
+  const { data } = study;
+  const none = () => false, one = (...roles) => (f) => roles.includes(f.role);
+  // title: of the study. isAnswer: which estimates stand at the top. plane: which drawing samples get, '' for none.
+  // isJudged: a remark beside any of its estimates is a doubt. isCounted: what failed runs count as is told.
+  // showsLaws: the variables' distributions are shown where samples do not follow them.
+  const kinds = {
+    sweep: { title: 'sweep', isAnswer: none, plane: 'sweep' },
+    sample: { title: 'samples', isAnswer: (f) => f.role === 'probability' || f.quantity === 'mean', isCounted: true },
+    reliability: { title: 'reliability', isAnswer: one('probability', 'beta'), isCounted: true, showsLaws: true },
+    // Designs that change one variable at a time show nothing in a plane.
+    sensitivity: { title: 'sensitivity', isAnswer: none, plane: ['tornado', 'elasticity'].includes(data.about.settings.method) ? '' : 'scatter' },
+    critical: { title: 'critical values', isAnswer: one('critical'), plane: 'critical' },
+    map: { title: 'map', isAnswer: none, plane: 'map' },
+    needs: { title: 'what the scene needs', isAnswer: none, plane: '' },
+    fit: { title: 'fit', isJudged: true } };
+  return { title: data.kind, isAnswer: () => true, plane: 'scatter', isJudged: false, isCounted: false, showsLaws: false, ...(Object.hasOwn(kinds, data.kind) ? kinds[data.kind] : {}) };
+})();
