@@ -6,18 +6,20 @@
 
 namespace steplap {
 
+/// Whether the errors of a run are known.
 enum class EstimateStatus {
-  known,
+  known,    ///< `errors` is there
   left_out, ///< not asked for, or the run broke off
   too_dear, ///< nobody insisted, and finer runs would take long
   failed    ///< a finer run could not be finished
 };
 
+/// The errors of a run, or why they are not known.
 struct Estimate {
-  EstimateStatus status = EstimateStatus::left_out;
-  std::string reason;                        ///< why there is none
-  std::optional<double> cost;                ///< s of computing that it would take, where it was not begun for that
-  std::optional<GlobalErrorEstimate> errors; ///< if known
+  EstimateStatus status = EstimateStatus::left_out; ///< whether they are known
+  std::string reason;                               ///< why there is none
+  std::optional<double> cost;                       ///< s of computing that it would take, where it was not begun for that
+  std::optional<GlobalErrorEstimate> errors;        ///< if known
 };
 
 /// Cheap is counted in work, not in time: criteria are judged by the errors, and a verdict may not hang on how fast or how busy

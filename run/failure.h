@@ -13,24 +13,28 @@ namespace steplap {
 /// Somebody asked the run to stop (RunOptions::stop).
 class RunStopped : public NumericalFailure {
 public:
+  /// The message.
   using NumericalFailure::NumericalFailure;
 };
 
+/// Why a run ended before its end.
 enum class FailureKind {
   numerical, ///< the computation could not go on
   stopped    ///< somebody asked it to
 };
 
+/// An element or a body at which a run failed.
 struct FailedElement {
   std::string name; ///< of an element or a body
   Location where;   ///< line 0: of no file
 };
 
+/// What stopped a run.
 struct Failure {
-  FailureKind kind = FailureKind::numerical;
-  std::string text;                    ///< with time and advice, and with file and line of the elements
-  double t = 0.0;                      ///< s, how far the run came
-  std::vector<FailedElement> elements; ///< the worst first
+  FailureKind kind = FailureKind::numerical; ///< why it ended
+  std::string text;                          ///< with time and advice, and with file and line of the elements
+  double t = 0.0;                            ///< s, how far the run came
+  std::vector<FailedElement> elements;       ///< the worst first
 };
 
 /// `t`: how far the run came, s.

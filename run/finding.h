@@ -7,16 +7,18 @@
 
 namespace steplap {
 
+/// How much a finding weighs.
 enum class FindingLevel {
   warning, ///< hardly meant
   note     ///< may well be meant, and is worth knowing
 };
 
+/// One thing found, with what programs, people and editors need to show it.
 struct Finding {
-  std::string code; ///< for programs: "starts_deep"; what it stands for does not change
-  FindingLevel level = FindingLevel::warning;
-  std::string text; ///< one or two sentences, without the place
-  Location where;   ///< in the model's file; line 0 if it is of no one place
+  std::string code;                           ///< for programs: "starts_deep"; what it stands for does not change
+  FindingLevel level = FindingLevel::warning; ///< how much it weighs
+  std::string text;                           ///< one or two sentences, without the place
+  Location where;                             ///< in the model's file; line 0 if it is of no one place
 };
 
 /// "text (file:line)"

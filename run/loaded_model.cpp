@@ -7,7 +7,6 @@
 #include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
-#include "run/catalogue.h"
 #include "run/failure.h"
 #include "run/tipping.h"
 
@@ -56,13 +55,13 @@ void put_together(LoadedModel& loaded) {
 
 } // namespace
 
-std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std::vector<std::string>& overrides) {
+std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std::vector<std::string>& overrides, const Catalogue& catalogue) {
   auto loaded = std::make_shared<LoadedModel>();
   loaded->path = path;
   loaded->name = name_of_model(path);
   loaded->overrides = overrides;
   const InputFiles read; // until its signals are built
-  loaded->model = read_model(path, program_catalogue(), overrides, &loaded->text);
+  loaded->model = read_model(path, catalogue, overrides, &loaded->text);
   loaded->system = compile(loaded->model);
   loaded->inputs = read.files();
   put_together(*loaded);

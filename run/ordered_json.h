@@ -8,6 +8,7 @@
 
 namespace steplap {
 
+/// An object that keeps the order of its entries.
 using OrderedJson = nlohmann::ordered_json;
 
 /// A new entry at the end of an object that has none of that name.

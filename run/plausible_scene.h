@@ -6,7 +6,9 @@
 
 namespace steplap {
 
+/// Signals that begin after the end of the run or are zero throughout, one finding each.
 [[nodiscard]] std::vector<Finding> implausible_loads(const LoadedModel& loaded);
+/// Places, speeds, masses and inertias that are too far apart for the digits of a number, one finding each.
 [[nodiscard]] std::vector<Finding> implausible_sizes(const LoadedModel& loaded);
 
 } // namespace steplap

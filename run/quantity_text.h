@@ -5,9 +5,10 @@
 
 namespace steplap {
 
+/// A prefix of SI, and what it stands for.
 struct UnitPrefix {
-  int exponent = 0; ///< the number is to be multiplied by ten to this
-  const char* text = "";
+  int exponent = 0;      ///< the number is to be multiplied by ten to this
+  const char* text = ""; ///< before the unit: "k", "M"; "" none
 };
 
 /// Is the unit written with prefixes?

@@ -18,10 +18,11 @@ struct Columns {
   MatX values;                           ///< SI; a row a sample, a column a name
 };
 
+/// Everything that is known about one run, as judged_run() and report_on() make it.
 struct Report {
-  Run run;
-  Estimate estimate;
-  Judgement judgement;
+  Run run;                                     ///< the run itself, with its model and its failure, if there was one
+  Estimate estimate;                           ///< errors of its numbers, or why there are none
+  Judgement judgement;                         ///< the verdict and all that it was made of
   std::vector<JointAssessment> joints;         ///< of all step-lap joints
   std::vector<Finding> findings;               ///< before and after the run: those that forbid "hold" stand in the judgement, too
   std::optional<SecondOpinion> second_opinion; ///< if one was asked for
@@ -36,9 +37,12 @@ struct Report {
   [[nodiscard]] std::optional<double> error_of(const ChannelRange& range, double ChannelError::*which) const;
   /// Of the i-th event of the run.
   [[nodiscard]] std::optional<double> event_error(std::size_t i) const;
+  /// Of the dissipated energy, J; empty without an estimate.
   [[nodiscard]] std::optional<double> dissipated_error() const;
+  /// Of the work of loads and drives, J; empty without an estimate.
   [[nodiscard]] std::optional<double> work_error() const;
 
+  /// All rows that were sampled, in memory: as many numbers as rows times names.
   [[nodiscard]] Columns columns() const;
   /// The text of summary.json, without the files that it lists where it is written.
   [[nodiscard]] std::string json() const;

@@ -7,9 +7,9 @@
 //   drawing.json    what the machine looks like (drawing.h)
 //   summary.json    settings, statistics, extremes of every channel, final state; inputs and the files above with their SHA-256,
 //                   and at its end a SHA-256 of itself, so that whoever reads results knows whether they are whole
-// Nothing in them depends on the clock or the machine: two runs of a model give the same bytes; but whether errors are
-// estimated hangs on the computing time, unless the user says. A run
-// that did not reach its end is saved as partial_trajectory.csv and so on.
+// Nothing in them depends on the clock or the machine: two runs of a model give the same bytes. Whether errors are estimated
+// hangs on the work that it takes, counted and not timed (estimate.h). A run that did not reach its end is saved as
+// partial_trajectory.csv and so on.
 #pragma once
 
 #include "mbd/io/atomic_file.h"
@@ -20,23 +20,28 @@
 
 namespace steplap {
 
+/// One file of a run, before it is written.
 struct ResultFile {
-  std::string name; ///< in the folder of the run
-  std::string content;
+  std::string name;    ///< in the folder of the run
+  std::string content; ///< all of it, unless it is given in parts
   FileContent parts{}; ///< of what is too large to be held: given part by part instead of `content`
 };
 
 /// `errors`: of the columns, none if they were not estimated; not-a-number is unknown.
 void write_trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors, const FileSink& put);
+/// The text of trajectory.csv, in memory.
 [[nodiscard]] std::string trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors = {});
+/// The text of events.csv. `errors`: of the times, s, one per event; nullptr if they were not estimated.
 [[nodiscard]] std::string events_csv(const std::vector<Event>& events, const std::vector<double>* errors = nullptr);
 /// A file that was written, as summary.json lists it.
 struct FileRecord {
-  std::string name;
-  std::size_t bytes = 0;
-  std::string sha256;
+  std::string name;      ///< in the folder of the run
+  std::size_t bytes = 0; ///< its size
+  std::string sha256;    ///< of its bytes, in hexadecimal digits
 };
+/// One per file, in the order in which they were written.
 using FileRecords = std::vector<FileRecord>;
+/// The text of summary.json, which lists `files` and ends with a checksum of itself.
 [[nodiscard]] std::string summary_json(const Report& report, const FileRecords& files);
 /// What comes before the checksum at the end of a summary; empty where that is not there or is not its own.
 [[nodiscard]] std::string_view checked_summary(std::string_view text);

@@ -9,26 +9,29 @@
 
 namespace steplap {
 
+/// A column of trajectory.csv.
 struct ResultChannel {
-  std::string name, unit;
+  std::string name, unit;     ///< as in the header row: "active part.x", "m"
   std::vector<double> values; ///< SI; may hold not-a-number and infinities
 };
 
+/// A row of events.csv.
 struct ResultEvent {
-  double t = 0.0;
-  std::string element;
+  double t = 0.0;                   ///< s
+  std::string element;              ///< its name
   std::string words;                ///< as they stand in the file, to be shown
   EventKind kind = EventKind::none; ///< what they mean; none: nothing that this program knows
   std::optional<double> error = {}; ///< s, of t, if it was estimated; not-a-number: unknown
 };
 
+/// All that the folder of a run holds.
 struct Results {
-  std::string folder;      ///< as given
-  std::string name;        ///< last part of the folder
-  bool is_partial = false; ///< of a run that did not reach its end
-  std::vector<double> times;
-  std::vector<ResultChannel> channels;
-  std::vector<ResultEvent> events;
+  std::string folder;                  ///< as given
+  std::string name;                    ///< last part of the folder
+  bool is_partial = false;             ///< of a run that did not reach its end
+  std::vector<double> times;           ///< s, ascending
+  std::vector<ResultChannel> channels; ///< as many values each as there are times
+  std::vector<ResultEvent> events;     ///< ascending in time
   std::string model, drawing, summary; ///< texts of model.toml, drawing.json, summary.json
   std::string model_date;              ///< of model.toml, "2026-01-31 13:05 UTC"
 };

@@ -10,9 +10,9 @@ namespace steplap {
 
 /// What a run left behind; it keeps its model and system alive, into which the result's pointers lead.
 struct Run {
-  std::shared_ptr<const LoadedModel> loaded;
-  RunResult result;               ///< up to the failure, if there was one
-  std::optional<Failure> failure; ///< what stopped the run; none: it reached its end
+  std::shared_ptr<const LoadedModel> loaded; ///< never nullptr
+  RunResult result;                          ///< up to the failure, if there was one
+  std::optional<Failure> failure;            ///< what stopped the run; none: it reached its end
 };
 
 /// Options of a simulation of the model, by its own settings and by `options`. Throws std::invalid_argument for options that are none.

@@ -11,21 +11,23 @@
 
 namespace steplap {
 
+/// When the errors of a run are estimated.
 enum class Estimating {
-  never,
+  never, ///< not at all: criteria are then judged as if their numbers were exact
   cheap, ///< where finer runs cost a second or so: counted in evaluations, not timed
-  always
+  always ///< whatever it costs
 };
 
+/// How a model is run: everything that its file does not say.
 struct RunOptions {
-  int threads = 1;                     ///< at least 1: SimulationOptions::threads
-  bool has_extremes = true;            ///< without them nothing is judged: the verdict is open
-  std::optional<State> start;          ///< where the run begins; the model's own start if not given
-  Estimating estimating = Estimating::cheap;
-  bool has_second_opinion = false;     ///< for a verdict that holds (second_opinion.h)
-  std::function<void(double t)> progress;            ///< called at every step with its time, s
-  std::function<std::string()> stop;                 ///< asked at every step; what it says is why the run ends there, "" lets it go on
-  std::function<void(const Finding&)> note;          ///< told of each finding when it is found
+  int threads = 1;                           ///< at least 1: SimulationOptions::threads
+  bool has_extremes = true;                  ///< without them nothing is judged: the verdict is open
+  std::optional<State> start;                ///< where the run begins; the model's own start if not given
+  Estimating estimating = Estimating::cheap; ///< when errors are estimated
+  bool has_second_opinion = false;           ///< for a verdict that holds (second_opinion.h)
+  std::function<void(double t)> progress;    ///< called at every step with its time, s
+  std::function<std::string()> stop;         ///< asked at every step; what it says is why the run ends there, "" lets it go on
+  std::function<void(const Finding&)> note;  ///< told of each finding when it is found
 };
 
 } // namespace steplap

@@ -12,12 +12,13 @@
 
 namespace steplap {
 
+/// What the other method said, or why it said nothing.
 struct SecondOpinion {
-  std::string method;        ///< with its step or tolerance: "moreau@0.0005"
-  std::string none_because;  ///< not empty: it has no opinion, and why
-  std::string disagreement;  ///< not empty: what differs by more than both errors
-  double worst_ratio = 0.0;  ///< of differences over what the errors allow
-  double known_until = 0.0;  ///< s: from there on it is too coarse to tell
+  std::string method;       ///< with its step or tolerance: "moreau@0.0005"
+  std::string none_because; ///< not empty: it has no opinion, and why
+  std::string disagreement; ///< not empty: what differs by more than both errors
+  double worst_ratio = 0.0; ///< of differences over what the errors allow
+  double known_until = 0.0; ///< s: from there on it is too coarse to tell
 };
 
 /// `run` reached its end; it was made with `options`.

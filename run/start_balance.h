@@ -11,10 +11,13 @@
 
 namespace steplap {
 
+/// The forces at the start of a run and the accelerations that they give; made once, asked for each contact.
 class StartBalance {
 public:
+  /// In the pose of `state`, with nothing moving.
   StartBalance(const System& system, const State& state);
 
+  /// How fast a coordinate begins to open.
   struct Opening {
     double acceleration = 0.0; ///< m/s² or rad/s², by all forces
     double by_loads = 0.0;     ///< by those that are no contacts', its size
@@ -25,6 +28,7 @@ public:
 
   /// Gradient of the gap of a contact that presses, by the index of its force; empty if that one does not press.
   [[nodiscard]] VecX gap_gradient(int contact) const;
+  /// Gradient of what a row measures: three numbers per body, the ground left out.
   [[nodiscard]] VecX gradient(const RowSpec& row) const;
 
 private:

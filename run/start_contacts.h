@@ -7,14 +7,15 @@
 
 namespace steplap {
 
+/// One contact where the run begins.
 struct ContactAtStart {
-  const ElementEntry* entry = nullptr;
-  int contact = -1;               ///< index of its force in an evaluation
-  int a = k_ground, b = k_ground; ///< bodies of the system
-  double gap = 0.0;               ///< m, negative: pressed so deep
-  double force = 0.0;             ///< N
-  Vec2 place = Vec2::Zero();      ///< of marker a, ground axes, m
-  std::optional<double> along;    ///< m, of a face with ends: where on it, from marker b
+  const ElementEntry* entry = nullptr; ///< of the model
+  int contact = -1;                    ///< index of its force in an evaluation
+  int a = k_ground, b = k_ground;      ///< bodies of the system
+  double gap = 0.0;                    ///< m, negative: pressed so deep
+  double force = 0.0;                  ///< N
+  Vec2 place = Vec2::Zero();           ///< of marker a, ground axes, m
+  std::optional<double> along;         ///< m, of a face with ends: where on it, from marker b
 };
 
 /// The state that the run begins in: on the joints, at rest if the model asks for that. `as_given`: whatever it asks for.

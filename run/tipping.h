@@ -17,13 +17,14 @@
 
 namespace steplap {
 
+/// How near a part is to tipping over, and about what.
 struct Tipping {
-  int body = 0;             ///< the heaviest of the part
-  int others = 0;           ///< bodies that tip with it
-  std::string about, lifts; ///< feet
-  double margin = 0.0;      ///< |φ|, rad; negative: it tips over as it is, and would stand if tilted back by so much
-  bool is_clockwise = true; ///< the tilt of the ground that makes it tip
-  double acceleration = 0.0; ///< of what it stands on that makes it tip, m/s²; zero: none does
+  int body = 0;                               ///< the heaviest of the part
+  int others = 0;                             ///< bodies that tip with it
+  std::string about, lifts;                   ///< feet
+  double margin = 0.0;                        ///< |φ|, rad; negative: it tips over as it is, and would stand if tilted back by so much
+  bool is_clockwise = true;                   ///< the tilt of the ground that makes it tip
+  double acceleration = 0.0;                  ///< of what it stands on that makes it tip, m/s²; zero: none does
   std::optional<double> slope, slope_at_most; ///< of what it stands on, now and where it tips, rad; where all feet stand on one
 };
 
@@ -35,6 +36,7 @@ struct Unjudged {
   int body = 0;    ///< the heaviest of the part
   std::string why; ///< follows "because"
 };
+/// Of every such part; parts that are judged are not among them.
 [[nodiscard]] std::vector<Unjudged> not_judged_for_tipping(const LoadedModel& loaded, const State& state);
 
 /// A sentence for each part that tips over as it is: about what, and from which angle on.

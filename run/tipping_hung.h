@@ -13,18 +13,19 @@ namespace steplap {
 
 /// A load at the body that carries it.
 struct HungLoad {
-  int carrier = k_ground;
+  int carrier = k_ground;    ///< body of the system
   Vec2 point = Vec2::Zero(); ///< it hangs from, in the ground's axes
-  double mass = 0.0;
+  double mass = 0.0;         ///< kg
   int bodies = 0;            ///< of which it is made
 };
 
+/// What hangs in a pose, and what is left for whatever carries it.
 struct Hanging {
-  std::vector<HungLoad> loads;
-  std::vector<char> is_hung;         ///< per body
+  std::vector<HungLoad> loads; ///< one for each load that hangs
+  std::vector<char> is_hung;   ///< per body
   std::vector<BodyForce>
-      correction; ///< per body, of those that carry: what forces of elements are more, with loads at rest
-  std::vector<std::string> by;       ///< names of the elements that they hang by
+      correction;              ///< per body, of those that carry: what forces of elements are more, with loads at rest
+  std::vector<std::string> by; ///< names of the elements that they hang by
 };
 
 /// `force`: on each body, of elements that are neither contacts nor joints, in `state`.

@@ -21,12 +21,13 @@ struct Blocks {
   VecX weight, turned, loads; ///< A, B, C
 };
 
+/// Where blocks come down, and how.
 struct Collapse {
-  double turned = 0.0;   ///< φ of gravity, rad
-  VecX motion;           ///< in which they come down, of length 1
-  VecX gap_forces;       ///< at φ, of a balance that is still possible there; empty if there is none
-  VecX joint_forces;     ///< the same, the shortest of them
-  bool stands = true;    ///< with φ = 0
+  double turned = 0.0; ///< φ of gravity, rad
+  VecX motion;         ///< in which they come down, of length 1
+  VecX gap_forces;     ///< at φ, of a balance that is still possible there; empty if there is none
+  VecX joint_forces;   ///< the same, the shortest of them
+  bool stands = true;  ///< with φ = 0
 };
 
 /// In one direction of tilting, `sign` = ±1: up to where what stands goes on standing, or from where on what does not

@@ -3,6 +3,6 @@
 
 namespace steplap {
 
-extern const char* const k_version;
+extern const char* const k_version; ///< "0.1.0"
 
 } // namespace steplap

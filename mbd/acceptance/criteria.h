@@ -9,6 +9,8 @@
 
 namespace steplap {
 
+/// Judges one criterion of the model by the extremes and events of a run that looked for extremes. Without the value asked for
+/// the outcome is "open".
 [[nodiscard]] CriterionResult judge_criterion(const Criterion& criterion, const RunResult& result);
 
 } // namespace steplap

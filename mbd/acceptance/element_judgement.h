@@ -7,10 +7,11 @@
 
 namespace steplap {
 
+/// What a kind of element says of one of its elements after a run.
 struct ElementJudgement {
-  std::vector<CriterionResult> criteria;
-  std::vector<std::string> caps; ///< why the run cannot mean "hold" (Judgement::caps)
-  std::string distrust;          ///< not empty: the run says of the element what cannot be
+  std::vector<CriterionResult> criteria; ///< may be none
+  std::vector<std::string> caps;         ///< why the run cannot mean "hold" (Judgement::caps)
+  std::string distrust;                  ///< not empty: the run says of the element what cannot be
 };
 
 /// The range of a channel, or nullptr if the run has none.

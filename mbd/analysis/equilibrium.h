@@ -20,19 +20,20 @@ namespace steplap {
 
 /// How far a friction element that holds is from slipping.
 struct FrictionMargin {
-  int friction = 0;   ///< index in System::frictions
-  double used = 0.0;  ///< share of what it could bear: the wrench over the largest one of its direction
+  int friction = 0;       ///< index in System::frictions
+  double used = 0.0;      ///< share of what it could bear: the wrench over the largest one of its direction
   bool is_shared = false; ///< the least share with which it and others can bear the load that they have in common
 };
 
+/// A pose of rest and how it was found.
 struct Equilibrium {
-  State state;                  ///< at rest; modes and friction phases belong to it
-  double residual = 0.0;        ///< largest acceleration left, m/s² or rad/s²
-  double moved = 0.0;           ///< largest displacement from the start, m
-  int iterations = 0;
-  bool is_settled = false;      ///< found by letting the damped machine settle in time from the start
-  int settling_steps = 0;       ///< that this took
-  bool hangs_on_way = false;    ///< settled, and friction holds it: one rest of many
+  State state;                         ///< at rest; modes and friction phases belong to it
+  double residual = 0.0;               ///< largest acceleration left, m/s² or rad/s²
+  double moved = 0.0;                  ///< largest displacement from the start, m
+  int iterations = 0;                  ///< of the search
+  bool is_settled = false;             ///< found by letting the damped machine settle in time from the start
+  int settling_steps = 0;              ///< that this took
+  bool hangs_on_way = false;           ///< settled, and friction holds it: one rest of many
   std::vector<FrictionMargin> margins; ///< of those that hold
   std::vector<MotionPart> indifferent; ///< directions along which nothing holds it, by their largest parts
   int more_indifferent = 0;            ///< and how many more, where they are too many to be named

@@ -29,29 +29,30 @@
 
 namespace steplap {
 
-inline constexpr double k_unknown_error = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double k_unknown_error = std::numeric_limits<double>::quiet_NaN(); ///< Stands for an error that is not known: not-a-number.
 
 /// Errors of what a run tells of a channel (ChannelRange), in its unit. Not-a-number: unknown.
 struct ChannelError {
-  double low = 0.0, high = 0.0, final = 0.0;
-  double t_low = 0.0, t_high = 0.0;   ///< s
-  double first_above_one = 0.0;       ///< s
-  double curve = 0.0; ///< of the samples written; of what jumps, not of those between an event and its partner
-  bool is_sampled = false;
+  double low = 0.0, high = 0.0, final = 0.0; ///< of the extremes and of the value at the end
+  double t_low = 0.0, t_high = 0.0;          ///< s
+  double first_above_one = 0.0;              ///< s
+  double curve = 0.0;                        ///< of the samples written; of what jumps, not of those between an event and its partner
+  bool is_sampled = false;                   ///< `curve` is known, since the channel was sampled
 
   /// Of extremes, end and samples.
   [[nodiscard]] double largest() const;
 };
 
+/// The errors of all that a run tells.
 struct GlobalErrorEstimate {
-  RunDifference error;                ///< by kind, scaled as in run_comparison.h
-  std::vector<ChannelError> channels; ///< of every channel of the system, in its order
-  std::vector<double> event_times;    ///< s, of every event of the run
-  double dissipated = 0.0, work = 0.0; ///< J
+  RunDifference error;                  ///< by kind, scaled as in run_comparison.h
+  std::vector<ChannelError> channels;   ///< of every channel of the system, in its order
+  std::vector<double> event_times;      ///< s, of every event of the run
+  double dissipated = 0.0, work = 0.0;  ///< J
   std::vector<SimulationOptions> finer; ///< how the finer runs were made, the finest last
-  std::string unknown_because;        ///< not empty: no difference is an estimate, and all errors are unknown
-  RunResult finest;                   ///< without its samples
-  RunStatistics cost;                 ///< of the finer runs together
+  std::string unknown_because;          ///< not empty: no difference is an estimate, and all errors are unknown
+  RunResult finest;                     ///< without its samples
+  RunStatistics cost;                   ///< of the finer runs together
 };
 
 /// The options of the finer runs.
@@ -65,6 +66,7 @@ struct GlobalErrorEstimate {
 
 /// The finer runs would take more evaluations than were granted.
 struct EstimateTooDear : NumericalFailure {
+  /// The message.
   using NumericalFailure::NumericalFailure;
 };
 

@@ -24,6 +24,7 @@ namespace steplap {
   return portable::hypot(z.real(), z.imag());
 }
 
+/// One mode of small vibrations.
 struct VibrationMode {
   std::complex<double> eigenvalue; ///< 1/s; of a pair the one with the positive imaginary part
   /// Per body (x, y, θ) of its centre of gravity, in m and rad; the largest of displacements and of
@@ -33,6 +34,7 @@ struct VibrationMode {
   /// nothing damps, the square of the frequency is not further off than by this share.
   double residual = 0.0;
 
+  /// False: it decays or grows without swinging.
   [[nodiscard]] bool oscillates() const { return eigenvalue.imag() != 0.0; }
   [[nodiscard]] double frequency() const;         ///< Hz, of the damped vibration; 0 if it does not oscillate
   [[nodiscard]] double natural_frequency() const; ///< Hz, |eigenvalue|/2π
@@ -47,18 +49,19 @@ struct WantedModes {
   [[nodiscard]] double distance(const std::complex<double>& eigenvalue) const;
 };
 
+/// The modes found.
 struct VibrationModes {
   std::vector<VibrationMode> modes; ///< ascending natural frequency; rigid motions are not among them
-  int rigid_motions = 0;  ///< coordinates along which nothing holds it, though dampers may resist
-  bool is_all = true;     ///< there are no others
-  bool is_counted = true; ///< that none of those wanted is missing was checked (sparse_modes.h), or all are there
+  int rigid_motions = 0;            ///< coordinates along which nothing holds it, though dampers may resist
+  bool is_all = true;               ///< there are no others
+  bool is_counted = true;           ///< that none of those wanted is missing was checked (sparse_modes.h), or all are there
 };
 
 /// Largest number of coordinates of bodies of which all modes are found, by dense algebra.
 inline constexpr int k_max_modal_coordinates = 1500;
 inline constexpr int k_usual_modes = 20; ///< of larger scenes
 
-enum class ModesAlgebra { by_size, dense, sparse };
+enum class ModesAlgebra { by_size, dense, sparse }; ///< How modes are found; by_size: dense for small scenes, sparse for large ones.
 
 /// About `state`, which must be at rest. Throws NumericalFailure where they do not converge. `algebra`: for tests that hold one
 /// against the other.

@@ -16,14 +16,16 @@
 
 namespace steplap {
 
+/// Runs samples side by side. It owns what they share while they run; one object per thread.
 class Ensemble {
 public:
   /// One run. `simulation` is null if it could not be started; `failure`: what has ended it before its end, null if nothing has.
   struct Finished {
-    std::size_t number = 0; ///< in the order of starts, from 0
-    std::unique_ptr<Simulation> simulation;
-    std::exception_ptr failure;
+    std::size_t number = 0;                 ///< in the order of starts, from 0
+    std::unique_ptr<Simulation> simulation; ///< null if it could not be started
+    std::exception_ptr failure;             ///< null if nothing has ended it before its end
   };
+  /// How tries of steps were made.
   struct Statistics {
     long lane_tries = 0;  ///< tries of steps made in lanes
     long lane_passes = 0; ///< in so many passes, of lanes() at most

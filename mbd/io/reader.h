@@ -34,6 +34,7 @@ namespace steplap {
 /// read, completed and checked as above, so that what is wrong is said with its place. Throw ModelError.
 [[nodiscard]] Model read_given_model(const std::string& path, const Catalogue& catalogue,
                                      const std::vector<std::string>& overrides = {});
+/// The same for text at hand, as parse_model() takes it.
 [[nodiscard]] Model parse_given_model(std::string text, const std::string& file_name, const Catalogue& catalogue,
                                       const std::vector<std::string>& overrides = {});
 

@@ -8,6 +8,7 @@
 
 namespace steplap {
 
+/// Does the unit hang on other fields?
 [[nodiscard]] bool hangs_on_others(const Field& field);
 /// The unit of `field` in `object`, whose fields `table` lists.
 [[nodiscard]] std::string unit_in(const FieldTable& table, const Field& field, const void* object);

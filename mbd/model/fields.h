@@ -18,66 +18,80 @@
 
 namespace steplap {
 
+/// What kind of value a field holds.
 enum class FieldType {
-  number,      ///< double, in `unit`
-  integer,     ///< long
-  boolean,     ///< bool
-  text,        ///< free text
-  choice,      ///< one of `choices`
-  vec2,        ///< [x, y], both in `unit`
-  numbers,     ///< list of numbers, each in `unit`
-  points,      ///< list of [x, y]; x in `unit`, y in `unit2` (same as unit if empty)
-  rings,       ///< list of lists of [x, y]
-  body,        ///< name of a body, or "ground"
-  marker,      ///< name of a marker or body, or an inline marker { body, at | point, ... }
-  signal,      ///< name of a signal
-  signals,     ///< list of names of signals
-  element,     ///< name of an element
-  elements,    ///< list of names of elements
-  texts,       ///< list of free texts
-  quantity,    ///< number, or text with a unit that is only known later: kept as text
-  file         ///< path of a file, relative to the model file that names it; read as a usable path
+  number,   ///< double, in `unit`
+  integer,  ///< long
+  boolean,  ///< bool
+  text,     ///< free text
+  choice,   ///< one of `choices`
+  vec2,     ///< [x, y], both in `unit`
+  numbers,  ///< list of numbers, each in `unit`
+  points,   ///< list of [x, y]; x in `unit`, y in `unit2` (same as unit if empty)
+  rings,    ///< list of lists of [x, y]
+  body,     ///< name of a body, or "ground"
+  marker,   ///< name of a marker or body, or an inline marker { body, at | point, ... }
+  signal,   ///< name of a signal
+  signals,  ///< list of names of signals
+  element,  ///< name of an element
+  elements, ///< list of names of elements
+  texts,    ///< list of free texts
+  quantity, ///< number, or text with a unit that is only known later: kept as text
+  file      ///< path of a file, relative to the model file that names it; read as a usable path
 };
 
 /// What a field holds, after reading: units removed, inline markers replaced by a marker's name.
 using FieldValue = std::variant<double, long, bool, std::string, Vec2, std::vector<double>,
                                 std::vector<Vec2>, std::vector<std::vector<Vec2>>, std::vector<std::string>>;
 
+/// One field of a kind of thing: what a file may give, and where in the struct it goes.
 struct Field {
-  std::string name;
-  FieldType type = FieldType::number;
+  std::string name; ///< as written in a model file
+  FieldType type = FieldType::number; ///< what it holds
   std::string unit;  ///< SI unit in UDUNITS spelling ("N/m"), "" = dimensionless; "N m|N": by other fields (field_units.h)
   std::string unit2; ///< second unit of a list of points
   std::string doc;   ///< one line
-  bool is_required = false;
-  double minimum = -std::numeric_limits<double>::infinity();
-  double maximum = std::numeric_limits<double>::infinity();
-  bool is_minimum_excluded = false;
-  std::vector<std::string> choices;
-  std::function<void(void* object, const FieldValue&)> set;
-  std::function<FieldValue(const void* object)> get;
+  bool is_required = false; ///< a file has to give it
+  double minimum = -std::numeric_limits<double>::infinity(); ///< of each number, in `unit`
+  double maximum = std::numeric_limits<double>::infinity(); ///< of each number, in `unit`
+  bool is_minimum_excluded = false; ///< the value has to be larger than `minimum`
+  std::vector<std::string> choices; ///< of a field of type choice
+  std::function<void(void* object, const FieldValue&)> set; ///< writes the value into the struct; throws std::bad_variant_access for another type
+  std::function<FieldValue(const void* object)> get; ///< reads it; text "" for an optional field that is not given
 };
 
 /// Chained description of one field: table.add("mass", &Body::mass).in("kg").positive().required().
 class FieldBuilder {
 public:
+  /// Describes `field`, which has to outlive it.
   explicit FieldBuilder(Field& field) : field_(&field) {}
+  /// Its SI unit in UDUNITS spelling: "N/m".
   FieldBuilder& in(std::string unit) { return assign(field_->unit, std::move(unit)); }
+  /// Of a list of points: units of x and y.
   FieldBuilder& in(std::string unit, std::string unit2) {
     field_->unit2 = std::move(unit2);
     return in(std::move(unit));
   }
+  /// One line for the reference and for messages.
   FieldBuilder& doc(std::string text) { return assign(field_->doc, std::move(text)); }
+  /// A file has to give it.
   FieldBuilder& required() { return assign(field_->is_required, true); }
+  /// Larger than 0.
   FieldBuilder& positive() { return at_least(0.0).excluding_minimum(); }
+  /// 0 or larger.
   FieldBuilder& not_negative() { return at_least(0.0); }
+  /// Not less than this.
   FieldBuilder& at_least(double lowest) { return assign(field_->minimum, lowest); }
+  /// Not more than this.
   FieldBuilder& at_most(double largest) { return assign(field_->maximum, largest); }
+  /// Larger than the minimum given.
   FieldBuilder& excluding_minimum() { return assign(field_->is_minimum_excluded, true); }
+  /// One of these texts.
   FieldBuilder& one_of(std::vector<std::string> choices) {
     field_->type = FieldType::choice;
     return assign(field_->choices, std::move(choices));
   }
+  /// Of another type than its member's own: a name that refers to something, a file.
   FieldBuilder& as(FieldType type) { return assign(field_->type, type); }
 
 private:
@@ -88,14 +102,18 @@ private:
   Field* field_;
 };
 
+/// The fields of one kind of thing, in the order in which they were added.
 class FieldTable {
 public:
   /// Adds the member `member` of struct T under `name`. Its default is what T{} holds. A member of
   /// type std::optional<X> is a field without a default: absent means "not given".
   template <class T, class M> FieldBuilder add(std::string name, M T::*member);
 
+  /// In that order.
   [[nodiscard]] const std::vector<Field>& fields() const { return fields_; }
+  /// Nullptr if there is none of that name.
   [[nodiscard]] const Field* find(const std::string& name) const;
+  /// Of all fields, in that order.
   [[nodiscard]] std::vector<std::string> names() const;
 
 private:

@@ -12,15 +12,18 @@ class Dynamics;
 class Integrator;
 struct IntegratorSettings;
 
+/// One integration method.
 struct Method {
-  const char* name;
-  bool has_fixed_step;    ///< steps as long as 'step' says; else it chooses them by 'tolerance'
-  bool is_time_stepping;  ///< goes over events without locating them; in absolute coordinates, without inner states
-  bool is_for_damping;    ///< for scenes that are damped faster than they move: what others make small steps for
+  const char* name;          ///< as a model file writes it: "dop853"
+  bool has_fixed_step;       ///< steps as long as 'step' says; else it chooses them by 'tolerance'
+  bool is_time_stepping;     ///< goes over events without locating them; in absolute coordinates, without inner states
+  bool is_for_damping;       ///< for scenes that are damped faster than they move: what others make small steps for
   bool may_step_over_storms; ///< an element whose events crowd may be gone over by time stepping
+  /// For systems of at most `max_dimension` packed numbers.
   std::unique_ptr<Integrator> (*make)(const Dynamics&, const IntegratorSettings&, int max_dimension);
 };
 
+/// All of them, in the order of mbd/integrators/methods.cpp.
 [[nodiscard]] const std::vector<Method>& methods();
 /// Their names, in that order.
 [[nodiscard]] std::vector<std::string> method_names();

@@ -12,7 +12,7 @@
 namespace steplap {
 
 inline constexpr std::size_t k_most_terms = 1000; ///< of one piece
-inline constexpr int k_most_power = 12;
+inline constexpr int k_most_power = 12;           ///< of time, in one piece
 
 /// Σ factor · part; as many factors as parts.
 [[nodiscard]] Signal sum_of(const std::vector<const Signal*>& parts, const std::vector<double>& factors);

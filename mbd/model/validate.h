@@ -25,6 +25,7 @@ using FieldLocator =
 /// Checks the fields of single objects against their tables and the names in a model.
 class FieldChecker {
 public:
+  /// Where a field of the object stands; nullopt: its error is reported already.
   using Locate = std::function<std::optional<Location>(const std::string& field)>;
 
   /// Refers to both; names added to the model later are not known.
@@ -33,6 +34,7 @@ public:
   /// `subject` is what messages call the object: "body 'tank'".
   void check(const FieldTable& table, const void* object, const std::string& subject,
              const Locate& locate);
+  /// True for "ground", too.
   [[nodiscard]] bool is_body(const std::string& name) const { return bodies_.count(name) > 0; }
 
 private:

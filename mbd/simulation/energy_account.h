@@ -12,6 +12,7 @@
 
 namespace steplap {
 
+/// Follows the energies of one run; fed at every step.
 class EnergyAccount {
 public:
   /// Begins with the state packed in y; `tolerance`: of the method's steps, 0 if it does not control them.
@@ -24,7 +25,7 @@ public:
   /// What setting to rest took at an event, J. Throws NumericalFailure if that was no rest.
   void check_settled(double t, double lost) const;
 
-  [[nodiscard]] double residual() const { return worst_; }   ///< largest so far, J
+  [[nodiscard]] double residual() const { return worst_; }      ///< largest so far, J
   [[nodiscard]] double exchanged() const { return exchanged_; } ///< largest change of kinetic energy, dissipation, work, J
   /// What the residual is to be measured against, J.
   [[nodiscard]] double scale() const;

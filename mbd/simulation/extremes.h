@@ -27,28 +27,32 @@
 
 namespace steplap {
 
+/// One end of a channel's range.
 struct Extreme {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  double t = 0.0;
+  double value = std::numeric_limits<double>::quiet_NaN(); ///< in the channel's unit; not-a-number: none
+  double t = 0.0;                                          ///< s, when it was reached
 };
 
+/// What a run tells of one channel.
 struct ChannelRange {
-  const Channel* channel = nullptr;
-  Extreme low, high;  ///< not-a-number where the channel had no value, or has no extremes (Channel::has_extremes)
-  double first = 0.0; ///< at the start
-  double final = 0.0; ///< at the end
+  const Channel* channel = nullptr; ///< of the system, which has to outlive it
+  Extreme low, high;                ///< not-a-number where the channel had no value, or has no extremes (Channel::has_extremes)
+  double first = 0.0;               ///< at the start
+  double final = 0.0;               ///< at the end
   /// Extremes are located to within this; smaller ones were not looked for. Infinite: they may be anywhere beyond.
   double resolution = 0.0;
-  bool had_no_value = false;             ///< it was not-a-number at some time
+  bool had_no_value = false;                              ///< it was not-a-number at some time
   bool is_low_singular = false, is_high_singular = false; ///< met beside a singular position of the joints, where reactions may diverge
-  std::optional<double> first_above_one; ///< s; of channels without a unit: the first time they passed 1
+  std::optional<double> first_above_one;                  ///< s; of channels without a unit: the first time they passed 1
 
   /// Whichever is further from zero.
   [[nodiscard]] const Extreme& largest() const;
 };
 
+/// Follows all channels through one run. Made, fed and asked by Simulation.
 class ExtremeFinder {
 public:
+  /// `max_dimension`: of the packed state. Refers to the system.
   ExtremeFinder(const System& system, int max_dimension);
 
   /// A state from which the motion goes on anew: the start, the far side of an event. `snapshot` is there.
@@ -60,15 +64,16 @@ public:
   /// The end of the run.
   void finish(const Snapshot& snapshot);
 
+  /// Of every channel, in the system's order; complete after finish().
   [[nodiscard]] const std::vector<ChannelRange>& ranges() const { return ranges_; }
 
   static constexpr double k_resolution = 1e-6; ///< of a channel's range
   static constexpr double k_at_pole = 1e9;     ///< numbers without a unit beyond it
 
 private:
-  static constexpr int k_nodes = 9;        ///< at most, inside a stretch
-  static constexpr int k_longest = 16;     ///< steps of a fixed size in a stretch
-  static constexpr double k_noise = 1e-9;  ///< of the largest range of channels in the same unit
+  static constexpr int k_nodes = 9;           ///< at most, inside a stretch
+  static constexpr int k_longest = 16;        ///< steps of a fixed size in a stretch
+  static constexpr double k_noise = 1e-9;     ///< of the largest range of channels in the same unit
   static constexpr double k_rounding = 1e-12; ///< of the largest value in the same unit
   class Site;
   /// Pivots of the constraints, squares of distances in rad²: nearer than a hundredth of a milliradian nothing but a singular
@@ -76,8 +81,8 @@ private:
   static constexpr double k_singular_pivot = 1e-10;
   /// What is known of a channel's curve in the stretch being looked at.
   struct Curve {
-    bool is_open = false;   ///< it may still have an extreme that is not found
-    double error = 0.0;     ///< of the polynomial through the nodes
+    bool is_open = false; ///< it may still have an extreme that is not found
+    double error = 0.0;   ///< of the polynomial through the nodes
   };
   struct Kind { ///< of channels in the same unit
     double range = 0.0, largest = 0.0;
@@ -128,9 +133,9 @@ private:
   std::vector<double> before_;                   ///< values at the beginning of the stretch before
   std::vector<std::vector<double>> node_;        ///< values at the nodes, 0 and 8 are the ends
   std::vector<Curve> curve_;
-  std::vector<double> curvature_;                ///< second derivative as seen lately, per s²
-  std::vector<std::size_t> open_;                ///< channels still followed in this stretch
-  std::vector<double> jitter_; ///< per channel: what rounding was seen to change it by; empty as long as nobody had to ask
+  std::vector<double> curvature_; ///< second derivative as seen lately, per s²
+  std::vector<std::size_t> open_; ///< channels still followed in this stretch
+  std::vector<double> jitter_;    ///< per channel: what rounding was seen to change it by; empty as long as nobody had to ask
   std::vector<ValueBounds> bounds_, bounds_before_;
   std::vector<char> is_wanted_;                  ///< per screened channel: it may be beyond its extremes at the last end
 
@@ -139,7 +144,7 @@ private:
   std::size_t stride_;
   std::vector<double> y_, dy_, scratch_;
   bool is_begun_ = false;
-  bool is_singular_ = false; ///< what was looked at last lies beside a singular position of the joints
+  bool is_singular_ = false;                  ///< what was looked at last lies beside a singular position of the joints
   std::unique_ptr<FormulaExtremes> formulas_; ///< of channels that are formulas
 };
 

@@ -23,6 +23,7 @@ struct ChannelRange;
 class ExtremeSite {
 public:
   virtual ~ExtremeSite() = default;
+  /// Where the channel's extremes are kept.
   [[nodiscard]] virtual ChannelRange& range(std::size_t channel) = 0;
   /// What an extreme of the channel has to be known to.
   [[nodiscard]] virtual double tolerance(std::size_t channel) const = 0;
@@ -32,12 +33,15 @@ public:
   virtual void note(std::size_t channel, double value, double theta) = 0;
 };
 
+/// Bounds channels that are formulas, stretch by stretch.
 class FormulaExtremes {
 public:
   /// `rate_of`: per channel the one that is its rate, −1 if there is none.
   FormulaExtremes(const System& system, const std::vector<int>& rate_of);
 
+  /// Is no channel a formula?
   [[nodiscard]] bool is_empty() const { return formulas_.empty(); }
+  /// Is this channel a formula?
   [[nodiscard]] bool is_formula(std::size_t channel) const { return is_formula_[channel] != 0; }
 
   /// At the beginning of a stretch: a state from which the motion goes on anew.

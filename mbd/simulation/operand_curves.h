@@ -15,9 +15,10 @@
 
 namespace steplap {
 
+/// Polynomials of all operands over the panels of one stretch.
 class OperandCurves {
 public:
-  static constexpr int k_degree = k_enclosure_degree;
+  static constexpr int k_degree = k_enclosure_degree; ///< of the polynomials
 
   /// One curve over one panel, in s from −1 to 1.
   struct Curve {
@@ -25,20 +26,23 @@ public:
     double error = 0.0;                   ///< at most, of the polynomial
     double floor = 0.0;                   ///< of rounding: no panel makes the error less
     Interval hull;                        ///< of what is not smooth
-    bool is_smooth = false;
-    bool lacks_values = false; ///< somewhere
-    bool is_halving = true;    ///< the error is much less than that of the panel of which this is a half
+    bool is_smooth = false;               ///< false: only `hull` is known
+    bool lacks_values = false;            ///< somewhere
+    bool is_halving = true;               ///< the error is much less than that of the panel of which this is a half
   };
+  /// A part of the stretch.
   struct Panel {
-    double begin = 0.0, end = 1.0;
-    int half = -1; ///< the first of its two, −1: it is whole
-    int depth = 0;
+    double begin = 0.0, end = 1.0; ///< in theta
+    int half = -1;                 ///< the first of its two, −1: it is whole
+    int depth = 0;                 ///< halvings of the whole
   };
   /// A look at theta: everything that is wanted there.
   using Look = std::function<Snapshot(double theta)>;
 
+  /// Of these operands.
   explicit OperandCurves(std::vector<FormulaChannel::Leaf> leaves);
 
+  /// Operands there are.
   [[nodiscard]] std::size_t count() const { return leaves_.size(); }
   /// Values now, in SI.
   void read(const Snapshot& snapshot, double* values) const;
@@ -50,13 +54,18 @@ public:
   /// Looks at both halves.
   void halve(int panel, const Look& look);
 
+  /// By its number, from 0.
   [[nodiscard]] const Panel& panel(int i) const { return panels_[static_cast<std::size_t>(i)]; }
+  /// Panels there are, halved ones among them.
   [[nodiscard]] int panels() const { return static_cast<int>(panels_.size()); }
+  /// Of an operand over a panel.
   [[nodiscard]] const Curve& curve(int panel, std::size_t leaf) const { return curves_[static_cast<std::size_t>(panel) * leaves_.size() + leaf]; }
   /// Would halves of the panel be known better?
   [[nodiscard]] bool can_improve(int panel, std::size_t leaf) const;
 
+  /// Encloses an operand over a part of a panel, in s from −1 to 1.
   [[nodiscard]] Enclosure<k_degree> over(int panel, std::size_t leaf, double begin, double end) const;
+  /// Encloses an operand at one place of a panel.
   [[nodiscard]] Enclosure<0> at(int panel, std::size_t leaf, double theta) const;
 
 private:

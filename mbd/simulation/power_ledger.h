@@ -14,8 +14,10 @@
 
 namespace steplap {
 
+/// Integrates powers beside a run; one per Simulation.
 class PowerLedger final : public Integrals {
 public:
+  /// `max_dimension`: of the packed state. Refers to the system.
   PowerLedger(const System& system, int max_dimension);
 
   /// A state from which the motion goes on anew: the start, the far side of an event.
@@ -26,12 +28,13 @@ public:
   void add_stepped(double t, const Snapshot& snapshot);
   /// An event is about to be handled, at `snapshot`.
   void end(const Snapshot& snapshot);
+  /// Does any integrand take energy from what is stored at events?
   [[nodiscard]] bool has_stored() const { return has_stored_; }
 
   [[nodiscard]] double value(int slot, double t) const override;
 
 private:
-  static constexpr int k_nodes = 7;     ///< at most
+  static constexpr int k_nodes = 7;         ///< at most
   static constexpr std::size_t k_kept = 40; ///< stretches that may still be asked for (ExtremeFinder::k_longest, twice)
   /// ∫ power over part of a step: base + h Σ coefficient_k θ^(k+1)/(k+1).
   struct Piece {

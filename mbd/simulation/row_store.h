@@ -9,10 +9,12 @@
 
 namespace steplap {
 
+/// Rows of equal width, added at the end and read in any order.
 class RowStore {
 public:
   static constexpr std::size_t k_most_in_memory = std::size_t{1} << 23; ///< numbers: 64 MB
 
+  /// Rows of `width` numbers; beyond `most_in_memory` numbers they go to a file.
   explicit RowStore(std::size_t width, std::size_t most_in_memory = k_most_in_memory);
   RowStore(const RowStore&) = delete;
   RowStore& operator=(const RowStore&) = delete;
@@ -21,7 +23,9 @@ public:
   /// The place of a new row, to be filled with its numbers; null after a failure. Throws NumericalFailure, once, if there is no
   /// more room: the rows before stay as they are and what comes later is not kept.
   [[nodiscard]] double* add_row();
+  /// Rows there are.
   [[nodiscard]] std::size_t size() const { return size_; }
+  /// Are rows in a file by now?
   [[nodiscard]] bool is_on_disk() const { return file_ >= 0; }
 
   /// Valid until another row is asked for.

@@ -21,32 +21,34 @@
 
 namespace steplap {
 
+/// How a run is made. What is wrong with it is thrown as std::invalid_argument when the run begins.
 struct SimulationOptions {
-  double end = 1.0;
-  std::string integrator = "auto";
-  IntegratorSettings settings;
+  double end = 1.0;                                 ///< s
+  std::string integrator = "auto";                  ///< name of a method (mbd/model/method.h)
+  IntegratorSettings settings;                      ///< step, tolerance and the like, of the method
   Coordinates coordinates = Coordinates::automatic; ///< moreau: always absolute
   StageCode stage_code = StageCode::when_it_pays;   ///< of explicit methods
-  std::size_t kept_layouts = 0;            ///< at a time (layout_store.h); 0: as memory allows. Changes no result
-  double output_step = 0.0;                ///< s; 0: no samples
-  std::vector<std::string> channels;       ///< patterns of those sampled; empty: all
-  bool has_extremes = false;               ///< look for the extremes of all channels, sampled or not
-  double storm_step = 1e-2;                ///< of time stepping through a storm of events, in shares of its window
-  long storm_parts = 10000;                ///< into which these are halved at most: events are the cheaper then
-  long max_events = 100000;
-  int threads = 1;                         ///< that share the evaluation of scenes of some thousand bodies; changes no result
-  std::function<void(double t)> progress;  ///< called now and then, if given
+  std::size_t kept_layouts = 0;                     ///< at a time (layout_store.h); 0: as memory allows. Changes no result
+  double output_step = 0.0;                         ///< s; 0: no samples
+  std::vector<std::string> channels;                ///< patterns of those sampled; empty: all
+  bool has_extremes = false;                        ///< look for the extremes of all channels, sampled or not
+  double storm_step = 1e-2;                         ///< of time stepping through a storm of events, in shares of its window
+  long storm_parts = 10000;                         ///< into which these are halved at most: events are the cheaper then
+  long max_events = 100000;                         ///< beyond which the run is given up
+  int threads = 1;                                  ///< that share the evaluation of scenes of some thousand bodies; changes no result
+  std::function<void(double t)> progress;           ///< called now and then, if given
 };
 
 /// The options a model asks for.
 [[nodiscard]] SimulationOptions options_of(const Model& model);
 
+/// What a run took and how exact it was.
 struct RunStatistics {
-  long steps = 0, rejections = 0, evaluations = 0, events = 0;
+  long steps = 0, rejections = 0, evaluations = 0, events = 0; ///< steps that counted, tries refused, evaluations of all forces, events
   long coded_stages = 0;               ///< evaluations made by machine code
   long storms = 0;                     ///< stretches that time stepping went over
   double max_position_residual = 0.0;  ///< before projection, m or rad
-  double max_velocity_residual = 0.0;
+  double max_velocity_residual = 0.0; ///< the same of velocities, m/s or rad/s
   double energy_residual = 0.0;        ///< largest |E + dissipated − work − E₀| met, J
   double energy_exchanged = 0.0;       ///< largest change of kinetic energy, work, dissipation met at any step, J
   double energy_scale = 0.0;           ///< what the residual is measured against (EnergyAccount::scale), J
@@ -57,13 +59,14 @@ struct RunStatistics {
   double cpu_seconds = 0.0;            ///< of this thread, samples included
 };
 
+/// What a run leaves behind. Channels in it belong to the system, which has to outlive it.
 struct RunResult {
-  std::unique_ptr<Trajectory> trajectory;
-  std::vector<ChannelRange> ranges;        ///< of every channel of the system, if they were asked for
-  std::vector<Event> events;
-  RunStatistics statistics;
-  State final_state;
-  std::string stop_reason; ///< empty if it ran to its end; else which element ended it, and why
+  std::unique_ptr<Trajectory> trajectory; ///< the samples; never nullptr
+  std::vector<ChannelRange> ranges;       ///< of every channel of the system, if they were asked for
+  std::vector<Event> events;              ///< ascending in time
+  RunStatistics statistics;               ///< what it took, and how exact it was
+  State final_state;                      ///< at the end, or where the run stopped
+  std::string stop_reason;                ///< empty if it ran to its end; else which element ended it, and why
 };
 
 /// Steps through a run; owns everything that changes. One object per thread.
@@ -82,10 +85,13 @@ public:
   /// The same in parts, for who makes the tries of several runs side by side (mbd/ensemble): unless begin_advance() says that
   /// the end is reached, make_try() or take_try() and conclude_try() in turn, until that says that the step is made.
   [[nodiscard]] bool begin_advance();
+  /// Makes the try that is due, alone.
   void make_try() { integrator_->make_try(dynamics_); }
+  /// True once the step is made. Throws NumericalFailure.
   [[nodiscard]] bool conclude_try();
   /// What makes the try that is due in lanes; null: only make_try() does.
   [[nodiscard]] StageProgram* lane_program() { return integrator_->lane_try() ? dynamics_.lane_program() : nullptr; }
+  /// Tells that the try was wrong in its lane; make_try() then makes it alone.
   void refuse_try() { lane_program()->note_lane(false); }
   [[nodiscard]] double time() const { return integrator_->t0(); } ///< s, where the step begins that is being tried
   /// Precondition of both: lane_program() is not null.
@@ -96,11 +102,15 @@ public:
   [[nodiscard]] const State& state() const { return state_; } ///< at the last event or the end
   /// The state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
+  /// So far, ascending in time.
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
+  /// The samples so far.
   [[nodiscard]] const Trajectory& trajectory() const { return *trajectory_; }
   /// Not empty if an element ended the run before its time ("'front joint' came apart").
   [[nodiscard]] const std::string& stop_reason() const { return handler_.stop_reason(); }
+  /// So far.
   [[nodiscard]] RunStatistics statistics() const;
+  /// All that the run leaves behind; of a run that ended or that failed. The Simulation is used up.
   [[nodiscard]] RunResult result() &&;
 
 private:
@@ -152,9 +162,9 @@ private:
   double limit_ = 0.0;             ///< up to which signals are read: the last breakpoint set, or the end
   double last_event_ = -std::numeric_limits<double>::infinity();
   int events_at_once_ = 0;
-  long kinks_ = 0; ///< of characteristics, which long tables have many of: max_events leaves them out
-  long next_look_ = 0;       ///< steps at which the pace is looked at
-  double last_look_ = 0.0;   ///< t at the last look
+  long kinks_ = 0;         ///< of characteristics, which long tables have many of: max_events leaves them out
+  long next_look_ = 0;     ///< steps at which the pace is looked at
+  double last_look_ = 0.0; ///< t at the last look
   RunStatistics statistics_;
   double cpu_start_ = 0.0;
 };

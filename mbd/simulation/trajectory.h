@@ -13,6 +13,7 @@
 
 namespace steplap {
 
+/// The samples of one run: a row per time, a column per channel.
 class Trajectory {
 public:
   /// The channels of `system` whose names match one of `patterns` (* and ?; none = all).
@@ -21,8 +22,11 @@ public:
   /// `t`: the time the sample is due; snapshot.t may lie a hair before it, left of a breakpoint.
   void add(double t, const Snapshot& snapshot);
 
+  /// Those sampled, in the system's order.
   [[nodiscard]] const std::vector<const Channel*>& channels() const { return channels_; }
+  /// Rows there are.
   [[nodiscard]] std::size_t size() const { return rows_->size(); }
+  /// Of a row, s.
   [[nodiscard]] double time(std::size_t row) const { return rows_->row(row)[0]; }
   /// Row after row is fast; column after column reads rows that are on disk again and again.
   [[nodiscard]] double value(std::size_t row, std::size_t channel) const { return rows_->row(row)[channel + 1]; }
@@ -32,11 +36,12 @@ public:
   [[nodiscard]] const std::vector<double>& times() const;
   /// Column of a channel by name; throws std::out_of_range for an unknown one.
   [[nodiscard]] std::size_t column(const std::string& name) const;
+  /// All values of a channel by its name, in its unit, one per row; throws std::out_of_range for an unknown one.
   [[nodiscard]] std::vector<double> series(const std::string& name) const;
 
 private:
   std::vector<const Channel*> channels_;
-  std::unique_ptr<RowStore> rows_; ///< time, then the channels
+  std::unique_ptr<RowStore> rows_;    ///< time, then the channels
   mutable std::vector<double> times_; ///< as far as they were asked for
 };
 

@@ -25,14 +25,14 @@ class System;
 /// Everything that changes during a run. Body 0 is the ground; q and v hold (x, y, θ) and its rate of
 /// each body's centre of gravity.
 struct State {
-  double t = 0.0;
-  std::vector<double> q, v;
-  std::vector<UnitMode> mode;           ///< per unit
-  std::vector<FrictionState> friction;  ///< per friction element
-  std::vector<double> memory;           ///< bases of rows
-  std::vector<double> inner;            ///< inner states of force elements
-  double dissipated = 0.0;              ///< J, since the start
-  double work = 0.0;                    ///< J, of loads and drives since the start
+  double t = 0.0;                      ///< s
+  std::vector<double> q, v;            ///< m and rad; m/s and rad/s
+  std::vector<UnitMode> mode;          ///< per unit
+  std::vector<FrictionState> friction; ///< per friction element
+  std::vector<double> memory;          ///< bases of rows
+  std::vector<double> inner;           ///< inner states of force elements
+  double dissipated = 0.0;             ///< J, since the start
+  double work = 0.0;                   ///< J, of loads and drives since the start
 };
 
 /// Integrals over time that a run keeps beside the motion (System::integrands).
@@ -45,20 +45,20 @@ public:
 
 /// What a channel may look at: a state with the accelerations and reactions that belong to it.
 struct Snapshot {
-  double t = 0.0;
-  const Motion<double>* motion = nullptr;  ///< per body
-  const double* acceleration = nullptr;    ///< 3 per body
-  const Evaluation* evaluation = nullptr;  ///< contact forces, modes, friction states
-  const double* row_force = nullptr;       ///< multiplier of every bilateral row
-  const double* friction_force = nullptr;  ///< wrench of every friction element along its rows
-  const double* memory = nullptr;
-  double dissipated = 0.0, work = 0.0;     ///< J, of all since the start
-  const Integrals* integrals = nullptr;    ///< null where no run keeps any: nothing has passed yet
+  double t = 0.0;                         ///< s
+  const Motion<double>* motion = nullptr; ///< per body
+  const double* acceleration = nullptr;   ///< 3 per body
+  const Evaluation* evaluation = nullptr; ///< contact forces, modes, friction states
+  const double* row_force = nullptr;      ///< multiplier of every bilateral row
+  const double* friction_force = nullptr; ///< wrench of every friction element along its rows
+  const double* memory = nullptr;         ///< of driven rows and anchors (State::memory)
+  double dissipated = 0.0, work = 0.0;    ///< J, of all since the start
+  const Integrals* integrals = nullptr;   ///< null where no run keeps any: nothing has passed yet
 };
 
 /// Between which a value lies.
 struct ValueBounds {
-  double low = 0.0, high = 0.0;
+  double low = 0.0, high = 0.0; ///< in the value's unit
 };
 
 /// What a channel means, in words, given where it is made.
@@ -67,22 +67,26 @@ struct ChannelText {
   std::string_view sign;    ///< when it is positive, in whose axes; "" where its meaning says so
   std::string_view codes;   ///< of a mode: "0 free, 1 sticks, 2 slips"
 
+  /// All three from texts.
   ChannelText(std::string_view meaning_, std::string_view sign_ = {}, std::string_view codes_ = {})
       : meaning(meaning_), sign(sign_), codes(codes_) {}
+  /// Its meaning alone.
   ChannelText(const char* meaning_) : meaning(meaning_) {}
+  /// Its meaning alone.
   ChannelText(const std::string& meaning_) : meaning(meaning_) {}
 };
 
+/// A named number that a run writes, bounds and judges.
 struct Channel {
-  std::string name;
-  std::string unit;
-  std::string doc; ///< its meaning
-  std::function<double(const Snapshot&)> value;
+  std::string name;                             ///< "<element>.<quantity>"
+  std::string unit;                             ///< SI; "" = none
+  std::string doc;                              ///< its meaning
+  std::function<double(const Snapshot&)> value; ///< at a moment of a run, in `unit`
   /// Of a value that costs much: bounds that cost little, for whoever only wants to know its extremes.
   std::function<ValueBounds(const Snapshot&)> bounds = {};
-  bool has_extremes = true; ///< false: it passes through infinity
+  bool has_extremes = true;          ///< false: it passes through infinity
   std::string sign = {}, codes = {}; ///< ChannelText
-  bool is_on_request = false; ///< made for a model that asks for it
+  bool is_on_request = false;        ///< made for a model that asks for it
 };
 
 /// A power that a run integrates over time, since some channel wants to know (Snapshot::integrals).
@@ -93,72 +97,76 @@ struct Integrand {
 
 /// Mass properties and start of a body; index 0 is the ground.
 struct BodyData {
-  std::string name;
-  double mass = 0.0, inertia = 0.0;
-  Vec3 pose = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
+  std::string name;                 ///< of the model; "ground" for the ground
+  double mass = 0.0, inertia = 0.0; ///< kg; kg m², about the centre of gravity
+  Vec3 pose = Vec3::Zero();         ///< (x, y, θ) of the centre of gravity in the reference pose, m and rad
+  Vec3 velocity = Vec3::Zero();     ///< its rate at the start, m/s and rad/s
 };
 
 /// Rows that belong together: a joint's, or a drive's.
 struct RowBlock {
-  int first = 0, count = 0;
-  bool is_rigid = false;  ///< two axis rows at one point and the angle: holds a and b rigidly together
-  int coordinate = -1;    ///< 0, 1, 2: it drives x, y or θ of the centre of gravity of a, and nothing else
-  int element = 0;
+  int first = 0, count = 0; ///< in System::rows
+  bool is_rigid = false;    ///< two axis rows at one point and the angle: holds a and b rigidly together
+  int coordinate = -1;      ///< 0, 1, 2: it drives x, y or θ of the centre of gravity of a, and nothing else
+  int element = 0;          ///< index in System::element_names
 };
 
 /// A force element with modes.
 struct Unit {
-  const ForceGroup* group = nullptr;
-  int index = 0;       ///< in its group
-  int watch = 0, watch_count = 0;
-  int element = 0;
+  const ForceGroup* group = nullptr; ///< never nullptr
+  int index = 0;                     ///< in its group
+  int watch = 0, watch_count = 0;    ///< its first watch value, and how many it has
+  int element = 0;                   ///< index in System::element_names
 };
 
+/// A friction element, with the places that it has in the arrays of a run.
 struct FrictionUnit {
-  std::unique_ptr<FrictionElement> friction;
-  int row = 0;         ///< first slot of its wrench in Snapshot::friction_force
-  int watch = 0;
-  int element = 0;
+  std::unique_ptr<FrictionElement> friction; ///< never nullptr
+  int row = 0;                               ///< first slot of its wrench in Snapshot::friction_force
+  int watch = 0;                             ///< its first watch value
+  int element = 0;                           ///< index in System::element_names
 };
 
+/// A compiled model: read by any number of threads at a time. It does not refer to the model.
 class System {
 public:
   System() = default;
   System(const System&) = delete; // channels and rows refer to what it owns
   System& operator=(const System&) = delete;
 
-  std::string title;
-  Vec2 gravity = Vec2::Zero();
-  SceneUnits scale;
-  std::vector<BodyData> bodies;
-  std::vector<std::string> element_names;
-  std::vector<std::string> element_kinds;
-  std::vector<std::unique_ptr<ForceGroup>> groups;
-  std::vector<RowSpec> rows; ///< bilateral and driven
-  std::vector<RowBlock> row_blocks;
-  LinkTable links;           ///< those of force elements first
-  int force_link_count = 0;
-  std::vector<Unit> units;
-  std::vector<FrictionUnit> frictions;
-  std::vector<Channel> channels;
-  std::vector<Integrand> integrands;         ///< of channels on request
-  std::vector<std::unique_ptr<Channel>> operands; ///< of expressions, where they are no channels themselves
-  std::vector<std::unique_ptr<ForceGroup>> shares; ///< of single elements, whose energy channels ask for
-  std::vector<double> breakpoints; ///< of all signals in use, ascending
-  std::vector<double> motion_breakpoints; ///< of those that are no mere forces (SignalUse), ascending
+  std::string title;                                           ///< of the model
+  Vec2 gravity = Vec2::Zero();                                 ///< m/s², ground axes
+  SceneUnits scale;                                            ///< the scene's own length and times
+  std::vector<BodyData> bodies;                                ///< the ground first
+  std::vector<std::string> element_names; ///< in the order of the model
+  std::vector<std::string> element_kinds;                      ///< of each element
+  std::vector<std::unique_ptr<ForceGroup>> groups;             ///< one for each combination of measure and law
+  std::vector<RowSpec> rows;                                   ///< bilateral and driven
+  std::vector<RowBlock> row_blocks;                            ///< of `rows`, in their order
+  LinkTable links;                                             ///< those of force elements first
+  int force_link_count = 0;                                    ///< how many of `links` force elements act in
+  std::vector<Unit> units;                                     ///< force elements with modes
+  std::vector<FrictionUnit> frictions;                         ///< friction elements, in the order in which they were compiled
+  std::vector<Channel> channels;                               ///< all that can be written of a run
+  std::vector<Integrand> integrands;                           ///< of channels on request
+  std::vector<std::unique_ptr<Channel>> operands;              ///< of expressions, where they are no channels themselves
+  std::vector<std::unique_ptr<ForceGroup>> shares;             ///< of single elements, whose energy channels ask for
+  std::vector<double> breakpoints;                             ///< of all signals in use, ascending
+  std::vector<double> motion_breakpoints;                      ///< of those that are no mere forces (SignalUse), ascending
   double drives_end = std::numeric_limits<double>::infinity(); ///< the first drive jumps there: no run may pass it, s
-  std::vector<double> initial_memory;
-  std::vector<double> initial_inner;
-  std::vector<int> inner_elements;           ///< of each inner state
-  std::vector<const ForceGroup*> inner_groups; ///< those with inner states
-  std::vector<char> is_body_used; ///< per body: some force element or friction refers to it
-  bool has_work = false; ///< some load, motor or drive may do work
-  int contact_count = 0;
-  int watch_count = 0;
-  int friction_row_count = 0;
+  std::vector<double> initial_memory;                          ///< where State::memory starts
+  std::vector<double> initial_inner;                           ///< where State::inner starts
+  std::vector<int> inner_elements;                             ///< of each inner state
+  std::vector<const ForceGroup*> inner_groups;                 ///< those with inner states
+  std::vector<char> is_body_used;                              ///< per body: some force element or friction refers to it
+  bool has_work = false;                                       ///< some load, motor or drive may do work
+  int contact_count = 0;                                       ///< of normal forces (Evaluated::contact_force)
+  int watch_count = 0;                                         ///< of values watched for events
+  int friction_row_count = 0;                                  ///< of rows of all friction elements together
 
+  /// The ground included.
   [[nodiscard]] int body_count() const { return static_cast<int>(bodies.size()); }
+  /// Numbers in State::inner.
   [[nodiscard]] int inner_count() const { return static_cast<int>(initial_inner.size()); }
   /// Of the packed state, where nothing is merged (dynamics.h).
   [[nodiscard]] int largest_dimension() const { return 6 * body_count() + inner_count() + 2; }
@@ -166,9 +174,11 @@ public:
   [[nodiscard]] State initial_state() const;
   /// Potential energy: gravity and all that is stored in elements.
   [[nodiscard]] double potential_energy(const Motion<double>* motion) const;
+  /// Of all bodies, J.
   [[nodiscard]] double kinetic_energy(const State& state) const;
   /// Angular frequency of the fastest harmonic of all loads and drives between the breakpoints about t, rad/s; 0: none.
   [[nodiscard]] double fastest_at(double t) const;
+  /// Nullptr if there is none of that name.
   [[nodiscard]] const Channel* find_channel(const std::string& name) const;
 
 private:
@@ -187,14 +197,14 @@ void start_drives(const System& system, State& state);
 /// Where a marker ends up: a compiled body and a point and angle in its frame (from its centre of
 /// gravity).
 struct CompiledMarker {
-  int body = k_ground;
-  Vec2 point = Vec2::Zero();
-  double angle = 0.0;
+  int body = k_ground;       ///< index in System::bodies
+  Vec2 point = Vec2::Zero(); ///< m, from the centre of gravity, body axes
+  double angle = 0.0;        ///< rad, of its axes against the body's
 };
 
 /// Indices of a contact's normal force and of its unit.
 struct ContactIndex {
-  int force = 0, unit = 0;
+  int force = 0, unit = 0; ///< in Evaluated::contact_force; in System::units
 };
 
 /// What an element takes a signal for. The impulse of a force is known for a step of any length from the signal's
@@ -208,17 +218,23 @@ public:
   SystemBuilder(const Model& model, const std::vector<std::string>* wanted);
 
   // --- references -------------------------------------------------------------------------------
+  /// By its name. Throws ModelError if there is none.
   [[nodiscard]] CompiledMarker marker(const std::string& name) const;
+  /// Its index in System::bodies. Throws ModelError if there is none.
   [[nodiscard]] int body(const std::string& name) const;
   /// Null for an empty name.
   [[nodiscard]] const Signal* signal(const std::string& name, SignalUse use = SignalUse::motion);
+  /// Pose and velocity of a body in the reference pose.
   [[nodiscard]] const Motion<double>& reference(int body) const { return reference_[body]; }
+  /// In the reference pose, ground axes, m.
   [[nodiscard]] Vec2 marker_position(const CompiledMarker& marker) const;
   /// A direction given in a marker's axes, in the axes of its body, length 1.
   [[nodiscard]] Vec2 direction(const CompiledMarker& marker, const Vec2& local) const;
   /// A contact element compiled at an earlier stage; null if `element` is none.
   [[nodiscard]] const ContactIndex* contact(const std::string& element) const;
+  /// Of the model, by its name; nullptr if there is none.
   [[nodiscard]] const ElementEntry* element(const std::string& name) const;
+  /// The completed model that is being compiled.
   [[nodiscard]] const Model& model() const { return model_; }
 
   // --- contributions ------------------------------------------------------------------------------
@@ -229,20 +245,26 @@ public:
   /// Index of a new normal force, registered under the current element's name; `unit` tells whether
   /// it is pressed (mode 1).
   int add_contact(int unit);
+  /// Room for a base and its rate in State::memory; returns the index of the base.
   int add_memory(double base = 0.0, double base_rate = 0.0);
   /// One number of the inner state of an element of `group`: where it starts.
   int add_inner(const ForceGroup& group, double start);
+  /// Rows of the current element. `is_rigid`, `coordinate`: as in RowBlock.
   void add_rows(std::vector<RowSpec> rows, bool is_rigid = false, int coordinate = -1);
+  /// Returns its index in System::frictions.
   int add_friction(std::unique_ptr<FrictionElement> friction);
   /// "<element>.<name>"; what is returned is good until the next one is added. A channel that nobody wants is not made:
   /// what is returned then is forgotten.
   template <class Value> Channel& add_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
   /// The same for one that is made for a model that asks for it ([output] also, an expression), and costs nothing else.
   template <class Value> Channel& offer_channel(std::string_view name, std::string_view unit, const ChannelText& text, Value&& value);
+  /// Index in System::rows that the next row will get.
   [[nodiscard]] int next_row() const { return static_cast<int>(system_->rows.size()); }
   /// Slot in Snapshot::friction_force that the next friction element will get.
   [[nodiscard]] int next_friction_row() const { return system_->friction_row_count; }
+  /// Index in System::frictions that the next friction element will get.
   [[nodiscard]] int next_friction() const { return static_cast<int>(system_->frictions.size()); }
+  /// Of the element that is being compiled, in System::element_names.
   [[nodiscard]] int element_index() const { return element_; }
   /// Notes an error at the current element: compile goes on and reports all of them.
   void error(const std::string& message);

@@ -139,6 +139,27 @@ TEST_CASE("the installed library: found, compiled against without our flags, and
     CHECK(number_after(said, "friction 0.62  slides ") == 0.0); // never braked with more than 0.6 g
   }
 
+  SUBCASE("an element kind of one's own, in a model file and in the verdict") {
+    const std::string program = k_programs + "/own_element " STEPLAP_SOURCE "/examples/own_element.toml";
+    const std::string said = output_of(program);
+    // m v' = −c v²: with τ = m/(c v₀) = 1 s, v = v₀/(1 + t/τ), x = x₀ + (m/c) ln(1 + t/τ), and what is missing of m v²/2 is
+    // dissipated. The tolerance of 1e-9 of each step leaves less than the digits written.
+    const double v0 = 2.0, v = v0 / 3.0;
+    CHECK(std::abs(number_after(said, "speed ") - v) < 1e-6);
+    CHECK(std::abs(number_after(said, "way ") - (5.0 + 2.0 * std::log(3.0))) < 1e-6);
+    CHECK(std::abs(number_after(said, "dissipated ") - 500.0 * (v0 * v0 - v * v)) < 1e-3);
+    // Its own criterion: the force is largest at the start, c v₀² = 2000 N.
+    CHECK(said.find("|damper.force| <= 2500 N: hold, largest -2000.000 N") != std::string::npos);
+    CHECK(said.find("verdict: hold") != std::string::npos);
+    const std::string weak = output_of(program + " 'element.damper.strength=1900'");
+    CHECK(weak.find("|damper.force| <= 1900 N: reject") != std::string::npos);
+    CHECK(weak.find("verdict: reject") != std::string::npos);
+    // Without the kind the file is refused by its line.
+    const std::string refused = output_of("(" + k_prefix + "/bin/steplap check " STEPLAP_SOURCE "/examples/own_element.toml || true)");
+    CHECK(refused.find("own_element.toml:24:8") != std::string::npos);
+    CHECK(refused.find("orifice_damper") != std::string::npos);
+  }
+
   SUBCASE("a judged run is that of the program, byte for byte, for every model") {
     int models = 0;
     for (const char* folder : {"benchmarks", "layouts", "machines", "paper"})
@@ -178,6 +199,6 @@ TEST_CASE("the installed library: found, compiled against without our flags, and
       CHECK_MESSAGE((word.starts_with(k_prefix + "/") || word.ends_with("/eigen3")), word);
       ++folders;
     }
-    CHECK(folders >= 4 * 3); // ours, as <steplap/mbd/…> and "mbd/…", and Eigen's, for each program
+    CHECK(folders >= 5 * 3); // ours, as <steplap/mbd/…> and "mbd/…", and Eigen's, for each program
   }
 }
