@@ -11,6 +11,7 @@
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "tests/fuzz/mutation.h"
+#include "tests/sanitized.h"
 #include "transformer/catalog.h"
 
 #include <algorithm>
@@ -86,7 +87,7 @@ void run_one(const std::string& text, const fs::path& file, Progress& progress) 
 
 [[noreturn]] void run_from(const Cases& cases, std::uint64_t first, std::uint64_t end, unsigned limit, Progress& progress) {
   const rlimit memory{k_memory, k_memory};
-  (void)setrlimit(RLIMIT_AS, &memory);
+  if (!steplap::testing::k_is_sanitized) (void)setrlimit(RLIMIT_AS, &memory); // a sanitizer reserves terabytes of addresses
   const rlimit no_core{0, 0};
   (void)setrlimit(RLIMIT_CORE, &no_core);
   for (std::uint64_t i = first; i < end; ++i) {
