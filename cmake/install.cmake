@@ -12,11 +12,10 @@ add_library(steplap::steplap ALIAS steplap_library)
 target_compile_features(steplap_library INTERFACE cxx_std_20)
 set_target_properties(steplap_library PROPERTIES EXPORT_NAME steplap)
 if(BUILD_SHARED_LIBS)
-  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/all_rooms.cpp CONTENT "// The shared library's sources are in the rooms' archives.\n")
-  add_library(steplap_shared SHARED ${CMAKE_CURRENT_BINARY_DIR}/all_rooms.cpp)
-  foreach(archive ${archives})
-    target_link_libraries(steplap_shared PRIVATE $<LINK_LIBRARY:WHOLE_ARCHIVE,${archive}>)
-  endforeach()
+  set(objects ${archives})
+  list(TRANSFORM objects REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>")
+  add_library(steplap_shared SHARED ${objects})
+  target_link_libraries(steplap_shared PRIVATE ${archives}) # for what they are linked with: their own objects are there already
   target_link_libraries(steplap_shared INTERFACE Eigen3::Eigen)
   target_link_options(steplap_shared PRIVATE -Wl,--no-undefined -Wl,--version-script=${CMAKE_CURRENT_LIST_DIR}/steplap.map)
   set_target_properties(steplap_shared PROPERTIES OUTPUT_NAME steplap VERSION ${PROJECT_VERSION}
@@ -50,6 +49,7 @@ install(DIRECTORY mbd elements transformer run DESTINATION ${CMAKE_INSTALL_INCLU
   PATTERN ordered_json.h EXCLUDE) # includes another maker's
 configure_file(cmake/version.h.in version.h @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap)
+file(RELATIVE_PATH steplap_pc_up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /) # wherever it is installed or moved to
 configure_file(cmake/steplap.pc.in steplap.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/steplap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(TARGETS steplap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
