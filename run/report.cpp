@@ -89,6 +89,8 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
     if (finding.code == "contact_too_deep") distrust(report.judgement, text_with_place(finding));
     else if (caps_verdict(finding)) add_cap(report.judgement, text_with_place(finding));
   }
+  if (!options.has_extremes) // events alone do not tell whether a joint held that cannot
+    add_cap(report.judgement, "extremes were not looked for, by which a run is judged and trusted");
   report.estimate = estimate_errors(report.run, options);
   weigh(report);
   ask_second_opinion(report, options);

@@ -10,8 +10,8 @@ using namespace steplap::testing;
 
 namespace {
 
-// Those whose run takes the longest, thirty times the others', say nothing more.
-const std::set<std::string> k_left_out = {"andrews_a03", "long_oscillation"};
+// Its run takes a minute.
+const std::set<std::string> k_left_out = {"andrews_a03"};
 
 // All models that can be run, by name.
 std::map<std::string, std::string> models() {
@@ -53,7 +53,8 @@ TEST_CASE("a study and a run by itself give every model the same verdict") {
   CHECK(seen.size() >= 3); // hold, open and worse
 }
 
-// A margin of 1.0000004 that is known to 1e-3: the run by itself says "open", and so has the study to.
+// A spring that is let go falls by 19.6 mm of the 19.6 mm allowed, which steps of 10 ms know much less well: the run by itself says
+// "open", and so has the study to.
 TEST_CASE("an error that reaches its limit leaves a study's verdict open, too") {
   StudyBench bench;
   const std::string model = bench.write("box.toml", R"(
