@@ -1,4 +1,4 @@
-# What `cmake --install` puts where, and the package that find_package(steplap) finds: docs/library.md.
+# What `cmake --install` puts where, and the package that find_package(steplap) finds: docs/how-to/use_from_cpp.md.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 

@@ -2,7 +2,7 @@
 // takes is within `holds`, slides against `drags`.
 //
 // The bound is a constant (a preloaded bearing, a seal), not μ times the joint's own reaction: reactions are
-// multipliers, and with bounds that depend on them the mode problem (physics of friction modes, docs/theory.md)
+// multipliers, and with bounds that depend on them the mode problem (physics of friction modes, docs/explanation/theory.md)
 // would no longer be convex: it may have several answers or none (Painlevé). Friction that follows a load is
 // friction on a contact, whose normal force is a function of the state: coulomb_stick.
 #pragma once

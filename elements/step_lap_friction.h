@@ -19,7 +19,7 @@
 // −∇h(ν + ε n), n the direction there, and the slip is at rest where ν·n passes zero. If |ν| grows again instead, the
 // slip goes on. So that a step may pass through ν = 0, the law is continued there with the wrench it
 // had, ν·n < 0, n being the direction as last looked at. An event is also where ν leaves the cone of 60°
-// about n: n is taken anew and the slip goes on. All of this is derived in docs/limit_surface.md, section 7; methods
+// about n: n is taken anew and the slip goes on. All of this is derived in docs/explanation/limit_surface.md, section 7; methods
 // learn how fine velocities have to be known from slip_scale() and decay_rate().
 //
 // An *elastic* joint (make_elastic) neither sticks nor slides by these laws: it is a spring, W = −K (s − p), s the
@@ -27,7 +27,7 @@
 // normal n of the limit surface and as fast as keeps W on it (associated flow, rate-independent):
 //   ṗ = γ n,  γ (n·K n + u ∂h/∂p·n) = n·K ṡ,  h = h(n; p),
 // the overlap being the one at p: what the sheets are sheared by is no slip. It *yields* (slips) while γ ≥ 0, holds while
-// u ≤ 1. The force is that of step_lap_elastic.h. Derived in docs/theory.md, "Elastic step-lap joints".
+// u ≤ 1. The force is that of step_lap_elastic.h. Derived in docs/explanation/theory.md, "Elastic step-lap joints".
 #pragma once
 
 #include "elements/patch/required_pressure.h"

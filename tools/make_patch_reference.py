@@ -7,7 +7,7 @@ gradient (f_x, f_y, m), for tests/elements/patch_reference_test.cpp:
     python3 tools/make_patch_reference.py > tests/data/patch_reference.csv
 
 The inputs are doubles, printed so that they read back exactly; the outputs belong to exactly those
-doubles. Values come from the edge formulas of docs/limit_surface.md in 160 digits, where their
+doubles. Values come from the edge formulas of docs/explanation/limit_surface.md in 160 digits, where their
 cancellation (up to |c|^3/area for a centre c, 1e24 here) does not matter. Every twist that turns
 about a point within 20 radii is also checked against the two-dimensional integral of the
 definition itself,

@@ -10,7 +10,7 @@
 //   zig-zag           0 1 … n−1 n−2 … 1 | 0 1 …           2(n−1) layers; every one by s − g: mean s − g
 //   zig-zag, doubled  0 1 … n−1 | n−1 … 1 0 | 0 1 …       2n layers; s − g, and none once in n: mean (n−1)/n (s − g)
 // The interfaces inside a layer carry no overlap. q, s and g are measured across the mitre, from its middle,
-// away from the yoke. Source and assumptions: docs/core.md.
+// away from the yoke. Source and assumptions: docs/reference/core.md.
 #pragma once
 
 namespace steplap {

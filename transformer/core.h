@@ -6,7 +6,7 @@
 // is the middle of the limb: on its axis, at half the core's height. Its centre of gravity, and its mass and
 // inertia unless they are given, are those of its sheets.
 // An outer limb has one mitre at either end, a middle limb ends in a point between two (T-joint).
-// Assumes rectangular packets, and pressure uniform over a corner or linear. What is assumed, and its source: docs/core.md.
+// Assumes rectangular packets, and pressure uniform over a corner or linear. What is assumed, and its source: docs/reference/core.md.
 #pragma once
 
 #include "mbd/model/model.h"

@@ -6,7 +6,7 @@
 //   ∬ |r| dA           = Σ d/6 [s₂ρ₂ − s₁ρ₁ + d²Λ]
 //   ∬ r/|r| dA         = Σ d/2 [t(ρ₂−ρ₁) + d m Λ]
 //   ∬ (I−uuᵀ)/|r| dA   = Σ d [m mᵀ(Λ−Δ(s/ρ)) + t tᵀ Δ(s/ρ) + d(m tᵀ+t mᵀ) Δ(1/ρ)],  u = r/|r|,
-// and the same with a factor β·r for a linear pressure field. Derived in docs/limit_surface.md.
+// and the same with a factor β·r for a linear pressure field. Derived in docs/explanation/limit_surface.md.
 //
 // Rounding grows like |c|²/area: for c beyond k_far_ratio radii use far_field.h instead.
 #pragma once

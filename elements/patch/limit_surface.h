@@ -12,7 +12,7 @@
 // piece (closed_form.h), expansion beyond and for translation (far_field.h), each good to about
 // 1e-13 of traction × area × size for pieces up to 100 times longer than wide; the loss grows in
 // proportion beyond that. Assumes a pressure that does not change while sliding; see
-// docs/limit_surface.md for derivation and limits.
+// docs/explanation/limit_surface.md for derivation and limits.
 #pragma once
 
 #include "elements/patch/far_field.h"

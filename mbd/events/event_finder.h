@@ -1,6 +1,6 @@
 // Finds the first event inside a step: where a watch value falls below zero.
 //
-// A step is passed only if every watch value is known to stay positive on the whole of it (docs/theory.md, "Events"):
+// A step is passed only if every watch value is known to stay positive on the whole of it (docs/explanation/theory.md, "Events"):
 //   far      its least value at the ends and stages is more than half its largest: it cannot have reached zero
 //            in between unless it varies faster than stages resolve, which no step lets it (watch_nodes.h);
 //   certain  the bound of watch_nodes.h keeps it positive between stages;

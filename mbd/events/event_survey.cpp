@@ -6,7 +6,7 @@
 // its polynomial than that. Else the part is divided: where the polynomial is least, so that the bottom of a dip becomes an
 // end of both halves, or where it was off. A value that is negative at a place makes the bracket of an event, if it
 // passes zero once for certain from the place before, and nothing else does. What dips below zero for less than k_shortest of
-// a step, and only by rounding, is no event. That this misses nothing is argued in docs/theory.md, "Events".
+// a step, and only by rounding, is no event. That this misses nothing is argued in docs/explanation/theory.md, "Events".
 #include "mbd/events/event_finder.h"
 
 #include <algorithm>

@@ -18,7 +18,7 @@ namespace {
 // Beyond stability a motion that is not there yet but for rounding grows within a step: its end by up to (hρ)¹²/12!, the
 // dense output by (hρ)¹⁵, which is 10⁴ times as much at hρ = 30 and 10⁵ at 60, unseen by the estimate at the end. There
 // the stage at 0.2 departs from the dense output by a 15th to a 60th of what that is off by; in steps that are accurate,
-// where both are right, by a tenth of the tolerance (docs/integrators.md).
+// where both are right, by a tenth of the tolerance (docs/how-to/choose_a_method.md).
 constexpr std::size_t k_looked_stage = 14;
 constexpr double k_most_departure = 5.0;
 // Velocities of a slip by which its friction turns may be off by no more there than where they have fallen to a tenth

@@ -233,7 +233,7 @@ const TableKind& channel_kind() {
     using T = DefinedChannel;
     TableKind k;
     k.name = "channel";
-    k.doc = "A channel that is a formula of others: written, plotted, limited and estimated like them. `docs/channels.md` tells "
+    k.doc = "A channel that is a formula of others: written, plotted, limited and estimated like them. `docs/reference/channels.md` tells "
             "what formulas may hold.";
     k.fields.add("expression", &T::expression).required().doc(
         "the formula; names with spaces in braces, numbers with units in quotes: \"abs({front foot.force}) / '12 kN'\"");

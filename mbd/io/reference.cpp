@@ -142,7 +142,7 @@ std::string kind_text(const Catalogue& catalogue, const std::string& name) {
 std::string reference_markdown(const Catalogue& catalogue) {
   std::string text =
       "# Model reference\n\nGenerated from the field tables. Numbers are SI; a string "
-      "may carry a unit, as in \"47 t\". Signals, elements, channels, plots, criteria and cores have a unique `name` besides.\n\nBelow the fields of a kind stand the channels of its elements (docs/channels.md): what a run "
+      "may carry a unit, as in \"47 t\". Signals, elements, channels, plots, criteria and cores have a unique `name` besides.\n\nBelow the fields of a kind stand the channels of its elements (docs/reference/channels.md): what a run "
       "writes always, and what it writes if `also` of `[output]` asks for it.\n";
   for (const Described& kind : describe(catalogue)) {
     text += "\n## " + heading(kind) + "\n" + kind.doc + "\n\n" + markdown(rows_of(kind));

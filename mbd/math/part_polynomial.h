@@ -3,7 +3,7 @@
 //
 // The places are those of Chebyshev and Lobatto on [0, 1]. With the Chebyshev coefficients a_0 … a_6 of p,
 //   |f − p| ≤ E = 4 (|a_5| + |a_6|),    |f′ − p′| ≤ E′ = 48 E
-// is assumed (docs/theory.md, "Events", says of what), and is to be held against f at a place where it was not known
+// is assumed (docs/explanation/theory.md, "Events", says of what), and is to be held against f at a place where it was not known
 // before. What follows from it is not sampled: on any stretch p lies between the least and the greatest of its Bernstein
 // coefficients, p′ between their steepest differences, and as p = f at the seven places, |f − p| is no more than
 // E′ times the distance from the next one either.

@@ -66,7 +66,7 @@ Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
 
 } // namespace
 
-// Measured, not derived (docs/theory.md): what the derivation takes for granted fails by a factor of 19 at one slip's onset.
+// Measured, not derived (docs/explanation/theory.md): what the derivation takes for granted fails by a factor of 19 at one slip's onset.
 const double EnergyAccount::k_reserve = 100.0;
 
 double EnergyAccount::scale() const { return std::max({exchanged_, peak_about_centre_, floor_}); }

@@ -36,7 +36,7 @@ public:
 
   /// A run whose residual is a larger share of scale() than this is not to be trusted.
   static constexpr double k_untrusted = 1e-2;
-  /// What an accepted step of a method with error control makes or loses at most, J (docs/theory.md, "What a run says about
+  /// What an accepted step of a method with error control makes or loses at most, J (docs/explanation/theory.md, "What a run says about
   /// its own accuracy"): of a state of `dimension` numbers, `turned_over` up to its end, `of_floor` the energy of the motion
   /// to which tolerances are absolute.
   [[nodiscard]] static double step_bound(double tolerance, int dimension, double turned_over, double of_floor);

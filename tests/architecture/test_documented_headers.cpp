@@ -160,7 +160,7 @@ Undocumented undocumented_in(const std::string& text) {
   return Reader("a.h").read(lines);
 }
 
-// As docs/library.md lists them.
+// As docs/how-to/use_from_cpp.md lists them.
 std::vector<fs::path> public_headers() {
   const fs::path root = STEPLAP_SOURCE;
   std::vector<fs::path> headers;

@@ -1,4 +1,4 @@
-// docs/structure.md says where things are. Each `path` in it exists, each `function()` occurs in a file that is named in the same
+// docs/design/structure.md says where things are. Each `path` in it exists, each `function()` occurs in a file that is named in the same
 // line, and rooms are as large as it says.
 #include <doctest/doctest.h>
 
@@ -80,8 +80,8 @@ long lines_in(const fs::path& room) {
 
 } // namespace
 
-TEST_CASE("docs/structure.md names files and functions that there are") {
-  std::ifstream page(k_source / "docs/structure.md");
+TEST_CASE("docs/design/structure.md names files and functions that there are") {
+  std::ifstream page(k_source / "docs/design/structure.md");
   REQUIRE(page);
   int paths = 0, functions = 0, number = 0;
   bool is_code = false;
@@ -105,8 +105,8 @@ TEST_CASE("a wrong name is noticed") {
 }
 
 // A room may grow by a quarter before its row has to be written anew: the numbers are there to tell large rooms from small ones.
-TEST_CASE("rooms are about as large as docs/structure.md says") {
-  std::ifstream page(k_source / "docs/structure.md");
+TEST_CASE("rooms are about as large as docs/design/structure.md says") {
+  std::ifstream page(k_source / "docs/design/structure.md");
   int rooms = 0;
   for (std::string line; std::getline(page, line);) {
     const std::vector<std::string> quoted = quoted_in(line);

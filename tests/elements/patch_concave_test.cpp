@@ -91,7 +91,7 @@ struct Both {
     Patch p, q;
     p.add(fast, 1.0);
     q.add(exact, 1.0);
-    // The closed form is good to 36e-16 R²/area of area·speed (docs/limit_surface.md), R up to 5: 1e-13 of speed for each
+    // The closed form is good to 36e-16 R²/area of area·speed (docs/explanation/limit_surface.md), R up to 5: 1e-13 of speed for each
     // edge, a few dozen of them with errors of either sign; wrenches have an arm of up to 10.
     for (int i = 0; i < 4; ++i) {
       Vec3 nu = draw.twist();

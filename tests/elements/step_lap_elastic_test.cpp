@@ -240,7 +240,7 @@ TEST_CASE("a limb that slides off its yoke comes apart where its sheets have par
 }
 
 TEST_CASE("a shaken limb ratchets down its joint, and shakes down onto a tie plate") {
-  // The example of docs/step_lap_joint.md: its table.
+  // The example of docs/explanation/step_lap_joint.md: its table.
   const auto slid = [](const char* plate) {
     const Run r =
         run(steplap::read_model(std::string(STEPLAP_MODELS) + "/../examples/ratcheting.toml",

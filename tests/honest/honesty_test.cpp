@@ -1,5 +1,5 @@
 // Are estimated errors honest? Error over estimate for every number of some machines and mechanisms, at coarse and fine
-// settings of adaptive, fixed-step and time stepping methods. The whole table: the program honesty; docs/accuracy.md.
+// settings of adaptive, fixed-step and time stepping methods. The whole table: the program honesty; docs/evidence/accuracy.md.
 #include "tests/honest/honesty.h"
 
 #include <doctest/doctest.h>

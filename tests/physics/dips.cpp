@@ -22,7 +22,7 @@ constexpr double k_two_pi = 2.0 * std::numbers::pi;
 constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 // By how much of its bound what holds may pass it, for rounding's sake (joint_friction.cpp; the area of sheets whose corners are
 // a kilometre off, and the share of their capacity that is in use, are known to some 1e-12), and by how
-// much a rope of 1 m may be stretched before it is caught (docs/theory.md), m.
+// much a rope of 1 m may be stretched before it is caught (docs/explanation/theory.md), m.
 constexpr double k_bound_slack(Hair hair) { return hair == Hair::friction ? 1e-13 : 4e-12; }
 constexpr double k_dead_band = 2e-11;
 // Of its range, how far a motion of a few periods may be off, in tolerances of its steps.

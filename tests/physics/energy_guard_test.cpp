@@ -1,5 +1,5 @@
 // The guard of energy (mbd/simulation/energy_account.h): it finds faults sown into forces and friction, and lets honest runs pass with
-// the reserve that docs/theory.md states.
+// the reserve that docs/explanation/theory.md states.
 #include "mbd/simulation/energy_account.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"

@@ -49,7 +49,7 @@ TEST_CASE("sparse algebra finds the rests that dense algebra finds") {
     // Both end where Newton's steps are 1e-11 of a scene of metres; friction holds what it got on the way, up to its share
     // of a load that differs by what is left then.
     for (std::size_t i = 3; i < dense.rest.state.q.size(); ++i) CHECK(std::abs(dense.rest.state.q[i] - sparse.rest.state.q[i]) < 1e-9);
-    if (std::string(name) != "layouts/rail_wagon_humping") // known: one of its two is not counted (docs/theory.md, Rest)
+    if (std::string(name) != "layouts/rail_wagon_humping") // known: one of its two is not counted (docs/explanation/theory.md, Rest)
       CHECK(dense.rest.indifferent.size() == sparse.rest.indifferent.size());
     REQUIRE(dense.rest.margins.size() == sparse.rest.margins.size());
     for (std::size_t i = 0; i < dense.rest.margins.size(); ++i)

@@ -327,7 +327,7 @@ TEST_CASE("the second mass of ElastoGap under the law of its own program") {
   CHECK(std::abs(2.0 - integrate<2>(rate, {2.0, 0.0}, 5.0, 100000)[0] - 2.70788702355764) < 1e-5);
 }
 
-// The table of docs/benchmarks.md: test_peers -ns -tc="print*".
+// The table of docs/evidence/benchmarks.md: test_peers -ns -tc="print*".
 TEST_CASE("print the table of other programs' tests" * doctest::skip()) {
   for (const Peer& p : peers()) {
     const double truth = p.truth(), here = ours(p);

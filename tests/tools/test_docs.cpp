@@ -49,9 +49,9 @@ std::string without(std::string text, const std::string& part) {
 
 } // namespace
 
-TEST_CASE("docs/reference.md is what the program would write now") {
-  // If not: steplap elements --markdown > docs/reference.md
-  CHECK(text_of(STEPLAP_SOURCE "/docs/reference.md") == steplap_does({"elements", "--markdown"}).out);
+TEST_CASE("docs/reference/models.md is what the program would write now") {
+  // If not: steplap elements --markdown > docs/reference/models.md
+  CHECK(text_of(STEPLAP_SOURCE "/docs/reference/models.md") == steplap_does({"elements", "--markdown"}).out);
 }
 
 // Each ```toml block is a state of the exercise's file, or with "# low_loader.toml, continued" what is added
@@ -59,7 +59,7 @@ TEST_CASE("docs/reference.md is what the program would write now") {
 // what steplap check says.
 TEST_CASE("the exercise of the guide: every message is the program's") {
   const Workbench bench;
-  const std::vector<Block> blocks = blocks_of(text_of(STEPLAP_SOURCE "/docs/guide.md"));
+  const std::vector<Block> blocks = blocks_of(text_of(STEPLAP_SOURCE "/docs/tutorials/guide.md"));
   std::string state;
   int states = 0;
   for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
@@ -81,7 +81,7 @@ TEST_CASE("the exercise of the guide: every message is the program's") {
 TEST_CASE("the exercise's machine runs and holds, as the guide says") {
   const Workbench bench;
   std::string state;
-  for (const Block& block : blocks_of(text_of(STEPLAP_SOURCE "/docs/guide.md")))
+  for (const Block& block : blocks_of(text_of(STEPLAP_SOURCE "/docs/tutorials/guide.md")))
     if (block.language == "toml")
       state = block.text.rfind("# low_loader.toml, continued\n", 0) == 0 ? state + block.text : block.text;
   const Outcome outcome = steplap_does({"simulate", bench.write("low_loader.toml", state), "-o", bench.at("out"), "--require-hold"});

@@ -65,7 +65,7 @@ std::string last_command_of_run() {
 
 // The file that the guide's exercise writes, as it stands at its end.
 std::string exercise() {
-  std::istringstream lines(text_of(STEPLAP_SOURCE "/docs/guide.md"));
+  std::istringstream lines(text_of(STEPLAP_SOURCE "/docs/tutorials/guide.md"));
   std::string state, block;
   bool is_toml = false;
   for (std::string line; std::getline(lines, line);) {
@@ -96,7 +96,7 @@ TEST_CASE("every command of README and guides does what it says, typed in their 
   const std::string begin = "cd '" + place + "' && PATH=\"$PWD/build/release/bin:$PATH\" && ";
   const bool has_gnuplot = is_there("gnuplot");
   int typed = 0;
-  for (const char* page : {"README.md", "docs/guide.md", "docs/layouts.md", "docs/paper_to_code.md", "docs/studies.md", "docs/library.md"}) {
+  for (const char* page : {"README.md", "docs/tutorials/guide.md", "docs/reference/layouts.md", "docs/how-to/reproduce_the_paper.md", "docs/reference/studies.md", "docs/how-to/use_from_cpp.md"}) {
     for (std::string command : commands_of(text_of(std::string(STEPLAP_SOURCE "/") + page))) {
       const std::string as_written = command;
       CAPTURE(page);

@@ -100,7 +100,7 @@ Command channels_command() {
   command.examples = R"(  steplap channels my.toml
   steplap channels my.toml --only "elbow.*"
   steplap channels my.toml -o channels.csv
-What formulas of channels may hold, and how to ask for channels: docs/channels.md.
+What formulas of channels may hold, and how to ask for channels: docs/reference/channels.md.
 )";
   command.options = {{"MODEL", &o->model, "FILE", "model file (TOML)", true},
                      {"--only", &o->patterns, "PATTERN", "those that match, * and ?; may be repeated"},

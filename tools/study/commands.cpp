@@ -263,7 +263,7 @@ std::vector<Command> study_commands(const Ranks& ranks) {
 }
 
 Program study_program(const Ranks& ranks) {
-  return {"steplap study", "studies: what if, how likely, how much does it matter; see docs/studies.md",
+  return {"steplap study", "studies: what if, how likely, how much does it matter; see docs/reference/studies.md",
           study_commands(ranks), R"(Exit codes:
   0  done
   1  a fault of the program itself
