@@ -13,8 +13,8 @@ version = release = re.search(r"project\(steplap\s+VERSION\s+([0-9.]+)", (root /
 extensions = ["myst_parser"]
 source_suffix = {".md": "markdown"}
 root_doc = "docs/index"
-include_patterns = ["docs/**.md", "README.md", "CHANGELOG.md", "KNOWN_ISSUES.md", "CONTRIBUTING.md"]
-exclude_patterns = ["build", "out", ".git", "tests", "models", "mbd", "elements", "transformer", "run", "report", "study", "tools"]
+include_patterns = ["docs/**.md", "README.md", "CHANGELOG.md", "KNOWN_ISSUES.md", "CONTRIBUTING.md", "tools/bench/peers/README.md"]
+exclude_patterns = ["build", "out", ".git", "tests", "models", "mbd", "elements", "transformer", "run", "report", "study/**"]
 
 myst_heading_anchors = 4  # anchors are those that GitHub makes
 # A block of TOML in a page may be a piece of a file, and a page may begin a section with a heading of the third level.
@@ -29,3 +29,10 @@ html_copy_source = False
 html_extra_path = ["site/index.html"]  # leads from the top of the site to docs/index.html
 pygments_style = "tango"
 pygments_dark_style = "monokai"
+
+
+def setup(app):
+    """Diagrams in Mermaid, which GitHub draws, are shown as text."""
+    from pygments.lexers.special import TextLexer
+
+    app.add_lexer("mermaid", TextLexer)
