@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """Types what pages tell to type, in the order in which it stands, in a clean copy of the models, and compares what is said.
 
-usage: typed_pages.py PROGRAM ROOT PAGE...
+usage: typed_pages.py [--update] PROGRAM ROOT PAGE...
+
+With --update a block that shows something else than the program says becomes what it says; shorten it with "…" by hand.
 
 Of a page these blocks count:
   ```toml   whose first line is "# NAME.toml" is the file NAME.toml; with "# NAME.toml, continued" it is added to that file.
@@ -77,7 +79,8 @@ def replaced(text, difference):
 
 
 class Typist:
-    def __init__(self, program, root, folder):
+    def __init__(self, program, root, folder, updates):
+        self.updates = updates  # of the present page: (line of the block, what the program says); None: none are wanted
         self.root, self.folder = root, folder
         shutil.copytree(root / "models", folder / "models")
         (folder / "tools").symlink_to(root / "tools")
@@ -123,7 +126,11 @@ class Typist:
             if (outcome.returncode != 0) != bool(may_fail):
                 self.faults.append(f"{place}: '{command}' ended with {outcome.returncode}:\n{outcome.stdout}")
         said = "".join(line.rstrip() + "\n" for line in said.splitlines())
-        if shown is not None and is_complete and not pattern(shown).fullmatch(said):
+        if shown is None or not is_complete or pattern(shown).fullmatch(said):
+            return
+        if self.updates is not None:
+            self.updates.append((int(place.split(":")[1]) + text.count("\n") + 3, said))
+        else:
             self.faults.append(f"{place}: the page shows\n{shown}but the program says\n{said}")
 
     def page(self, path):
@@ -149,6 +156,14 @@ class Typist:
                     undone = None
 
 
+def update(path, updates):
+    lines = path.read_text().splitlines(keepends=True)
+    for line, said in reversed(updates):  # from the last on, so that the places of the others stay
+        end = next(i for i in range(line, len(lines)) if lines[i].startswith("```"))
+        lines[line:end] = [said]
+    path.write_text("".join(lines))
+
+
 def check_itself():
     assert pattern("a …\n…\nz\n").fullmatch("a 1 s\nb\nc\nz\n") and not pattern("a …\nz\n").fullmatch("a 1\nb\nz\n")
     assert pattern("…\nz\n").fullmatch("z\n")
@@ -158,12 +173,18 @@ def check_itself():
 
 def main():
     check_itself()
+    is_update = sys.argv[1:2] == ["--update"]
+    if is_update:
+        del sys.argv[1]
     program, root = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     with tempfile.TemporaryDirectory(prefix="steplap_pages_") as folder:
-        typist = Typist(program, root, pathlib.Path(folder))
+        typist = Typist(program, root, pathlib.Path(folder), [] if is_update else None)
         for page in sys.argv[3:]:
             before = typist.typed
             typist.page(root / page)
+            if is_update:
+                update(root / page, typist.updates)
+                typist.updates = []
             if typist.typed == before:
                 typist.faults.append(f"{page}: nothing was typed")
         print("\n\n".join(typist.faults) or f"{typist.typed} commands do what the pages say")
