@@ -84,7 +84,7 @@ TEST_CASE("the exercise's machine runs and holds, as the guide says") {
   for (const Block& block : blocks_of(text_of(STEPLAP_SOURCE "/docs/tutorials/guide.md")))
     if (block.language == "toml")
       state = block.text.rfind("# low_loader.toml, continued\n", 0) == 0 ? state + block.text : block.text;
-  const Outcome outcome = steplap_does({"simulate", bench.write("low_loader.toml", state), "-o", bench.at("out"), "--require-hold"});
+  const Outcome outcome = steplap_does({"simulate", "-v", bench.write("low_loader.toml", state), "-o", bench.at("out"), "--require-hold"});
   CHECK(outcome.code == 0);
   for (const char* part : {"floor friction  slips forward", "rear foot       opens", "rear foot       closes"})
     CHECK_MESSAGE(has(outcome.out, part), part);
