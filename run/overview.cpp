@@ -185,6 +185,9 @@ Trust trust_of(const Report& report) {
     Trust trust = trust_by_errors(report);
     const auto doubtful = std::count_if(report.judgement.criteria.begin(), report.judgement.criteria.end(), [](const CriterionResult& c) { return !c.doubt.empty(); });
     if (doubtful > 0) trust.level = TrustLevel::limited;
+    const std::optional<SecondOpinion>& second = report.second_opinion;
+    if (second && second->disagreement.empty() && second->none_because.empty())
+      trust.text += " A second method, " + second->method.substr(0, second->method.find('@')) + ", agrees.";
     return trust;
   }
   if (report.estimate.status == EstimateStatus::too_dear) return {TrustLevel::limited, "Errors are not estimated, since that takes long: ask with --estimate-error."};

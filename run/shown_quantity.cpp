@@ -99,8 +99,8 @@ std::string shown_quantity(double value, const std::string& unit, const ShownCon
   if (std::isnan(value)) return "–";
   if (std::isinf(value)) return value > 0.0 ? "∞" : "-∞";
   if (digits.is_full) return measured_text(value, context.error, unit);
+  if (is_rounding(value, context)) value = 0.0;
   const UnitPrefix prefix = shown_prefix(context.column != 0.0 ? context.column : value, unit);
-  if (value == 0.0 || is_rounding(value, context)) value = 0.0;
   const bool is_error_known = context.error && std::isfinite(*context.error);
   const double error = is_error_known ? std::abs(*context.error) : 0.0;
   if (value == 0.0 && (error == 0.0 || is_rounding(error, {.scale = 1e3 * context.scale}) || !is_error_known))
