@@ -187,7 +187,7 @@ Trust trust_of(const Report& report) {
     if (doubtful > 0) trust.level = TrustLevel::limited;
     const std::optional<SecondOpinion>& second = report.second_opinion;
     if (second && second->disagreement.empty() && second->none_because.empty())
-      trust.text += " A second method, " + second->method.substr(0, second->method.find('@')) + ", agrees.";
+      trust.text += " A second method, " + second->method.substr(0, second->method.find_first_of(" @")) + ", agrees.";
     return trust;
   }
   if (report.estimate.status == EstimateStatus::too_dear) return {TrustLevel::limited, "Errors are not estimated, since that takes long: ask with --estimate-error."};

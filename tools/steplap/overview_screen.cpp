@@ -82,8 +82,8 @@ void print_head(std::ostream& out, const Report& report, const Overview& overvie
 void print_story(std::ostream& out, const Report& report, const Overview& overview) {
   const std::vector<Event>& events = report.run.result.events;
   const auto main = static_cast<std::size_t>(std::count_if(events.begin(), events.end(), is_main_event));
-  out << "\nWhat happened: " << (events.empty() ? "no events" : counted(main, "event", "events"));
-  if (main < events.size()) out << " (" << events.size() << " with minor ones)";
+  out << "\nWhat happened: " << (events.empty() ? "no events" : main == 0 ? counted(events.size(), "minor event", "minor events") : counted(main, "event", "events"));
+  if (main > 0 && main < events.size()) out << " (" << events.size() << " with minor ones)";
   out << "\n";
   std::size_t lines = 0;
   for (std::size_t i = 0; i < overview.story.size(); ++i) {
