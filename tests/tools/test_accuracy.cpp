@@ -82,16 +82,16 @@ TEST_CASE("simulate --estimate-error tells the global error, on the screen and i
   const Workbench bench;
   const std::string model = bench.write("a.toml", k_bouncer);
   const Outcome adaptive =
-      steplap_does({"simulate", model, "-o", bench.at("out"), "--estimate-error", "--integrator",
+      steplap_does({"simulate", "-v", model, "-o", bench.at("out"), "--estimate-error", "--integrator",
                     "tsit5", "--tolerance", "1e-7"});
   CHECK(adaptive.code == 0);
   CHECK(has(adaptive.out, "estimated from a finer run (tsit5, tolerance 1e-09)"));
   CHECK(has(text_of(bench.at("out/a/summary.json")), "\"global_error\""));
   const Outcome fixed = steplap_does(
-      {"simulate", model, "-o", bench.at("fixed"), "--estimate-error", "--integrator", "rk4", "--step",
+      {"simulate", "-v", model, "-o", bench.at("fixed"), "--estimate-error", "--integrator", "rk4", "--step",
        "1e-3"});
   CHECK(has(fixed.out, "estimated from finer runs (rk4, step 5e-04 s and 0.00025 s)"));
-  const Outcome plain = steplap_does({"simulate", model, "-o", bench.at("plain"), "--no-estimate"});
+  const Outcome plain = steplap_does({"simulate", "-v", model, "-o", bench.at("plain"), "--no-estimate"});
   CHECK_FALSE(has(plain.out, "Global error"));
   CHECK_FALSE(has(plain.out, "±"));
   CHECK(has(plain.out, "error not estimated: left out with --no-estimate"));
@@ -132,7 +132,7 @@ name = "floor"
 channel = "floor.force"
 at_most = 1e4
 )");
-  const std::vector<std::string> run{"simulate", model, "--integrator", "dop853", "--tolerance", "1e-8", "--end", "0.3", "-o"};
+  const std::vector<std::string> run{"simulate", "-v", model, "--integrator", "dop853", "--tolerance", "1e-8", "--end", "0.3", "-o"};
   const auto with = [&](const std::string& folder, std::vector<std::string> more) {
     std::vector<std::string> arguments = run;
     arguments.push_back(bench.at(folder));
@@ -166,7 +166,7 @@ TEST_CASE("an estimate of much work is left out by count, not by the clock, and 
   // from 208 334 steps on, however fast or slow the computer is.
   const std::string model = bench.write("a.toml", k_oscillator);
   const auto with = [&](const std::string& folder, const std::string& end) {
-    return steplap_does({"simulate", model, "-o", bench.at(folder), "--integrator", "rk4", "--step", "1e-6", "--end", end});
+    return steplap_does({"simulate", "-v", model, "-o", bench.at(folder), "--integrator", "rk4", "--step", "1e-6", "--end", end});
   };
   CHECK(has(with("in", "0.05").out, "estimated from finer runs (rk4, step 5e-07 s"));
   const Outcome slow = with("out", "0.2085");

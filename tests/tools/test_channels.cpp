@@ -69,7 +69,7 @@ TEST_CASE("steplap elements lists the channels of a kind") {
 
 TEST_CASE("channels on request are in the trajectory, the summary with errors, the judgement, the plots and the page") {
   const Workbench bench;
-  const Outcome run = steplap_does({"simulate", bench.write("a.toml", asking()), "-o", bench.at("out"), "--estimate-error", "--report"});
+  const Outcome run = steplap_does({"simulate", "-v", bench.write("a.toml", asking()), "-o", bench.at("out"), "--estimate-error", "--report"});
   REQUIRE_MESSAGE(run.code == 0, run.err);
   CHECK(has(run.out, "Channels on request"));
   CHECK(has(run.out, "share of 10 N"));

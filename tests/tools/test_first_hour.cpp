@@ -56,7 +56,7 @@ TEST_CASE("a machine that rests is said to rest, not to be wrong by many times t
                             "a = \"block\"\nstiffness = 1e9\nstatic_friction = 0.5\n";
   const Workbench bench;
   const std::string path = bench.write("a.toml", block);
-  const Outcome rests = steplap_does({"simulate", path, "-o", bench.at("out"), "--estimate-error"});
+  const Outcome rests = steplap_does({"simulate", "-v", path, "-o", bench.at("out"), "--estimate-error"});
   CAPTURE(rests.out);
   CHECK(rests.code == 0);
   CHECK(has(rests.out, "The machine rests"));
@@ -81,7 +81,7 @@ TEST_CASE("the table at rest has the angle at which a block tips") {
 TEST_CASE("a joint that carries nothing has a margin beyond 1e9, not a number of many digits, nor inf") {
   const Workbench bench;
   for (const std::string pull : {"\"1e-9 N\"", "0.0"}) {
-    const Outcome outcome = steplap_does({"simulate", STEPLAP_MODELS "/layouts/joint_apart.toml", "-o", bench.at(pull == "0.0" ? "a" : "b"), "--set",
+    const Outcome outcome = steplap_does({"simulate", "-v", STEPLAP_MODELS "/layouts/joint_apart.toml", "-o", bench.at(pull == "0.0" ? "a" : "b"), "--set",
                                           "simulation.end=0.01", "--set", "element.pull.force=[" + pull + ", 0.0]"});
     CAPTURE(outcome.out);
     CAPTURE(outcome.err);

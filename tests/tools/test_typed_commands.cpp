@@ -1,6 +1,4 @@
-// What README and guides tell to type, typed: every command, in the order in which they stand, in a clean copy. What is left out
-// says why. A block begins with ```sh; transcripts and outputs do not.
-#include "tests/sanitized.h"
+// What is typed wrong, where nothing can be written, and names that are unlike any. What pages tell to type is typed by tests/docs.
 #include "tests/tools/workbench.h"
 
 #include "tools/steplap/commands.h"
@@ -9,26 +7,12 @@
 
 #include <sys/wait.h>
 
-#include <array>
+#include <algorithm>
+#include <utility>
 
 using namespace steplap::testing;
 
 namespace {
-
-struct LeftOut {
-  std::string begins, reason;
-};
-
-const std::vector<LeftOut>& left_out() {
-  static const std::vector<LeftOut> list = {
-      {"tools/run", "builds; its last command, which simulates, is typed instead"},
-      {"tools/test", "builds and runs all tests, this one among them"},
-      {"cmake ", "builds, or installs"},
-      {"mpirun ", "takes as many processors"},
-      {"srun ", "needs a cluster"},
-      {"steplap study ", "takes minutes: tests/study runs smaller ones"}};
-  return list;
-}
 
 int exit_code(const std::string& command) {
   const int status = std::system(command.c_str());
@@ -37,85 +21,7 @@ int exit_code(const std::string& command) {
 
 bool is_there(const std::string& program) { return exit_code("command -v " + program + " >/dev/null 2>&1") == 0; }
 
-// Commands of ```sh blocks; a backslash at the end of a line goes on in the next.
-std::vector<std::string> commands_of(const std::string& markdown) {
-  std::vector<std::string> commands;
-  std::istringstream lines(markdown);
-  bool is_shell = false, goes_on = false;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.rfind("```", 0) == 0) {
-      is_shell = !is_shell && line == "```sh";
-      continue;
-    }
-    if (!is_shell || line.empty()) continue;
-    if (goes_on) commands.back() += "\n" + line;
-    else commands.push_back(line);
-    goes_on = line.back() == '\\';
-  }
-  return commands;
-}
-
-// What tools/run ends with.
-std::string last_command_of_run() {
-  const std::string script = text_of(STEPLAP_SOURCE "/tools/run");
-  std::string command = script.substr(script.rfind("\nexec ") + 6);
-  command.erase(command.find(" \"$@\""));
-  return command;
-}
-
-// The file that the guide's exercise writes, as it stands at its end.
-std::string exercise() {
-  std::istringstream lines(text_of(STEPLAP_SOURCE "/docs/tutorials/guide.md"));
-  std::string state, block;
-  bool is_toml = false;
-  for (std::string line; std::getline(lines, line);) {
-    const bool is_fence = line.rfind("```", 0) == 0;
-    if (is_fence && is_toml) state = block.rfind("# low_loader.toml, continued\n", 0) == 0 ? state + block : block;
-    if (is_fence) {
-      is_toml = !is_toml && line == "```toml";
-      block.clear();
-    } else if (is_toml) {
-      block += line + "\n";
-    }
-  }
-  return state;
-}
-
 } // namespace
-
-TEST_CASE("every command of README and guides does what it says, typed in their order in a clean copy") {
-  if (k_is_sanitized) {
-    MESSAGE("left out: the program under sanitizers is too slow for it");
-    return;
-  }
-  const Workbench bench;
-  const std::string place = bench.at("steplap");
-  fs::create_directories(place + "/build/release/bin");
-  fs::copy(STEPLAP_SOURCE "/models", place + "/models", fs::copy_options::recursive);
-  fs::create_symlink(STEPLAP_PROGRAM, place + "/build/release/bin/steplap");
-  const std::string begin = "cd '" + place + "' && PATH=\"$PWD/build/release/bin:$PATH\" && ";
-  const bool has_gnuplot = is_there("gnuplot");
-  int typed = 0;
-  for (const char* page : {"README.md", "docs/tutorials/guide.md", "docs/reference/layouts.md", "docs/how-to/reproduce_the_paper.md", "docs/reference/studies.md", "docs/how-to/use_from_cpp.md"}) {
-    for (std::string command : commands_of(text_of(std::string(STEPLAP_SOURCE "/") + page))) {
-      const std::string as_written = command;
-      CAPTURE(page);
-      CAPTURE(as_written);
-      std::string reason;
-      for (const LeftOut& entry : left_out())
-        if (command.rfind(entry.begins, 0) == 0) reason = entry.reason;
-      if (command.rfind("steplap plot", 0) == 0 && !has_gnuplot) reason = "there is no gnuplot here";
-      if (!reason.empty()) MESSAGE("left out: " << reason);
-      if (command.rfind("tools/run", 0) == 0) command = last_command_of_run();
-      else if (!reason.empty()) continue;
-      if (has(command, "low_loader.toml")) std::ofstream(place + "/low_loader.toml") << exercise();
-      const int code = exit_code("( " + begin + command + "\n) > '" + bench.at("said") + "' 2>&1");
-      CHECK_MESSAGE(code == 0, text_of(bench.at("said")));
-      ++typed;
-    }
-  }
-  CHECK(typed >= 8);
-}
 
 TEST_CASE("what cannot be said is an error, of every command") {
   const Workbench bench;

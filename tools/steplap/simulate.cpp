@@ -8,6 +8,7 @@
 #include "run/result_files.h"
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/log.h"
+#include "tools/steplap/overview_screen.h"
 #include "tools/steplap/progress.h"
 #include "tools/steplap/report.h"
 #include "tools/steplap/run_screen.h"
@@ -176,7 +177,9 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
     write_report(folders, page_of(options, models), options.is_overwriting);
   }
   if (console.verbosity == Verbosity::quiet) return code;
-  if (models.size() == 1)
+  if (models.size() == 1 && console.verbosity != Verbosity::verbose)
+    print_overview(console.out, runs.front().report, runs.front().folder, takes_colour(console.out));
+  else if (models.size() == 1)
     print_run(console.out, runs.front());
   else
     print_comparison(console.out, runs);
@@ -196,7 +199,8 @@ Command simulate_command() {
   steplap simulate my.toml --end "2 s" --integrator dop853 --tolerance 1e-9
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --set body.tank.mass="48 t"
 Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv,
-summary.json and model.toml. All numbers stand with their estimated error, where that takes about a second of computing
+summary.json and model.toml. The screen tells the verdict, what happened and what came nearest to its limit; with -v it has
+tables of all events and extremes. In files and tables all numbers stand with their estimated error, where that takes about a second of computing
 or a few; else it is said what it would take, or when it was given up. If the computation fails, or Ctrl-C (SIGINT, SIGTERM, SIGHUP) stops it, what there is is saved
 as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends it at once.
 )";

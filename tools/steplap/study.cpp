@@ -1,5 +1,6 @@
 #include "tools/steplap/study.h"
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,15 +10,48 @@
 
 namespace steplap {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+// Asks only where somebody can answer: nothing waits for an answer in a script or a test.
+bool is_build_wanted(const fs::path& build) {
+  if (isatty(STDIN_FILENO) != 1 || isatty(STDERR_FILENO) != 1 || !fs::exists(build / "CMakeCache.txt")) return false;
+  std::cerr << "Studies need a second program, which is not built yet. Build it now? This takes some minutes. [y/N] " << std::flush;
+  std::string answer;
+  return std::getline(std::cin, answer) && (answer == "y" || answer == "Y" || answer == "yes");
+}
+
+// Without a shell: the folder may be called anything. False if it could not be built, which CMake says.
+bool build_study_program(const fs::path& build) {
+  std::string folder = build.string();
+  std::string words[] = {"cmake", "--build", folder, "--target", "steplap-study"};
+  char* arguments[] = {words[0].data(), words[1].data(), words[2].data(), words[3].data(), words[4].data(), nullptr};
+  const pid_t child = fork();
+  if (child == 0) {
+    execvp(arguments[0], arguments);
+    _exit(127); // there is no cmake
+  }
+  int status = 0;
+  return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+} // namespace
+
 int run_study_program(char** words) {
   std::error_code error;
-  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::string program = (here.parent_path().parent_path() / "libexec" / "steplap-study").string();
+  const fs::path build = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
+  const std::string program = (build / "libexec" / "steplap-study").string();
   std::cout.flush();
   std::cerr.flush();
   execv(program.c_str(), words);
-  std::cerr << "steplap: error: '" << program << "', which runs studies, cannot be started: " << std::strerror(errno)
-            << (errno == ENOENT ? " (it is built by: cmake --build --preset release --target steplap-study)" : "") << "\n";
+  int cause = errno;
+  if (cause == ENOENT && is_build_wanted(build) && build_study_program(build)) {
+    execv(program.c_str(), words);
+    cause = errno;
+  }
+  if (cause == ENOENT) std::cerr << "steplap: error: Studies need a second program, which is not built. Build it with: cmake --build --preset release --target steplap-study\n";
+  else std::cerr << "steplap: error: '" << program << "', which runs studies, cannot be started: " << std::strerror(cause) << "\n";
   return static_cast<int>(ExitCode::usage);
 }
 

@@ -1,0 +1,38 @@
+# The documentation as a site: Sphinx reads the Markdown pages as they are. `tools/docs` builds it.
+# The root of the project is the source folder, so that every relative link means the same here and on GitHub.
+import pathlib
+import re
+
+root = pathlib.Path(__file__).resolve().parent.parent
+
+project = "steplap"
+author = "the steplap authors"
+copyright = "the steplap authors, MIT licence"
+version = release = re.search(r"project\(steplap\s+VERSION\s+([0-9.]+)", (root / "CMakeLists.txt").read_text()).group(1)
+
+extensions = ["myst_parser"]
+source_suffix = {".md": "markdown"}
+root_doc = "docs/index"
+include_patterns = ["docs/**.md", "README.md", "CHANGELOG.md", "KNOWN_ISSUES.md", "CONTRIBUTING.md", "tools/bench/peers/README.md"]
+exclude_patterns = ["build", "out", ".git", "tests", "models", "mbd", "elements", "transformer", "run", "report", "study/**"]
+
+myst_heading_anchors = 4  # anchors are those that GitHub makes
+# A block of TOML in a page may be a piece of a file, and a page may begin a section with a heading of the third level.
+suppress_warnings = ["myst.header"]
+
+html_theme = "furo"
+html_title = "steplap"
+html_theme_options = {"footer_icons": []}
+html_show_sphinx = False
+html_show_sourcelink = False
+html_copy_source = False
+html_extra_path = ["site/index.html"]  # leads from the top of the site to docs/index.html
+pygments_style = "tango"
+pygments_dark_style = "monokai"
+
+
+def setup(app):
+    """Diagrams in Mermaid, which GitHub draws, are shown as text."""
+    from pygments.lexers.special import TextLexer
+
+    app.add_lexer("mermaid", TextLexer)

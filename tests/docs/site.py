@@ -1,0 +1,52 @@
+#!/usr/bin/python3
+"""The documentation builds as a site without a warning, and the site needs no network: neither its pages nor its search.
+
+usage: site.py ROOT FOLDER
+"""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+
+def build(root, folder):
+    command = [sys.executable, "-m", "sphinx", "-b", "html", "-c", "docs", "-d", str(folder / "doctrees"), "-W", "--keep-going", "-q", "-E", ".", str(folder / "html")]
+    outcome = subprocess.run(command, cwd=root, capture_output=True, text=True)
+    return outcome.stdout + outcome.stderr if outcome.returncode else ""
+
+
+def loaded_from_elsewhere(text):
+    """What a browser would fetch: scripts, styles, images, fonts; not links that somebody may follow."""
+    found = re.findall(r"<(?:script|img|iframe|source)\b[^>]*?src=\"((?:https?:)?//[^\"]+)", text)
+    found += re.findall(r"<link\b(?=[^>]*rel=\"(?:stylesheet|preload|icon|shortcut icon)\")[^>]*?href=\"((?:https?:)?//[^\"]+)", text)
+    return found + re.findall(r"url\([\"']?((?:https?:)?//[^)\"']+)", text)
+
+
+def faults(folder):
+    html = folder / "html"
+    for path in html.rglob("*"):
+        if path.suffix in (".html", ".css"):
+            yield from (f"{path.relative_to(html)} loads {what}" for what in loaded_from_elsewhere(path.read_text()))
+    index = (html / "searchindex.js").read_text()
+    search = json.loads(index[index.index("(") + 1:index.rindex(")")])
+    pages = search["terms"].get("clearanc", [])  # as the search shortens "clearance"
+    names = [search["docnames"][page] for page in (pages if isinstance(pages, list) else [pages])]
+    if "docs/reference/core" not in names:
+        yield f"the search for 'clearance' does not find docs/reference/core, but {names}"
+    target = re.search(r"url=([^\"]+)", (html / "index.html").read_text())[1]
+    if not (html / target).exists():
+        yield f"index.html leads to {target}, which is not there"
+
+
+def main():
+    assert loaded_from_elsewhere('<script src="https://a/b.js"></script><a href="https://c">') == ["https://a/b.js"]
+    root, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    said = build(root, folder)
+    found = [said] if said else list(faults(folder))
+    print("\n".join(found) or "the site is whole and needs no network")
+    sys.exit(1 if found else 0)
+
+
+if __name__ == "__main__":
+    main()
