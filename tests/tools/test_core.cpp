@@ -58,10 +58,10 @@ TEST_CASE("core draws elevation, section, corner and book") {
   const std::string svg = text_of(bench.at("core.svg"));
   for (const char* part :
        {"<svg xmlns=", "</svg>\n", "Elevation", "Section of a limb", "Corner: mitre",
-        "Book across the mitre", "zig-zag", "600 mm × 480 mm, 1706 sheets"})
+        "Book across the mitre", "zig-zag", "600 × 480, 1706 sheets", "Ø 768.4", "fill factor"})
     CHECK_MESSAGE(has(svg, part), part);
   CHECK(count_of(svg, "class='cut'") == 5); // lines of the book
-  CHECK(count_of(svg, "#c4463a'") == 16);   // of 17 layers, two periods, every neighbours overlap
+  CHECK(count_of(svg, "class='lap'") == 16);   // of 17 layers, two periods, every neighbours overlap
   const Outcome counted = steplap_does(
       {"core", STEPLAP_MODELS "/paper/no_interference.toml", "--svg", bench.at("paper.svg")});
   CHECK(counted.code == 0);
