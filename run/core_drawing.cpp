@@ -32,7 +32,7 @@ const char* const k_style =
     ".panel{fill:var(--paper);stroke:var(--rule)} .limb,.yoke,.other,.hole{stroke:var(--ink);stroke-width:.6} "
     ".limb{fill:var(--limb)} .other{fill:var(--pale)} .yoke{fill:var(--yoke)} .hole{fill:var(--paper)} .lap{fill:var(--lap)} "
     ".axis{stroke:var(--soft);stroke-dasharray:8 3 2 3;stroke-width:.8} .cut{stroke:var(--lap);stroke-width:1} "
-    ".round{fill:none;stroke:var(--soft);stroke-width:1;stroke-dasharray:5 3} "
+    ".name{paint-order:stroke;stroke:var(--limb);stroke-width:5px} .pale{stroke:var(--pale)} .round{fill:none;stroke:var(--soft);stroke-width:1;stroke-dasharray:5 3} "
     ".dimension,.extension{stroke:var(--soft);stroke-width:.7} .arrow{fill:var(--soft)}</style>\n";
 
 std::string millimetres(double value) { return plain_millimetres(value) + " mm"; }
@@ -172,7 +172,7 @@ void Drawing::draw_elevation() {
     const bool is_narrow = panel.length(width_of(*limb.core)) < 6.8 * static_cast<double>(limb.name.size()) + 6.0;
     const Vec2 place = panel.at(limb.middle);
     out_ << "<text transform='translate(" << pixels(place.x() + (is_narrow ? 4.0 : 0.0)) << " " << pixels(place.y() + (is_narrow ? 0.0 : 4.0))
-         << ")" << (is_narrow ? " rotate(-90)" : "") << "' text-anchor='middle'>" << escaped_svg(limb.name) << "</text>\n";
+         << ")" << (is_narrow ? " rotate(-90)" : "") << "' text-anchor='middle' class='" << (limb.core == &core_ ? "name" : "name pale") << "'>" << escaped_svg(limb.name) << "</text>\n";
   }
   dimension_elevation(panel, all);
   panel.note("", drawn.size() > 1 ? "limbs of '" + core_.name + "' dark blue, all other limbs pale, yokes brown" : "limbs blue, yokes brown");

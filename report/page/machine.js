@@ -79,6 +79,9 @@ steplap.Scene = (() => {
       this.poses = this.samples();
       const box = new Box().take(this.still.low).take(this.still.high);
       for (const pose of this.poses) for (const body of this.bodies.values()) body.extend(box, pose(body.name));
+      // Room for springs that carry from below.
+      const isCarried = this.elements.some((e) => e.shapes.some((s) => s.type === 'spring' && this.isTied(s) && this.isHeld(s.at[1].body) && Math.abs(s.direction[1]) > 0.7));
+      if (isCarried) box.take([box.middle[0], box.low[1] - 0.12 * this.size]);
       this.trails = null;
       return box;
     }
@@ -143,10 +146,24 @@ steplap.Scene = (() => {
           for (const place of shape.at) {
             if (place.body !== body.name || shape.direction === undefined || steplap.forms.isInside(body, place.point)) continue;
             if (shape.type === 'contact' && place !== shape.at[0]) continue; // a line goes on and on
+            if (!['contact', 'spring'].includes(shape.type) || (shape.type === 'spring' && this.isTied(shape))) continue;
             const from = steplap.forms.nearest(body, place.point), far = length(minus(place.point, from));
             if (far > least && far < 2 * body.reach && !struts.some(([, to]) => length(minus(to, place.point)) < least)) struts.push([from, place.point]);
           }
       return struts;
+    }
+    // A tank: what stands in it is seen before it.
+    isAround(body) {
+      if (body.outline.length < 3 || this.bodies.size > 40) return false;
+      const box = new Box(), isWithin = (inner) => [0, 1].every((i) => inner.low[i] > box.low[i] && inner.high[i] < box.high[i]);
+      body.extend(box, body.pose);
+      return [...this.bodies.values()].some((other) => { const inner = new Box(); other.extend(inner, other.pose); return other !== body && !other.isPoint && isWithin(inner); });
+    }
+    // A spring along an axis whose ends lie together at rest: it is drawn from outline to outline (springs.js).
+    isTied(shape) {
+      const [a, b] = shape.at.map((place) => this.placed(place, (name) => this.reference(name)));
+      const d = shape.direction && steplap.geometry.turn(shape.direction, this.reference(shape.at[1].body)[2]);
+      return Boolean(d) && Math.abs(steplap.geometry.dot(d, minus(a, b))) < 0.04 * this.size;
     }
     bar(from, to, thickness) {
       if (!(thickness > 0)) return make('path', { d: `M${from.join(' ')}L${to.join(' ')}`, class: 'edge' });
@@ -156,7 +173,7 @@ steplap.Scene = (() => {
     }
     buildBody(body, number) {
       const isGround = body === this.ground, joint = this.limbs.get(body.name);
-      const group = make('g', { class: isGround ? 'floor' : `body${body.fixed ? ' fixed' : ''}${body.isUnrecorded ? ' unrecorded' : ''}${joint ? ' limb' : ''}`, 'data-body': body.name },
+      const group = make('g', { class: isGround ? 'floor' : `body${body.fixed ? ' fixed' : ''}${body.isUnrecorded ? ' unrecorded' : ''}${this.isAround(body) ? ' around' : ''}${joint ? ' limb' : ''}`, 'data-body': body.name },
         make('title', {}, body.label || body.name), ...this.shapesOf(body));
       (isGround ? this.groundLayer : this.bodyLayer).append(group);
       // Where the body's geometry does not say where its mass is.

@@ -5,7 +5,7 @@
   const across = (d) => [-d[1], d[0]];
   const flipped = (d) => [d[0], -d[1]];
   const path = (points) => 'M' + points.map((p) => `${p[0].toFixed(2)} ${p[1].toFixed(2)}`).join('L');
-  const least = 3, free = 5; // lengths in units of symbols: of one that is seen; of one that ends at an anchor
+  const least = 3, free = 4; // lengths in units of symbols: of one that is seen; of one that ends at an anchor
   const lanes = [0, 2, -2, 4, -4, 6, -6];
 
   // Distance between two stretches of lines that are nearly parallel; infinite for others, which only cross.
@@ -52,14 +52,16 @@
       const { scene } = this, [placeA, placeB] = spring.shape.at, { u } = this, found = [];
       const upright = Math.abs(d[1]) > Math.abs(d[0]), down = upright ? (d[1] > 0 ? 1 : -1) : d[0] > 0 ? -1 : 1;
       const bodyA = scene.body(placeA.body), bodyB = scene.body(placeB.body), n = across(d);
+      // Stops stand in the middle of the edge.
+      const isStopped = scene.elements.some((e) => e.shapes.some((s) => s.type === 'rail' && s.style === 'limit' && s.at[0].body === placeA.body));
       lanes.forEach((lane, order) => {
         for (const side of [down, -down]) {
           const start = add(a, scaled(n, lane * u)), e = scaled(d, side), out = this.leaves(bodyA, rest, start, e, false);
-          if (out === null && (lane !== 0 || steplap.forms.edgesOf(bodyA).length > 1) && lane !== 0) continue;
+          if (out === null && order > 0) continue; // beside its body
           const from = add(start, scaled(e, out || 0)), hit = placeB.body === 'ground' ? null : this.leaves(bodyB, rest, add(from, scaled(e, 0.8 * u)), e, true);
           const isMet = hit !== null && hit > 0.8 * u && hit < 30 * u, to = add(from, scaled(e, isMet ? hit + 0.8 * u : free * u));
           const isSeen = to[0] > 3 && to[1] > 3 && to[0] < scene.width - 3 && to[1] < scene.height - scene.footHeight() - 3;
-          const cost = order + (isMet ? 0 : 8) + (side === down ? 0 : 0.5) + (isSeen ? 0 : 20) + (this.isClear(from, to) ? 0 : 40);
+          const cost = order + (isStopped && order === 0 ? 30 : 0) + (isMet ? 0 : 8) + (side === down ? 0 : 0.5) + (isSeen ? 0 : 20) + (this.isClear(from, to) ? 0 : 40);
           found.push({ from, to, isMet, cost });
         }
       });
@@ -109,6 +111,13 @@
         });
         symbol.setAttribute('d', text || 'M0 0');
       });
+    },
+    // A straight lower edge (of an upright slide: the left one) to put rollers under.
+    hasEdge(shape) {
+      const { scene } = this, body = scene.body(shape.at[0].body), d = this.direction(shape, (name) => scene.reference(name)), isUpright = Math.abs(d[1]) > Math.abs(d[0]);
+      const points = body.outline.map((point) => steplap.geometry.apply(body.pose, point)), height = (p) => (isUpright ? p[0] : p[1]), way = (p) => (isUpright ? p[1] : p[0]);
+      const low = Math.min(...points.map(height)), near = 0.02 * body.reach, at = points.filter((p) => height(p) < low + near).map(way), span = Math.max(...at) - Math.min(...at);
+      return points.some((p, i) => { const q = points[(i + 1) % points.length]; return height(p) < low + near && height(q) < low + near && Math.abs(way(p) - way(q)) > 0.9 * span && span > 0; });
     },
     // A body with an outline that slides: rollers under its edge, on a line that is hatched where it stands still.
     rollers(element, shape) {

@@ -6,6 +6,7 @@
 (() => {
   const { minus, add, scaled, dot, length, apply, relative, turn } = steplap.geometry;
   const largestTurn = (3 * Math.PI) / 180;
+  const most = 1000; // what would need more is no motion, but how far contacts give way
   const steps = 120; // at which a run is looked at
   // Of shapes that hold the vehicle to the ground along its way, which it then does not leave behind.
   const holding = new Set(['pin', 'weld', 'rod', 'rope', 'bushing']);
@@ -27,7 +28,7 @@
       const on = s.at.filter((p) => carried.has(p.body)).length;
       return on > 0 && on < s.at.length && (holding.has(s.type) || (['spring', 'contact'].includes(s.type) && (!s.direction || isLevel(s))));
     }));
-    const isVehicle = far > 0 && carried.size > 1 && 2 * carried.size > moving.length + 1 && !isHeld;
+    const isVehicle = far > 0 && carried.size > 1 && 2 * carried.size >= moving.length + 1 && !isHeld;
     return isVehicle ? { name, axis, carried } : null;
   }
 
@@ -75,9 +76,9 @@
     // 1, 2, 5, 10 …: the largest displacement becomes some twentieth of the picture.
     usualMagnification(seenFrom) {
       const { displacement, turned } = this.largestMotion(seenFrom), wanted = (0.06 * this.size) / Math.max(displacement, 1e-12);
-      if (!(wanted > 1.5) || turned > largestTurn) return 1;
+      if (!(wanted > 1.5) || wanted > 20 * most || turned > largestTurn) return 1;
       const power = 10 ** Math.floor(Math.log10(wanted));
-      return Math.min(1e5, power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1));
+      return Math.min(most, power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1));
     },
     // Poses as drawn at time t.
     look(t, seenFrom, magnification) {

@@ -118,7 +118,9 @@ steplap.Symbols = (() => {
     // Corners of step-lap joints: the sheets that overlap there.
     sheets() {
       const { scene } = this;
-      for (const sheet of steplap.data.corners(scene.run))
+      // Strips along the mitre; whole sheets would be lines across the windows.
+      const span = (ring) => new steplap.Box().joined(ring.reduce((box, p) => box.take(p), new steplap.Box())).span;
+      for (const sheet of steplap.data.corners(scene.run).filter((s) => Math.max(...span(s.limb_sheet)) < 0.5 * scene.body(s.limb).reach))
         for (const [name, owner, ring] of [['yoke', sheet.active_part, sheet.yoke], ['limb', sheet.limb, sheet.limb_sheet]]) {
           const outline = make('path', { class: `sheet ${name}`, 'data-sheet': sheet.name });
           scene.bodyLayer.append(outline);
@@ -263,6 +265,7 @@ steplap.Symbols = (() => {
     }
     bushing(element, shape) { this.dot(element, shape.at[0], 'bushing', 0.75); this.dot(element, shape.at[0], 'pin', 0.35); }
     weld(element, shape) {
+      if (shape.at.every((place) => this.scene.body(place.body).is_outline_given)) return; // they are seen to be one
       const square = this.piece(element, { class: 'symbol weld' });
       this.update((t, pose) => { const [x, y] = this.screen(shape.at[0], pose), h = 0.32 * this.u; square.setAttribute('d', `M${x - h} ${y - h}h${2 * h}v${2 * h}h${-2 * h}Z`); });
     }
@@ -270,12 +273,13 @@ steplap.Symbols = (() => {
     rail(element, shape) {
       if (shape.style === 'limit' && shape.sizes) { this.stops(element, shape); return; }
       if (shape.style === 'brake') return; // its words say what it does
-      if (shape.at.length > 1 && this.scene.body(shape.at[0].body).is_outline_given) { this.rollers(element, shape); return; }
+      if (shape.at.length > 1 && this.scene.body(shape.at[0].body).is_outline_given && this.hasEdge(shape)) { this.rollers(element, shape); return; }
       const line = this.piece(element, { class: 'symbol rail' }), block = this.piece(element, { class: 'symbol block' });
       this.update((t, pose) => {
         const [a, b] = this.ends(shape, pose), d = this.direction(shape, pose), way = dot(d, minus(a, b)), reach = 4 * this.u;
-        line.setAttribute('d', path([add(b, scaled(d, Math.min(0, way) - reach)), add(b, scaled(d, Math.max(0, way) + reach))]));
-        const on = add(b, scaled(d, way)), x = scaled(d, 0.9 * this.u), y = scaled(across(d), 0.45 * this.u);
+        const from = minus(a, scaled(d, way)); // where the slide began, beside b where it runs beside b
+        line.setAttribute('d', path([add(from, scaled(d, Math.min(0, way) - reach)), add(from, scaled(d, Math.max(0, way) + reach))]));
+        const on = a, x = scaled(d, 0.9 * this.u), y = scaled(across(d), 0.45 * this.u);
         block.setAttribute('d', path([add(add(on, x), y), add(minus(on, x), y), minus(minus(on, x), y), minus(add(on, x), y)], true));
       });
     }
