@@ -181,7 +181,7 @@ steplap.Scene = (() => {
       const mark = !isGround && this.bodies.size <= 40 ? make('g', {}, make('circle', { r: 9, class: 'number-mark' }), make('text', { class: 'number-text' }, number)) : null;
       if (mark) {
         this.textLayer.append(mark);
-        this.marks.set(body.name, { shift: [0, 0], element: mark });
+        this.marks.set(body.name, { shift: [0, 0], now: [0, 0], element: mark });
       }
       const since = joint && this.run.events.find((e) => e[1] === joint.name && (e[4] === 'slip' || e[4] === 'apart'));
       this.updaters.push((t, pose) => {
@@ -190,7 +190,7 @@ steplap.Scene = (() => {
         group.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${sx} ${sy})`);
         if (centre) centre.setAttribute('transform', `translate(${sx} ${sy}) scale(${0.5 * this.u})`);
         if (mark) {
-          const [dx, dy] = this.marks.get(body.name).shift;
+          const [dx, dy] = this.marks.get(body.name).now;
           mark.setAttribute('transform', `translate(${sx + dx} ${sy + dy})`);
         }
         if (joint) group.classList.toggle('slipped', Boolean((since && t >= since[0]) || this.run.modeAt(joint.name, t) >= 2));
@@ -213,12 +213,23 @@ steplap.Scene = (() => {
         const extent = body.reach * this.fittedScale, first = extent > 22 ? [[0, 0]] : ring(extent + 14);
         const places = [...first, ...[24, 36, 50, 66, 84, 104].flatMap(ring)].filter(isSeen);
         const isOn = ([dx, dy]) => extent <= 30 || steplap.forms.isInside(body, steplap.geometry.seenIn(this.reference(name), this.toPlane(x + dx, y + dy)));
-        const isFree = (p) => clear(taken, p, 22) && clear(symbols, p, 15);
-        mark.shift = places.find((p) => isFree(p) && isOn(p)) || places.find(isFree) || places.find((p) => clear(taken, p, 22)) || [0, 0];
+        const isApart = ([dx, dy]) => taken.every((p) => Math.max(Math.abs(p[0] - x - dx), Math.abs(p[1] - y - dy)) > 20);
+        const isFree = (p) => isApart(p) && clear(symbols, p, 15);
+        mark.shift = places.find((p) => isFree(p) && isOn(p)) || places.find(isFree) || places.find(isApart) || [0, 0];
         taken.push([x + mark.shift[0], y + mark.shift[1]]);
       }
     }
 
+    // Bodies pass each other: a mark that would lie on another goes aside for as long.
+    settleMarks(pose) {
+      const settled = [];
+      for (const [name, mark] of this.marks) {
+        const [x, y] = this.toScreen(pose(name)), isApart = ([dx, dy]) => settled.every((p) => Math.max(Math.abs(p[0] - x - dx), Math.abs(p[1] - y - dy)) > 19);
+        const aside = () => [24, 40, 60, 84].flatMap((r) => [...Array(8).keys()].map((k) => [mark.shift[0] + r * Math.sin((k * Math.PI) / 4), mark.shift[1] - r * Math.cos((k * Math.PI) / 4)]));
+        mark.now = isApart(mark.shift) ? mark.shift : aside().find(isApart) || mark.shift;
+        settled.push([x + mark.now[0], y + mark.now[1]]);
+      }
+    }
     // Names of elements that slipped, opened or broke: they and their parts are drawn in colour from when it happens.
     setMoved(names) { this.moved = new Set(names || []); }
     hasMoved(name, t) {
@@ -255,6 +266,7 @@ steplap.Scene = (() => {
 
     show(t) {
       const pose = this.look(t, this.seenFrom, this.magnification);
+      this.settleMarks(pose);
       for (const update of this.updaters) update(t, pose);
       if (this.trailsOf.size) this.showTrails(t, pose);
       this.showLegend();

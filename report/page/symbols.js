@@ -384,7 +384,7 @@ steplap.Symbols = (() => {
     buildSymbols() {
       this.takenTexts = [];
       // Room for texts: not on the marks of bodies, nor on texts that are there before.
-      this.updaters.push((t, pose) => { this.takenTexts = [...this.marks].map(([name, mark]) => [...add(this.toScreen(pose(name)), mark.shift), 20, 20]); });
+      this.updaters.push((t, pose) => { this.takenTexts = [...this.marks].map(([name, mark]) => [...add(this.toScreen(pose(name)), mark.now), 20, 20]); });
       this.symbols = new Symbols(this);
     },
     fitSymbols() { this.symbols.fit(); },
