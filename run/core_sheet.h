@@ -21,27 +21,35 @@ namespace steplap {
 
 /// Where a panel lies in the image, pixels.
 struct PanelFrame {
-  double x = 0.0, y = 0.0, width = 0.0, height = 0.0;
+  double x = 0.0, y = 0.0, width = 0.0, height = 0.0; ///< upper left corner, size
 };
 
 /// Room that a panel keeps free around what it shows, pixels.
 struct PanelEdges {
-  double left = 34.0, right = 34.0, top = 34.0, bottom = 34.0;
+  double left = 34.0, right = 34.0, top = 34.0, bottom = 34.0; ///< pixels on each side
 };
 
+/// A frame of the image with a scale of its own.
 class Panel {
 public:
   /// Draws frame and title. Shows at least the rectangle from `low` to `high`, in the middle of what `edges` leave.
   Panel(std::ostream& out, const PanelFrame& frame, const std::string& title, const Vec2& low, const Vec2& high,
         const PanelEdges& edges, bool is_to_scale = true);
 
+  /// Where a place, m, is in the image, pixels.
   [[nodiscard]] Vec2 at(const Vec2& p) const;
+  /// Of a length across, pixels.
   [[nodiscard]] double length(double metres) const { return metres * scale_.x(); }
+  /// Where the panel lies.
   [[nodiscard]] const PanelFrame& frame() const { return frame_; }
 
+  /// A closed ring; `kind`: class of the style, here and below.
   void polygon(const std::vector<Vec2>& ring, const std::string& kind);
+  /// Upright, m.
   void rectangle(double x0, double x1, double y0, double y1, const std::string& kind);
+  /// Straight, m.
   void line(const Vec2& a, const Vec2& b, const std::string& kind);
+  /// By its diameter, m.
   void circle(const Vec2& centre, double diameter, const std::string& kind);
   /// `down`: pixels below the place.
   void text(const Vec2& place, const std::string& words, const std::string& anchor = "middle", double down = 4.0);
@@ -55,8 +63,8 @@ public:
 
   /// A label to be written at the right edge, with a line to its place.
   struct Label {
-    Vec2 place;
-    std::string words;
+    Vec2 place;        ///< m
+    std::string words; ///< what is written
   };
   /// Writes as many labels as there is room for, in the order of their places, none on another; of more, evenly chosen ones.
   void labels_at_right(std::vector<Label> labels, double x);

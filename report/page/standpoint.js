@@ -6,6 +6,7 @@
 (() => {
   const { minus, add, scaled, dot, length, apply, relative, turn } = steplap.geometry;
   const largestTurn = (3 * Math.PI) / 180;
+  const drawnTurn = 0.1; // rad, of what is magnified: joints of what turns further would gape
   const most = 1000; // what would need more is no motion, but how far contacts give way
   const steps = 120; // at which a run is looked at
   // Of shapes that hold the vehicle to the ground along its way, which it then does not leave behind.
@@ -75,7 +76,7 @@
     },
     // 1, 2, 5, 10 …: the largest displacement becomes some twentieth of the picture.
     usualMagnification(seenFrom) {
-      const { displacement, turned } = this.largestMotion(seenFrom), wanted = (0.06 * this.size) / Math.max(displacement, 1e-12);
+      const { displacement, turned } = this.largestMotion(seenFrom), wanted = Math.min((0.06 * this.size) / Math.max(displacement, 1e-12), drawnTurn / Math.max(turned, 1e-12));
       if (!(wanted > 1.5) || wanted > 20 * most || turned > largestTurn) return 1;
       const power = 10 ** Math.floor(Math.log10(wanted));
       return Math.min(most, power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1));
