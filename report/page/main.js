@@ -180,7 +180,7 @@
     let opened = [];
     window.addEventListener('beforeprint', () => {
       plots.preparePrint();
-      opened = [...document.querySelectorAll('#trust, #results details')].filter((d) => !d.open);
+      opened = [...document.querySelectorAll('#results details')].filter((d) => !d.open);
       for (const d of opened) d.open = true;
     });
     window.addEventListener('afterprint', () => { for (const d of opened) d.open = false; });

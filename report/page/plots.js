@@ -70,13 +70,14 @@ steplap.Plots = (() => {
       return values.map((v) => ({ v, label: steplap.axes.label(v, step) }));
     }
     // As wide as the longest number along the axis.
-    labelWidth([low, high]) { return 10 + 7.4 * Math.max(3, ...this.ticker(low, high, 6).map((tick) => tick.label.length)); }
-    // What the other runs show of this figure has the same scale, and limits nearby are in the picture.
+    labelWidth([low, high]) { return 24 + 7.4 * Math.max(3, ...this.ticker(low, high, 6).map((tick) => tick.label.length)); }
+    // What the other runs show of this figure has the same scale; limits nearby are in the picture; there is room for the
+    // values of the extremes.
     valueRange() {
       let [low, high] = this.owner.rangeOf(this.figure, this.owner.window);
       if (!(low <= high)) return [0, 1];
       for (const { value } of this.owner.limitsOf(this.figure)) if (steplap.marks.isNear(value, low, high)) { low = Math.min(low, value); high = Math.max(high, value); }
-      const room = 0.08 * (high - low) || 0.1 * Math.abs(high) || 1 / this.scale.factor;
+      const room = 0.13 * (high - low) || 0.1 * Math.abs(high) || 1 / this.scale.factor;
       return [(low - room) * this.scale.factor, (high + room) * this.scale.factor];
     }
     zoomTo(window) {

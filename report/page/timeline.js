@@ -96,6 +96,7 @@ steplap.Timeline = (() => {
         else if (this.runs.length > 1 || !all.length) this.box.append(make('p', { class: 'note' }, 'Nothing slipped, opened or broke.'));
       }
       this.cursor = make('div', { class: 'time-cursor', 'aria-hidden': 'true' });
+      this.cursor.hidden = !all.length;
       this.box.append(this.cursor);
       this.drawAxis();
       // The middle of the thumb stands where the axis says.
