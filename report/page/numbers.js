@@ -41,7 +41,7 @@ steplap.numbers = (() => {
     if (!isAtLimit && error < 0.5 * 10 ** -decimals) return fixed(value, decimals);
     const places = isAtLimit ? Math.max(decimals, placeOf(error)) : Math.min(decimals, placeOf(error));
     const step = 10 ** Math.max(0, -places);
-    return `${fixed(Math.round(value / step) * step, Math.max(0, places))} ± ${errorText(error)}`;
+    return `${fixed(step > 1 ? Math.round(value / step) * step : value, Math.max(0, places))} ± ${errorText(error)}`;
   }
 
   // What is rounding beside the largest values of this unit in a run. Lengths are looked at in parts of a millimetre, so
