@@ -87,9 +87,15 @@ steplap.numbers = (() => {
     const found = column([{ value, error, limit }], unit, rounding);
     return withUnit(found.texts[0], found.unit);
   }
-  // An instant to a ten-thousandth of the run, or as well as it is known.
+  // The same in a unit that is given: { factor, unit } of an axis.
+  function onScale(value, scale, { error, rounding = 0 } = {}) {
+    if (isKnown(value) && Math.abs(value) <= rounding) return withUnit('0', scale.unit);
+    return withUnit(measured(isKnown(value) ? value * scale.factor : value, decimalsOf(Math.abs(value) * scale.factor), isError(error) ? error * scale.factor : error), scale.unit);
+  }
+  // An instant to a ten-thousandth of the run, or as well as it is known; none where it might be anywhere in a fiftieth of the
+  // run, as that of the largest value of a curve that is flat there.
   function instant(t, end, error) {
-    if (!isKnown(t)) return '–';
+    if (!isKnown(t) || (isError(error) && error > end / 50)) return '–';
     const isShort = end < 0.01, decimals = Math.max(0, 4 - Math.ceil(Math.log10((isShort ? 1000 : 1) * end) - 1e-9));
     const k = isShort ? 1000 : 1;
     return withUnit(measured(k * t, decimals, isError(error) ? k * error : error), isShort ? 'ms' : 's');
@@ -109,5 +115,5 @@ steplap.numbers = (() => {
     if (!isKnown(value)) return '';
     return text ? signed(text) : `${signed(String(value))}${unit ? ` ${unit}` : ''}`;
   }
-  return { decimalsOf, fixed, one, column, instant, percent, full, withUnit, roundingOf, roundingIn, isRounding, isKnown };
+  return { decimalsOf, fixed, one, onScale, column, instant, percent, full, withUnit, roundingOf, roundingIn, isRounding, isKnown };
 })();

@@ -129,7 +129,7 @@ steplap.Plots = (() => {
     mark() {
       if (!this.graph || !this.overlay) return;
       const area = this.graph.getArea(), g = this.graph;
-      steplap.marks.draw(this.overlay, this.drawn, this.limits, { x: (t) => g.toDomXCoord(t), y: (v) => g.toDomYCoord(v * this.scale.factor), left: area.x, right: area.x + area.w, top: area.y, bottom: area.y + area.h },
+      steplap.marks.draw(this.overlay, this, { x: (t) => g.toDomXCoord(t), y: (v) => g.toDomYCoord(v * this.scale.factor), left: area.x, right: area.x + area.w, top: area.y, bottom: area.y + area.h },
         (s) => `var(--${s.colour})`);
     }
     // The curves as they are shown, in their own units: a column each, a row for each time that any of them has.
@@ -165,7 +165,7 @@ steplap.Plots = (() => {
     show(t) {
       if (!this.graph) return;
       this.place();
-      for (const s of this.series) if (s.readout) s.readout.textContent = steplap.numbers.one(s.channel.at(t), s.channel.unit, { rounding: steplap.numbers.roundingOf(s.run, s.channel.unit) });
+      for (const s of this.series) if (s.readout) s.readout.textContent = steplap.numbers.onScale(s.channel.at(t), this.scale, { rounding: steplap.numbers.roundingOf(s.run, s.channel.unit) });
     }
   }
 

@@ -69,8 +69,8 @@ steplap.Timeline = (() => {
     xOf(t) { return this.left + ((this.width - this.left - this.right) * t) / this.end; }
     timeAt(x) { return ((x - this.left) * this.end) / (this.width - this.left - this.right); }
     // Names stand before their lanes; on a narrow screen over them.
-    measure() {
-      this.width = Math.max(240, this.box.clientWidth || 1260);
+    measure(width) {
+      this.width = Math.max(240, width || this.box.clientWidth || 1260);
       this.isNarrow = this.width < 560;
       const canvas = document.createElement('canvas').getContext('2d');
       canvas.font = '12px "DejaVu Sans", Arial, sans-serif';
@@ -86,8 +86,9 @@ steplap.Timeline = (() => {
       while (text.length > 3 && this.canvas.measureText(`${text}…`).width > room) text = text.slice(0, -1);
       return `${text}…`;
     }
-    build() {
-      this.measure();
+    // `width`: in pixels; without it that of its place.
+    build(width) {
+      this.measure(width);
       this.box.replaceChildren();
       const all = this.lanes.filter(({ lanes }) => lanes.length);
       for (const { run, lanes } of this.lanes) {
@@ -171,12 +172,15 @@ steplap.story = (() => {
     box.hidden = !told.length;
     if (!told.length) return;
     box.append(make('h2', {}, 'What happened'));
+    const parts = make('div', { class: 'parts' });
+    box.append(parts);
     for (const run of told) {
       const { story } = steplap.overview.of(run), list = (some) => make('ul', { class: 'story' }, ...some.map((entry) => line(entry, onTime)));
-      if (runs.length > 1) box.append(make('h4', {}, run.name));
-      if (!story.length) box.append(make('p', {}, 'Nothing slipped, lifted, opened or broke.'));
-      else box.append(list(story.slice(0, first)));
-      if (story.length > first) box.append(make('details', {}, make('summary', {}, `${story.length - first} more`), list(story.slice(first))));
+      const part = make('div', {}, ...(runs.length > 1 ? [make('h4', {}, run.name)] : []));
+      if (!story.length) part.append(make('p', {}, 'Nothing slipped, lifted, opened or broke.'));
+      else part.append(list(story.slice(0, first)));
+      if (story.length > first) part.append(make('details', {}, make('summary', {}, `${story.length - first} more`), list(story.slice(first))));
+      parts.append(part);
     }
   }
   return { build };
