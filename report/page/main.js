@@ -69,7 +69,7 @@
     const top = at('verdict').getBoundingClientRect().bottom + window.scrollY, gaps = 22;
     const left = window.innerHeight - top - heightOf('timeline') - gaps;
     const height = isOne ? Math.max(left, heightOf('limits') + heightOf('story') + gaps) : left - heightOf('limits');
-    return Math.max(190, Math.min(height - around, 900));
+    return Math.max(250, Math.min(height - around, 900));
   }
   const put = (widths, height) => steplap.Scene.fitAll(scenes, at('seen-from').value, Number(at('magnification').value), widths, height);
   function fit() {

@@ -104,10 +104,11 @@ steplap.numbers = (() => {
   function percent(share, error) {
     if (!isKnown(share)) return '–';
     if (!isFinite(share)) return '∞';
-    const value = 100 * share;
+    const isAtLimit = Math.abs(share - 1) < 1e-9; // friction that slips, but for rounding
+    const value = isAtLimit ? 100 : 100 * share;
     let decimals = value < 9.95 ? 1 : 0;
-    while (share !== 1 && Number(value.toFixed(decimals)) === 100 && decimals < 3) ++decimals;
-    if (share !== 1 && Number(value.toFixed(decimals)) === 100) return `${share < 1 ? '<' : '>'}${space}100${space}%`;
+    while (!isAtLimit && Number(value.toFixed(decimals)) === 100 && decimals < 3) ++decimals;
+    if (!isAtLimit && Number(value.toFixed(decimals)) === 100) return `${share < 1 ? '<' : '>'}${space}100${space}%`;
     return withUnit(measured(value, decimals, isError(error) ? 100 * error : error, 100), '%');
   }
   // All digits: as the program wrote them with their error, or as they are.

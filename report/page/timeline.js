@@ -7,7 +7,7 @@ steplap.Timeline = (() => {
   // What begins a stretch, and what ends it.
   const stretches = [{ begins: ['slip'], ends: ['stick', 'free', 'apart'], class: 'slipping', word: 'slips' }, { begins: ['open'], ends: ['close', 'strike'], class: 'open', word: 'is open' }];
 
-  // Elements with events that have a sign, those that moved first, then by how much happens.
+  // Elements with events that have a sign: those that slipped or broke first, then what else the story tells of.
   function lanesOf(run, most) {
     const { moved, story } = steplap.overview.of(run), lanes = new Map();
     for (const [t, who, what, text, role] of run.events) {
@@ -16,7 +16,8 @@ steplap.Timeline = (() => {
       lanes.get(who).events.push({ t, role, text: `${who} ${what} at ${text}`, who });
     }
     const told = story.flatMap((s) => s.who || []);
-    const rank = (lane) => (moved.includes(lane.who) ? 0 : told.includes(lane.who) ? 1 : 2);
+    const isGrave = (lane) => lane.events.some((e) => ['slip', 'apart', 'break'].includes(e.role));
+    const rank = (lane) => (isGrave(lane) ? 0 : moved.includes(lane.who) ? 1 : told.includes(lane.who) ? 2 : 3);
     const sorted = [...lanes.values()].sort((a, b) => rank(a) - rank(b) || a.events[0].t - b.events[0].t);
     if (sorted.length <= most) return sorted;
     const rest = sorted.slice(most - 1);
@@ -58,7 +59,7 @@ steplap.Timeline = (() => {
   return class Timeline {
     constructor(runs, end, { lanes, axis, slider, onTime }) {
       Object.assign(this, { runs, end, box: lanes, axisBox: axis, slider, onTime });
-      this.most = runs.length > 1 ? 2 + (runs.length < 3) : 5;
+      this.most = runs.length > 1 ? 3 : 5;
       this.lanes = runs.map((run) => ({ run, lanes: lanesOf(run, this.most) }));
       this.box.addEventListener('pointerdown', (event) => {
         if (event.target.closest('[data-t]')) return;
