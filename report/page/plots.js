@@ -109,7 +109,8 @@ steplap.Plots = (() => {
         this.values.append(make('span', { class: 'key', title: s.run.meaning(s.name) }, make('svg', { viewBox: '0 0 30 9' }, line), `${this.keyText(s)} `, s.readout || ''));
       }
       const [low, high] = this.owner.rangeOf(this.figure, this.owner.full), far = this.limits.filter(({ value }) => !steplap.marks.isNear(value, low, high));
-      if (far.length) this.values.append(make('span', { class: 'key far' }, `${far.map((f) => f.text).join(', ')}: beyond this picture`));
+      const texts = steplap.data.unique([far.map((f) => f.text.replace('−', ''))]); // one on either side of zero is told of once
+      if (far.length) this.values.append(make('span', { class: 'key far' }, `${texts.join(', ')}: beyond this picture`));
     }
     // Instants that are marked by lines, with their style.
     eventLines() {

@@ -335,6 +335,7 @@ class ReportTest(Page):
                          "out/rail_wagon_humping/report.html"):
                 self.open(page, size)
                 self.assertLessEqual(self.run_js("return document.documentElement.scrollWidth - innerWidth"), 0)
+                self.run_js("steplap.page.show(0)")  # numbers of bodies are set apart where these begin
                 boxes = self.run_js("""return [...document.querySelectorAll('.scene')].map(s =>
                     [...s.querySelectorAll('.number-mark, .state-text')].map(e => { const r = e.getBoundingClientRect();
                       return [r.left, r.top, r.right, r.bottom]; }))""")
