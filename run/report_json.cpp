@@ -1,6 +1,7 @@
 #include "elements/step_lap_assessment.h"
 #include "mbd/io/digest.h"
 #include "run/ordered_json.h"
+#include "run/overview.h"
 #include "run/result_files.h"
 #include "run/version.h"
 
@@ -237,6 +238,43 @@ Json second_opinion_json(const SecondOpinion& opinion) {
           {"known_until", opinion.known_until}};
 }
 
+Json story_json(const std::vector<StoryEntry>& story) {
+  Json json = Json::array();
+  for (const StoryEntry& e : story)
+    json.push_back({{"from", e.from},
+                    {"to", e.to ? Json(*e.to) : Json()},
+                    {"what", e.what},
+                    {"who", e.who},
+                    {"count", e.count},
+                    {"amount", e.amount ? Json{{"value", number_json(e.amount->value)}, {"unit", e.amount->unit}} : Json()},
+                    {"text", e.text}});
+  return json;
+}
+
+// What screen and page begin with (overview.h).
+Json overview_json(const Overview& overview) {
+  const auto optional = [](const std::optional<double>& value) { return value ? number_json(*value) : Json(); };
+  Json utilisations = Json::array();
+  for (const Utilisation& u : overview.utilisations)
+    utilisations.push_back({{"name", u.name},
+                            {"channel", u.channel},
+                            {"share", u.share},
+                            {"value", optional(u.value)},
+                            {"limit", optional(u.limit)},
+                            {"unit", u.unit},
+                            {"at", optional(u.at)},
+                            {"text", u.text},
+                            {"beyond", u.beyond},
+                            {"error", optional(u.error)}});
+  return {{"verdict", name_of(overview.verdict)},
+          {"reason", overview.reason},
+          {"trust", {{"level", name_of(overview.trust.level)}, {"text", overview.trust.text}}},
+          {"worst_instant", optional(overview.worst_instant)},
+          {"story", story_json(overview.story)},
+          {"utilisations", std::move(utilisations)},
+          {"moved", overview.moved}};
+}
+
 Json state_json(const System& system, const State& state, const Report& report) {
   Json bodies = Json::object(), errors = Json::object();
   std::unordered_map<std::string, const ChannelRange*> ranges;
@@ -270,6 +308,7 @@ std::string summary_json(const Report& report, const FileRecords& files) {
                    {"title", loaded.model.header.title},
                    {"overrides", loaded.overrides},
                    {"inputs", inputs_json(loaded.inputs)}};
+  json["overview"] = overview_json(overview_of(report));
   json["completed"] = !run.failure;
   if (run.failure) json["failure"] = run.failure->text;
   json["findings"] = findings_json(report.findings);

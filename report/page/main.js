@@ -69,14 +69,22 @@
     const top = at('verdict').getBoundingClientRect().bottom + window.scrollY, gaps = 22;
     const left = window.innerHeight - top - heightOf('timeline') - gaps;
     const height = isOne ? Math.max(left, heightOf('limits') + heightOf('story') + gaps) : left - heightOf('limits');
-    return Math.max(190, Math.min(height - around, 900));
+    return Math.max(250, Math.min(height - around, 900));
   }
+  const put = (widths, height) => steplap.Scene.fitAll(scenes, at('seen-from').value, Number(at('magnification').value), widths, height);
   function fit() {
     if (isPrinted.matches) return;
-    const widths = scenes.map((s) => Math.max(240, s.svg.parentNode.clientWidth)), put = (height) => steplap.Scene.fitAll(scenes, at('seen-from').value, Number(at('magnification').value), widths, height);
-    put(260); // so that what is around it can be measured
+    const widths = scenes.map((s) => Math.max(240, s.svg.parentNode.clientWidth));
+    put(widths, 260); // so that what is around it can be measured
     timeline.build();
-    put(tallest());
+    put(widths, tallest());
+  }
+  // As wide as an A4 sheet, in pixels of the style sheet.
+  function fitPaper() {
+    const whole = 700;
+    put(scenes.map(() => (isOne ? whole : 0.48 * whole)), isOne ? 400 : 280);
+    timeline.build(whole);
+    show(t);
   }
   function choices() {
     const speeds = [100, 10, 1, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100, 1 / 1000], wanted = end / 10;
@@ -179,11 +187,12 @@
   function listenToPrint() {
     let opened = [];
     window.addEventListener('beforeprint', () => {
+      fitPaper();
       plots.preparePrint();
-      opened = [...document.querySelectorAll('#trust, #results details')].filter((d) => !d.open);
+      opened = [...document.querySelectorAll('#results details')].filter((d) => !d.open);
       for (const d of opened) d.open = true;
     });
-    window.addEventListener('afterprint', () => { for (const d of opened) d.open = false; });
+    window.addEventListener('afterprint', () => { for (const d of opened) d.open = false; fit(); show(t); });
   }
   function buildRest() {
     steplap.verdict.buildTrust(runs);

@@ -1,7 +1,7 @@
 // What is marked on curves: limits as lines, the largest value of each curve as a dot with its value. Texts that would lie
 // on another, or beyond the figure, go elsewhere; where there is no place the dot stays alone, with its value in the title.
 steplap.marks = (() => {
-  const make = steplap.make, { one, isKnown } = steplap.numbers;
+  const make = steplap.make, { one, onScale, isKnown } = steplap.numbers;
   const most = 4; // dots with a value in one figure
 
   // Limits of the curves of a figure, in their own unit: [{ value, text }].
@@ -22,14 +22,14 @@ steplap.marks = (() => {
     const e = s.run.summary.extremes[s.name];
     if (s.isBound || !e || !isKnown(e.min) || !isKnown(e.max) || s.isZero) return null;
     const key = Math.abs(e.min) > Math.abs(e.max) ? 'min' : 'max';
-    return isFinite(e[key]) && isKnown(e[`t_${key}`]) && e.max > e.min ? { s, t: e[`t_${key}`], value: e[key], text: one(e[key], s.channel.unit, { error: e[`error_${key}`] }) } : null;
+    return isFinite(e[key]) && isKnown(e[`t_${key}`]) && e.max > e.min ? { s, t: e[`t_${key}`], value: e[key], error: e[`error_${key}`] } : null;
   }
   // A text of 11 pixels, with some room.
   const widthOf = (text) => 6.9 * text.length + 6;
   const meet = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 
   // `place`: { x(t), y(value), left, top, right, bottom } in pixels of `svg`. `colourOf(series)` as CSS knows it.
-  function draw(svg, series, limits, place, colourOf) {
+  function draw(svg, { drawn: series, limits, scale }, place, colourOf) {
     svg.replaceChildren();
     const taken = [];
     const write = (text, spots, style) => {
@@ -54,7 +54,8 @@ steplap.marks = (() => {
       svg.append(make('circle', { cx: x, cy: y, r: 3.4, class: 'extreme', style: `fill:${colourOf(s)}`, 'data-channel': s.name }));
       taken.push([x - 4, y - 4, x + 4, y + 4]);
     }
-    for (const { s, t, value, text } of dots) {
+    for (const { s, t, value, error } of dots) {
+      const text = onScale(value, scale, { error });
       const x = place.x(t), y = place.y(value), above = [[x, y - 7, 'middle'], [x + 4, y - 6, 'start'], [x - 4, y - 6, 'end']], below = [[x, y + 16, 'middle'], [x + 4, y + 15, 'start'], [x - 4, y + 15, 'end']];
       const aside = [[x + 5, y + 4, 'start'], [x - 5, y + 4, 'end']];
       if (y >= place.top - 1 && y <= place.bottom + 1) write(text, value >= 0 ? [...above, ...aside, ...below] : [...below, ...aside, ...above], `fill:${colourOf(s)}`);

@@ -41,7 +41,7 @@ steplap.numbers = (() => {
     if (!isAtLimit && error < 0.5 * 10 ** -decimals) return fixed(value, decimals);
     const places = isAtLimit ? Math.max(decimals, placeOf(error)) : Math.min(decimals, placeOf(error));
     const step = 10 ** Math.max(0, -places);
-    return `${fixed(Math.round(value / step) * step, Math.max(0, places))} ± ${errorText(error)}`;
+    return `${fixed(step > 1 ? Math.round(value / step) * step : value, Math.max(0, places))} ± ${errorText(error)}`;
   }
 
   // What is rounding beside the largest values of this unit in a run. Lengths are looked at in parts of a millimetre, so
@@ -87,9 +87,15 @@ steplap.numbers = (() => {
     const found = column([{ value, error, limit }], unit, rounding);
     return withUnit(found.texts[0], found.unit);
   }
-  // An instant to a ten-thousandth of the run, or as well as it is known.
+  // The same in a unit that is given: { factor, unit } of an axis.
+  function onScale(value, scale, { error, rounding = 0 } = {}) {
+    if (isKnown(value) && Math.abs(value) <= rounding) return withUnit('0', scale.unit);
+    return withUnit(measured(isKnown(value) ? value * scale.factor : value, decimalsOf(Math.abs(value) * scale.factor), isError(error) ? error * scale.factor : error), scale.unit);
+  }
+  // An instant to a ten-thousandth of the run, or as well as it is known; none where it might be anywhere in a fiftieth of the
+  // run, as that of the largest value of a curve that is flat there.
   function instant(t, end, error) {
-    if (!isKnown(t)) return '–';
+    if (!isKnown(t) || (isError(error) && error > end / 50)) return '–';
     const isShort = end < 0.01, decimals = Math.max(0, 4 - Math.ceil(Math.log10((isShort ? 1000 : 1) * end) - 1e-9));
     const k = isShort ? 1000 : 1;
     return withUnit(measured(k * t, decimals, isError(error) ? k * error : error), isShort ? 'ms' : 's');
@@ -98,10 +104,11 @@ steplap.numbers = (() => {
   function percent(share, error) {
     if (!isKnown(share)) return '–';
     if (!isFinite(share)) return '∞';
-    const value = 100 * share;
+    const isAtLimit = Math.abs(share - 1) < 1e-9; // friction that slips, but for rounding
+    const value = isAtLimit ? 100 : 100 * share;
     let decimals = value < 9.95 ? 1 : 0;
-    while (share !== 1 && Number(value.toFixed(decimals)) === 100 && decimals < 3) ++decimals;
-    if (share !== 1 && Number(value.toFixed(decimals)) === 100) return `${share < 1 ? '<' : '>'}${space}100${space}%`;
+    while (!isAtLimit && Number(value.toFixed(decimals)) === 100 && decimals < 3) ++decimals;
+    if (!isAtLimit && Number(value.toFixed(decimals)) === 100) return `${share < 1 ? '<' : '>'}${space}100${space}%`;
     return withUnit(measured(value, decimals, isError(error) ? 100 * error : error, 100), '%');
   }
   // All digits: as the program wrote them with their error, or as they are.
@@ -109,5 +116,5 @@ steplap.numbers = (() => {
     if (!isKnown(value)) return '';
     return text ? signed(text) : `${signed(String(value))}${unit ? ` ${unit}` : ''}`;
   }
-  return { decimalsOf, fixed, one, column, instant, percent, full, withUnit, roundingOf, roundingIn, isRounding, isKnown };
+  return { decimalsOf, fixed, one, onScale, column, instant, percent, full, withUnit, roundingOf, roundingIn, isRounding, isKnown };
 })();

@@ -34,12 +34,12 @@ steplap.paper = (() => {
     const svg = make('svg', { viewBox: `0 0 ${width} ${height}`, class: 'on-paper', role: 'img', 'aria-label': plot.caption });
     const { x, y, w, text } = axes(svg, plot, [t0, t1], range, top, h);
     for (const { t, style } of plot.eventLines())
-      if (t >= t0 && t <= t1) svg.append(make('line', { x1: x(t), x2: x(t), y1: top, y2: top + h, 'stroke-width': 0.6, 'stroke-dasharray': style.dash.join(' '), style: `stroke:var(--${style.colour})` }));
+      if (t >= t0 && t <= t1) svg.append(make('line', { x1: x(t), x2: x(t), y1: top, y2: top + h, 'stroke-width': 0.6, 'stroke-opacity': 0.45, 'stroke-dasharray': style.dash.join(' '), style: `stroke:var(--${style.colour})` }));
     for (const s of plot.drawn)
       svg.append(make('path', { d: pathOf(s, factor, t0, t1, x, y), fill: 'none', 'stroke-width': s.isBound ? 0.8 : 1.2, 'stroke-dasharray': dashed(s.dash), style: `stroke:var(--${s.colour})` }));
     svg.append(make('rect', { x: left, y: top, width: w, height: h, fill: 'none', style: 'stroke:var(--axis)' }));
     const marks = make('g', { class: 'small' });
-    steplap.marks.draw(marks, plot.drawn, plot.limits, { x, y: (v) => y(v * factor), left, right: left + w, top, bottom: top + h }, (s) => `var(--${s.colour})`);
+    steplap.marks.draw(marks, plot, { x, y: (v) => y(v * factor), left, right: left + w, top, bottom: top + h }, (s) => `var(--${s.colour})`);
     svg.append(marks);
     text(plot.caption, { x: left, y: 9, 'font-size': 9, 'font-weight': 600 });
     keys.forEach((s, k) => {

@@ -70,13 +70,14 @@ steplap.Plots = (() => {
       return values.map((v) => ({ v, label: steplap.axes.label(v, step) }));
     }
     // As wide as the longest number along the axis.
-    labelWidth([low, high]) { return 10 + 7.4 * Math.max(3, ...this.ticker(low, high, 6).map((tick) => tick.label.length)); }
-    // What the other runs show of this figure has the same scale, and limits nearby are in the picture.
+    labelWidth([low, high]) { return 24 + 7.4 * Math.max(3, ...this.ticker(low, high, 6).map((tick) => tick.label.length)); }
+    // What the other runs show of this figure has the same scale; limits nearby are in the picture; there is room for the
+    // values of the extremes.
     valueRange() {
       let [low, high] = this.owner.rangeOf(this.figure, this.owner.window);
       if (!(low <= high)) return [0, 1];
       for (const { value } of this.owner.limitsOf(this.figure)) if (steplap.marks.isNear(value, low, high)) { low = Math.min(low, value); high = Math.max(high, value); }
-      const room = 0.08 * (high - low) || 0.1 * Math.abs(high) || 1 / this.scale.factor;
+      const room = 0.13 * (high - low) || 0.1 * Math.abs(high) || 1 / this.scale.factor;
       return [(low - room) * this.scale.factor, (high + room) * this.scale.factor];
     }
     zoomTo(window) {
@@ -108,7 +109,8 @@ steplap.Plots = (() => {
         this.values.append(make('span', { class: 'key', title: s.run.meaning(s.name) }, make('svg', { viewBox: '0 0 30 9' }, line), `${this.keyText(s)} `, s.readout || ''));
       }
       const [low, high] = this.owner.rangeOf(this.figure, this.owner.full), far = this.limits.filter(({ value }) => !steplap.marks.isNear(value, low, high));
-      if (far.length) this.values.append(make('span', { class: 'key far' }, `${far.map((f) => f.text).join(', ')}: beyond this picture`));
+      const texts = steplap.data.unique([far.map((f) => f.text.replace('−', ''))]); // one on either side of zero is told of once
+      if (far.length) this.values.append(make('span', { class: 'key far' }, `${texts.join(', ')}: beyond this picture`));
     }
     // Instants that are marked by lines, with their style.
     eventLines() {
@@ -128,7 +130,7 @@ steplap.Plots = (() => {
     mark() {
       if (!this.graph || !this.overlay) return;
       const area = this.graph.getArea(), g = this.graph;
-      steplap.marks.draw(this.overlay, this.drawn, this.limits, { x: (t) => g.toDomXCoord(t), y: (v) => g.toDomYCoord(v * this.scale.factor), left: area.x, right: area.x + area.w, top: area.y, bottom: area.y + area.h },
+      steplap.marks.draw(this.overlay, this, { x: (t) => g.toDomXCoord(t), y: (v) => g.toDomYCoord(v * this.scale.factor), left: area.x, right: area.x + area.w, top: area.y, bottom: area.y + area.h },
         (s) => `var(--${s.colour})`);
     }
     // The curves as they are shown, in their own units: a column each, a row for each time that any of them has.
@@ -164,7 +166,7 @@ steplap.Plots = (() => {
     show(t) {
       if (!this.graph) return;
       this.place();
-      for (const s of this.series) if (s.readout) s.readout.textContent = steplap.numbers.one(s.channel.at(t), s.channel.unit, { rounding: steplap.numbers.roundingOf(s.run, s.channel.unit) });
+      for (const s of this.series) if (s.readout) s.readout.textContent = steplap.numbers.onScale(s.channel.at(t), this.scale, { rounding: steplap.numbers.roundingOf(s.run, s.channel.unit) });
     }
   }
 

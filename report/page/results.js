@@ -6,7 +6,8 @@ steplap.results = (() => {
   const cell = (text, number) => ({ text, value: number.value, full: number.full });
 
   // --- one run -------------------------------------------------------------------------------------
-  const at = (run, n) => (isKnown(n.at) ? { text: instant(n.at, run.end, n.atError), full: n.atFull } : '');
+  // Of what is nothing but rounding there is no instant.
+  const at = (run, n) => (isKnown(n.at) && !(Math.abs(n.value) <= roundingOf(run, n.unit)) ? { text: instant(n.at, run.end, n.atError), full: n.atFull } : '');
   function criteria(run) {
     const list = q.criteria(run);
     if (!list.length) return null;

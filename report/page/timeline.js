@@ -7,7 +7,7 @@ steplap.Timeline = (() => {
   // What begins a stretch, and what ends it.
   const stretches = [{ begins: ['slip'], ends: ['stick', 'free', 'apart'], class: 'slipping', word: 'slips' }, { begins: ['open'], ends: ['close', 'strike'], class: 'open', word: 'is open' }];
 
-  // Elements with events that have a sign, those that moved first, then by how much happens.
+  // Elements with events that have a sign: those that slipped or broke first, then what else the story tells of.
   function lanesOf(run, most) {
     const { moved, story } = steplap.overview.of(run), lanes = new Map();
     for (const [t, who, what, text, role] of run.events) {
@@ -16,7 +16,8 @@ steplap.Timeline = (() => {
       lanes.get(who).events.push({ t, role, text: `${who} ${what} at ${text}`, who });
     }
     const told = story.flatMap((s) => s.who || []);
-    const rank = (lane) => (moved.includes(lane.who) ? 0 : told.includes(lane.who) ? 1 : 2);
+    const isGrave = (lane) => lane.events.some((e) => ['slip', 'apart', 'break'].includes(e.role));
+    const rank = (lane) => (isGrave(lane) ? 0 : moved.includes(lane.who) ? 1 : told.includes(lane.who) ? 2 : 3);
     const sorted = [...lanes.values()].sort((a, b) => rank(a) - rank(b) || a.events[0].t - b.events[0].t);
     if (sorted.length <= most) return sorted;
     const rest = sorted.slice(most - 1);
@@ -58,7 +59,7 @@ steplap.Timeline = (() => {
   return class Timeline {
     constructor(runs, end, { lanes, axis, slider, onTime }) {
       Object.assign(this, { runs, end, box: lanes, axisBox: axis, slider, onTime });
-      this.most = runs.length > 1 ? 2 + (runs.length < 3) : 5;
+      this.most = runs.length > 1 ? 3 : 5;
       this.lanes = runs.map((run) => ({ run, lanes: lanesOf(run, this.most) }));
       this.box.addEventListener('pointerdown', (event) => {
         if (event.target.closest('[data-t]')) return;
@@ -69,8 +70,8 @@ steplap.Timeline = (() => {
     xOf(t) { return this.left + ((this.width - this.left - this.right) * t) / this.end; }
     timeAt(x) { return ((x - this.left) * this.end) / (this.width - this.left - this.right); }
     // Names stand before their lanes; on a narrow screen over them.
-    measure() {
-      this.width = Math.max(240, this.box.clientWidth || 1260);
+    measure(width) {
+      this.width = Math.max(240, width || this.box.clientWidth || 1260);
       this.isNarrow = this.width < 560;
       const canvas = document.createElement('canvas').getContext('2d');
       canvas.font = '12px "DejaVu Sans", Arial, sans-serif';
@@ -86,8 +87,9 @@ steplap.Timeline = (() => {
       while (text.length > 3 && this.canvas.measureText(`${text}…`).width > room) text = text.slice(0, -1);
       return `${text}…`;
     }
-    build() {
-      this.measure();
+    // `width`: in pixels; without it that of its place.
+    build(width) {
+      this.measure(width);
       this.box.replaceChildren();
       const all = this.lanes.filter(({ lanes }) => lanes.length);
       for (const { run, lanes } of this.lanes) {
@@ -96,6 +98,7 @@ steplap.Timeline = (() => {
         else if (this.runs.length > 1 || !all.length) this.box.append(make('p', { class: 'note' }, 'Nothing slipped, opened or broke.'));
       }
       this.cursor = make('div', { class: 'time-cursor', 'aria-hidden': 'true' });
+      this.cursor.hidden = !all.length;
       this.box.append(this.cursor);
       this.drawAxis();
       // The middle of the thumb stands where the axis says.
@@ -170,12 +173,15 @@ steplap.story = (() => {
     box.hidden = !told.length;
     if (!told.length) return;
     box.append(make('h2', {}, 'What happened'));
+    const parts = make('div', { class: 'parts' });
+    box.append(parts);
     for (const run of told) {
       const { story } = steplap.overview.of(run), list = (some) => make('ul', { class: 'story' }, ...some.map((entry) => line(entry, onTime)));
-      if (runs.length > 1) box.append(make('h4', {}, run.name));
-      if (!story.length) box.append(make('p', {}, 'Nothing slipped, lifted, opened or broke.'));
-      else box.append(list(story.slice(0, first)));
-      if (story.length > first) box.append(make('details', {}, make('summary', {}, `${story.length - first} more`), list(story.slice(first))));
+      const part = make('div', {}, ...(runs.length > 1 ? [make('h4', {}, run.name)] : []));
+      if (!story.length) part.append(make('p', {}, 'Nothing slipped, lifted, opened or broke.'));
+      else part.append(list(story.slice(0, first)));
+      if (story.length > first) part.append(make('details', {}, make('summary', {}, `${story.length - first} more`), list(story.slice(first))));
+      parts.append(part);
     }
   }
   return { build };

@@ -178,7 +178,7 @@ class PictureTest(base.Page):
         return self.run_js(f"const scene = steplap.page.scenes[0]; return {expression}")
 
     def saved(self, ending):
-        self.until(lambda: glob.glob(os.path.join(self.downloads, "*." + ending)))
+        self.until(lambda: any(os.path.getsize(path) for path in glob.glob(os.path.join(self.downloads, "*." + ending))))
         path = glob.glob(os.path.join(self.downloads, "*." + ending))[0]
         with open(path, "rb") as file:
             content = file.read()

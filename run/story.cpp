@@ -1,0 +1,412 @@
+#include "run/story.h"
+
+#include "elements/polygon_contact.h"
+#include "elements/unilateral_contact.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/math/portable_math.h"
+#include "run/places.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace steplap {
+
+namespace {
+
+// What entries tell of. Of what goes to and fro the first event says which way is told: a foot that stood lifts, a ball that flew
+// touches.
+enum class What { slips, would_slip, lifts, opens, touches, slack, taut, leaves_gap, closes_gap, strikes, leaves_stop, tips, breaks, apart, interface, storm };
+
+struct Words {
+  const char* key;     // StoryEntry::what
+  const char* verb;    // of one
+  const char* several; // of several
+};
+
+const Words& words_of(What what) {
+  static constexpr std::array<Words, 16> k_words{{{"slips", "slips", "slip"},
+                                                  {"would slip", "would slip", "would slip"},
+                                                  {"lifts", "lifts", "lift"},
+                                                  {"opens", "opens", "open"},
+                                                  {"closes", "touches", "touch"},
+                                                  {"goes slack", "goes slack", "go slack"},
+                                                  {"becomes taut", "becomes taut", "become taut"},
+                                                  {"opens", "opens its gap", "open their gaps"},
+                                                  {"closes", "closes its gap", "close their gaps"},
+                                                  {"strikes", "strikes its stop", "strike their stops"},
+                                                  {"leaves its stop", "leaves its stop", "leave their stops"},
+                                                  {"tips", "tips", "tip"},
+                                                  {"breaks", "breaks", "break"},
+                                                  {"comes apart", "comes apart", "come apart"},
+                                                  {"loses an interface", "loses an interface", "lose interfaces"},
+                                                  {"changes too often", "changes too often to be followed event by event", "change too often to be followed event by event"}}};
+  return k_words[static_cast<std::size_t>(what)];
+}
+
+// One element doing one thing.
+struct Happening {
+  What what = What::slips;
+  std::string who;
+  std::size_t count = 0;
+  double from = 0.0, begun = 0.0; // of the first and of the last time
+  std::optional<double> to;       // of the last time; none: it lasts
+  std::optional<StoryAmount> amount;
+  std::optional<double> from_error, to_error;
+  bool is_over = true;
+};
+
+bool is_instant(What what) {
+  return what == What::breaks || what == What::apart || what == What::interface || what == What::tips || what == What::would_slip;
+}
+
+// --- from events to happenings
+
+constexpr double k_at_start = 1e-5; // of the run: what happens before happens at the start
+
+// Of an element that goes to and fro: what its first event began.
+struct Way {
+  What what;
+  bool is_opening;
+};
+
+class Gatherer {
+public:
+  Gatherer(const Report& report, const RangeIndex& ranges) : report_(report), ranges_(ranges) {
+    const Model& model = report.run.loaded->model;
+    for (const ElementEntry& entry : model.elements) entry_of_.emplace(entry.element->name, &entry);
+  }
+
+  std::vector<Happening> gather() {
+    const std::vector<Event>& events = report_.run.result.events;
+    for (std::size_t i = 0; i < events.size(); ++i) take(events[i], report_.event_error(i));
+    for (Happening& h : found_) add_amount(h);
+    add_monitored();
+    add_tipped();
+    const double end = report_.run.result.final_state.t;
+    std::erase_if(found_, [end](const Happening& h) { // what is put on the floor at the start, and stays
+      return h.what == What::touches && h.count == 1 && h.from <= k_at_start * end && !h.is_over;
+    });
+    std::stable_sort(found_.begin(), found_.end(), [](const Happening& a, const Happening& b) { return a.from < b.from; });
+    return std::move(found_);
+  }
+
+private:
+  static constexpr double k_tipped = 5.0 / 180.0 * std::numbers::pi; // rad: less is rocking on springs
+
+  const ElementEntry* entry_of(const std::string& element) const {
+    const auto found = entry_of_.find(element);
+    return found == entry_of_.end() ? nullptr : found->second;
+  }
+
+  bool is_rope(const std::string& element) const {
+    const ElementEntry* entry = entry_of(element);
+    return entry && entry->kind->name.ends_with("rope");
+  }
+
+  // Does the contact bear against gravity, so that opening it is a lift?
+  bool is_upright(const std::string& element) const {
+    const ElementEntry* entry = entry_of(element);
+    const Model& model = report_.run.loaded->model;
+    if (!entry || entry->kind->name != "unilateral_contact") return false;
+    const auto& contact = static_cast<const UnilateralContact&>(*entry->element);
+    const Place b = place_of(model, contact.b);
+    const Vec2 normal = rotated(contact.normal, b.angle + (b.body ? b.body->angle : 0.0));
+    constexpr double k_upright = 0.7; // of the cosine: less than 45° off
+    const double size = normal.norm() * model.header.gravity.norm();
+    return size > 0.0 && -normal.dot(model.header.gravity) > k_upright * size;
+  }
+
+  Happening& entry(What what, const std::string& who) {
+    const auto [place, is_new] = place_.try_emplace(who + '\0' + static_cast<char>('a' + static_cast<int>(what)), found_.size());
+    if (is_new) found_.push_back({what, who, 0, 0.0, 0.0, {}, {}, {}, {}, true});
+    return found_[place->second];
+  }
+
+  void begin(What what, const Event& event, std::optional<double> error) {
+    Happening& h = entry(what, event.element);
+    if (!h.is_over) return;
+    if (h.count++ == 0) {
+      h.from = event.t;
+      h.from_error = error;
+    }
+    h.begun = event.t;
+    h.to.reset();
+    h.is_over = is_instant(what);
+    if (h.is_over) h.to = event.t;
+  }
+
+  void end(What what, const Event& event, std::optional<double> error) {
+    Happening& h = entry(what, event.element);
+    if (h.is_over) return;
+    h.is_over = true;
+    h.to = event.t;
+    h.to_error = error;
+  }
+
+  // `is_opening`: it opens, goes slack, reaches its stop; else the way back.
+  void toggle(bool is_opening, const Event& event, std::optional<double> error) {
+    auto way = ways_.find(event.element);
+    if (way == ways_.end()) way = ways_.emplace(event.element, Way{what_of(event, is_opening), is_opening}).first;
+    if (way->second.is_opening == is_opening) begin(way->second.what, event, error);
+    else end(way->second.what, event, error);
+  }
+
+  // What the first event of an element that goes to and fro begins.
+  What what_of(const Event& event, bool is_opening) const {
+    switch (event.kind) {
+    case EventKind::opens:
+    case EventKind::closes: return !is_opening ? What::touches : is_upright(event.element) ? What::lifts : What::opens;
+    case EventKind::enters_gap:
+    case EventKind::closes_gap:
+      if (is_rope(event.element)) return is_opening ? What::slack : What::taut;
+      return is_opening ? What::leaves_gap : What::closes_gap;
+    default: return is_opening ? What::strikes : What::leaves_stop;
+    }
+  }
+
+  void take(const Event& event, std::optional<double> error) {
+    switch (event.kind) {
+    case EventKind::slips:
+    case EventKind::slips_forward:
+    case EventKind::slips_backward:
+    case EventKind::slips_another_way: return begin(What::slips, event, error);
+    case EventKind::sticks:
+    case EventKind::loses_normal_force: return end(What::slips, event, error);
+    case EventKind::opens:
+    case EventKind::enters_gap:
+    case EventKind::reaches_lower_stop:
+    case EventKind::reaches_upper_stop: return toggle(true, event, error);
+    case EventKind::closes:
+    case EventKind::closes_gap:
+    case EventKind::leaves_stop: return toggle(false, event, error);
+    case EventKind::breaks: return begin(What::breaks, event, error);
+    case EventKind::comes_apart:
+      end(What::slips, event, error);
+      return begin(What::apart, event, error);
+    case EventKind::loses_interface: return begin(What::interface, event, error);
+    case EventKind::storm: return begin(What::storm, event, error);
+    case EventKind::storm_over: return end(What::storm, event, error);
+    default: return;
+    }
+  }
+
+  // The way of a channel from where it began, or its largest value.
+  std::optional<StoryAmount> excursion(const std::string& channel, bool is_from_start) const {
+    const ChannelRange* range = ranges_.find(channel);
+    if (!range || !std::isfinite(range->high.value) || !std::isfinite(range->low.value)) return {};
+    const double first = is_from_start ? range->first : 0.0;
+    const double up = range->high.value - first, down = first - range->low.value;
+    const auto error = report_.error_of(*range, up >= down ? &ChannelError::high : &ChannelError::low);
+    return StoryAmount{std::max(up, down), range->channel->unit, error};
+  }
+
+  std::optional<StoryAmount> slid(const std::string& who) const {
+    for (const JointAssessment& joint : report_.joints)
+      if (joint.joint == who) {
+        std::optional<double> error;
+        if (const auto& estimate = report_.estimate.errors) {
+          const JointErrors e = joint_errors(joint, *report_.run.loaded->system, report_.run.result, *estimate);
+          error = portable::hypot(e.slid_x, e.slid_y);
+        }
+        return StoryAmount{portable::hypot(joint.slid_x, joint.slid_y), "m", error};
+      }
+    return excursion(who + ".slide", true);
+  }
+
+  void add_amount(Happening& h) const {
+    if (h.what == What::slips) h.amount = slid(h.who);
+    if (h.what == What::lifts || h.what == What::opens)
+      if (const ChannelRange* gap = ranges_.find(h.who + ".gap"); gap && gap->high.value > 0.0)
+        h.amount = StoryAmount{gap->high.value, gap->channel->unit, report_.error_of(*gap, &ChannelError::high)};
+    if (h.what == What::touches) h.amount = excursion(h.who + ".force", false);
+    if (h.what == What::strikes)
+      for (const char* part : {".force", ".couple"})
+        if (!h.amount) h.amount = excursion(h.who + part, false);
+  }
+
+  // A joint that is only watched slips nowhere, and would have.
+  void add_monitored() {
+    for (const JointAssessment& joint : report_.joints)
+      if (joint.is_monitored && joint.first_slip)
+        found_.push_back({What::would_slip, joint.joint, 1, *joint.first_slip, *joint.first_slip, *joint.first_slip, {}, {}, {}, true});
+  }
+
+  void note_body(const std::string& marker, std::unordered_set<std::string>& bodies) const {
+    if (const Place place = place_of(report_.run.loaded->model, marker); place.body) bodies.insert(place.body->name);
+  }
+
+  // Bodies that stand on corners or faces and are guided by nothing: wheels and cranks are meant to turn.
+  void add_tipped() {
+    std::unordered_set<std::string> standing, guided;
+    for (const ElementEntry& entry : report_.run.loaded->model.elements) {
+      if (entry.kind->name == "unilateral_contact") {
+        note_body(static_cast<const UnilateralContact&>(*entry.element).a, standing);
+      } else if (entry.kind->name == "polygon_contact") {
+        note_body(static_cast<const PolygonContact&>(*entry.element).a, standing);
+        note_body(static_cast<const PolygonContact&>(*entry.element).b, standing);
+      }
+    }
+    if (standing.empty()) return;
+    const System& system = *report_.run.loaded->system;
+    for (const RowSpec& row : system.rows)
+      for (const int body : {row.a, row.b})
+        if (body > 0) guided.insert(system.bodies[static_cast<std::size_t>(body)].name);
+    for (const BodyData& body : system.bodies) {
+      if (!standing.contains(body.name) || guided.contains(body.name)) continue;
+      const ChannelRange* range = ranges_.find(body.name + ".theta");
+      const auto amount = excursion(body.name + ".theta", true);
+      if (!range || !amount || amount->value < k_tipped) continue;
+      const double t = range->high.value - range->first >= range->first - range->low.value ? range->high.t : range->low.t;
+      found_.push_back({What::tips, body.name, 1, t, t, t, amount, {}, {}, true});
+    }
+  }
+
+  const Report& report_;
+  const RangeIndex& ranges_;
+  std::unordered_map<std::string, const ElementEntry*> entry_of_;
+  std::unordered_map<std::string, std::size_t> place_; // of element and what
+  std::unordered_map<std::string, Way> ways_;
+  std::vector<Happening> found_;
+};
+
+// --- from happenings to words
+
+class Teller {
+public:
+  Teller(const Report& report, ShownDigits digits) : digits_(digits), end_(report.run.result.final_state.t) {
+    for (const ChannelRange& range : report.ranges()) { // what rounding is measured by
+      if (range.channel->unit == "m") scale_m_ = std::max(scale_m_, std::abs(range.largest().value));
+      if (range.channel->unit == "N") scale_n_ = std::max(scale_n_, std::abs(range.largest().value));
+    }
+  }
+
+  // `beside`: a later time in the same sentence, whose unit both have.
+  std::string time(double t, std::optional<double> error, double beside = 0.0) const {
+    if (is_start(t)) return "the start";
+    return shown_quantity(t, "s", {.error = error, .scale = end_, .column = std::max(t, beside)}, digits_);
+  }
+  bool is_start(double t) const { return t <= k_at_start * end_; }
+
+  std::string amount(const StoryAmount& a) const {
+    if (a.unit == "rad") {
+      const double degrees = 180.0 / std::numbers::pi;
+      return shown_quantity(a.value * degrees, "", {.error = a.error ? std::optional(*a.error * degrees) : std::nullopt}, digits_) + "°";
+    }
+    return shown_quantity(a.value, a.unit, {.error = a.error, .scale = a.unit == "m" ? scale_m_ : scale_n_}, digits_);
+  }
+
+  // "", or ", at most 3.1 mm" and the like.
+  std::string reach(What what, const std::optional<StoryAmount>& a) const {
+    if (!a) return "";
+    const std::string shown = amount(*a);
+    if (shown.starts_with("0 ") || shown == "0°") return "";
+    switch (what) {
+    case What::slips: return " and slides " + shown;
+    case What::lifts:
+    case What::opens: return ", at most " + shown;
+    case What::touches: return ", pressing with up to " + shown;
+    case What::strikes: return ", with up to " + shown;
+    case What::tips: return " by up to " + shown;
+    default: return "";
+    }
+  }
+
+  // " at 0.2 s", " from 0.2 s to 0.3 s", " 14 times between 0.2 s and 1.1 s"
+  std::string when(const Happening& h) const {
+    const std::string from = time(h.from, h.from_error, h.to.value_or(end_)), to = h.to ? time(*h.to, h.to_error) : "the end";
+    if (h.count > 1) return " " + times(h.count) + " between " + from + " and " + to;
+    if (is_instant(h.what)) return " at " + from;
+    if (h.to && from == to) return " at " + from + " for " + time(*h.to - h.from, {});
+    return " from " + from + " to " + to;
+  }
+
+  static std::string times(std::size_t count) { return count == 2 ? "twice" : std::to_string(count) + " times"; }
+
+  // "Feet" slip, "Front foot" slips.
+  static bool is_plural(const std::string& name) {
+    if (name.ends_with("feet")) return true;
+    return name.size() > 2 && name.back() == 's' && std::string("aisu").find(name[name.size() - 2]) == std::string::npos;
+  }
+
+  std::string sentence(const Happening& h) const {
+    const std::string who = sentence_name(h.who);
+    if (h.what == What::tips) return who + (h.amount && h.amount->value > k_over ? " tips over: it has turned by " + amount(*h.amount) + " at " + time(h.from, {}) + "." : " tips" + reach(h.what, h.amount) + " (at " + time(h.from, {}) + ").");
+    if (h.what == What::would_slip) return who + ", which is only monitored, would slip at " + time(h.from, {}) + ".";
+    std::string how = reach(h.what, h.amount);
+    if (is_plural(h.who) && how.starts_with(" and slides")) how.replace(0, 11, " and slide");
+    return who + " " + (is_plural(h.who) ? words_of(h.what).several : words_of(h.what).verb) + when(h) + how + ".";
+  }
+
+  StoryEntry entry(const Happening& h) const {
+    return {h.from, is_instant(h.what) ? std::nullopt : h.to, words_of(h.what).key, {h.who}, h.count, h.amount, sentence(h)};
+  }
+
+  // Several elements that do the same.
+  StoryEntry entry(const std::vector<const Happening*>& group) const {
+    const Happening* most = nullptr;
+    StoryEntry entry{group.front()->from, group.front()->from, words_of(group.front()->what).key, {}, 0, {}, ""};
+    bool lasts = false;
+    for (const Happening* h : group) {
+      entry.who.push_back(h->who);
+      entry.count += h->count;
+      lasts = lasts || !h->to;
+      if (h->to) entry.to = std::max(*entry.to, *h->to);
+      if (h->amount && (!most || h->amount->value > most->amount->value)) most = h;
+    }
+    const What what = group.front()->what;
+    const std::string to = lasts ? "the end" : time(*entry.to, {});
+    if (lasts || is_instant(what)) entry.to.reset();
+    const std::size_t more = group.size() - 2;
+    entry.text = sentence_name(entry.who[0]) + ", " + entry.who[1] + " and " + std::to_string(more) + " more " + words_of(what).several +
+                 (entry.count > group.size() ? ", " + times(entry.count) + " in all," : "") + " between " + time(entry.from, {}, end_) + " and " + to;
+    if (most) {
+      entry.amount = most->amount;
+      if (const std::string how = reach(what, most->amount); !how.empty()) entry.text += ", most '" + most->who + "': " + amount(*most->amount);
+    }
+    entry.text += ".";
+    return entry;
+  }
+
+private:
+  static constexpr double k_over = 60.0 / 180.0 * std::numbers::pi; // rad: it does not come back
+  ShownDigits digits_;
+  double end_ = 0.0, scale_m_ = 0.0, scale_n_ = 0.0;
+};
+
+constexpr std::size_t k_few = 8;      // entries that are read one by one
+constexpr std::size_t k_together = 3; // elements that do the same are told of together, where there are more than a few entries
+
+} // namespace
+
+std::string sentence_name(std::string name) {
+  if (!name.empty() && name.front() >= 'a' && name.front() <= 'z') name.front() = static_cast<char>(name.front() - 'a' + 'A');
+  return shown(name);
+}
+
+bool tells_of_motion(const StoryEntry& entry) {
+  for (const char* what : {"slips", "lifts", "opens", "breaks", "comes apart", "tips", "loses an interface"})
+    if (entry.what == what) return true;
+  return false;
+}
+
+std::vector<StoryEntry> story_of(const Report& report, const RangeIndex& ranges, ShownDigits digits) {
+  const std::vector<Happening> happenings = Gatherer(report, ranges).gather();
+  const Teller teller(report, digits);
+  std::map<What, std::vector<const Happening*>> groups;
+  if (happenings.size() > k_few)
+    for (const Happening& h : happenings) groups[h.what].push_back(&h);
+  std::vector<StoryEntry> story;
+  for (const Happening& h : happenings) {
+    const auto group = groups.find(h.what);
+    if (group == groups.end() || group->second.size() < k_together) story.push_back(teller.entry(h));
+    else if (group->second.front() == &h) story.push_back(teller.entry(group->second));
+  }
+  return story;
+}
+
+} // namespace steplap
