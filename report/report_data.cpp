@@ -116,9 +116,16 @@ const char* role_of(EventKind kind) {
   switch (kind) {
   case EventKind::sticks: return "stick";
   case EventKind::comes_apart: return "apart";
-  case EventKind::opens: return "open";
+  case EventKind::breaks:
+  case EventKind::loses_interface: return "break";
+  case EventKind::opens:
+  case EventKind::leaves_stop:
+  case EventKind::enters_gap: return "open";
   case EventKind::closes:
   case EventKind::closes_gap: return "close";
+  case EventKind::reaches_lower_stop:
+  case EventKind::reaches_upper_stop: return "strike";
+  case EventKind::loses_normal_force: return "free"; // friction ends with the contact that it acts in
   default: return "";
   }
 }

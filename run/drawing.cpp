@@ -3,6 +3,7 @@
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
 #include "run/core_drawing.h"
+#include "run/core_windows.h"
 #include "run/symbols.h"
 #include <nlohmann/json.hpp>
 
@@ -191,6 +192,9 @@ private:
                       {"is_outline_given", !body.outline.empty()},
                       {"outline", outline_json(outline_of(body, geometry))}});
       add_geometry(geometry, json.back());
+      json.back()["holes"] = Json::array();
+      for (const std::vector<Vec2>& window : core_windows(body, model_))
+        json.back()["holes"].push_back(outline_json(window));
     }
     return json;
   }

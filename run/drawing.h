@@ -11,7 +11,8 @@ namespace steplap {
 /// JSON text, all in SI and all places in their body's axes about its centre of gravity:
 ///   bodies    name, label, pose [x, y, θ] in the reference pose, fixed, outline [[x, y], …],
 ///             is_outline_given; circles [x, y, radius, 1 if an open ring], segments [x, y, x, y, thickness]
-///             and polygons that elements give it; the ground is none of them
+///             and polygons that elements give it; holes: windows of a core that its outline would cover;
+///             the ground is none of them
 ///   ground    circles, segments, polygons fixed in it
 ///   planes    body, point, normal: half-planes that contacts press on, solid on the other side of the normal; ends:
 ///             where one ends on either side, m from the point along the normal turned clockwise

@@ -129,7 +129,11 @@ void coordinate(Sketch& s, const std::string& style, const std::string& along, c
 
 void motor(Sketch& s) { coordinate(s, "motor", "force", "couple"); }
 void drive(Sketch& s) { coordinate(s, "drive", "reaction", "reaction"); }
-void limit(Sketch& s) { coordinate(s, "limit", "force", "couple"); }
+// Where it stops: from the reference pose, of a distance the distance itself; a side without a stop has none.
+void limit(Sketch& s) {
+  coordinate(s, "limit", "force", "couple");
+  s.size_last({s.given_number("lower").value_or(-HUGE_VAL), s.given_number("upper").value_or(HUGE_VAL)});
+}
 void brake(Sketch& s) { coordinate(s, "brake", "friction", "friction"); }
 
 // --- the table ------------------------------------------------------------------------------------
@@ -177,6 +181,7 @@ template <class T> std::optional<T> Sketch::value(const char* field) const {
 }
 
 double Sketch::number(const char* field) const { return value<double>(field).value_or(0.0); }
+std::optional<double> Sketch::given_number(const char* field) const { return value<double>(field); }
 bool Sketch::is(const char* field) const { return value<bool>(field).value_or(false); }
 std::string Sketch::text(const char* field) const { return value<std::string>(field).value_or(""); }
 bool Sketch::is_given(const char* field) const { return !text(field).empty(); }
@@ -207,6 +212,10 @@ std::optional<Vec2> Sketch::direction(const char* field) const {
 }
 
 Shape& Sketch::draw(Shape shape) { return shapes_.emplace_back(std::move(shape)); }
+
+void Sketch::size_last(std::vector<double> sizes) {
+  if (!shapes_.empty()) shapes_.back().sizes = std::move(sizes);
+}
 
 void Sketch::circle(const MarkerPlace& centre, double radius, bool is_ring) {
   geometry_of_(centre.body).circles.insert({centre.point.x(), centre.point.y(), radius, is_ring ? 1.0 : 0.0});

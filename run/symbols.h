@@ -35,14 +35,14 @@ struct MarkerPlace {
 ///               both, tie (bar with plates at its ends), cylinder
 ///   rope        2 or more places, a polyline
 ///   rod, weld, pin, bushing, neutral   their places
-///   rail        direction that is free
+///   rail        direction that is free. Styles: "", limit (stops at the sizes: lower, upper), brake
 ///   contact     place that touches, place on the line; direction: the normal of the line, towards what touches;
 ///               sizes: where the line ends, along the normal turned clockwise, if it does
 ///   faces       outlines that press on each other: places of corners that touch (none: those of the body's outline), the
 ///               other's place last; direction: as of a contact, if the other is a half-plane
 ///   touch       centres of two circles; sizes: their radii, 1 if the first is inside the second
 ///   edge_touch  centre of a circle, frame of a segment; sizes: radius, from x, from y, to x, to y, thickness
-///   arc         the marker turned about. Styles: motor, drive, spring, limit, brake, couple
+///   arc         the marker turned about. Styles: motor, drive, spring, limit (sizes as of a rail), brake, couple
 ///   arrow       where it acts; direction. Styles: "" (drive or motor), load (quantities force_x, force_y)
 ///   friction    none: between the contacts that the element names
 ///   joint       none: a step-lap joint, seen by its sheets
@@ -76,6 +76,8 @@ public:
   // Fields: zero, empty or nullopt where the kind has no such field or it is not given.
   /// A number, in SI.
   [[nodiscard]] double number(const char* field) const;
+  /// A number, in SI; nullopt if it is not given.
+  [[nodiscard]] std::optional<double> given_number(const char* field) const;
   /// A field of yes or no.
   [[nodiscard]] bool is(const char* field) const;
   /// A text, or the name that a reference holds.
@@ -99,6 +101,8 @@ public:
 
   /// Adds a shape; what is returned is good until the next one is added.
   Shape& draw(Shape shape);
+  /// Gives the shape that was added last its sizes; nothing happens if there is none.
+  void size_last(std::vector<double> sizes);
   /// Takes these shapes instead of all drawn so far.
   void replace(std::vector<Shape> shapes) { shapes_ = std::move(shapes); }
   /// Geometry of the body that carries the place; corners and ends in the marker's axes.

@@ -1,19 +1,26 @@
 // The runs of the page, read from its JSON; numbers and units as text.
 steplap.data = (() => {
-  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  function bytesOf(text) {
+    const letters = atob(text), bytes = new Uint8Array(letters.length);
+    for (let i = 0; i < letters.length; ++i) bytes[i] = letters.charCodeAt(i);
+    return bytes;
+  }
   const floats = (text) => new Float32Array(bytesOf(text).buffer);
   const doubles = (text) => new Float64Array(bytesOf(text).buffer);
 
   // A time history; values are kept as differences from `zero`, so that single precision is enough for a
-  // millimetre in metres of travel.
+  // millimetre in metres of travel. Numbers are read from their text when they are first asked for: the first picture
+  // needs few of the channels.
   class Channel {
     constructor(raw, times) {
       this.name = raw.name;
       this.unit = raw.unit;
       this.zero = raw.zero;
-      this.rest = floats(raw.values);
-      this.times = raw.times ? floats(raw.times) : times;
+      this.raw = raw;
+      this.commonTimes = times;
     }
+    get rest() { return this.held || (this.held = floats(this.raw.values)); }
+    get times() { return this.ownTimes || (this.ownTimes = this.raw.times ? floats(this.raw.times) : this.commonTimes); }
     get length() { return this.rest.length; }
     // Differences are known to some 1e-7 of the first value: less than that is nothing.
     known(value) { return Math.abs(value) < 2e-7 * Math.abs(this.zero) ? 0 : value; }
@@ -118,8 +125,11 @@ steplap.data = (() => {
     return [...found.values()];
   }
 
+  // What has the same index in several runs: their names, each once, in the order in which they come.
+  const unique = (lists) => [...new Set(lists.flat())];
+
   const raw = JSON.parse(document.getElementById('data').textContent);
-  return { program: raw.program, modes: raw.modes, runs: raw.runs.map((r) => new Run(r)), indexBefore, scaleFor, quantity, plain, corners };
+  return { program: raw.program, modes: raw.modes, runs: raw.runs.map((r) => new Run(r)), indexBefore, scaleFor, quantity, plain, pretty, corners, unique };
 })();
 
 // Elements of the page; texts only ever as text.

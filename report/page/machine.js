@@ -1,12 +1,12 @@
 // The moving machine: bodies of one run, drawn from drawing.json and the poses; symbols.js draws what acts on them.
 // Symbols have sizes of the screen (this.u), whatever is looked at how closely; bodies have their own.
 steplap.Scene = (() => {
-  const make = steplap.make, { turn, add, minus, scaled, length, apply, relative } = steplap.geometry, Box = steplap.Box;
+  const make = steplap.make, { add, minus, scaled, length, apply } = steplap.geometry, Box = steplap.Box;
   const margin = 36; // for symbols
 
   class Body {
     constructor(raw, run) {
-      Object.assign(this, { outline: [], circles: [], segments: [], polygons: [], pose: [0, 0, 0] }, raw);
+      Object.assign(this, { outline: [], circles: [], segments: [], polygons: [], holes: [], pose: [0, 0, 0] }, raw);
       this.run = run;
       const names = ['x', 'y', 'theta'].map((c) => run.channel(`${raw.name}.${c}`));
       this.channels = names.every(Boolean) && !raw.fixed ? names : null;
@@ -41,6 +41,7 @@ steplap.Scene = (() => {
       this.view = { zoom: 1, shift: [0, 0] };
       this.withValues = false;
       this.trailsOf = new Set();
+      this.moved = new Set();
       this.still = this.boxOf((name) => this.reference(name));
       this.size = Math.max(...this.still.span) || 1;
       this.build();
@@ -66,57 +67,6 @@ steplap.Scene = (() => {
       return box;
     }
 
-    // Largest displacement of any outline against the reference, seen from a body.
-    largestDisplacement(seenFrom) {
-      let largest = 0;
-      const r0 = this.reference(seenFrom);
-      for (let k = 0; k <= 120; ++k) {
-        const t = (this.run.end * k) / 120, r = this.poseAt(seenFrom, t);
-        for (const body of this.bodies.values()) {
-          // One whose motion is not written is drawn where it begins: from a body that moves it is seen to move.
-          if (!body.moves && !(body.isUnrecorded && this.body(seenFrom).moves)) continue;
-          const a = relative(r0, body.pose), b = relative(r, body.poseAt(t));
-          for (const p of body.points) largest = Math.max(largest, length(minus(apply(b, p), apply(a, p))));
-        }
-      }
-      return largest;
-    }
-    // The vehicle that a drive moves, or the body from which least is seen to move, where that is much less
-    // than from the ground.
-    usualStandpoint() {
-      const wanted = this.run.drawing.seen_from;
-      if (wanted) return wanted;
-      let best = 'ground', least = 0.3 * this.largestDisplacement('ground');
-      if (this.bodies.size < 2 || this.bodies.size > 12) return best; // nothing moves against itself
-      const drive = this.elements.find((e) => e.kind === 'prescribed_motion' && e.at.length > 1 && e.at[1].body === 'ground');
-      if (drive && this.largestDisplacement(drive.at[0].body) < least) return drive.at[0].body;
-      for (const name of this.bodies.keys()) {
-        const d = this.largestDisplacement(name);
-        if (d < least) { best = name; least = d; }
-      }
-      return best;
-    }
-    // 1, 2, 5, 10 …: the largest displacement becomes some twentieth of the picture.
-    usualMagnification(seenFrom) {
-      const wanted = (0.06 * this.size) / Math.max(this.largestDisplacement(seenFrom), 1e-12);
-      if (!(wanted > 1.5)) return 1;
-      const power = 10 ** Math.floor(Math.log10(wanted));
-      return Math.min(1e5, power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1));
-    }
-    // Poses as drawn at time t.
-    look(t, seenFrom, magnification) {
-      const r0 = this.reference(seenFrom), r = this.poseAt(seenFrom, t);
-      const cache = new Map();
-      return (name) => {
-        if (cache.has(name)) return cache.get(name);
-        const a = relative(r0, this.reference(name)), b = relative(r, this.poseAt(name, t));
-        const drawn = a.map((v, i) => v + magnification * (b[i] - v));
-        const pose = [...apply(r0, drawn), drawn[2] + r0[2]];
-        cache.set(name, pose);
-        return pose;
-      };
-    }
-
     // --- where it is seen from ------------------------------------------------------------------------
     // Poses at some times of the run, for whatever depends on where things come.
     samples() {
@@ -129,6 +79,9 @@ steplap.Scene = (() => {
       this.poses = this.samples();
       const box = new Box().take(this.still.low).take(this.still.high);
       for (const pose of this.poses) for (const body of this.bodies.values()) body.extend(box, pose(body.name));
+      // Room for springs that carry from below.
+      const isCarried = this.elements.some((e) => e.shapes.some((s) => s.type === 'spring' && this.isTied(s) && this.isHeld(s.at[1].body) && Math.abs(s.direction[1]) > 0.7));
+      if (isCarried) box.take([box.middle[0], box.low[1] - 0.12 * this.size]);
       this.trails = null;
       return box;
     }
@@ -136,8 +89,8 @@ steplap.Scene = (() => {
     fit(middle, span, width, tallest) {
       this.width = width;
       this.u = Math.min(11, Math.max(7, width / 70)); // of symbols, pixels
-      const scale = Math.min((width - 2 * margin) / Math.max(span[0], 1e-9), (tallest - 2 * margin) / Math.max(span[1], 1e-9));
-      this.height = Math.max(Math.min(200, tallest), span[1] * scale + 2 * margin);
+      const foot = this.footHeight(), scale = Math.min((width - 2 * margin) / Math.max(span[0], 1e-9), (tallest - 2 * margin - foot) / Math.max(span[1], 1e-9));
+      this.height = Math.max(Math.min(200, tallest), span[1] * scale + 2 * margin + foot);
       this.middle = middle;
       this.fittedScale = scale;
       this.svg.setAttribute('viewBox', `0 0 ${width} ${this.height}`);
@@ -150,35 +103,67 @@ steplap.Scene = (() => {
       this.scale = this.fittedScale * view.zoom;
       this.centre = add(this.middle, view.shift);
     }
-    toScreen(p) { return [this.width / 2 + (p[0] - this.centre[0]) * this.scale, this.height / 2 - (p[1] - this.centre[1]) * this.scale]; }
+    get midHeight() { return 0.5 * (this.height - this.footHeight()); }
+    toScreen(p) { return [this.width / 2 + (p[0] - this.centre[0]) * this.scale, this.midHeight - (p[1] - this.centre[1]) * this.scale]; }
     // A pixel of the screen in the plane.
-    toPlane(x, y) { return [this.centre[0] + (x - this.width / 2) / this.scale, this.centre[1] - (y - this.height / 2) / this.scale]; }
+    toPlane(x, y) { return [this.centre[0] + (x - this.width / 2) / this.scale, this.centre[1] - (y - this.midHeight) / this.scale]; }
 
     // --- building -----------------------------------------------------------------------------------
     build() {
       this.svg = make('svg', { role: 'img', tabindex: '0', 'aria-label': `Drawing of ${this.run.name}` });
       this.updaters = [];
       this.marks = new Map();
-      const layers = ['grounds', 'bodies', 'trails', 'elements', 'forces', 'texts'].map((name) => make('g', { class: name }));
-      [this.groundLayer, this.bodyLayer, this.trailLayer, this.elementLayer, this.forceLayer, this.textLayer] = layers;
+      const layers = ['grounds', 'bodies', 'trails', 'elements', 'forces', 'texts', 'legend'].map((name) => make('g', { class: name }));
+      [this.groundLayer, this.bodyLayer, this.trailLayer, this.elementLayer, this.forceLayer, this.textLayer, this.legendLayer] = layers;
       this.svg.append(...layers);
       this.buildBody(this.ground, 0);
       let number = 0;
       for (const body of this.bodies.values()) this.buildBody(body, ++number);
       this.buildSymbols();
+      this.buildLegend();
     }
     shapesOf(body) {
       const path = (points, isClosed) => make('path', { d: 'M' + points.map((p) => p.join(' ')).join('L') + (isClosed ? 'Z' : '') });
       const shapes = [];
-      if (body.outline.length > 2) shapes.push(path(body.outline, true));
+      const rings = [body.outline, ...body.holes].map((ring) => 'M' + ring.map((p) => p.join(' ')).join('L') + 'Z');
+      if (body.outline.length > 2) shapes.push(make('path', { d: rings.join(''), 'fill-rule': 'evenodd' }));
       if (body.outline.length === 2) { shapes.push(path(body.outline, false)); shapes[0].classList.add('line'); }
       for (const corners of body.polygons) shapes.push(path(corners, true));
       for (const [x, y, r, isRing] of body.circles) {
         shapes.push(make('circle', { cx: x, cy: y, r, class: isRing ? 'ring' : 'round' }));
         if (!isRing && body !== this.ground) shapes.push(make('path', { d: `M${x} ${y}l${r} 0`, class: 'spoke' })); // shows it turn
       }
+      for (const [from, to] of this.strutsOf(body)) shapes.push(make('path', { d: `M${from.join(' ')}L${to.join(' ')}`, class: 'strut' }));
       for (const [x0, y0, x1, y1, thickness] of body.segments) shapes.push(this.bar([x0, y0], [x1, y1], thickness));
       return shapes;
+    }
+    // From the outline to the places outside it where contacts and joints act: outriggers, feet, brackets.
+    strutsOf(body) {
+      if (!body.is_outline_given || body.outline.length < 3) return [];
+      const struts = [], least = 0.01 * body.reach;
+      for (const e of this.elements)
+        for (const shape of e.shapes)
+          for (const place of shape.at) {
+            if (place.body !== body.name || shape.direction === undefined || steplap.forms.isInside(body, place.point)) continue;
+            if (shape.type === 'contact' && place !== shape.at[0]) continue; // a line goes on and on
+            if (!['contact', 'spring'].includes(shape.type) || (shape.type === 'spring' && this.isTied(shape))) continue;
+            const from = steplap.forms.nearest(body, place.point), far = length(minus(place.point, from));
+            if (far > least && far < 2 * body.reach && !struts.some(([, to]) => length(minus(to, place.point)) < least)) struts.push([from, place.point]);
+          }
+      return struts;
+    }
+    // A tank: what stands in it is seen before it.
+    isAround(body) {
+      if (body.outline.length < 3 || this.bodies.size > 40) return false;
+      const box = new Box(), isWithin = (inner) => [0, 1].every((i) => inner.low[i] > box.low[i] && inner.high[i] < box.high[i]);
+      body.extend(box, body.pose);
+      return [...this.bodies.values()].some((other) => { const inner = new Box(); other.extend(inner, other.pose); return other !== body && !other.isPoint && isWithin(inner); });
+    }
+    // A spring along an axis whose ends lie together at rest: it is drawn from outline to outline (springs.js).
+    isTied(shape) {
+      const [a, b] = shape.at.map((place) => this.placed(place, (name) => this.reference(name)));
+      const d = shape.direction && steplap.geometry.turn(shape.direction, this.reference(shape.at[1].body)[2]);
+      return Boolean(d) && Math.abs(steplap.geometry.dot(d, minus(a, b))) < 0.04 * this.size;
     }
     bar(from, to, thickness) {
       if (!(thickness > 0)) return make('path', { d: `M${from.join(' ')}L${to.join(' ')}`, class: 'edge' });
@@ -188,7 +173,7 @@ steplap.Scene = (() => {
     }
     buildBody(body, number) {
       const isGround = body === this.ground, joint = this.limbs.get(body.name);
-      const group = make('g', { class: isGround ? 'floor' : `body${body.fixed ? ' fixed' : ''}${body.isUnrecorded ? ' unrecorded' : ''}${joint ? ' limb' : ''}`, 'data-body': body.name },
+      const group = make('g', { class: isGround ? 'floor' : `body${body.fixed ? ' fixed' : ''}${body.isUnrecorded ? ' unrecorded' : ''}${this.isAround(body) ? ' around' : ''}${joint ? ' limb' : ''}`, 'data-body': body.name },
         make('title', {}, body.label || body.name), ...this.shapesOf(body));
       (isGround ? this.groundLayer : this.bodyLayer).append(group);
       // Where the body's geometry does not say where its mass is.
@@ -196,7 +181,7 @@ steplap.Scene = (() => {
       const mark = !isGround && this.bodies.size <= 40 ? make('g', {}, make('circle', { r: 9, class: 'number-mark' }), make('text', { class: 'number-text' }, number)) : null;
       if (mark) {
         this.textLayer.append(mark);
-        this.marks.set(body.name, { shift: [0, 0], element: mark });
+        this.marks.set(body.name, { shift: [0, 0], now: [0, 0], element: mark });
       }
       const since = joint && this.run.events.find((e) => e[1] === joint.name && (e[4] === 'slip' || e[4] === 'apart'));
       this.updaters.push((t, pose) => {
@@ -205,7 +190,7 @@ steplap.Scene = (() => {
         group.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${sx} ${sy})`);
         if (centre) centre.setAttribute('transform', `translate(${sx} ${sy}) scale(${0.5 * this.u})`);
         if (mark) {
-          const [dx, dy] = this.marks.get(body.name).shift;
+          const [dx, dy] = this.marks.get(body.name).now;
           mark.setAttribute('transform', `translate(${sx + dx} ${sy + dy})`);
         }
         if (joint) group.classList.toggle('slipped', Boolean((since && t >= since[0]) || this.run.modeAt(joint.name, t) >= 2));
@@ -217,19 +202,41 @@ steplap.Scene = (() => {
       this.bodyLayer.append(mark);
       return mark;
     }
-    // Marks of bodies whose centres lie together are set apart, as far as need be; beside bodies that they would hide.
+    // Marks stand off each other and off symbols, on their body where it has room, else beside it.
     spreadMarks() {
-      const taken = [];
+      const taken = [], symbols = this.symbols.occupied();
       for (const [name, mark] of [...this.marks].sort((a, b) => this.body(a[0]).reach - this.body(b[0]).reach)) {
-        const [x, y] = this.toScreen(this.reference(name));
-        const isFree = ([dx, dy]) => taken.every((p) => Math.hypot(p[0] - x - dx, p[1] - y - dy) > 22);
-        const ring = (r) => [...Array(8).keys()].map((k) => [r * Math.sin((k * Math.PI) / 4), -r * Math.cos((k * Math.PI) / 4)]);
-        const extent = this.body(name).reach * this.fittedScale, first = extent > 22 ? [[0, 0]] : ring(extent + 14);
-        mark.shift = [...first, ...ring(26), ...ring(50), ...ring(76)].find(isFree) || [0, 0];
+        const [x, y] = this.toScreen(this.reference(name)), body = this.body(name);
+        const clear = (list, [dx, dy], least) => list.every((p) => Math.hypot(p[0] - x - dx, p[1] - y - dy) > least);
+        const isSeen = ([dx, dy]) => x + dx > 11 && x + dx < this.width - 11 && y + dy > 11 && y + dy < this.height - 34;
+        const ring = (r) => [...Array(12).keys()].map((k) => [r * Math.sin((k * Math.PI) / 6), -r * Math.cos((k * Math.PI) / 6)]);
+        const extent = body.reach * this.fittedScale, first = extent > 22 ? [[0, 0]] : ring(extent + 14);
+        const places = [...first, ...[24, 36, 50, 66, 84, 104].flatMap(ring)].filter(isSeen);
+        const isOn = ([dx, dy]) => extent <= 30 || steplap.forms.isInside(body, steplap.geometry.seenIn(this.reference(name), this.toPlane(x + dx, y + dy)));
+        const isApart = ([dx, dy]) => taken.every((p) => Math.max(Math.abs(p[0] - x - dx), Math.abs(p[1] - y - dy)) > 20);
+        const isFree = (p) => isApart(p) && clear(symbols, p, 15);
+        mark.shift = places.find((p) => isFree(p) && isOn(p)) || places.find(isFree) || places.find(isApart) || [0, 0];
         taken.push([x + mark.shift[0], y + mark.shift[1]]);
       }
     }
 
+    // Bodies pass each other: a mark that would lie on another goes aside for as long.
+    settleMarks(pose) {
+      const settled = [];
+      for (const [name, mark] of this.marks) {
+        const [x, y] = this.toScreen(pose(name)), isApart = ([dx, dy]) => settled.every((p) => Math.max(Math.abs(p[0] - x - dx), Math.abs(p[1] - y - dy)) > 19);
+        const aside = () => [24, 40, 60, 84].flatMap((r) => [...Array(8).keys()].map((k) => [mark.shift[0] + r * Math.sin((k * Math.PI) / 4), mark.shift[1] - r * Math.cos((k * Math.PI) / 4)]));
+        mark.now = isApart(mark.shift) ? mark.shift : aside().find(isApart) || mark.shift;
+        settled.push([x + mark.now[0], y + mark.now[1]]);
+      }
+    }
+    // Names of elements that slipped, opened or broke: they and their parts are drawn in colour from when it happens.
+    setMoved(names) { this.moved = new Set(names || []); }
+    hasMoved(name, t) {
+      if (!this.moved.has(name)) return false;
+      const since = this.run.events.find((e) => e[1] === name && ['slip', 'apart', 'open'].includes(e[4]));
+      return !since || t >= since[0];
+    }
     // --- trails of centres of gravity -------------------------------------------------------------------
     setTrails(names) {
       this.trailsOf = new Set(names);
@@ -259,8 +266,10 @@ steplap.Scene = (() => {
 
     show(t) {
       const pose = this.look(t, this.seenFrom, this.magnification);
+      this.settleMarks(pose);
       for (const update of this.updaters) update(t, pose);
       if (this.trailsOf.size) this.showTrails(t, pose);
+      this.showLegend();
     }
   }
 

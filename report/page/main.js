@@ -1,96 +1,127 @@
-// One clock for drawing and plots.
+// The page: one clock for the picture, the timeline and the curves. What the first screen shows is made first; the rest
+// follows once the browser has painted it.
 (() => {
   const make = steplap.make, runs = steplap.data.runs, at = (id) => document.getElementById(id);
-  const end = Math.max(...runs.map((r) => r.end));
-  const titles = [...new Set(runs.map((r) => r.summary.model.title || r.name))];
-  at('title').textContent = titles.length === 1 ? titles[0] : `${titles.length} runs compared`;
-  at('subtitle').textContent = titles.length === 1 ? runs.map((r) => r.name).join(', ') : titles.join(' · ');
-  at('footer').textContent = `Written by ${steplap.data.program}. Plots by dygraphs, © Dan Vanderkam and contributors, MIT licence (text at the end of this file's source).`;
+  const end = Math.max(...runs.map((r) => r.end)), isOne = runs.length === 1;
+  const worst = steplap.overview.worstOf(runs);
+  let t = 0, last = null, plots = null, isUntouched = true;
+  const scenes = [], insets = [];
 
-  steplap.tables.trust(runs);
-  steplap.tables.verdict(runs);
-  steplap.tables.events(runs, (t) => show(t));
-  steplap.tables.extremes(runs);
-  steplap.tables.models(runs);
+  // Colours of paper while `action` runs: files that are saved are black on white whatever the screen is.
+  steplap.onPaper = (action) => {
+    document.documentElement.classList.add('paper');
+    try { return action(); } finally { document.documentElement.classList.remove('paper'); }
+  };
 
-  // Each core once, however many runs share it; as an image, so that its style stays its own.
-  const cores = new Map(runs.flatMap((run) => (run.drawing.cores || []).map((core) => [core.svg, core.name])));
-  for (const [svg, name] of cores)
-    at('cores').append(make('img', { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`, alt: `Core ${name}: elevation, corner, section, book`, style: 'max-width:100%' }));
+  function showTitles() {
+    const titles = [...new Set(runs.map((r) => r.summary.model.title || r.name))];
+    at('title').textContent = titles.length === 1 ? titles[0] : `${titles.length} runs compared`;
+    at('subtitle').textContent = titles.length === 1 ? runs.map((r) => r.name).join(', ') : titles.join(' · ');
+    at('footer').textContent = `Written by ${steplap.data.program}. Plots by dygraphs, © Dan Vanderkam and contributors, MIT licence (text at the end of this file's source).`;
+    at('overview').classList.toggle('several', !isOne);
+    if (!isOne) at('overview').style.setProperty('--runs', String(runs.length));
+  }
 
   // --- drawing -------------------------------------------------------------------------------------
-  const scenes = runs.map((run) => new steplap.Scene(run));
-  const largestForce = Math.max(...scenes.map((scene) => scene.ownLargestForce()));
-  const insets = [];
-  at('scenes').classList.toggle('few', runs.length > 1);
-  scenes.forEach((scene, i) => {
-    const box = make('div', { class: 'scene', 'data-run': runs[i].name });
-    if (runs.length > 1) box.append(make('h3', {}, runs[i].name));
-    box.append(scene.svg);
-    scene.largestForce = largestForce;
-    box.append(steplap.save.buttons({ SVG: () => steplap.save.svg(scene.svg, runs[i].name), PNG: () => steplap.save.png(scene.svg, runs[i].name) }));
-    const names = [...scene.bodies.values()].map((b, k) => `${k + 1} ${b.label || b.name}`);
-    if (names.length <= 40) box.append(make('p', { class: 'names' }, names.join(' · ')));
-    at('scenes').append(box);
-    for (const sheet of steplap.data.corners(runs[i]).slice(0, 8)) insets.push(new steplap.Inset(runs[i], scene, sheet));
-  });
-  if (insets.length) {
-    const box = at('insets');
-    runs.forEach((run) => {
-      const own = insets.filter((inset) => inset.run === run);
-      if (!own.length) return;
-      const more = run.drawing.sheets.length - own.length;
-      box.append(make('div', { style: 'flex-basis:100%' }, make('h3', {}, `Sheets at the joints${runs.length > 1 ? `, ${run.name}` : ''}`),
-        make('p', { class: 'note' }, `Yoke sheet orange, limb sheet blue, the overlap that carries dark; true displacements, drawn ${own[0].caption}.${more > 0 ? ` ${more} more kinds of interface are not drawn.` : ''}`)), ...own.map((inset) => inset.box));
+  function buildScenes() {
+    for (const run of runs) {
+      const scene = new steplap.Scene(run), { moved } = steplap.overview.of(run);
+      if (scene.setMoved) scene.setMoved(moved); // drawn in colour
+      scenes.push(scene);
+    }
+    const largestForce = Math.max(...scenes.map((scene) => scene.ownLargestForce()));
+    scenes.forEach((scene, i) => {
+      const box = make('div', { class: 'scene', 'data-run': runs[i].name });
+      if (!isOne) box.append(make('h3', {}, runs[i].name));
+      box.append(scene.svg);
+      scene.largestForce = largestForce;
+      const names = [...scene.bodies.values()].map((b, k) => `${k + 1} ${b.label || b.name}`);
+      const save = steplap.save.buttons({ SVG: () => steplap.onPaper(() => steplap.save.svg(scene.svg, runs[i].name)), PNG: () => steplap.onPaper(() => steplap.save.png(scene.svg, runs[i].name)) });
+      box.append(make('p', { class: 'names' }, names.length <= 40 ? names.join(' · ') : '', ' ', save));
+      at('scenes').append(box);
     });
+    const undrawn = Math.max(...runs.map((run) => run.bodies_left_out || 0)), remarks = [];
+    if (undrawn) remarks.push(`${undrawn} more bodies, and all elements, are not drawn: the page would be too slow.`);
+    if (scenes.some((scene) => [...scene.bodies.values()].some((body) => body.isUnrecorded))) remarks.push('Dashed bodies are drawn where they begin: their motion is not among the channels.');
+    at('legend').textContent = remarks.join(' ');
+    const help = ['Wedges and dots are contacts, filled while they press. Arrows are forces, all to one scale. Hatched is what is solid.', 'Displacements are drawn against the reference pose, as seen from the body chosen.',
+      'Closer: Ctrl and wheel, two fingers, or + and - on the picture. 0 or a double click shows all. Drag to move.'];
+    if (runs.some((run) => run.drawing.sheets.length)) help.splice(1, 0, 'Limbs turn orange once their joint has slipped.');
+    at('picture-help').append(make('summary', {}, 'How to read the picture'), make('p', { class: 'note' }, help.join(' ')));
   }
-  const legend = ['Wedges and dots are contacts, filled while they press; arrows are forces, all to one scale. Hatched is what is solid.'];
-  if (runs.some((run) => run.drawing.sheets.length)) legend.push('Limbs turn orange once their joint has slipped.');
-  const undrawn = Math.max(...runs.map((run) => run.bodies_left_out || 0));
-  if (undrawn) legend.push(`${undrawn} more bodies, and all elements, are not drawn: the page would be too slow.`);
-  if (scenes.some((scene) => [...scene.bodies.values()].some((body) => body.isUnrecorded))) legend.push('Dashed bodies are drawn where they begin: their motion is not among the channels.');
-  legend.push('Displacements are drawn against the reference pose, as seen from the body chosen. Closer: Ctrl and wheel, two fingers, or + and - on the picture; 0 or a double click shows all; drag to move.');
-  at('legend').textContent = legend.join(' ');
-
-  const speeds = [100, 10, 1, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100, 1 / 1000];
-  const wanted = end / 10;
-  const usualSpeed = speeds.reduce((best, s) => (Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best));
-  for (const s of speeds) at('speed').append(make('option', { value: s }, s >= 1 ? `${s} ×` : `1/${Math.round(1 / s)}`));
-  at('speed').value = String(usualSpeed);
-
-  const standpoint = scenes[0].usualStandpoint();
-  for (const name of ['ground', ...[...scenes[0].bodies.keys()].slice(0, 40)]) at('seen-from').append(make('option', { value: name }, name));
-  at('seen-from').value = standpoint;
-  const moving = [...scenes[0].bodies.values()].filter((b) => b.moves).map((b) => b.name);
-  for (const [value, text] of [['', 'none'], ...(moving.length <= 100 ? [['*', 'all']] : []), ...moving.slice(0, 40).map((n) => [n, n])]) at('trails').append(make('option', { value }, text));
-  const usual = Math.min(...scenes.map((s) => s.usualMagnification(standpoint)));
-  const factors = [...new Set([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, usual])].sort((a, b) => a - b);
-  for (const f of factors) at('magnification').append(make('option', { value: f }, `${f} ×`));
-  at('magnification').value = String(usual);
+  function buildInsets() {
+    runs.forEach((run, i) => { for (const sheet of steplap.data.corners(run).slice(0, 8)) insets.push(new steplap.Inset(run, scenes[i], sheet)); });
+    at('sheets').hidden = !insets.length;
+    for (const run of runs) {
+      const own = insets.filter((inset) => inset.run === run), more = run.drawing.sheets.length - own.length;
+      if (!own.length) continue;
+      at('insets').append(make('div', { class: 'whole-row' }, make('h3', {}, `Sheets at the joints${isOne ? '' : `, ${run.name}`}`),
+        make('p', { class: 'note' }, `Yoke sheet orange, limb sheet blue, the overlap that carries dark; true displacements, drawn ${own[0].caption}.${more > 0 ? ` ${more} more kinds of interface are not drawn.` : ''}`)), ...own.map((inset) => inset.box));
+    }
+  }
+  const isPrinted = window.matchMedia('print');
+  // What is left of the first screen for the pictures, once all else has its place. Below 900 pixels parts stand under each
+  // other (page.css), and a picture takes a part of the screen.
+  function tallest() {
+    if (window.innerWidth <= 900) return Math.max(220, Math.min(0.5 * window.innerHeight, 700));
+    const heightOf = (id) => (at(id).hidden ? 0 : at(id).getBoundingClientRect().height);
+    const picture = Math.max(...scenes.map((s) => s.svg.getBoundingClientRect().height)), around = heightOf('machine') - picture;
+    const top = at('verdict').getBoundingClientRect().bottom + window.scrollY, gaps = 22;
+    const left = window.innerHeight - top - heightOf('timeline') - gaps;
+    const height = isOne ? Math.max(left, heightOf('limits') + heightOf('story') + gaps) : left - heightOf('limits');
+    return Math.max(250, Math.min(height - around, 900));
+  }
+  const put = (widths, height) => steplap.Scene.fitAll(scenes, at('seen-from').value, Number(at('magnification').value), widths, height);
+  function fit() {
+    if (isPrinted.matches) return;
+    const widths = scenes.map((s) => Math.max(240, s.svg.parentNode.clientWidth));
+    put(widths, 260); // so that what is around it can be measured
+    timeline.build();
+    put(widths, tallest());
+  }
+  // As wide as an A4 sheet, in pixels of the style sheet.
+  function fitPaper() {
+    const whole = 700;
+    put(scenes.map(() => (isOne ? whole : 0.48 * whole)), isOne ? 400 : 280);
+    timeline.build(whole);
+    show(t);
+  }
+  function choices() {
+    const speeds = [100, 10, 1, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100, 1 / 1000], wanted = end / 10;
+    for (const s of speeds) at('speed').append(make('option', { value: s }, s >= 1 ? `${s} ×` : `1/${Math.round(1 / s)}`));
+    at('speed').value = String(speeds.reduce((best, s) => (Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best)));
+    const standpoint = scenes[0].usualStandpoint();
+    for (const name of ['ground', ...[...scenes[0].bodies.keys()].slice(0, 40)]) at('seen-from').append(make('option', { value: name }, name));
+    at('seen-from').value = standpoint;
+    const moving = [...scenes[0].bodies.values()].filter((b) => b.moves).map((b) => b.name);
+    for (const [value, text] of [['', 'none'], ...(moving.length <= 100 ? [['*', 'all']] : []), ...moving.slice(0, 40).map((n) => [n, n])]) at('trails').append(make('option', { value }, text));
+    const usual = Math.min(...scenes.map((s) => s.usualMagnification(standpoint)));
+    for (const f of [...new Set([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, usual])].sort((a, b) => a - b)) at('magnification').append(make('option', { value: f }, `${f} ×`));
+    at('magnification').value = String(usual);
+    at('trails').addEventListener('change', (event) => { for (const s of scenes) s.setTrails(event.target.value === '*' ? moving : [event.target.value]); show(t); });
+    for (const id of ['magnification', 'seen-from']) at(id).addEventListener('change', () => { fit(); view.reset(); });
+    at('values').addEventListener('change', (event) => { for (const s of scenes) s.withValues = event.target.checked; show(t); });
+  }
 
   // --- time ----------------------------------------------------------------------------------------
-  let t = 0, last = null;
-  const plots = new steplap.Plots(at('plot-grid'), (time) => show(time));
-  const isPrinted = window.matchMedia('print');
-  const fit = () => {
-    if (isPrinted.matches) return;
-    const tallest = Math.max(260, Math.min(0.62 * window.innerHeight, 900));
-    steplap.Scene.fitAll(scenes, at('seen-from').value, Number(at('magnification').value), scenes.map((s) => Math.max(240, s.svg.parentNode.clientWidth)), tallest);
-  };
+  const decimals = Math.max(0, 4 - Math.ceil(Math.log10(end) - 1e-9));
   function show(time) {
     t = Math.min(Math.max(time, 0), end);
-    at('time').value = String(t);
-    at('now').textContent = `t = ${t.toFixed(4)} s`;
+    at('now').textContent = `t = ${t.toFixed(decimals)} s`;
     for (const scene of scenes) scene.show(t);
     for (const inset of insets) inset.show(t);
-    plots.show(t);
+    timeline.show(t);
+    if (plots) plots.show(t);
   }
+  // What a reader asks for.
+  function go(time) { isUntouched = false; setPlaying(false); show(time); }
   function setPlaying(isPlaying) {
     at('play').replaceChildren(steplap.icon(isPlaying ? 'pause' : 'play'), isPlaying ? ' Pause' : ' Play');
     at('play').setAttribute('aria-pressed', String(isPlaying));
     last = null;
-    if (isPlaying && t >= end) show(0);
-    if (isPlaying) requestAnimationFrame(frame);
+    // The page opens at its worst instant, as a film shows its best picture: it plays from the beginning.
+    if (isPlaying && (t >= end || isUntouched)) show(0);
+    if (isPlaying) { isUntouched = false; requestAnimationFrame(frame); }
   }
   const isPlaying = () => at('play').getAttribute('aria-pressed') === 'true';
   function frame(now) {
@@ -99,47 +130,104 @@
     last = now;
     if (t >= end) setPlaying(false); else requestAnimationFrame(frame);
   }
-  at('time').max = String(end);
-  at('time').addEventListener('input', (event) => { setPlaying(false); show(Number(event.target.value)); });
-  at('play').addEventListener('click', () => setPlaying(!isPlaying()));
-  for (const id of ['magnification', 'seen-from']) at(id).addEventListener('change', () => { fit(); view.reset(); });
-  at('values').addEventListener('change', (event) => { for (const s of scenes) s.withValues = event.target.checked; show(t); });
-  at('trails').addEventListener('change', (event) => { for (const s of scenes) s.setTrails(event.target.value === '*' ? moving : [event.target.value]); show(t); });
+  function listen() {
+    at('time').max = String(end);
+    at('time').addEventListener('input', (event) => go(Number(event.target.value)));
+    at('play').addEventListener('click', () => setPlaying(!isPlaying()));
+    at('worst').hidden = worst === null;
+    at('worst').addEventListener('click', () => go(worst));
+    for (const [id, direction, icon] of [['before', -1, 'M4 2H6V14H4ZM14 2V14L6 8Z'], ['after', 1, 'M2 2L10 8L2 14ZM10 2H12V14H10Z']]) {
+      at(id).append(make('svg', { viewBox: '0 0 16 16', class: 'icon', 'aria-hidden': 'true' }, make('path', { d: icon })));
+      at(id).addEventListener('click', () => go(timeline.beside(t, direction)));
+    }
+    document.addEventListener('keydown', (event) => {
+      const isSlider = event.target === at('time');
+      if ((!isSlider && /^(INPUT|SELECT|BUTTON|SUMMARY|TEXTAREA)$/.test(event.target.tagName)) || event.ctrlKey || event.altKey || event.metaKey) return;
+      const step = (event.shiftKey ? 0.05 : 0.005) * end, moves = { ArrowRight: t + step, ArrowLeft: t - step, Home: 0, End: end };
+      if (event.key === ' ') setPlaying(!isPlaying());
+      else if (event.key in moves) go(moves[event.key]);
+      else return;
+      event.preventDefault();
+    });
+    let seen = [document.documentElement.clientWidth, window.innerHeight];
+    window.addEventListener('resize', () => {
+      const now = [document.documentElement.clientWidth, window.innerHeight];
+      // On a telephone the height changes while one scrolls: that alone redraws nothing there.
+      if (isPrinted.matches || (now[0] === seen[0] && (now[1] === seen[1] || now[0] < 900))) return;
+      seen = now;
+      fit(); show(t);
+    });
+  }
+
+  // --- curves, tables --------------------------------------------------------------------------------
+  // From a bar to its curve and its instant.
+  function jump(utilisation, run) {
+    if (utilisation.at !== null && utilisation.at !== undefined) go(utilisation.at);
+    const plot = plots && utilisation.channel ? plots.figureWith(utilisation.channel, run) : null;
+    if (!plot) return;
+    plots.show(t);
+    for (const p of plots.plots) p.box.classList.toggle('chosen', p === plot);
+    plot.box.scrollIntoView({ block: 'center', behavior: window.matchMedia('(prefers-reduced-motion: reduce)').matches ? 'auto' : 'smooth' });
+  }
+  function buildPlots() {
+    plots = new steplap.Plots(at('plot-grid'), go);
+    at('layout-control').hidden = isOne;
+    at('layout').addEventListener('change', (event) => { plots.layout = event.target.value; plots.build(); show(t); });
+    at('zoom-out').addEventListener('click', () => plots.zoomOut());
+    for (const [value, text] of [['', 'choose a channel'], ...steplap.data.unique(runs.map((r) => [...r.channels.keys()])).map((n) => [n, n])])
+      at('add-channel').append(make('option', { value, title: runs.map((r) => r.meaning(value)).find(Boolean) || '' }, text));
+    at('add-channel').addEventListener('change', (event) => { if (event.target.value) plots.add(event.target.value); event.target.value = ''; show(t); });
+    const left = runs.reduce((sum, r) => sum + r.channels_left_out, 0), isThinned = runs.some((r) => r.is_thinned);
+    if (left || isThinned) at('event-key').append(` ${isThinned ? 'Curves are thinned for this page, their peaks are kept.' : ''} ${left ? `${left} channels are left out.` : ''} All samples: trajectory.csv.`);
+    plots.build();
+    at('plots').hidden = !plots.plots.length;
+    window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { plots.build(); show(t); });
+  }
+  // Paper has what the page tells: results are opened, and closed again if they were.
+  function listenToPrint() {
+    let opened = [];
+    window.addEventListener('beforeprint', () => {
+      fitPaper();
+      plots.preparePrint();
+      opened = [...document.querySelectorAll('#results details')].filter((d) => !d.open);
+      for (const d of opened) d.open = true;
+    });
+    window.addEventListener('afterprint', () => { for (const d of opened) d.open = false; fit(); show(t); });
+  }
+  function buildRest() {
+    steplap.verdict.buildTrust(runs);
+    steplap.results.build(at('results'), runs);
+    buildInsets();
+    steplap.listings.events(at('events'), runs, go);
+    steplap.listings.extremes(at('extremes'), runs);
+    steplap.listings.models(at('model'), runs);
+    steplap.listings.origin(at('origin'), runs);
+    buildPlots();
+    listenToPrint();
+    show(t);
+    Object.assign(steplap.page, { insets, plots });
+    document.body.setAttribute('data-ready', 'true');
+  }
+
+  showTitles();
+  steplap.verdict.build(runs);
+  buildScenes();
+  choices();
+  steplap.bars.build(at('limits'), runs, jump);
+  steplap.story.build(at('story'), runs, go);
+  const timeline = new steplap.Timeline(runs, end, { lanes: at('lanes'), axis: at('time-axis'), slider: at('time'), onTime: go });
   const view = new steplap.View(scenes, () => show(t));
-  for (const [id, icon, action] of [['closer', 'closer', () => view.zoomAt(scenes[0], 1.5)], ['further', 'further', () => view.zoomAt(scenes[0], 1 / 1.5)], ['whole', 'whole', () => view.reset()]]) {
-    at(id).append(steplap.icon(icon));
+  for (const [id, action] of [['closer', () => view.zoomAt(scenes[0], 1.5)], ['further', () => view.zoomAt(scenes[0], 1 / 1.5)], ['whole', () => view.reset()]]) {
+    at(id).append(steplap.icon(id));
     at(id).addEventListener('click', action);
   }
-  let seenWidth = document.documentElement.clientWidth;
-  window.addEventListener('resize', () => {
-    if (isPrinted.matches || document.documentElement.clientWidth === seenWidth) return;
-    seenWidth = document.documentElement.clientWidth;
-    fit(); show(t);
-  });
-  document.addEventListener('keydown', (event) => {
-    if (/^(INPUT|SELECT|BUTTON|SUMMARY|TEXTAREA)$/.test(event.target.tagName) || event.ctrlKey || event.altKey || event.metaKey) return;
-    const step = (event.shiftKey ? 0.05 : 0.005) * end;
-    const moves = { ArrowRight: t + step, ArrowLeft: t - step, Home: 0, End: end };
-    if (event.key === ' ') setPlaying(!isPlaying());
-    else if (event.key in moves) { setPlaying(false); show(moves[event.key]); }
-    else return;
-    event.preventDefault();
-  });
-
-  // --- plots ---------------------------------------------------------------------------------------
-  at('layout-control').hidden = runs.length < 2;
-  at('layout').addEventListener('change', (event) => { plots.layout = event.target.value; plots.build(); show(t); });
-  at('zoom-out').addEventListener('click', () => plots.zoomOut());
-  for (const [value, text] of [['', 'choose a channel'], ...[...new Set(runs.flatMap((r) => [...r.channels.keys()]))].map((n) => [n, n])])
-    at('add-channel').append(make('option', { value, title: runs.map((r) => r.meaning(value)).find(Boolean) || '' }, text));
-  at('add-channel').addEventListener('change', (event) => { if (event.target.value) plots.add(event.target.value); event.target.value = ''; });
-  const left = runs.reduce((sum, r) => sum + r.channels_left_out, 0), isThinned = runs.some((r) => r.is_thinned);
-  if (left || isThinned) at('event-key').append(` ${isThinned ? 'Curves are thinned for this page, their peaks are kept.' : ''} ${left ? `${left} channels are left out.` : ''} All samples: trajectory.csv.`);
-  window.addEventListener('beforeprint', () => plots.preparePrint());
+  listen();
   setPlaying(false);
+  at('near').hidden = at('limits').hidden && at('story').hidden;
+  at('overview').classList.toggle('alone', at('near').hidden);
   fit();
-  plots.build();
-  show(0);
-  steplap.page = { scenes, insets, plots, view, show, time: () => t };
-  document.body.setAttribute('data-ready', 'true');
+  show(worst ?? 0);
+  steplap.page = { scenes, view, show: go, time: () => t, timeline, shown: performance.now() };
+  // After the browser has painted: a frame to paint in, and what comes after it.
+  requestAnimationFrame(() => setTimeout(buildRest));
 })();

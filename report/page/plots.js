@@ -1,109 +1,100 @@
 // Time histories in dygraphs: zoom and pan linked over all of them and with the time of the drawing.
 steplap.Plots = (() => {
   const make = steplap.make;
-  const colours = ['#0072b2', '#d55e00', '#007a5a', '#a8487c', '#e69f00', '#3a3a3a', '#56b4e9'];
+  const curves = 7; // colours of curves: --curve-1 to --curve-7 in page.css
   const dashes = [null, [8, 3], [3, 3], [10, 3, 2, 3]];
   const eventStyles = [
-    { roles: ['slip', 'apart'], colour: '#d55e00', dash: [], name: 'slips' },
-    { roles: ['stick'], colour: '#007a5a', dash: [6, 3], name: 'sticks' },
-    { roles: ['open', 'close'], colour: '#8a8a8a', dash: [2, 3], name: 'opens or closes' }];
-
-  // A figure for each plot of the models; without any, one for each kind of channel that says most.
-  function figuresOf(runs) {
-    const figures = new Map();
-    for (const run of runs)
-      for (const plot of run.drawing.plots)
-        if (!figures.has(plot.name)) figures.set(plot.name, plot);
-    if (figures.size) return [...figures.values()];
-    const kinds = [['theta', 'Angles'], ['slide', 'Slides'], ['friction', 'Friction forces'], ['force', 'Forces of elements'], ['couple', 'Couples of elements'],
-      ['p_req', 'Pressures that the joints need'], ['margin', 'Margins of the joints'], ['reaction', 'Reactions of drives'], ['x', 'Horizontal positions'], ['y', 'Vertical positions']];
-    for (const [ending, title] of kinds) {
-      // One axis has one unit: what has another gets a figure of its own.
-      const units = new Map();
-      for (const r of runs) for (const name of r.matching([`*.${ending}`])) {
-        const unit = r.channel(name).unit;
-        if (!units.has(unit)) units.set(unit, new Set());
-        units.get(unit).add(name);
-      }
-      for (const [unit, names] of units) {
-        const name = units.size > 1 ? `${title}, ${unit || 'shares'}` : title;
-        if (figures.size < 6) figures.set(name, { name, title: '', channels: [...names].slice(0, 7), bounds: [] });
-      }
-    }
-    return [...figures.values()];
-  }
+    { roles: ['slip', 'apart', 'break'], colour: 'slips', dash: [], name: 'slips' },
+    { roles: ['stick'], colour: 'good', dash: [6, 3], name: 'sticks' },
+    { roles: ['open', 'close', 'strike'], colour: 'axis', dash: [2, 3], name: 'opens or closes' }];
+  const styleOf = (role) => eventStyles.find((s) => s.roles.includes(role));
+  const resolved = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
   class Plot {
     constructor(owner, figure, runs) {
-      this.owner = owner;
-      this.figure = figure;
-      this.series = [];
+      Object.assign(this, { owner, figure, runs, series: [] });
       for (const run of runs) {
-        for (const name of run.matching(figure.channels)) this.addSeries(run, name, runs, 1, false);
-        for (const name of run.matching(figure.bounds || [])) for (const sign of [1, -1]) this.addSeries(run, name, runs, sign, true);
+        for (const name of run.matching(figure.channels)) this.addSeries(run, name, 1, false);
+        for (const name of run.matching(figure.bounds || [])) for (const sign of [1, -1]) this.addSeries(run, name, sign, true);
       }
-      this.runs = runs;
-      this.box = make('div', { class: 'plot', 'data-plot': figure.name });
-      const caption = figure.title ? `${figure.name}: ${figure.title}` : figure.name;
-      const of = steplap.data.runs.length > 1 ? ` (${runs.map((r) => r.name).join(', ')})` : '';
-      const name = () => `${figure.name}${of}`;
-      this.box.append(make('h3', {}, caption + of), steplap.save.buttons({ CSV: () => steplap.save.file(`${name()}.csv`, 'text/csv', this.csv()),
-        SVG: () => steplap.save.svg(this.paperDrawing(), name()), PNG: () => steplap.save.png(this.paperDrawing(), name()) }));
+      this.drawn = this.series.filter((s) => !s.isZero);
+      this.limits = steplap.marks.limitsOf(this.drawn);
+      const of = steplap.data.runs.length > 1 ? ` (${runs.map((r) => r.name).join(', ')})` : '', name = `${figure.name}${of}`;
+      this.caption = (figure.title ? `${figure.name}: ${figure.title}` : figure.name) + of;
+      this.box = make('figure', { class: 'plot', 'data-plot': figure.name, 'aria-label': this.caption }, make('h3', {}, this.caption));
       this.values = make('div', { class: 'values' });
       this.area = make('div', { class: 'graph' });
+      this.box.append(this.values);
+      if (!this.drawn.length) return;
+      this.box.append(this.area, steplap.save.buttons({ CSV: () => steplap.save.file(`${name}.csv`, 'text/csv', this.csv()),
+        SVG: () => steplap.onPaper(() => steplap.save.svg(this.paperDrawing(), name)), PNG: () => steplap.onPaper(() => steplap.save.png(this.paperDrawing(), name)) }));
       this.cursor = make('div', { class: 'cursor' });
-      this.box.append(this.values, this.area);
+      this.overlay = make('svg', { class: 'marks', 'aria-hidden': 'true' });
       this.area.addEventListener('dblclick', () => setTimeout(() => this.owner.zoomOut())); // back to the scale of all
     }
-    addSeries(run, name, runs, sign, isBound) {
-      const channel = run.channel(name);
-      const prior = this.series.find((s) => s.name === name && s.isBound === isBound);
-      const colour = isBound ? '#6b6b6b' : prior ? prior.colour : colours[new Set(this.series.filter((s) => !s.isBound).map((s) => s.name)).size % colours.length];
-      const label = (isBound ? (sign > 0 ? '+' : '−') : '') + name + (runs.length > 1 ? `, ${run.name}` : '');
-      this.series.push({ run, name, channel, sign, isBound, colour, label, dash: isBound ? [2, 3] : dashes[Math.max(runs.indexOf(run), this.series.filter((s) => s.run === run && !s.isBound).length % dashes.length)] });
+    addSeries(run, name, sign, isBound) {
+      const prior = this.series.find((s) => s.name === name && s.isBound === isBound), own = this.series.filter((s) => s.run === run && !s.isBound).length;
+      const number = new Set(this.series.filter((s) => !s.isBound).map((s) => s.name)).size % curves;
+      const colour = isBound ? 'bound' : prior ? prior.colour : `curve-${number + 1}`;
+      const label = (isBound ? (sign > 0 ? '+' : '−') : '') + name + (this.runs.length > 1 ? `, ${run.name}` : '');
+      this.series.push({ run, name, channel: run.channel(name), sign, isBound, colour, label, isZero: steplap.numbers.isRounding(run, name),
+        dash: isBound ? [2, 3] : dashes[Math.max(this.runs.indexOf(run), own % dashes.length)] });
     }
+    keyText(s) { return (s.isBound ? '±' : '') + s.label.replace(/^\+/, '') + (s.isZero ? ' stays 0' : ''); }
     draw() {
-      if (!this.series.length) { this.area.textContent = 'No such channel in this run.'; return; }
+      if (!this.series.length) { this.values.textContent = 'No such channel in this run.'; return; }
       const [low, high] = this.owner.rangeOf(this.figure, this.owner.full);
-      const scale = steplap.data.scaleFor(this.series[0].channel.unit, Math.max(Math.abs(low), Math.abs(high)));
-      this.scale = scale;
+      this.scale = steplap.data.scaleFor(this.series[0].channel.unit, Math.max(Math.abs(low), Math.abs(high)));
       this.keys();
+      if (!this.drawn.length) return;
       const labels = ['t'], options = {};
-      this.series.forEach((s, i) => {
-        const id = `s${i}`;
-        labels.push(id);
-        options[id] = { color: s.colour, strokePattern: s.dash, strokeWidth: s.isBound ? 1.2 : 1.8, connectSeparatedPoints: true };
+      this.drawn.forEach((s, i) => {
+        labels.push(`s${i}`);
+        options[`s${i}`] = { color: resolved(s.colour), strokePattern: s.dash, strokeWidth: s.isBound ? 1.2 : 1.8, connectSeparatedPoints: true };
       });
-      this.graph = new Dygraph(this.area, this.rows(scale.factor), {
-        labels, series: options, legend: 'never', xlabel: 't [s]', ylabel: `${scale.unit ? '[' + this.escaped(scale.unit) + ']' : '[–]'}`,
-        dateWindow: this.owner.window, valueRange: this.valueRange(), gridLineColor: '#dddddd', axisLineColor: '#8a8a8a', axisLabelFontSize: 12, xLabelHeight: 17, yLabelWidth: 17, highlightCircleSize: 0, yRangePad: 9,
-        axes: { y: { axisLabelWidth: 62, pixelsPerLabel: 34, axisLabelFormatter: (v) => this.tick(v) }, x: { pixelsPerLabel: 70, axisLabelFormatter: (v) => this.tick(v) } },
-        drawCallback: (g, isInitial) => { if (!isInitial) this.owner.follow(this, g.xAxisRange()); this.place(); },
-        underlayCallback: (context, rect, g) => this.marks(context, rect, g),
-        clickCallback: (event, x) => this.owner.onTime(timeAt(this, event, x)),
+      const range = this.valueRange();
+      this.graph = new Dygraph(this.area, this.rows(this.scale.factor), {
+        labels, series: options, legend: 'never', xlabel: 't [s]', ylabel: `${this.scale.unit ? '[' + this.escaped(this.scale.unit) + ']' : '[–]'}`,
+        dateWindow: this.owner.window, valueRange: range, gridLineColor: resolved('grid'), axisLineColor: resolved('axis'), axisLabelFontSize: 12, xLabelHeight: 17, yLabelWidth: 17, highlightCircleSize: 0,
+        axes: { y: { axisLabelWidth: this.labelWidth(range), ticker: (a, b, pixels) => this.ticker(a, b, Math.max(3, Math.floor(pixels / 34))) }, x: { ticker: (a, b, pixels) => this.ticker(a, b, Math.max(3, Math.floor(pixels / 70))) } },
+        drawCallback: (g, isInitial) => { if (!isInitial) this.owner.follow(this, g.xAxisRange()); this.graph = g; this.place(); this.mark(); },
+        underlayCallback: (context, rect, g) => this.drawEvents(context, rect, g),
+        clickCallback: (event, x) => this.owner.onTime(this.graph.toDataXCoord(event.offsetX) || x),
       });
-      this.area.append(this.cursor);
+      this.area.append(this.overlay, this.cursor);
+      this.mark();
       this.show(this.owner.t);
     }
-    // What the other runs show of this figure has the same scale.
+    ticker(low, high, most) {
+      const { values, step } = steplap.axes.ticks(low, high, most);
+      return values.map((v) => ({ v, label: steplap.axes.label(v, step) }));
+    }
+    // As wide as the longest number along the axis.
+    labelWidth([low, high]) { return 24 + 7.4 * Math.max(3, ...this.ticker(low, high, 6).map((tick) => tick.label.length)); }
+    // What the other runs show of this figure has the same scale; limits nearby are in the picture; there is room for the
+    // values of the extremes.
     valueRange() {
-      const [low, high] = this.owner.rangeOf(this.figure, this.owner.window).map((v) => v * this.scale.factor);
-      if (!(low <= high)) return null;
-      const room = 0.05 * (high - low) || 0.1 * Math.abs(high) || 1;
-      return [low - room, high + room];
+      let [low, high] = this.owner.rangeOf(this.figure, this.owner.window);
+      if (!(low <= high)) return [0, 1];
+      for (const { value } of this.owner.limitsOf(this.figure)) if (steplap.marks.isNear(value, low, high)) { low = Math.min(low, value); high = Math.max(high, value); }
+      const room = 0.13 * (high - low) || 0.1 * Math.abs(high) || 1 / this.scale.factor;
+      return [(low - room) * this.scale.factor, (high + room) * this.scale.factor];
+    }
+    zoomTo(window) {
+      if (!this.graph) return;
+      const valueRange = this.valueRange();
+      this.graph.updateOptions({ dateWindow: window, valueRange, axes: { y: { axisLabelWidth: this.labelWidth(valueRange) } } });
     }
     escaped(text) { return text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`); }
-    tick(v) { return steplap.data.plain(Math.abs(v) < 1e-12 ? 0 : v, 6); }
     // One row for each time of any series; gaps are bridged by dygraphs.
     rows(factor) {
-      const shared = this.series.every((s) => s.channel.times === this.series[0].channel.times);
-      const value = (s, i) => { const v = s.sign * s.channel.value(i) * factor; return isFinite(v) ? v : NaN; };
-      if (shared) return Array.from(this.series[0].channel.times, (t, i) => [t, ...this.series.map((s) => value(s, i))]);
+      const list = this.drawn, times = list[0].channel.times, value = (s, i) => { const v = s.sign * s.channel.value(i) * factor; return isFinite(v) ? v : NaN; };
+      if (list.every((s) => s.channel.times === times)) return Array.from(times, (t, i) => [t, ...list.map((s) => value(s, i))]);
       const rows = new Map();
-      this.series.forEach((s, k) => {
+      list.forEach((s, k) => {
         for (let i = 0; i < s.channel.length; ++i) {
           const t = s.channel.times[i];
-          if (!rows.has(t)) rows.set(t, [t, ...this.series.map(() => null)]);
+          if (!rows.has(t)) rows.set(t, [t, ...list.map(() => null)]);
           rows.get(t)[k + 1] = value(s, i);
         }
       });
@@ -113,34 +104,46 @@ steplap.Plots = (() => {
       this.values.replaceChildren();
       for (const s of this.series) {
         if (s.isBound && s.sign < 0) continue;
-        const line = make('line', { x1: 0, y1: 4.5, x2: 30, y2: 4.5, stroke: s.colour, 'stroke-width': 2.2, 'stroke-dasharray': (s.dash || []).join(' ') });
-        s.readout = make('span');
-        this.values.append(make('span', { class: 'key', title: s.run.meaning(s.name) }, make('svg', { viewBox: '0 0 30 9' }, line), (s.isBound ? '±' : '') + s.label.replace(/^\+/, '') + ' ', s.readout));
+        const line = make('line', { x1: 0, y1: 4.5, x2: 30, y2: 4.5, 'stroke-width': 2.2, 'stroke-dasharray': (s.dash || []).join(' '), style: `stroke:var(--${s.colour})` });
+        s.readout = s.isZero ? null : make('span', { class: 'readout' });
+        this.values.append(make('span', { class: 'key', title: s.run.meaning(s.name) }, make('svg', { viewBox: '0 0 30 9' }, line), `${this.keyText(s)} `, s.readout || ''));
+      }
+      const [low, high] = this.owner.rangeOf(this.figure, this.owner.full), far = this.limits.filter(({ value }) => !steplap.marks.isNear(value, low, high));
+      const texts = steplap.data.unique([far.map((f) => f.text.replace('−', ''))]); // one on either side of zero is told of once
+      if (far.length) this.values.append(make('span', { class: 'key far' }, `${texts.join(', ')}: beyond this picture`));
+    }
+    // Instants that are marked by lines, with their style.
+    eventLines() {
+      return this.runs.flatMap((run) => run.events.filter((e) => styleOf(e[4])).map((e) => ({ t: e[0], style: styleOf(e[4]) })));
+    }
+    drawEvents(context, rect, g) {
+      const lines = this.eventLines(), isDense = lines.length > 120; // a hatching of lines would hide the curves
+      for (const { t, style } of lines) {
+        const x = g.toDomXCoord(t);
+        if (x < rect.x || x > rect.x + rect.w) continue;
+        context.save();
+        context.strokeStyle = resolved(style.colour); context.globalAlpha = isDense ? 0.15 : 0.55; context.lineWidth = 1; context.setLineDash(style.dash);
+        context.beginPath(); context.moveTo(x, rect.y); context.lineTo(x, rect.y + rect.h); context.stroke();
+        context.restore();
       }
     }
-    marks(context, rect, g) {
-      for (const run of this.runs)
-        for (const [t, , , , role] of run.events) {
-          const style = eventStyles.find((s) => s.roles.includes(role));
-          const x = style && g.toDomXCoord(t);
-          if (!style || x < rect.x || x > rect.x + rect.w) continue;
-          context.save();
-          context.strokeStyle = style.colour; context.globalAlpha = 0.75; context.lineWidth = 1; context.setLineDash(style.dash);
-          context.beginPath(); context.moveTo(x, rect.y); context.lineTo(x, rect.y + rect.h); context.stroke();
-          context.restore();
-        }
+    mark() {
+      if (!this.graph || !this.overlay) return;
+      const area = this.graph.getArea(), g = this.graph;
+      steplap.marks.draw(this.overlay, this, { x: (t) => g.toDomXCoord(t), y: (v) => g.toDomYCoord(v * this.scale.factor), left: area.x, right: area.x + area.w, top: area.y, bottom: area.y + area.h },
+        (s) => `var(--${s.colour})`);
     }
     // The curves as they are shown, in their own units: a column each, a row for each time that any of them has.
     csv() {
-      const [from, to] = this.graph.xAxisRange(), curves = this.series.filter((s) => !s.isBound || s.sign > 0);
+      const [from, to] = this.graph.xAxisRange(), list = this.series.filter((s) => !s.isBound || s.sign > 0);
       const cell = (text) => (/[",\n\r]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
-      const heads = ['t [s]', ...curves.map((s) => cell(`${s.name} [${s.channel.unit || '1'}]${this.runs.length > 1 ? `, ${s.run.name}` : ''}`))];
+      const heads = ['t [s]', ...list.map((s) => cell(`${s.name} [${s.channel.unit || '1'}]${this.runs.length > 1 ? `, ${s.run.name}` : ''}`))];
       const rows = new Map();
-      curves.forEach((s, k) => {
+      list.forEach((s, k) => {
         for (let i = 0; i < s.channel.length; ++i) {
           const t = s.channel.times[i];
           if (t < from || t > to) continue;
-          if (!rows.has(t)) rows.set(t, curves.map(() => ''));
+          if (!rows.has(t)) rows.set(t, list.map(() => ''));
           rows.get(t)[k] = String(s.channel.value(i));
         }
       });
@@ -150,49 +153,12 @@ steplap.Plots = (() => {
     paperDrawing() { this.drawForPaper(); return this.paper; }
     drawForPaper() {
       if (!this.graph) return;
-      const keys = this.series.filter((s) => !s.isBound || s.sign > 0), width = 345, top = 16 + 10 * keys.length, height = 159 + top, left = 50, w = width - left - 6, h = height - top - 30;
-      const [t0, t1] = this.graph.xAxisRange(), [y0, y1] = this.graph.yAxisRange();
-      const x = (t) => left + (w * (t - t0)) / (t1 - t0), y = (v) => top + (h * (y1 - v)) / (y1 - y0);
-      const svg = make('svg', { viewBox: `0 0 ${width} ${height}`, class: 'on-paper' });
-      const line = (x0, ya, x1, yb, style) => svg.append(make('line', { x1: x0, y1: ya, x2: x1, y2: yb, ...style }));
-      const text = (content, attributes) => svg.append(make('text', { 'font-size': 8, fill: '#1a1a1a', ...attributes }, content));
-      for (const v of ticksBetween(y0, y1, 5)) {
-        line(left, y(v), left + w, y(v), { stroke: '#dddddd' });
-        text(this.tick(v), { x: left - 4, y: y(v) + 3, 'text-anchor': 'end' });
-      }
-      for (const t of ticksBetween(t0, t1, 8)) {
-        line(x(t), top, x(t), top + h, { stroke: '#eeeeee' });
-        text(this.tick(t), { x: x(t), y: top + h + 11, 'text-anchor': 'middle' });
-      }
-      for (const run of this.runs)
-        for (const [t, , , , role] of run.events) {
-          const style = eventStyles.find((s) => s.roles.includes(role));
-          if (style && t >= t0 && t <= t1) line(x(t), top, x(t), top + h, { stroke: style.colour, 'stroke-width': 0.6, 'stroke-dasharray': style.dash.join(' ') });
-        }
-      for (const s of this.series) {
-        let path = '', isDown = false;
-        for (let i = 0; i < s.channel.length; ++i) {
-          const t = s.channel.times[i], v = s.sign * s.channel.value(i) * this.scale.factor;
-          if (t < t0 || t > t1 || !isFinite(v)) { isDown = false; continue; }
-          path += `${isDown ? 'L' : 'M'}${x(t).toFixed(1)} ${y(v).toFixed(1)}`;
-          isDown = true;
-        }
-        svg.append(make('path', { d: path || 'M0 0', fill: 'none', stroke: s.colour, 'stroke-width': s.isBound ? 0.8 : 1.2, 'stroke-dasharray': (s.dash || []).map((d) => 0.6 * d).join(' ') }));
-      }
-      svg.append(make('rect', { x: left, y: top, width: w, height: h, fill: 'none', stroke: '#8a8a8a' }));
-      text('t [s]', { x: left + w / 2, y: height - 4, 'text-anchor': 'middle' });
-      text(`[${this.scale.unit || '–'}]`, { x: 9, y: top + h / 2, 'text-anchor': 'middle', transform: `rotate(-90 9 ${top + h / 2})` });
-      text(this.box.querySelector('h3').textContent, { x: left, y: 9, 'font-size': 9, 'font-weight': 600 });
-      keys.forEach((s, k) => {
-        line(left, 16 + 10 * k, left + 18, 16 + 10 * k, { stroke: s.colour, 'stroke-width': 1.2, 'stroke-dasharray': (s.dash || []).map((d) => 0.6 * d).join(' ') });
-        text((s.isBound ? '±' : '') + s.label.replace(/^\+/, ''), { x: left + 22, y: 18.5 + 10 * k });
-      });
       if (this.paper) this.paper.remove();
-      this.paper = svg;
-      this.box.append(svg);
+      this.paper = steplap.paper.draw(this);
+      this.box.append(this.paper);
     }
     place() {
-      if (!this.graph) return;
+      if (!this.graph || !this.cursor) return;
       const [low, high] = this.graph.xAxisRange(), t = this.owner.t;
       this.cursor.style.display = t >= low && t <= high ? '' : 'none';
       this.cursor.style.left = `${this.graph.toDomXCoord(t)}px`;
@@ -200,41 +166,37 @@ steplap.Plots = (() => {
     show(t) {
       if (!this.graph) return;
       this.place();
-      for (const s of this.series) if (s.readout) s.readout.textContent = steplap.data.quantity(s.channel.at(t), s.channel.unit, 5);
+      for (const s of this.series) if (s.readout) s.readout.textContent = steplap.numbers.onScale(s.channel.at(t), this.scale, { rounding: steplap.numbers.roundingOf(s.run, s.channel.unit) });
     }
   }
-  // Round numbers from low to high, about `count` of them.
-  function ticksBetween(low, high, count) {
-    const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));
-    const step = power * [1, 2, 5, 10].find((m) => m * power >= raw), ticks = [];
-    for (let k = Math.ceil(low / step); k * step <= high + 1e-9 * step; ++k) ticks.push(k * step);
-    return ticks;
-  }
-  const timeAt = (plot, event, x) => plot.graph.toDataXCoord(event.offsetX) || x;
 
   return class Plots {
     constructor(grid, onTime) {
-      this.grid = grid; this.onTime = onTime; this.t = 0; this.plots = []; this.extra = [];
+      Object.assign(this, { grid, onTime, t: 0, plots: [], extra: [], isFollowing: false, layout: 'beside' });
       this.full = [0, Math.max(...steplap.data.runs.map((r) => r.end))];
-      this.window = this.full; this.isFollowing = false;
-      this.figures = figuresOf(steplap.data.runs);
-      this.layout = 'beside';
-      document.getElementById('event-key').textContent = `Vertical lines: ${eventStyles.map((s, i) => `${s.name} (${['solid', 'dashed', 'dotted'][i]})`).join(', ')}.`;
+      this.window = this.full;
+      this.figures = steplap.figures.of(steplap.data.runs);
+      document.getElementById('event-key').textContent = `Vertical lines: ${eventStyles.map((s, i) => `${s.name} (${['solid', 'dashed', 'dotted'][i]})`).join(', ')}. A dot marks the largest value of a curve.`;
     }
-    // Least and largest value that any run shows in a figure within a window of time.
+    // Least and largest value that any run shows in a figure within a window of time, the extremes between samples, too.
     rangeOf(figure, [from, to]) {
       let low = Infinity, high = -Infinity;
+      const take = (v) => { if (isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); } };
       for (const plot of this.plots) {
         if (plot.figure !== figure) continue;
-        for (const s of plot.series)
-          for (let i = Math.max(0, steplap.data.indexBefore(s.channel.times, from)); i < s.channel.length; ++i) {
-            const v = s.sign * s.channel.value(i);
-            if (isFinite(v)) { low = Math.min(low, v); high = Math.max(high, v); }
-            if (s.channel.times[i] > to) break;
+        for (const s of plot.drawn.length ? plot.drawn : plot.series) {
+          const times = s.channel.times;
+          for (let i = Math.max(0, steplap.data.indexBefore(times, from)); i < s.channel.length; ++i) {
+            take(s.sign * s.channel.value(i));
+            if (times[i] > to) break;
           }
+          const e = steplap.marks.extremeOf(s);
+          if (e && e.t >= from && e.t <= to) take(e.value);
+        }
       }
       return [low, high];
     }
+    limitsOf(figure) { return this.plots.filter((p) => p.figure === figure).flatMap((p) => p.limits); }
     build() {
       for (const plot of this.plots) if (plot.graph) plot.graph.destroy();
       const runs = steplap.data.runs, isBeside = this.layout === 'beside' && runs.length > 1;
@@ -246,20 +208,24 @@ steplap.Plots = (() => {
       for (const plot of this.plots) plot.draw();
     }
     add(channel) { this.extra.push({ name: channel, title: '', channels: [channel.replace(/[*?]/g, '?')], bounds: [] }); this.build(); }
+    // The figure that shows a channel of a run; made if there is none.
+    figureWith(channel, run) {
+      const has = (p) => p.graph && p.runs.includes(run) && p.drawn.some((s) => s.name === channel && s.run === run);
+      if (!this.plots.some(has) && run.channel(channel)) this.add(channel);
+      return this.plots.find(has) || this.plots.find((p) => p.series.some((s) => s.name === channel));
+    }
     // Zoom and pan of one are those of all.
     follow(source, range) {
       if (this.isFollowing || (range[0] === this.window[0] && range[1] === this.window[1])) return;
+      this.zoom([...range]);
+    }
+    zoom(window) {
       this.isFollowing = true;
-      this.window = [...range];
-      for (const plot of this.plots) if (plot.graph) plot.graph.updateOptions({ dateWindow: this.window, valueRange: plot.valueRange() });
+      this.window = window;
+      for (const plot of this.plots) plot.zoomTo(window);
       this.isFollowing = false;
     }
-    zoomOut() {
-      this.isFollowing = true;
-      this.window = [...this.full];
-      for (const plot of this.plots) if (plot.graph) plot.graph.updateOptions({ dateWindow: this.window, valueRange: plot.valueRange() });
-      this.isFollowing = false;
-    }
+    zoomOut() { this.zoom([...this.full]); }
     // What is printed are drawings of the same window: canvases would be pictures of the screen's size.
     preparePrint() { for (const plot of this.plots) plot.drawForPaper(); }
     show(t) { this.t = t; for (const plot of this.plots) plot.show(t); }

@@ -11,7 +11,9 @@ steplap.Symbols = (() => {
   class Symbols {
     constructor(scene) {
       this.scene = scene;
-      this.values = []; // of arrows: { name, text(t), place(t) }
+      this.springs = []; // { element, shape } and where they are drawn
+      this.taken = []; // pixels along what is drawn, at rest
+      this.pins = scene.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'pin' && s.at.length > 1));
       this.planes = (scene.run.drawing.planes || []).map((plane) => ({ ...plane, feet: [] }));
       for (const element of scene.elements)
         for (const shape of element.shapes) {
@@ -22,6 +24,7 @@ steplap.Symbols = (() => {
       this.frictions = scene.elements.filter((e) => e.shapes.some((shape) => shape.type === 'friction')).length;
       this.planes.forEach((plane) => this.halfPlane(plane));
       this.sheets();
+      this.roads();
       for (const element of scene.elements)
         for (const shape of element.shapes) {
           const draw = Symbols.types[shape.type] || (shape.at.length ? Symbols.types.neutral : null);
@@ -110,12 +113,14 @@ steplap.Symbols = (() => {
         hatch.setAttribute('d', strokes || 'M0 0');
       });
     }
-    fit() { for (const plane of this.planes) if (plane.fit) plane.fit(); }
+    fit() { for (const plane of this.planes) if (plane.fit) plane.fit(); this.placeSprings(); }
 
     // Corners of step-lap joints: the sheets that overlap there.
     sheets() {
       const { scene } = this;
-      for (const sheet of steplap.data.corners(scene.run))
+      // Strips along the mitre; whole sheets would be lines across the windows.
+      const span = (ring) => new steplap.Box().joined(ring.reduce((box, p) => box.take(p), new steplap.Box())).span;
+      for (const sheet of steplap.data.corners(scene.run).filter((s) => Math.max(...span(s.limb_sheet)) < 0.5 * scene.body(s.limb).reach))
         for (const [name, owner, ring] of [['yoke', sheet.active_part, sheet.yoke], ['limb', sheet.limb, sheet.limb_sheet]]) {
           const outline = make('path', { class: `sheet ${name}`, 'data-sheet': sheet.name });
           scene.bodyLayer.append(outline);
@@ -124,26 +129,17 @@ steplap.Symbols = (() => {
     }
 
     // --- springs, ropes ---------------------------------------------------------------------------------------
-    // From b to a. One along a fixed axis is drawn at a, as long as the distance along the axis and at least so long that
-    // it can be seen.
+    // From b to a, where springs.js has put it.
     spring(element, shape) {
-      const bar = this.piece(element, { class: `symbol ${shape.style || ''}` });
-      const sideOf = (pose) => { const [a, b] = this.ends(shape, pose); return dot(this.direction(shape, pose), minus(a, b)); };
-      const ends = (pose) => {
-        let [a, b] = this.ends(shape, pose);
-        if (shape.direction) {
-          const axis = this.direction(shape, pose), still = sideOf((name) => this.scene.reference(name)), way = sideOf(pose);
-          b = minus(a, scaled(axis, way + Math.max(0, 3 * this.u - Math.abs(still)) * (still < 0 ? -1 : 1)));
-        }
-        return [a, b];
-      };
+      const bar = this.piece(element, { class: `symbol spring ${shape.style || ''}` }), own = { element, shape };
+      this.springs.push(own);
       const drawn = { '': zigzag, both: (a, b, u) => shifted(a, b, 0.7 * u, zigzag, 0.6 * u) + shifted(a, b, -0.7 * u, dashpot, 0.6 * u) + yokes(a, b, 0.7 * u), damper: dashpot, tie: plates, cylinder }[shape.style || ''] || zigzag;
-      this.update((t, pose) => { const [a, b] = ends(pose); bar.setAttribute('d', drawn(a, b, this.u)); });
+      this.update((t, pose) => { const [a, b] = this.springEnds(own, pose); bar.setAttribute('d', drawn(a, b, this.u) + this.anchor(own, a, b)); });
       const channel = this.channel(element, shape);
       if (!channel) return;
       const text = this.value(element);
       this.update((t, pose) => {
-        const [a, b] = ends(pose);
+        const [a, b] = this.springEnds(own, pose);
         this.showValue(text, steplap.data.quantity(channel.at(t), channel.unit, 4), add(along(a, b, 0.5), [1.1 * this.u, 0]), [1, 0]);
       });
     }
@@ -180,6 +176,7 @@ steplap.Symbols = (() => {
         const { a, n, foot } = places(pose), w = 0.75 * this.u;
         wedge.setAttribute('d', path([a, add(a, add(scaled(n, 1.1 * w), scaled(across(n), 0.6 * w))), add(a, add(scaled(n, 1.1 * w), scaled(across(n), -0.6 * w)))], true));
         wedge.classList.toggle('closed', Boolean(force) && force.at(t) > 0);
+        wedge.classList.toggle('moved', this.scene.hasMoved(element.name, t));
         if (!hasLine) tick.setAttribute('d', path([add(foot, scaled(across(n), 1.4 * w)), minus(foot, scaled(across(n), 1.4 * w))]));
       });
       this.force(element, shape, (t, pose, channel) => { const { a, n } = places(pose); return { at: add(a, scaled(n, 0.85 * this.u)), d: n, force: channel.at(t) }; }, true);
@@ -233,12 +230,12 @@ steplap.Symbols = (() => {
       this.update((t, pose) => {
         const sum = places.map((p) => scene.placed(p, pose)).reduce(add);
         const [x, y] = scene.toScreen(scaled(sum, 1 / places.length)), m = scene.run.modeAt(element.name, t);
-        const state = m === 1 ? 'sticks' : m === 2 ? 'slips' : 'free';
+        const state = m === 2 ? 'slips' : 'slipped';
         const arrow = m === 2 && rate ? (rate.at(t) >= 0 ? ' →' : ' ←') : '';
-        const isSaid = m === 2 || this.frictions <= 6; // of many, only those that slip
+        const hasMoved = m !== 2 && scene.hasMoved(element.name, t), isSaid = m === 2 || hasMoved; // what holds needs no word
         const isFelt = scene.withValues && force && Math.abs(force.at(t)) > 1e-6 * scene.largestForce; // as with arrows, less is rounding
-        text.textContent = !isSaid ? '' : `${element.name}: ${state}${arrow}${isFelt ? `, ${steplap.data.quantity(force.at(t), force.unit, 4)}` : ''}`;
-        text.setAttribute('class', `state-text ${state}`);
+        text.textContent = !isSaid ? '' : `${element.name} ${state}${arrow}${isFelt ? `, ${steplap.data.quantity(force.at(t), force.unit, 4)}` : ''}`;
+        text.setAttribute('class', 'state-text slips');
         const width = 8.4 * text.textContent.length, ways = [14, 32, -16, 50, -34, 68, 86, 104];
         this.put(text, [x, y], [width, 18], [...ways.map((dy) => [0, dy]), ...ways.map((dy) => [0.6 * width, dy]), ...ways.map((dy) => [-0.6 * width, dy])]);
       });
@@ -268,16 +265,21 @@ steplap.Symbols = (() => {
     }
     bushing(element, shape) { this.dot(element, shape.at[0], 'bushing', 0.75); this.dot(element, shape.at[0], 'pin', 0.35); }
     weld(element, shape) {
+      if (shape.at.every((place) => this.scene.body(place.body).is_outline_given)) return; // they are seen to be one
       const square = this.piece(element, { class: 'symbol weld' });
       this.update((t, pose) => { const [x, y] = this.screen(shape.at[0], pose), h = 0.32 * this.u; square.setAttribute('d', `M${x - h} ${y - h}h${2 * h}v${2 * h}h${-2 * h}Z`); });
     }
     // The line that is free, dashed, with a block on it where the guided marker is.
     rail(element, shape) {
+      if (shape.style === 'limit' && shape.sizes) { this.stops(element, shape); return; }
+      if (shape.style === 'brake') return; // its words say what it does
+      if (shape.at.length > 1 && this.scene.body(shape.at[0].body).is_outline_given && this.hasEdge(shape)) { this.rollers(element, shape); return; }
       const line = this.piece(element, { class: 'symbol rail' }), block = this.piece(element, { class: 'symbol block' });
       this.update((t, pose) => {
         const [a, b] = this.ends(shape, pose), d = this.direction(shape, pose), way = dot(d, minus(a, b)), reach = 4 * this.u;
-        line.setAttribute('d', path([add(b, scaled(d, Math.min(0, way) - reach)), add(b, scaled(d, Math.max(0, way) + reach))]));
-        const on = add(b, scaled(d, way)), x = scaled(d, 0.9 * this.u), y = scaled(across(d), 0.45 * this.u);
+        const from = minus(a, scaled(d, way)); // where the slide began, beside b where it runs beside b
+        line.setAttribute('d', path([add(from, scaled(d, Math.min(0, way) - reach)), add(from, scaled(d, Math.max(0, way) + reach))]));
+        const on = a, x = scaled(d, 0.9 * this.u), y = scaled(across(d), 0.45 * this.u);
         block.setAttribute('d', path([add(add(on, x), y), add(minus(on, x), y), minus(minus(on, x), y), minus(add(on, x), y)], true));
       });
     }
@@ -298,18 +300,33 @@ steplap.Symbols = (() => {
     // --- what drives, stops, loads ---------------------------------------------------------------------------------
     arc(element, shape) {
       const style = shape.style || '', symbol = this.piece(element, { class: `symbol arc ${style}` }), channel = this.channel(element, shape), text = this.value(element);
-      const drawn = { spring: spiral, limit: stops, brake: shoes }[style];
+      const drawn = { spring: spiral, limit: stops, brake: shoes }[style], place = this.jointOf(shape);
       this.update((t, pose) => {
-        const at = this.screen(shape.at[0], pose), turned = -pose(shape.at[0].body)[2], couple = channel ? channel.at(t) : 0;
+        const at = this.screen(place, pose), turned = -pose(shape.at[0].body)[2], couple = channel ? channel.at(t) : 0;
         symbol.setAttribute('d', drawn ? drawn(at, this.u, turned) : turning(at, 1.7 * this.u, turned, couple < 0));
         this.showValue(text, channel ? steplap.data.quantity(couple, channel.unit, 4) : '', add(at, [1.9 * this.u, -1.2 * this.u]), [1, 0]);
       });
     }
+    // Where what turns one body against another is drawn: at the pin between them; against the ground at any pin of the body.
+    jointOf(shape) {
+      const [a, b] = shape.at, holds = (pin, name) => pin.at.some((place) => place.body === name);
+      const between = b && this.pins.find((pin) => holds(pin, a.body) && holds(pin, b.body));
+      const found = between || (b && b.body === 'ground' ? this.pins.find((pin) => holds(pin, a.body)) : null);
+      return found ? found.at[0] : a;
+    }
+    // In front of the body, as far as it reaches along the arrow.
+    frontOf(shape) {
+      const { scene } = this, place = shape.at[0], body = scene.body(place.body), rest = (name) => scene.reference(name);
+      if (body.isPoint) return place;
+      const d = turn(shape.direction || [1, 0], rest(shape.at[shape.at.length - 1].body)[2]), way = (p) => dot(d, turn(p, rest(place.body)[2]));
+      const farthest = Math.max(...body.points.map(way)), front = body.points.filter((p) => way(p) > farthest - 0.02 * body.reach);
+      return { body: place.body, point: scaled(front.reduce(add), 1 / front.length) };
+    }
     arrow(element, shape) {
       if (shape.style === 'load') { this.load(element, shape); return; }
-      const symbol = this.piece(element, { class: 'symbol drive' }), channel = this.channel(element, shape), text = this.value(element);
+      const place = this.frontOf(shape), symbol = this.piece(element, { class: 'symbol drive' }), channel = this.channel(element, shape), text = this.value(element);
       this.update((t, pose) => {
-        const at = this.screen(shape.at[0], pose), d = this.direction(shape, pose), tip = add(at, scaled(d, 4.5 * this.u));
+        const at = this.screen(place, pose), d = this.direction(shape, pose), tip = add(at, scaled(d, 4.5 * this.u));
         symbol.setAttribute('d', path([at, tip]) + arrowHead(tip, d, 0.9 * this.u));
         this.showValue(text, channel ? steplap.data.quantity(channel.at(t), channel.unit, 4) : '', tip, d);
       });
@@ -367,7 +384,7 @@ steplap.Symbols = (() => {
     buildSymbols() {
       this.takenTexts = [];
       // Room for texts: not on the marks of bodies, nor on texts that are there before.
-      this.updaters.push((t, pose) => { this.takenTexts = [...this.marks].map(([name, mark]) => [...add(this.toScreen(pose(name)), mark.shift), 20, 20]); });
+      this.updaters.push((t, pose) => { this.takenTexts = [...this.marks].map(([name, mark]) => [...add(this.toScreen(pose(name)), mark.now), 20, 20]); });
       this.symbols = new Symbols(this);
     },
     fitSymbols() { this.symbols.fit(); },

@@ -89,7 +89,7 @@ steplap.save = (() => {
     const [, , width, height] = svg.getAttribute('viewBox').split(' ').map(Number);
     copy.removeAttribute('style');
     for (const [name, value] of Object.entries({ xmlns: 'http://www.w3.org/2000/svg', width, height })) copy.setAttribute(name, value);
-    copy.prepend(steplap.make('rect', { width, height, fill: '#ffffff' }));
+    copy.prepend(steplap.make('rect', { width, height, fill: getComputedStyle(document.body).backgroundColor }));
     return { text: new XMLSerializer().serializeToString(copy), width, height };
   }
   const svg = (drawing, name) => file(`${name}.svg`, 'image/svg+xml', alone(drawing).text);

@@ -7,7 +7,20 @@ study.charts = (() => {
   const isTouched = matchMedia('(pointer: coarse), (max-width: 600px)').matches;
   // Plotly reads a little markup in its texts: names stay text.
   const safe = (text) => String(text).replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/>/g, '&gt;');
-  const axis = (title, more = {}) => ({ title: { text: safe(title), standoff: 8 }, automargin: true, gridcolor: '#e3e3e3', zerolinecolor: '#b5b5b5', linecolor: '#b5b5b5', exponentformat: 'power', ...more });
+  const axis = (title, more = {}) => ({ title: { text: safe(title), standoff: 8 }, automargin: true, exponentformat: 'power', ...more });
+
+  // Colours of what is no curve, as the page's style says; curves have colours that are seen on light and dark.
+  const scheme = matchMedia('(prefers-color-scheme: dark)');
+  const ink = '#7d858e'; // lines and marks of traces, on both
+  function look(layout, isPaper) {
+    if (isPaper) document.documentElement.classList.add('paper');
+    const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(`--${name}`).trim();
+    const found = { 'font.color': colour('ink'), paper_bgcolor: colour('paper'), plot_bgcolor: colour('paper') };
+    for (const name of Object.keys(layout).filter((key) => /^[xy]axis\d*$/.test(key)))
+      Object.assign(found, { [`${name}.gridcolor`]: colour('grid'), [`${name}.linecolor`]: colour('axis'), [`${name}.zerolinecolor`]: colour('axis') });
+    if (isPaper) document.documentElement.classList.remove('paper');
+    return found;
+  }
 
   // Of Plotly's buttons those that do not ask a server: one would upload the chart.
   const config = { responsive: true, displaylogo: false, ...(isTouched ? { displayModeBar: false } : {}), plotlyServerURL: '', modeBarButtons: [['toImage', 'zoom2d', 'pan2d', 'zoomIn2d', 'zoomOut2d', 'resetScale2d']] };
@@ -21,11 +34,15 @@ study.charts = (() => {
     const canvas = make('div', { class: 'canvas' });
     const box = make('div', { class: 'chart', 'data-chart': name || title }, ...(title ? [make('h3', {}, title)] : []), canvas, ...(note ? [make('p', { class: 'note' }, note)] : []));
     parent.append(box);
-    const whole = { height, margin: { l: 58, r: 14, t: 12, b: 44 }, font: { family: '"DejaVu Sans", "Segoe UI", Arial, sans-serif', size: 12, color: '#1a1a1a' },
-      paper_bgcolor: '#fff', plot_bgcolor: '#fff', hovermode: 'closest', dragmode: isTouched ? false : 'zoom', showlegend: traces.filter((t) => t.showlegend !== false && t.name).length > 1,
+    const whole = { height, margin: { l: 58, r: 14, t: 12, b: 44 }, font: { family: '"DejaVu Sans", "Segoe UI", Arial, sans-serif', size: 12 },
+      hovermode: 'closest', dragmode: isTouched ? false : 'zoom', showlegend: traces.filter((t) => t.showlegend !== false && t.name).length > 1,
       legend: { orientation: 'h', y: 1.02, yanchor: 'bottom', x: 0, font: { size: 11 } }, bargap: 0.3, ...layout };
     if (!waiting.length) queueMicrotask(draw);
     waiting.push(() => {
+      for (const [path, value] of Object.entries(look(whole, false))) {
+        const [part, key] = path.split('.');
+        if (key) whole[part] = { ...whole[part], [key]: value }; else whole[part] = value;
+      }
       Plotly.newPlot(canvas, traces, whole, config);
       canvas.on('plotly_click', (event) => {
         const picked = event.points.find((p) => Number.isInteger(p.customdata));
@@ -44,14 +61,15 @@ study.charts = (() => {
     for (let i = all.length; i-- > 0;) if (box.contains(all[i].canvas)) Plotly.purge(all.splice(i, 1)[0].canvas);
     box.replaceChildren();
   }
-  // What goes on paper is as wide as the paper's column.
+  // What goes on paper is as wide as the paper's column, and dark on white.
   function fit(isPaper) {
     for (const { canvas, box } of all) {
       const isWide = box.parentElement.classList.contains('one');
-      Plotly.relayout(canvas, isPaper ? { width: isWide ? 690 : 335, autosize: false } : { width: null, autosize: true });
+      Plotly.relayout(canvas, { ...look(canvas.layout, isPaper), ...(isPaper ? { width: isWide ? 690 : 335, autosize: false } : { width: null, autosize: true }) });
     }
   }
+  scheme.addEventListener('change', () => { for (const { canvas } of all) if (canvas.layout) Plotly.relayout(canvas, look(canvas.layout, false)); });
   window.addEventListener('beforeprint', () => fit(true));
   window.addEventListener('afterprint', () => fit(false));
-  return { add, clear, band, safe, axis, colours, cycle, all };
+  return { add, clear, band, safe, axis, colours, cycle, ink, all };
 })();

@@ -29,7 +29,7 @@ study.distributions = (() => {
   function histogram(box, t, column) {
     const h = t.histogram, edges = scaled(h.edges, column.factor), total = h.counts.reduce((a, b) => a + b, 0) || 1;
     const middle = h.counts.map((_, i) => 0.5 * (edges[i] + edges[i + 1])), share = h.counts.map((n) => n / total);
-    const error = h.low.length ? { error_y: { type: 'data', symmetric: false, array: h.high.map((v, i) => v - share[i]), arrayminus: h.low.map((v, i) => share[i] - v), color: '#333', thickness: 1, width: 2 } } : {};
+    const error = h.low.length ? { error_y: { type: 'data', symmetric: false, array: h.high.map((v, i) => v - share[i]), arrayminus: h.low.map((v, i) => share[i] - v), color: study.charts.ink, thickness: 1, width: 2 } } : {};
     charts.add(box, { name: `distribution ${t.name}`, title: t.name, note: `${h.counts.length} bins of ${total} values${h.low.length ? '; intervals of 95 % (Clopper and Pearson)' : ''}. ${t.missing ? `${t.missing} samples have no value and are left out.` : ''}`, height: 290,
       traces: [{ type: 'bar', x: middle, y: share, width: h.counts.map((_, i) => edges[i + 1] - edges[i] || undefined), customdata: h.counts.map(String), hovertemplate: '%{customdata} values, %{y:.3%}<extra></extra>', marker: { color: `${colours.blue}aa`, line: { color: colours.blue, width: 1 } }, ...error }],
       layout: { bargap: 0, xaxis: axis(column.head), yaxis: axis('share in the bin', percent) } });

@@ -95,7 +95,7 @@ study.estimates = (() => {
   }
 
   // --- indices -------------------------------------------------------------------------------------
-  const errorBars = (list) => ({ type: 'data', symmetric: false, array: list.map((f) => (f.high === null ? 0 : f.high - f.value)), arrayminus: list.map((f) => (f.low === null ? 0 : f.value - f.low)), color: '#333', thickness: 1.2 });
+  const errorBars = (list) => ({ type: 'data', symmetric: false, array: list.map((f) => (f.high === null ? 0 : f.high - f.value)), arrayminus: list.map((f) => (f.low === null ? 0 : f.value - f.low)), color: study.charts.ink, thickness: 1.2 });
   const barAxis = { automargin: true, autorange: 'reversed', tickfont: { size: 12 }, type: 'category' };
   const barHeight = (n) => 110 + 30 * n;
   const scaleOf = (subject) => data.named(subject) || { factor: 1, unit: '', head: subject };
@@ -109,7 +109,7 @@ study.estimates = (() => {
     charts.add(box, { name: `tornado ${subject}`, title: `${subject}: ${data.plain(zero)}${column.unit ? ` ${data.pretty(column.unit)}` : ''} at the point`, height: barHeight(bars.length),
       note: missing.length ? `No result at one end: ${missing.map((f) => f.variable).join(', ')}.` : '',
       traces: [trace('low', 'at the low value', colours.sky, 0.75), trace('high', 'at the high value', colours.vermillion, 0.4)],
-      layout: { barmode: 'overlay', xaxis: axis(column.head), yaxis: barAxis, shapes: [{ type: 'line', x0: zero, x1: zero, y0: 0, y1: 1, yref: 'paper', line: { color: '#333', width: 1 } }] } });
+      layout: { barmode: 'overlay', xaxis: axis(column.head), yaxis: barAxis, shapes: [{ type: 'line', x0: zero, x1: zero, y0: 0, y1: 1, yref: 'paper', line: { color: study.charts.ink, width: 1 } }] } });
   }
   function elasticity(box, [subject, list]) {
     const all = list.filter((f) => f.role === 'elasticity'), bars = all.filter((f) => f.quantity.startsWith('elasticity') && f.value !== null);

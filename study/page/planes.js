@@ -13,7 +13,7 @@ study.planes = (() => {
   const looks = [
     { name: 'holds', marker: { size: 5, color: colours.blue, opacity: 0.55 } },
     { name: 'failure', marker: { size: 7, color: colours.vermillion, symbol: 'x-thin', line: { color: colours.vermillion, width: 1.6 } } },
-    { name: 'run failed', marker: { size: 7, color: '#222', symbol: 'square-open' } }];
+    { name: 'run failed', marker: { size: 7, color: study.charts.ink, symbol: 'square-open' } }];
 
   // Of more points than a browser draws well every so many of each kind.
   function thinned(places) {
@@ -60,7 +60,7 @@ study.planes = (() => {
       const border = borders.get(f.place) || borders.set(f.place, { x: [], y: [] }).get(f.place);
       border[f.variable === x.name ? 'x' : 'y'].push(f.value * (f.variable === x.name ? x : y).factor);
     }
-    for (const [k, border] of borders) traces.push({ type: 'scatter', mode: 'lines', name: `border ${k}`, ...border, line: { color: '#111', width: 2.4 }, hovertemplate: `${safe(x.name)} %{x:.6g}<br>${safe(y.name)} %{y:.6g}<extra>border ${k}</extra>` });
+    for (const [k, border] of borders) traces.push({ type: 'scatter', mode: 'lines', name: `border ${k}`, ...border, line: { color: study.charts.ink, width: 2.4 }, hovertemplate: `${safe(x.name)} %{x:.6g}<br>${safe(y.name)} %{y:.6g}<extra>border ${k}</extra>` });
     const type = data.about.settings.logarithmic ? { type: 'log' } : {};
     section.append(make('p', { class: 'note' }, `Where ${g.is || g.name} is zero; on one side it is negative, on the other it is not.`), box);
     charts.add(box, { name: 'map', traces, note, height: 520, layout: { xaxis: axis(x.head, type), yaxis: axis(y.head, type) } });
@@ -76,7 +76,7 @@ study.planes = (() => {
     const line = (where) => ({ type: 'line', x0: where, x1: where, y0: 0, y1: 1, yref: 'paper', line: { color: colours.green, width: 1.6, dash: 'dash' } });
     section.append(box);
     charts.add(box, { name: 'critical', traces, note: `Dashed: ${found.length} critical value${found.length === 1 ? '' : 's'}. ${note}`, height: 400,
-      layout: { xaxis: axis(x.head), yaxis: axis(g.is || g.head, { zeroline: true, zerolinewidth: 1.5, zerolinecolor: '#333' }), shapes: found.map((f) => line(f.value * x.factor)) } });
+      layout: { xaxis: axis(x.head), yaxis: axis(g.is || g.head, { zeroline: true, zerolinewidth: 1.5, zerolinecolor: study.charts.ink }), shapes: found.map((f) => line(f.value * x.factor)) } });
   }
 
   // --- sweep -----------------------------------------------------------------------------------------
@@ -133,7 +133,7 @@ study.planes = (() => {
       const points = new Map();
       for (const f of data.findings.filter((one) => one.role === 'design point')) points.set(f.subject, { ...points.get(f.subject), [f.variable]: f.value });
       const marks = [...points].filter(([, p]) => p[x.name] !== undefined && p[y.name] !== undefined);
-      if (marks.length) traces.push({ type: 'scatter', mode: 'markers', name: 'design point', x: marks.map(([, p]) => p[x.name] * x.factor), y: marks.map(([, p]) => p[y.name] * y.factor), text: marks.map(([name]) => safe(name)), hovertemplate: '%{text}<extra></extra>', marker: { symbol: 'star', size: 14, color: colours.orange, line: { color: '#333', width: 1 } } });
+      if (marks.length) traces.push({ type: 'scatter', mode: 'markers', name: 'design point', x: marks.map(([, p]) => p[x.name] * x.factor), y: marks.map(([, p]) => p[y.name] * y.factor), text: marks.map(([name]) => safe(name)), hovertemplate: '%{text}<extra></extra>', marker: { symbol: 'star', size: 14, color: colours.orange, line: { color: study.charts.ink, width: 1 } } });
       charts.clear(box);
       charts.add(box, { name: 'scatter', traces, note, height: 460, layout: { xaxis: axis(x.head), yaxis: axis(y.head) } });
     };

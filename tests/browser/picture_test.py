@@ -21,6 +21,131 @@ PHONE = (390, 844)
 EVERYWHERE = re.compile("^[\\n\\t -~\u00a0-\u00ff\u0391-\u03c9\u2013\u2014\u2018-\u201e\u2026\u2190-\u2193\u2206\u2212\u221e\u2248\u2260\u2264\u2265]*$")
 
 
+# Where pictures are seen from when no model says it: the vehicle that a drive translates, or the ground.
+NO_DRIVE = ("rail_wagon_humping", "joint_apart")  # one runs free, into another wagon
+VEHICLES = {"stacked_blocks": "deck", "no_interference": "lower tank"}
+# Of each scene, boxes on the screen: texts with marks, and the picture.
+BOXES = """const box = (e) => { const r = e.getBoundingClientRect(); return [r.left, r.top, r.right, r.bottom]; }, svg = steplap.page.scenes[0].svg;
+    const texts = [...svg.querySelectorAll('.number-mark, .state-text, .note-text')].filter((e) => e.getBoundingClientRect().width > 0);
+    return { picture: box(svg), texts: texts.map((e) => [e.textContent || e.nextSibling.textContent, ...box(e)]) }"""
+# Springs as they are drawn at time t: ends, and the size of symbols.
+SPRINGS = """const s = steplap.page.scenes[0], pose = s.look(0, s.seenFrom, s.magnification);
+    return { u: s.u, width: s.width, height: s.height, springs: s.symbols.springs.map((o) => [o.element.name, ...s.symbols.springEnds(o, pose).flat()]) }"""
+# Of bodies with outlines: box of the drawn path and of the corners that the model has, both in m, and pixels a metre.
+EXTENTS = """const s = steplap.page.scenes[0], k = s.svg.clientWidth / s.width; // within its border
+    return [...s.bodies.values()].filter((b) => b.is_outline_given).map((b) => {
+      const group = [...s.svg.querySelectorAll('.body')].find((g) => g.dataset.body === b.name), d = group.querySelector('path').getBBox(), m = group.getScreenCTM();
+      const x = b.outline.map((p) => p[0]), y = b.outline.map((p) => p[1]);
+      return [b.name, Math.hypot(m.a, m.b) / (k * s.scale), d.x, d.y, d.x + d.width, d.y + d.height, Math.min(...x), Math.min(...y), Math.max(...x), Math.max(...y)]; })"""
+
+
+def stem(path):
+    return os.path.splitext(os.path.basename(path))[0]
+
+
+class GalleryTest(base.Page):
+    """Every model of the gallery, and two that are hard to draw, as their pages show them at first."""
+    @classmethod
+    def setUpClass(cls):
+        data = os.path.join(os.path.dirname(MODELS), "tests", "data", "pictures", "*.toml")
+        cls.models = sorted(glob.glob(os.path.join(MODELS, "machines", "*.toml")) + glob.glob(os.path.join(MODELS, "layouts", "*.toml")) + glob.glob(data))
+        cls.models.append(os.path.join(MODELS, "paper", "no_interference.toml"))
+        base.steplap("simulate", *cls.models, "-q", "--no-estimate", "-o", "gallery")
+        for model in cls.models:
+            base.steplap("report", "gallery/" + stem(model), "-q", "-o", f"gallery_{stem(model)}.html")
+        cls.browser = base.start_browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.quit()  # the folder is of use to others
+
+    def show_model(self, model):
+        self.browser.get("file://" + os.path.join(WORK.name, f"gallery_{stem(model)}.html"))
+        self.until(lambda: self.find("body").get_attribute("data-ready") == "true")
+
+    def check_texts(self, where):
+        found = self.run_js(BOXES)
+        left, top, right, bottom = found["picture"]
+        for i, (name, *a) in enumerate(found["texts"]):
+            self.assertTrue(a[0] >= left - 1 and a[1] >= top - 1 and a[2] <= right + 1 and a[3] <= bottom + 1, (where, name, a, found["picture"]))
+            for other, *b in found["texts"][:i]:
+                apart = a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3]
+                self.assertTrue(apart, (where, name, other, a, b))
+
+    def check_springs(self):
+        found = self.run_js(SPRINGS)
+        for i, (name, *a) in enumerate(found["springs"]):
+            self.assertGreater(((a[0] - a[2]) ** 2 + (a[1] - a[3]) ** 2) ** 0.5, found["u"], name)  # one sees it
+            for other, *b in found["springs"][:i]:
+                between = (((a[0] + a[2] - b[0] - b[2]) / 2) ** 2 + ((a[1] + a[3] - b[1] - b[3]) / 2) ** 2) ** 0.5
+                self.assertGreater(between, found["u"], (name, other))
+
+    def check_standpoint(self, name, model):
+        state = self.run_js("const s = steplap.page.scenes[0]; return [s.seenFrom, s.magnification]")
+        is_layout = os.path.dirname(model).endswith("layouts") and name not in NO_DRIVE
+        vehicle = ("wagon" if name.startswith("rail_wagon") else "trailer") if is_layout else VEHICLES.get(name, "ground")
+        self.assertEqual(state[0], vehicle)
+        turned = self.run_js("""const s = steplap.page.scenes[0]; return Math.max(...[...s.bodies.values()].filter((b) => b.channels).map((b) =>
+            { const v = b.channels[2], all = [...v.rest]; return all.reduce((m, x) => Math.max(m, x), -1e9) - all.reduce((m, x) => Math.min(m, x), 1e9); }))""")
+        if turned > 0.11:  # twice the bound: it may turn to either side
+            self.assertEqual(state[1], 1)
+        # The picture says what is magnified and from where it is seen.
+        self.assertEqual(self.find(".motion-text").text.startswith("motion × "), state[1] != 1)
+        if vehicle != "ground":
+            self.assertEqual(self.find(".seen-text").text, f"seen from {vehicle}")
+
+    def check_extents(self):
+        for name, scale, *box in self.run_js(EXTENTS):
+            self.assertAlmostEqual(scale, 1, delta=1e-3, msg=name)
+            for drawn, wanted in zip(box[:4], box[4:]):
+                self.assertAlmostEqual(drawn, wanted, delta=1e-5 * max(map(abs, box)), msg=name)  # single precision of the browser
+
+    def check_scale(self):
+        text, pixels, scale = self.run_js("""const s = steplap.page.scenes[0], d = s.scaleBar.getBBox();
+            return [s.scaleText.textContent.replace('\\u00a0', ' '), d.width, s.scale]""")
+        number, unit = text.split()
+        self.assertAlmostEqual(float(number) * {"mm": 1e-3, "m": 1.0, "km": 1e3}[unit] * scale, pixels, delta=1.0)
+
+    def test_pictures_are_what_a_draughtsman_would_leave(self):
+        for model in self.models:
+            with self.subTest(model=stem(model)):
+                self.show_model(model)
+                self.check_standpoint(stem(model), model)
+                self.check_springs()
+                self.check_extents()
+                self.check_scale()
+                for part in (0, 0.35, 1):
+                    self.run_js("steplap.page.show(arguments[0] * steplap.data.runs[0].end)", part)
+                    self.check_texts(part)
+
+    def test_the_true_scale_is_one_click_away(self):
+        self.open("gallery_no_interference.html")
+        magnified = self.run_js("return steplap.page.scenes[0].magnification")
+        self.assertGreater(magnified, 1)
+        for wanted in (1, magnified):
+            self.run_js("document.querySelector('.motion-text').dispatchEvent(new MouseEvent('click', { bubbles: true }))")
+            self.assertEqual(self.run_js("return steplap.page.scenes[0].magnification"), wanted)
+            self.assertEqual(float(self.find("#magnification").get_attribute("value")), wanted)
+
+    def test_what_slipped_is_named_in_colour_and_what_holds_is_not(self):
+        self.open("gallery_stacked_blocks.html")
+        texts = lambda: [e.text for e in self.all(".state-text") if e.text]
+        self.run_js("steplap.page.scenes[0].setMoved(['top friction']); steplap.page.show(0)")
+        self.assertEqual(texts(), [])
+        self.run_js("steplap.page.show(1.5)")
+        self.assertEqual(texts(), ["top friction slipped"])
+
+    def test_windows_of_a_core_are_open(self):
+        self.open("gallery_five_limb.html")
+        # In the middle of each of the four windows nothing of the yokes is there, at the yoke something is.
+        seen = lambda x, y: self.run_js("""const s = steplap.page.scenes[0], k = s.svg.getBoundingClientRect(), [px, py] = s.toScreen([arguments[0], arguments[1]]);
+            s.svg.scrollIntoView({ block: 'center' }); const r = s.svg.getBoundingClientRect();
+            return document.elementsFromPoint(r.left + px * r.width / s.width, r.top + py * r.width / s.width).map((e) => e.closest('.body')).filter(Boolean).map((e) => e.dataset.body)""", x, y)
+        for x in (-2.3, -0.8, 0.8, 2.3):
+            self.assertNotIn("active part", seen(x, 1.75))
+        self.assertIn("active part", seen(0.8, 1.75 + 1.34))
+
+
 class PictureTest(base.Page):
     @classmethod
     def setUpClass(cls):
@@ -53,7 +178,7 @@ class PictureTest(base.Page):
         return self.run_js(f"const scene = steplap.page.scenes[0]; return {expression}")
 
     def saved(self, ending):
-        self.until(lambda: glob.glob(os.path.join(self.downloads, "*." + ending)))
+        self.until(lambda: any(os.path.getsize(path) for path in glob.glob(os.path.join(self.downloads, "*." + ending))))
         path = glob.glob(os.path.join(self.downloads, "*." + ending))[0]
         with open(path, "rb") as file:
             content = file.read()

@@ -453,7 +453,18 @@ class StudyReportTest(unittest.TestCase):
         self.assertIn("no model", self.find("#sample").text)
         self.assertIn("Status: stopped", self.find("#sample").text)
 
-    # --- paper ---------------------------------------------------------------------------------------
+    # --- in the dark, on paper ---------------------------------------------------------------------------------------
+
+    def test_charts_are_dark_where_the_reader_asks_for_it(self):
+        self.open("sample")
+        def looks():
+            return self.run_js("""return [getComputedStyle(document.body).backgroundColor, ...[...document.querySelectorAll('.chart .canvas')].flatMap(c =>
+                [c.layout.paper_bgcolor, c.layout.font.color])]""")
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.setEmulatedMedia", {"features": []})
+        for scheme, body, paper, ink in (("dark", "rgb(21, 24, 28)", "#15181c", "#e8e8e8"), ("light", "rgb(255, 255, 255)", "#ffffff", "#1a1a1a")):
+            self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+            self.until(lambda: set(looks()) == {body, paper, ink})
+            self.assertGreater(len(looks()), 4)
 
     def test_prints_on_a4_with_its_charts_whole(self):
         self.open("distrusted")

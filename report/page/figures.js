@@ -1,0 +1,62 @@
+// Which curves are shown: first what criteria ask about and no figure of the model shows, then the model's figures. A
+// model without figures gets some by kind. Channels that are only rounding are left out.
+steplap.figures = (() => {
+  const { isRounding } = steplap.numbers, q = steplap.quantities;
+  const most = 8, mostAsked = 4, mostCurves = 7;
+  const unitOf = (run, name) => run.channel(name).unit;
+  const endingOf = (name) => name.slice(name.lastIndexOf('.') + 1);
+
+  // What moves not at all beside others of its unit: of no interest where nobody asked for it.
+  function isFlat(run, name) {
+    const e = run.summary.extremes[name];
+    if (!e || e.min === null || e.max === null) return false;
+    return isRounding(run, name) || e.max - e.min <= 1e-9 * Math.max(Math.abs(e.min), Math.abs(e.max));
+  }
+  const isFlatIn = (runs, name) => runs.every((run) => !run.channel(name) || isFlat(run, name));
+
+  const titles = { force: 'Forces', tension: 'Tensions', couple: 'Couples', reaction: 'Reactions', friction: 'Friction forces', slide: 'Slides', margin: 'Margins of the joints', p_req: 'Pressures that the joints need',
+    theta: 'Angles', x: 'Horizontal positions', y: 'Vertical positions', ax: 'Horizontal accelerations', ay: 'Vertical accelerations', gap: 'Gaps', slid_share: 'Slid shares of the overlaps' };
+  // Forces are told apart by what transmits them.
+  function titleOf(run, name) {
+    const ending = endingOf(name), element = run.drawing.elements.find((e) => `${e.name}.${ending}` === name);
+    if (!element || !['force', 'couple', 'reaction'].includes(ending)) return titles[ending] || ending.replace(/_/g, ' ');
+    return `${titles[ending]} of ${q.groupOf(element.kind)}`;
+  }
+  // Figures of channels that have title and unit in common.
+  function grouped(runs, names, limit) {
+    const groups = new Map();
+    for (const name of names) {
+      const run = runs.find((r) => r.channel(name)), unit = unitOf(run, name), title = titleOf(run, name), key = `${title}\n${unit}`;
+      if (!groups.has(key)) groups.set(key, { title, unit, channels: [] });
+      groups.get(key).channels.push(name);
+    }
+    const count = new Map();
+    for (const g of groups.values()) count.set(g.title, (count.get(g.title) || 0) + 1);
+    return [...groups.values()].slice(0, limit).map((g) => ({ name: count.get(g.title) > 1 ? `${g.title}, ${g.unit || 'shares'}` : g.title, title: '',
+      channels: g.channels.slice(0, mostCurves).map((name) => name.replace(/[*?]/g, '?')), bounds: [] }));
+  }
+  function automatic(runs) {
+    const endings = ['slide', 'friction', 'force', 'couple', 'tension', 'reaction', 'margin', 'p_req', 'theta', 'x', 'y'], names = [];
+    for (const ending of endings) {
+      const found = steplap.data.unique(runs.map((r) => r.matching([`*.${ending}`]))).filter((name) => !isFlatIn(runs, name));
+      // What reaches furthest first: there may be more of them than a figure can show.
+      const reach = (name) => Math.max(...runs.map((r) => { const e = r.summary.extremes[name]; return e ? e.max - e.min || 0 : 0; }));
+      names.push(...found.sort((a, b) => reach(b) - reach(a)));
+    }
+    return grouped(runs, names, most);
+  }
+  function asked(runs, shown) {
+    const names = steplap.data.unique(runs.map((run) => [...q.limitsOf(run).keys()]));
+    return grouped(runs, names.filter((name) => !shown.has(name) && !isFlatIn(runs, name)), mostAsked);
+  }
+  // A figure for each plot of the models, else for each kind of channel that says most.
+  function of(runs) {
+    const own = new Map();
+    for (const run of runs) for (const plot of run.drawing.plots) if (!own.has(plot.name)) own.set(plot.name, plot);
+    const given = own.size ? [...own.values()] : [];
+    const shown = new Set(runs.flatMap((run) => given.flatMap((plot) => run.matching(plot.channels))));
+    const first = asked(runs, shown), names = new Set(first.map((f) => f.name));
+    return [...first, ...(given.length ? given : automatic(runs).filter((f) => !names.has(f.name)))];
+  }
+  return { of, isRounding };
+})();

@@ -1,0 +1,48 @@
+// What the first screen tells of a run, as the summary says it. Results of programs that wrote no overview get what their
+// events and their judgement tell by themselves, and say so: nothing is judged here.
+steplap.overview = (() => {
+  const sentences = {
+    hold: 'All criteria of the model are met.',
+    inspect: 'At least one criterion asks for an inspection.',
+    reject: 'At least one criterion rejects the machine.',
+    open: 'Not every criterion could be judged.' };
+  const words = { hold: 'HOLD', inspect: 'INSPECT', reject: 'REJECT', open: 'OPEN' };
+
+  function trustOf(summary, distrust) {
+    if (distrust) return { level: 'none', text: `Not to be trusted: ${distrust}.` };
+    return summary.global_error ? { level: 'good', text: 'Errors are estimated by a finer run.' }
+      : { level: 'limited', text: `Errors are not estimated: ${summary.error_not_estimated || 'nobody asked for it'}.` };
+  }
+  function reasonOf(summary, judgement) {
+    const broken = summary.completed ? '' : ' The run broke off before its end.';
+    if (!judgement) return `The model states no criteria.${broken}`;
+    return (judgement.criteria.length ? sentences[judgement.verdict] : 'The model states no criteria.') + broken;
+  }
+  function withoutOverview(run) {
+    const judgement = run.summary.judgement;
+    const moved = run.events.filter((e) => ['slip', 'apart', 'break'].includes(e[4])).map((e) => e[1]);
+    return { isOld: true, verdict: judgement ? judgement.verdict : null, reason: reasonOf(run.summary, judgement), trust: trustOf(run.summary, judgement && judgement.distrust),
+      worst_instant: null, story: [], utilisations: [], moved: [...new Set(moved)] };
+  }
+  const found = new WeakMap();
+  function of(run) {
+    if (!found.has(run)) {
+      const given = run.summary.overview;
+      found.set(run, given ? { story: [], utilisations: [], moved: [], worst_instant: null, ...given, isOld: false } : withoutOverview(run));
+    }
+    return found.get(run);
+  }
+  // { word, name }: what the badge says, and the class that paints it.
+  function badgeOf(run) {
+    const { verdict } = of(run);
+    if (verdict in words) return { word: words[verdict], name: verdict };
+    return { word: verdict ? String(verdict).toUpperCase() : 'NO CRITERIA', name: 'none' };
+  }
+  // The worst instant of the run that is nearest to its limits, or furthest beyond; null if none has one.
+  function worstOf(runs) {
+    const shareOf = (o) => (o.utilisations.length ? (o.utilisations[0].share ?? Infinity) : 0);
+    const known = runs.map(of).filter((o) => o.worst_instant !== null && o.worst_instant !== undefined);
+    return known.length ? known.reduce((a, b) => (shareOf(b) > shareOf(a) ? b : a)).worst_instant : null;
+  }
+  return { of, badgeOf, worstOf };
+})();
