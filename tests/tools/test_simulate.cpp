@@ -121,13 +121,14 @@ TEST_CASE("options are laid over the model") {
   const std::string model = bench.write("a.toml", k_oscillator);
   const Outcome outcome =
       steplap_does({"simulate", model, "-o", bench.at("out"), "--end", "50 ms", "--integrator", "dop853",
-                    "--tolerance", "1e-9", "--set", "body.mass.mass=3 kg", "--set",
+                    "--tolerance", "1e-9", "--output-step", "25 ms", "--set", "body.mass.mass=3 kg", "--set",
                     "output.channels=[\"mass.x\"]"});
   CHECK(outcome.code == 0);
   CHECK(has(outcome.out, "dop853, tolerance 1e-09, t = 0 to 0.05 s"));
   CHECK(text_of(bench.at("out/a/trajectory.csv")).rfind("t [s],mass.x [m]\n", 0) == 0);
   const std::string summary = text_of(bench.at("out/a/summary.json"));
   CHECK(has(summary, "\"simulation.end=50 ms\""));
+  CHECK(has(summary, "\"output.step=25 ms\""));
   CHECK(has(summary, "\"integrator\": \"dop853\""));
   CHECK(has(text_of(bench.at("out/a/model.toml")), "mass = \"3 kg\""));
 
