@@ -103,7 +103,7 @@ TEST_CASE("earlier results are kept unless they may be overwritten") {
   const Outcome refused = steplap_does({"simulate", model, "-o", out, "--end", "0.05"});
   CHECK(refused.code == 2);
   CHECK(refused.err == "steplap: error: '" + out + "/a' holds the results of an earlier run: choose " +
-                           "another folder with -o, or overwrite them with --force\n");
+                           "another folder, or overwrite them (-o, --force)\n");
   CHECK(refused.out.empty());
   CHECK(text_of(bench.at("out/a/trajectory.csv")) == before);
   bench.write("out/a/notes.txt", "mine");
