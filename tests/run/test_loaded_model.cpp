@@ -184,3 +184,45 @@ TEST_CASE("settings that a model cannot be run with are refused, all of them at 
   good.end = 0.4;
   CHECK(with_settings(once, good)->overrides == std::vector<std::string>{"simulation.end=0.5", "simulation.end=0.4"});
 }
+
+// Compiling reads records again: results would be of another record than model.toml names.
+TEST_CASE("settings are not laid over a model whose record has changed since it was loaded") {
+  const fs::path folder = fs::temp_directory_path() / ("steplap_record_" + std::to_string(::getpid()));
+  fs::create_directory(folder);
+  std::ofstream(folder / "f.csv") << "t,f\n0,0\n1,1\n";
+  std::ofstream(folder / "a.toml") << R"(
+[[signal]]
+name = "f"
+kind = "record"
+file = "f.csv"
+time_column = "t"
+column = "f"
+[[body]]
+name = "mass"
+mass = 1.0
+inertia = 1.0
+[[element]]
+kind = "load"
+name = "push"
+at = "mass"
+force_x = "f"
+)";
+  const auto loaded = load_model((folder / "a.toml").string());
+  RunOptions options;
+  options.end = 0.5;
+  CHECK(with_settings(loaded, options)->inputs == loaded->inputs);
+  std::ofstream(folder / "f.csv") << "t,f\n0,0\n1,2\n";
+  CHECK_THROWS_WITH_AS(static_cast<void>(with_settings(loaded, options)), doctest::Contains("has changed since the model was loaded"), ModelError);
+  fs::remove_all(folder);
+}
+
+TEST_CASE("settings are laid over a model made in code, too") {
+  const auto loaded = load_given(read_given_model(STEPLAP_MODELS "/layouts/three_limb.toml", program_catalogue()), "three_limb");
+  RunOptions options;
+  options.end = 0.05;
+  const Run run = run_model(loaded, options);
+  CHECK(run.result.final_state.t == 0.05);
+  CHECK(run.loaded->name == "three_limb");
+  CHECK(run.loaded->text.empty());
+  CHECK(run.loaded->system->channels.size() == loaded->system->channels.size());
+}
