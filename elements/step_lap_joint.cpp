@@ -443,6 +443,45 @@ static_friction = 0.3
 clearance = 0.001
 )";
 
+// What makes it elastic before it slides.
+void add_elastic_fields(FieldTable& f) {
+  using T = StepLapJoint;
+  f.add("tangential_stiffness", &T::tangential_stiffness)
+      .in("N/m")
+      .positive()
+      .doc("of the whole joint in translation, spread evenly over its overlaps: a spring in series with the "
+           "friction. Without it "
+           "(and contact_stiffness) the joint sticks exactly");
+  f.add("contact_stiffness", &T::contact_stiffness)
+      .in("N/m^3")
+      .positive()
+      .doc("the same, of a square metre of one interface: tangential stiffness of two sheets pressed on each other");
+  f.add("sheet_thickness", &T::sheet_thickness)
+      .in("m")
+      .positive()
+      .doc("in series with contact_stiffness: sheets in shear");
+  f.add("shear_modulus", &T::shear_modulus).in("Pa").positive().doc("of the sheets, with sheet_thickness");
+}
+
+// What its sheets' edges bear, once a clearance has closed.
+void add_edge_fields(FieldTable& f) {
+  using T = StepLapJoint;
+  f.add("edge_stiffness", &T::edge_stiffness)
+      .in("N/m^2")
+      .positive()
+      .doc("of sheet edges that bear on each other once a clearance has closed: line load over depth, of all sheets "
+           "at a corner. "
+           "Without it sheets pass each other freely, and a closed clearance is only reported");
+  f.add("allowed_line_load", &T::allowed_line_load)
+      .in("N/m")
+      .positive()
+      .doc("of all sheets at a corner, along the mitre: beyond it their edges are crushed and the joint is rejected");
+  f.add("steel_thickness", &T::steel_thickness)
+      .in("m")
+      .positive()
+      .doc("of all sheets at a corner, over which the line load of their edges is spread: reported as edge_pressure");
+}
+
 } // namespace
 
 const ElementKind& step_lap_joint_kind() {
@@ -462,35 +501,8 @@ const ElementKind& step_lap_joint_kind() {
     f.add("on_apart", &T::on_apart)
         .one_of({"stop", "continue"})
         .doc("what happens when no overlap is left: the run ends, or goes on without friction");
-    f.add("tangential_stiffness", &T::tangential_stiffness)
-        .in("N/m")
-        .positive()
-        .doc("of the whole joint in translation, spread evenly over its overlaps: a spring in series with the "
-             "friction. Without it "
-             "(and contact_stiffness) the joint sticks exactly");
-    f.add("contact_stiffness", &T::contact_stiffness)
-        .in("N/m^3")
-        .positive()
-        .doc("the same, of a square metre of one interface: tangential stiffness of two sheets pressed on each other");
-    f.add("sheet_thickness", &T::sheet_thickness)
-        .in("m")
-        .positive()
-        .doc("in series with contact_stiffness: sheets in shear");
-    f.add("shear_modulus", &T::shear_modulus).in("Pa").positive().doc("of the sheets, with sheet_thickness");
-    f.add("edge_stiffness", &T::edge_stiffness)
-        .in("N/m^2")
-        .positive()
-        .doc("of sheet edges that bear on each other once a clearance has closed: line load over depth, of all sheets "
-             "at a corner. "
-             "Without it sheets pass each other freely, and a closed clearance is only reported");
-    f.add("allowed_line_load", &T::allowed_line_load)
-        .in("N/m")
-        .positive()
-        .doc("of all sheets at a corner, along the mitre: beyond it their edges are crushed and the joint is rejected");
-    f.add("steel_thickness", &T::steel_thickness)
-        .in("m")
-        .positive()
-        .doc("of all sheets at a corner, over which the line load of their edges is spread: reported as edge_pressure");
+    add_elastic_fields(f);
+    add_edge_fields(f);
     f.add("pressure_signal", &T::pressure_signal)
         .as(FieldType::signal)
         .doc("factor of all its pressures in time, above 0; not given: 1");

@@ -4,6 +4,7 @@
 #include "mbd/acceptance/weighed_errors.h"
 #include "run/findings.h"
 #include "run/result_files.h"
+#include "run/with_settings.h"
 
 namespace steplap {
 
@@ -97,7 +98,8 @@ Report report_on(Run run, std::vector<Finding> before, const RunOptions& options
   return report;
 }
 
-Report judged_run(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options) {
+Report judged_run(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& options) {
+  std::shared_ptr<const LoadedModel> loaded = with_settings(std::move(as_loaded), options);
   std::vector<Finding> before = findings_before(*loaded);
   if (options.note)
     for (const Finding& finding : before) options.note(finding);

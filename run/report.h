@@ -50,7 +50,8 @@ struct Report {
   void write(const std::string& folder, bool is_overwriting = false) const;
 };
 
-/// Runs the model and finds out all that is known about the run. Throws NumericalFailure if nothing could be run.
+/// Runs the model, with the settings of `options` laid over it, and finds out all that is known about the run. Throws ModelError for
+/// settings that it cannot be run with (with_settings.h), NumericalFailure if nothing could be run.
 [[nodiscard]] Report judged_run(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options = {});
 /// The same of a run that has been made with `options`. `before`: what was found in its model.
 [[nodiscard]] Report report_on(Run run, std::vector<Finding> before, const RunOptions& options);

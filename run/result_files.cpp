@@ -208,8 +208,7 @@ void check_result_folder(const std::string& folder, bool is_overwriting) {
   std::error_code ignored;
   for (const std::string& name : all_names())
     if (!is_overwriting && fs::exists(fs::path(folder) / name, ignored))
-      throw FileError(folder, "'" + folder + "' holds the results of an earlier run: choose another " +
-                       "folder with -o, or overwrite them with --force");
+      throw ResultsInTheWay(folder);
   const fs::path existing = existing_part(folder);
   if (!fs::is_directory(existing)) fail(folder, "'" + existing.string() + "' is not a folder");
   if (::access(existing.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));

@@ -48,11 +48,19 @@ using FileRecords = std::vector<FileRecord>;
 /// To be written in their order: the last one tells of the others. They refer to `report`, which has to outlive them.
 [[nodiscard]] std::vector<ResultFile> result_files(const Report& report);
 
-/// Throws FileError if results stand in `folder` that may not be overwritten, FileError if it cannot
+/// Results of an earlier run stand in the folder: another one helps, or to overwrite them.
+class ResultsInTheWay : public FileError {
+public:
+  /// Of the folder at `path`.
+  explicit ResultsInTheWay(const std::string& path)
+      : FileError(path, "'" + path + "' holds the results of an earlier run: choose another folder, or overwrite them") {}
+};
+
+/// Throws ResultsInTheWay if results stand in `folder` that may not be overwritten, FileError if it cannot
 /// be written: to be asked before a long run.
 void check_result_folder(const std::string& folder, bool is_overwriting);
 /// Writes all files, or none; earlier results in `folder` are replaced if `is_overwriting`, files of
-/// other names stay. Throws FileError.
+/// other names stay. Throws as check_result_folder() does.
 void write_results(const std::string& folder, const std::vector<ResultFile>& files,
                    bool is_overwriting);
 

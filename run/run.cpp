@@ -1,6 +1,7 @@
 #include "run/run.h"
 
 #include "mbd/base/number_text.h"
+#include "run/with_settings.h"
 
 #include <stdexcept>
 
@@ -24,7 +25,8 @@ SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions
   return simulation;
 }
 
-Run run_model(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options) {
+Run run_model(std::shared_ptr<const LoadedModel> as_loaded, const RunOptions& options) {
+  std::shared_ptr<const LoadedModel> loaded = with_settings(std::move(as_loaded), options);
   SimulationOptions simulation_asked = simulation_options(*loaded, options);
   bool is_over = false; // the last state is sampled after a failure, too
   simulation_asked.progress = [&is_over, &options](double t) {

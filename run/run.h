@@ -15,10 +15,11 @@ struct Run {
   std::optional<Failure> failure;            ///< what stopped the run; none: it reached its end
 };
 
-/// Options of a simulation of the model, by its own settings and by `options`. Throws std::invalid_argument for options that are none.
+/// Options of a simulation of the model by its own settings, which those of `options` have been laid over (with_settings.h). Throws std::invalid_argument for options that are none.
 [[nodiscard]] SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions& options);
 
-/// Throws NumericalFailure only if nothing could be run.
+/// Runs the model, with the settings of `options` laid over it. Throws ModelError for settings that it cannot be run with
+/// (with_settings.h), NumericalFailure only if nothing could be run.
 [[nodiscard]] Run run_model(std::shared_ptr<const LoadedModel> loaded, const RunOptions& options = {});
 
 } // namespace steplap

@@ -1,5 +1,6 @@
-// How a model is run and what is found out about it. Method, steps, tolerance, end and output are the model's own
-// ([simulation], [output]): who wants others lays them over it (load_model), so that results say what they were made with.
+// How a model is run and what is found out about it. Method, step, tolerance, end and output step are the model's own
+// ([simulation], [output]) unless they are given here: then they are laid over the model before it is run (with_settings.h), so that
+// results say what they were made with.
 #pragma once
 
 #include "mbd/system/system.h"
@@ -18,8 +19,13 @@ enum class Estimating {
   always ///< whatever it costs
 };
 
-/// How a model is run: everything that its file does not say.
+/// How a model is run: what its file does not say, and what is to be other than it says.
 struct RunOptions {
+  std::optional<std::string> method;         ///< instead of `integrator` of [simulation]: "auto", "dop853" (mbd/model/method.h)
+  std::optional<double> tolerance;           ///< instead of that of [simulation]: relative, of each step of an adaptive method
+  std::optional<double> step;                ///< instead of that of [simulation], s: for methods of a fixed step only
+  std::optional<double> end;                 ///< instead of that of [simulation], s
+  std::optional<double> output_step;         ///< instead of `step` of [output], s
   int threads = 1;                           ///< at least 1: SimulationOptions::threads
   bool has_extremes = true;                  ///< without them nothing is judged: the verdict is open
   std::optional<State> start;                ///< where the run begins; the model's own start if not given

@@ -106,13 +106,13 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
                    points[(from + i) * width + j])) { // a study that has changed goes another way from here
         if (!may_go_another_way())
           throw StoreError(store_.path(), "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
-                           " has other values than the study asks for; --restart makes it anew");
+                           " has other values than the study asks for: let it make the store anew", {StoreMode::restart});
         store_.forget_from(fetched_[i].number);
         return;
       }
     if (!team_->is_derived(fetched_[i]))
       throw StoreError(store_.path(), "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
-                       " has numbers that do not follow from its values and responses; --restart makes it anew");
+                       " has numbers that do not follow from its values and responses: let the study make the store anew", {StoreMode::restart});
     rows_[from + i] = std::move(fetched_[i]);
     ++pace_.stored;
   }

@@ -156,56 +156,69 @@ struct Effects {
 };
 
 // Trajectories on a grid of levels; each moves every variable once, by half of the levels, in a random order.
-Answer morris(StudyRun& run) {
-  const auto& s = settings_of<SensitivitySettings>(run.study());
-  const std::size_t n = run.law.dimension(), count = run.loaded.number_count();
+struct Trajectories {
+  struct Move {
+    std::size_t variable;
+    double sign;
+  };
+  double jump = 0.0;                    // of a variable, as a share of its range
+  std::vector<double> points;           // values of all variables; one more point than moves in each trajectory
+  std::vector<std::vector<Move>> moves; // in each trajectory
+};
+
+Trajectories drawn_trajectories(const StudyRun& run, const SensitivitySettings& s) {
+  const std::size_t n = run.law.dimension();
   const CounterRandom random(static_cast<std::uint64_t>(run.study().seed), 6);
   const double p = static_cast<double>(s.levels), jump = p / (2.0 * (p - 1.0));
-  std::vector<double> points;
-  std::vector<std::vector<std::size_t>> orders;
+  Trajectories drawn{jump, {}, {}};
   for (long t = 0; t < s.trajectories; ++t) {
     const auto draw = [&](std::size_t k) {
       return random.uniform(static_cast<std::uint64_t>(t), static_cast<std::uint32_t>(k));
     };
     std::vector<double> cube(n);
-    std::vector<std::size_t> order(n);
+    std::vector<Trajectories::Move> moves(n);
     for (std::size_t d = 0; d < n; ++d) {
       cube[d] = std::floor(draw(d) * p / 2.0) / (p - 1.0); // lower half; the other half by going down
-      order[d] = d;
-    }
-    std::vector<bool> is_down(n);
-    for (std::size_t d = 0; d < n; ++d) {
-      is_down[d] = draw(n + d) < 0.5;
-      if (is_down[d]) cube[d] += jump;
+      moves[d] = {d, draw(n + d) < 0.5 ? -1.0 : 1.0};
+      if (moves[d].sign < 0.0) cube[d] += jump;
     }
     for (std::size_t d = n; d-- > 1;)
-      std::swap(order[d], order[static_cast<std::size_t>(draw(2 * n + d) * static_cast<double>(d + 1))]);
-    values_at_cube(run, cube, points);
-    for (const std::size_t d : order) {
-      cube[d] += is_down[d] ? -jump : jump;
-      values_at_cube(run, cube, points);
+      std::swap(moves[d], moves[static_cast<std::size_t>(draw(2 * n + d) * static_cast<double>(d + 1))]);
+    values_at_cube(run, cube, drawn.points);
+    for (const Trajectories::Move& move : moves) {
+      cube[move.variable] += move.sign * jump;
+      values_at_cube(run, cube, drawn.points);
     }
-    for (std::size_t d = 0; d < n; ++d)
-      if (is_down[d])
-        order[static_cast<std::size_t>(std::find(order.begin(), order.end(), d) - order.begin())] +=
-            n; // marks the sign
-    orders.push_back(order);
+    drawn.moves.push_back(std::move(moves));
   }
-  run.evaluator.expect(static_cast<long>(points.size() / run.law.nominal().size()));
-  const std::vector<StoredSample>& rows = run.evaluator.evaluate(points);
+  return drawn;
+}
+
+// Of each number, by each variable. `missing`: how many are not known.
+std::vector<std::vector<Effects>> effects_of(const Trajectories& drawn, const std::vector<StoredSample>& rows, std::size_t count,
+                                             std::size_t n, long& missing) {
   std::vector<std::vector<Effects>> effects(count, std::vector<Effects>(n));
-  long missing = 0;
-  for (std::size_t t = 0; t < orders.size(); ++t)
+  for (std::size_t t = 0; t < drawn.moves.size(); ++t)
     for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t row = t * (n + 1) + k, d = orders[t][k] % n;
-      const double sign = orders[t][k] >= n ? -1.0 : 1.0;
+      const std::size_t row = t * (n + 1) + k;
+      const Trajectories::Move& move = drawn.moves[t][k];
       const std::vector<double> before = numbers_of(rows[row], count), after = numbers_of(rows[row + 1], count);
       for (std::size_t r = 0; r < count; ++r) {
-        const double e = sign * (after[r] - before[r]) / jump;
-        if (std::isfinite(e)) effects[r][d].all.push_back(e);
+        const double e = move.sign * (after[r] - before[r]) / drawn.jump;
+        if (std::isfinite(e)) effects[r][move.variable].all.push_back(e);
         else ++missing;
       }
     }
+  return effects;
+}
+
+Answer morris(StudyRun& run) {
+  const auto& s = settings_of<SensitivitySettings>(run.study());
+  const std::size_t n = run.law.dimension(), count = run.loaded.number_count();
+  const Trajectories drawn = drawn_trajectories(run, s);
+  run.evaluator.expect(static_cast<long>(drawn.points.size() / run.law.nominal().size()));
+  long missing = 0;
+  const std::vector<std::vector<Effects>> effects = effects_of(drawn, run.evaluator.evaluate(drawn.points), count, n, missing);
   Answer answer;
   const std::vector<std::string> names = run.loaded.number_names();
   for (std::size_t r = 0; r < count; ++r)

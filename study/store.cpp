@@ -119,7 +119,7 @@ void Store::lock() {
   if (lock_file_ < 0)
     throw StoreError(path_, "the store '" + path_ + "' cannot be written: " + std::string(std::strerror(errno)));
   if (flock(lock_file_, LOCK_EX | LOCK_NB) != 0)
-    throw StoreError(path_, "another process is writing to the store '" + path_ + "': wait for it, or choose another with -o");
+    throw StoreError(path_, "another process is writing to the store '" + path_ + "': wait for it, or choose another store");
 }
 
 // A process was killed, or the disk was full, while it wrote: what it wrote last is to be taken back, and that is writing.
@@ -182,19 +182,19 @@ Store::Store(const std::string& path, const StoreIdentity& identity, StoreMode m
   check();
   if (identity_.version != identity.version)
     throw StoreError(path, "the store '" + path + "' was made by version " + identity_.version + ", this is " +
-                     identity.version + ": --restart begins anew, or choose another store with -o");
+                     identity.version + ": begin it anew, or choose another store", {StoreMode::restart});
   if (identity_.scene != identity.scene || identity_.variables != identity.variables ||
       identity_.numbers != identity.numbers)
     throw StoreError(path, "the store '" + path +
                      "' is of another study: its models, variables, responses or limit states are not those of the "
                      "study file any more" +
-                     changed_files(identity) + ". --restart begins anew and drops its " +
-                     std::to_string(size_) + " samples; -o names another store");
+                     changed_files(identity) + ". Begin it anew, which drops its " +
+                     std::to_string(size_) + " samples, or choose another store", {StoreMode::restart});
   if (identity_.study != identity.study || identity_.kind != identity.kind) {
     if (mode == StoreMode::run)
       throw StoreError(path, "the study has changed since the store '" + path + "' was made" + changed_files(identity) +
-                       ": --changed goes on with those of its " + std::to_string(size_) +
-                       " samples that are the same, --restart begins anew, -o names another store");
+                       ": go on with those of its " + std::to_string(size_) +
+                       " samples that are the same, begin it anew, or choose another store", {StoreMode::changed, StoreMode::restart});
     set("study", identity.study);
     set("kind", identity.kind);
     // What was found is of what was asked before: until it is found anew there is no answer.

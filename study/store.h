@@ -15,15 +15,23 @@ struct sqlite3_stmt;
 
 namespace steplap::study {
 
-/// The store cannot be used: its message says why and what helps. Exit code 2.
-class StoreError : public FileError {
-public:
-  using FileError::FileError;
-};
-
 /// run: goes on with what is there, unless the study has changed; changed: even then, with those samples that are the
 /// same; restart: drops what is there.
 enum class StoreMode { run, changed, restart };
+
+/// The store cannot be used: its message says why and what helps. Exit code 2.
+class StoreError : public FileError {
+public:
+  /// `helps`: the modes in which the store could be used all the same.
+  StoreError(std::string path, const std::string& message, std::vector<StoreMode> helps = {})
+      : FileError(std::move(path), message), helps_(std::move(helps)) {}
+
+  /// Modes in which the store could be used all the same.
+  [[nodiscard]] const std::vector<StoreMode>& helps() const { return helps_; }
+
+private:
+  std::vector<StoreMode> helps_;
+};
 
 /// What a store holds besides samples.
 struct StoreIdentity {

@@ -60,7 +60,7 @@ long Store::fingerprint_of(long place, const CurvePoint& p) {
 
 void Store::damaged(const std::string& why) const {
   throw StoreError(path_, "the store '" + path_ + "' is damaged, or was edited: " + why +
-                   ". Take a copy of it, or let the study make it anew with --restart");
+                   ". Take a copy of it, or let the study make it anew", {StoreMode::restart});
 }
 
 SampleStatus Store::status_of(long status) const {

@@ -26,7 +26,7 @@ FieldTable header_fields() {
 FieldTable variable_fields(const std::string& unit) {
   FieldTable t;
   t.add("name", &Variable::name).required().doc("letters, digits and _: expressions use it");
-  t.add("path", &Variable::paths).doc("fields of the model that get the value, as --set names them");
+  t.add("path", &Variable::paths).doc("fields of the model that get the value, by their paths: element.foot.stiffness");
   t.add("factor", &Variable::is_factor).doc("true: the value multiplies what the model has at the paths");
   t.add("model", &Variable::model).doc("name of the only model it is set in, the file's without ending");
   t.add("unit", &Variable::unit).doc("of a variable without path, for tables");

@@ -18,7 +18,7 @@ struct ElementJudgement {
 [[nodiscard]] const ChannelRange* find_range(const RunResult& result, const std::string& channel);
 /// Without an exponent where that is shorter to read: "300000", not "3e+05".
 [[nodiscard]] std::string limit_text(double value);
-/// Which smaller step or tolerance, or which other method, to try: "try --tolerance 1e-10, or --integrator rodas5p".
+/// Which smaller step or tolerance, or which other method, to try: "try a tolerance of 1e-10, or the integrator rodas5p".
 [[nodiscard]] std::string remedy(const SimulationSettings& settings);
 
 } // namespace steplap

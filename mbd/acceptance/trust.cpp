@@ -27,10 +27,10 @@ double size_of(const System& system) {
 
 std::string remedy(const SimulationSettings& s) {
   const bool has_steps = has_fixed_step(s.integrator);
-  if (has_steps && s.step) return "try --step " + limit_text(*s.step / 10.0) + ", or --integrator auto";
+  if (has_steps && s.step) return "try a step of " + limit_text(*s.step / 10.0) + " s, or the integrator auto";
   const double tolerance = s.tolerance.value_or(1e-8);
-  return "try --tolerance " + limit_text(std::max(1e-12, tolerance * (tolerance > 1e-6 ? 1e-4 : 1e-2))) +
-         (method(s.integrator).is_for_damping ? ", or --integrator dop853" : ", or --integrator rodas5p");
+  return "try a tolerance of " + limit_text(std::max(1e-12, tolerance * (tolerance > 1e-6 ? 1e-4 : 1e-2))) +
+         (method(s.integrator).is_for_damping ? ", or the integrator dop853" : ", or the integrator rodas5p");
 }
 
 std::string distrust_of(const Model& model, const System& system, const RunResult& result) {

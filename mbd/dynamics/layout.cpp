@@ -410,60 +410,57 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   return make_layout(system, state, coordinates, merge_bodies(system, state));
 }
 
-Layout make_layout(const System& system, const State& state, Coordinates coordinates, const MergedBodies& merged) {
-  Layout layout;
-  layout_key(state, coordinates, layout.key);
-  const std::vector<RigidJoint> joints = rigid_joints(system, state, merged.frictions);
-  std::vector<int> parent;
-  const std::vector<char> is_merged = merge(system, joints, parent);
-  layout.clusters = merged.clusters;
-  layout.placements = merged.placements;
-  find_slots(system, layout);
-  std::vector<char> is_block_merged(system.row_blocks.size(), 0);
-  std::vector<char> is_friction_merged(system.frictions.size(), 0);
-  for (std::size_t i = 0; i < joints.size(); ++i)
-    if (is_merged[i]) {
-      if (joints[i].block >= 0) is_block_merged[joints[i].block] = 1;
-      if (joints[i].friction >= 0) is_friction_merged[joints[i].friction] = 1;
-    }
-  layout.absolute_count = layout.cluster_count();
-  std::vector<char> is_pin(system.row_blocks.size(), 0);
-  // The small blocks of inner states (Linearization::InnerBlock) are between clusters in absolute coordinates.
-  if (coordinates != Coordinates::absolute && system.inner_count() == 0) {
-    JointCoordinates found =
-        find_joint_coordinates(system, state, layout, coordinates, is_block_merged, is_friction_merged);
-    std::unique_ptr<Carriages> carriages;
-    if (coordinates == Coordinates::joint)
-      carriages = find_carriages(system, state, layout, is_block_merged, is_friction_merged, found);
-    is_pin = found.is_pin;
-    if (carriages || !found.mechanisms.empty()) take_joint_coordinates(std::move(found), std::move(carriages), layout);
+namespace {
+
+// Which row blocks and which frictions hold two bodies that move as one, and so need no rows.
+struct MergedRows {
+  std::vector<char> is_block, is_friction;
+};
+
+MergedRows merged_rows(const System& system, const std::vector<RigidJoint>& joints, const std::vector<char>& is_merged) {
+  MergedRows rows{std::vector<char>(system.row_blocks.size(), 0), std::vector<char>(system.frictions.size(), 0)};
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (!is_merged[i]) continue;
+    if (joints[i].block >= 0) rows.is_block[joints[i].block] = 1;
+    if (joints[i].friction >= 0) rows.is_friction[joints[i].friction] = 1;
   }
-  layout.is_carried.assign(system.bodies.size(), 0);
-  if (std::find(is_merged.begin(), is_merged.end(), 1) != is_merged.end())
-    order_edges(joints, is_merged, system.body_count(), layout);
-  std::vector<ActiveRow> wanted;
-  want_bilateral(system, is_block_merged, is_pin, layout, wanted);
-  want_frictions(system, state, is_friction_merged, layout, wanted);
-  add_rows(system, std::move(wanted), layout);
-  add_parts(layout);
+  return rows;
+}
+
+// Angles and slides instead of places, where small mechanisms have them. Returns which row blocks are pins that need no rows then.
+std::vector<char> choose_coordinates(const System& system, const State& state, Coordinates coordinates, const MergedRows& merged, Layout& layout) {
+  // The small blocks of inner states (Linearization::InnerBlock) are between clusters in absolute coordinates.
+  if (coordinates == Coordinates::absolute || system.inner_count() != 0) return std::vector<char>(system.row_blocks.size(), 0);
+  JointCoordinates found = find_joint_coordinates(system, state, layout, coordinates, merged.is_block, merged.is_friction);
+  std::unique_ptr<Carriages> carriages;
+  if (coordinates == Coordinates::joint)
+    carriages = find_carriages(system, state, layout, merged.is_block, merged.is_friction, found);
+  std::vector<char> is_pin = found.is_pin;
+  if (carriages || !found.mechanisms.empty()) take_joint_coordinates(std::move(found), std::move(carriages), layout);
+  return is_pin;
+}
+
+void find_carried_rows(const System& system, Layout& layout) {
+  const auto is_carried = [&layout](const RowSpec& row) { return layout.is_carried[row.a] || layout.is_carried[row.b]; };
   for (const RowSpec* row : pin_rows(system, layout))
-    if (layout.is_carried[row->a] || layout.is_carried[row->b]) layout.is_carried_by_pins = true;
-  find_riding(system, state, layout);
-  find_links(system, state, layout);
+    if (is_carried(*row)) layout.is_carried_by_pins = true;
   for (std::size_t r = 0; r < layout.active.size(); ++r) {
-    const auto is_carried = [&layout](const RowSpec& part) { return layout.is_carried[part.a] || layout.is_carried[part.b]; };
     bool is_any = false;
     for (const RowSpec* part = layout.active[r].spec; part; part = part->next) is_any = is_any || is_carried(*part);
     if (is_any) layout.carried_rows.push_back(static_cast<int>(r));
   }
+}
+
+void weigh_clusters(const System& system, Layout& layout) {
   for (int k = 0; k < layout.absolute_count; ++k) {
     const Cluster& cluster = layout.clusters[k];
     layout.weight.insert(layout.weight.end(),
                          {cluster.mass * system.gravity.x(), cluster.mass * system.gravity.y(), 0.0});
     layout.inverse_mass.insert(layout.inverse_mass.end(), cluster.w, cluster.w + 3);
   }
-  number_coordinates(system, layout);
-  if (layout.carriages) close_carriages(layout);
+}
+
+void find_lock_terms(Layout& layout) {
   for (Lock& lock : layout.locks) {
     const auto add_terms = [&](int r, int multiplier) {
       for (int side = 0; side < 2; ++side)
@@ -472,6 +469,10 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
     for (int r = 0; r < static_cast<int>(layout.active.size()); ++r) add_terms(r, r);
     for (const SchurPart& part : layout.parts) add_terms(part.row, part.of);
   }
+}
+
+// What of the rows' numbers is the same in every pose.
+void fill_rows(Layout& layout) {
   // A row between two bodies that move as one moves nothing: without inverse masses it drops out as dependent.
   for (SchurRow& row : layout.schur_rows)
     for (int side = 0; side < 2; ++side)
@@ -489,13 +490,49 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
     row.j[1][2] = -1.0;
     for (int side = 0; side < 2; ++side) row.wj[side][2] = row.w[side][2] * row.j[side][2];
   }
-  for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());
+}
+
+void divide_and_analyze(const System& system, Layout& layout) {
   int absolute_rows = static_cast<int>(layout.active.size());
   for (const Mechanism& m : layout.mechanisms) absolute_rows -= m.row_count;
-  layout.forget_sharing();
   layout.division = make_parts(system, layout, absolute_rows);
   if (layout.division) layout.pivots.resize(layout.division->parts.size());
   layout.schur.analyze(layout.schur_rows, absolute_rows, layout.parts, layout.division ? layout.division->of_row : std::vector<int>{});
+}
+
+} // namespace
+
+Layout make_layout(const System& system, const State& state, Coordinates coordinates, const MergedBodies& merged) {
+  Layout layout;
+  layout_key(state, coordinates, layout.key);
+  const std::vector<RigidJoint> joints = rigid_joints(system, state, merged.frictions);
+  std::vector<int> parent;
+  const std::vector<char> is_merged = merge(system, joints, parent);
+  layout.clusters = merged.clusters;
+  layout.placements = merged.placements;
+  find_slots(system, layout);
+  layout.absolute_count = layout.cluster_count();
+  const MergedRows without_rows = merged_rows(system, joints, is_merged);
+  const std::vector<char> is_pin = choose_coordinates(system, state, coordinates, without_rows, layout);
+  layout.is_carried.assign(system.bodies.size(), 0);
+  if (std::find(is_merged.begin(), is_merged.end(), 1) != is_merged.end())
+    order_edges(joints, is_merged, system.body_count(), layout);
+  std::vector<ActiveRow> wanted;
+  want_bilateral(system, without_rows.is_block, is_pin, layout, wanted);
+  want_frictions(system, state, without_rows.is_friction, layout, wanted);
+  add_rows(system, std::move(wanted), layout);
+  add_parts(layout);
+  find_carried_rows(system, layout);
+  find_riding(system, state, layout);
+  find_links(system, state, layout);
+  weigh_clusters(system, layout);
+  number_coordinates(system, layout);
+  if (layout.carriages) close_carriages(layout);
+  find_lock_terms(layout);
+  fill_rows(layout);
+  for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());
+  layout.forget_sharing();
+  divide_and_analyze(system, layout);
   return layout;
 }
 

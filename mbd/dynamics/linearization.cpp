@@ -252,23 +252,19 @@ void Linearization::acceleration_by_state(MatX& by_pose, MatX& by_velocity) cons
   by_velocity += wj * schur.solve(dense(bias_v_, m_) - j * by_velocity);
 }
 
-// Forces w_r J_rᵀ with w = w(relative velocity, relative pose, normal forces).
-void Linearization::add_sliding(int f) {
-  const FrictionUnit& unit = dynamics_->system().frictions[f];
-  const FrictionElement& friction = *unit.friction;
-  const FrictionState& state = dynamics_->evaluation().friction[f];
-  const RowSpec* specs = friction.rows(state);
-  const int count = friction.dimension();
-  DualRow rows[3];
+// One sliding friction: forces w_r J_rᵀ with w = w(relative velocity, relative pose, normal forces), whose derivatives are
+// central differences.
+struct Linearization::Sliding {
+  const FrictionElement& friction;
+  const FrictionState& state;
+  const RowSpec* specs;
+  int count; ///< rows: 1 or 3
+  Evaluation moved; ///< what the slip law looks at, changed one number at a time
+  DualRow rows[3] = {};
   double rate[3] = {0, 0, 0}, wrench[3] = {0, 0, 0};
-  for (int r = 0; r < count; ++r) {
-    rows[r] = differentiate<false>(specs[r], *layout_, dynamics_->motion());
-    rate[r] = rows[r].rate.v;
-  }
-  friction.slip_wrench(dynamics_->evaluation(), state, rate, wrench);
+  double by_state[3][12] = {}; ///< of the wrench, by the clusters' coordinates: 12 columns as in DualRow
 
-  Evaluation moved = dynamics_->evaluation();
-  const auto difference = [&](double& x, double step, double* slope) {
+  void difference(double& x, double step, double* slope) {
     const double before = x;
     double ahead[3], behind[3];
     x = before + step;
@@ -277,105 +273,144 @@ void Linearization::add_sliding(int f) {
     friction.slip_wrench(moved, state, rate, behind);
     x = before;
     for (int r = 0; r < count; ++r) slope[r] = (ahead[r] - behind[r]) / (2.0 * step);
-  };
+  }
+  /// Of a force along coordinate k of its rows, by the slopes of the wrench.
+  [[nodiscard]] double along(int k, const double* slope) const {
+    double sum = 0.0;
+    for (int r = 0; r < count; ++r) sum += rows[r].j[k].v * slope[r];
+    return sum;
+  }
+};
 
-  // Derivatives of the wrench by the clusters' coordinates: 12 columns as in DualRow.
-  double by_state[3][12] = {};
+void Linearization::add_sliding(int f) {
+  const FrictionElement& friction = *dynamics_->system().frictions[f].friction;
+  const FrictionState& state = dynamics_->evaluation().friction[f];
+  Sliding sliding{friction, state, friction.rows(state), friction.dimension(), dynamics_->evaluation()};
+  for (int r = 0; r < sliding.count; ++r) {
+    sliding.rows[r] = differentiate<false>(sliding.specs[r], *layout_, dynamics_->motion());
+    sliding.rate[r] = sliding.rows[r].rate.v;
+  }
+  friction.slip_wrench(dynamics_->evaluation(), state, sliding.rate, sliding.wrench);
+  differentiate_by_rate(sliding);
+  if (sliding.count == 3) differentiate_by_pose(sliding);
+  add_sliding_rows(sliding);
+  take_out_transport(sliding);
+  add_normal_forces(sliding);
+}
+
+void Linearization::differentiate_by_rate(Sliding& sliding) const {
   double size = k_least_rate;
-  for (int r = 0; r < count; ++r) size = std::max(size, std::abs(rate[r]));
-  for (int c = 0; c < count; ++c) {
+  for (int r = 0; r < sliding.count; ++r) size = std::max(size, std::abs(sliding.rate[r]));
+  for (int c = 0; c < sliding.count; ++c) {
     double slope[3];
-    difference(rate[c], k_relative_step * size, slope);
-    for (int r = 0; r < count; ++r)
-      for (int l = 0; l < 12; ++l) by_state[r][l] += slope[r] * rows[c].rate.d[l];
+    sliding.difference(sliding.rate[c], k_relative_step * size, slope);
+    for (int r = 0; r < sliding.count; ++r)
+      for (int l = 0; l < 12; ++l) sliding.by_state[r][l] += slope[r] * sliding.rows[c].rate.d[l];
   }
-  if (count == 3) { // rows of a rigid hold: their values are the relative pose, their gradients exact
-    motion_.assign(dynamics_->motion().begin(), dynamics_->motion().end());
-    moved.motion = motion_.data();
-    Motion<double>& a = motion_[specs[0].a];
-    const Motion<double>& b = motion_[specs[0].b];
-    for (int c = 0; c < 3; ++c) {
-      // Row values (x, y along b's axes, then the angle) changed one at a time by moving a.
-      const Motion<double> start = a;
-      double ends[2][3];
-      for (int end = 0; end < 2; ++end) {
-        const double step = end == 0 ? k_pose_step : -k_pose_step;
-        a = start;
-        if (c == 2) {
-          set_angle(a, start.theta + step);
-          const Pair<double> before = to_ground(start, specs[0].point_a), after = to_ground(a, specs[0].point_a);
-          a.x += before.x - after.x;
-          a.y += before.y - after.y;
-        } else {
-          const Pair<double> e = to_ground(b, specs[c].direction);
-          a.x += step * e.x;
-          a.y += step * e.y;
-        }
-        friction.slip_wrench(moved, state, rate, ends[end]);
-      }
-      a = start;
-      for (int r = 0; r < 3; ++r)
-        for (int k = 0; k < 6; ++k)
-          by_state[r][k] += (ends[0][r] - ends[1][r]) / (2.0 * k_pose_step) * rows[c].j[k].v;
-    }
-    moved.motion = dynamics_->evaluation().motion;
-  }
+}
 
-  // The rows' own turning, and what the wrench does along them.
-  const auto scatter = [&](int k, int cluster, int coordinate, double by_pose, double by_velocity) {
-    if (rows[0].cluster[k / 3] < 0 || cluster < 0) return;
-    const int row = 3 * rows[0].cluster[k / 3] + k % 3, column = 3 * cluster + coordinate;
-    put(stiffness_, row, column, by_pose);
-    put(damping_, row, column, by_velocity);
-  };
+// Rows of a rigid hold: their values are the relative pose, their gradients exact. Values (x, y along b's axes, then the angle) are
+// changed one at a time by moving a.
+void Linearization::differentiate_by_pose(Sliding& sliding) {
+  const RowSpec* const specs = sliding.specs;
+  motion_.assign(dynamics_->motion().begin(), dynamics_->motion().end());
+  sliding.moved.motion = motion_.data();
+  Motion<double>& a = motion_[specs[0].a];
+  const Motion<double>& b = motion_[specs[0].b];
+  for (int c = 0; c < 3; ++c) {
+    const Motion<double> start = a;
+    double ends[2][3];
+    for (int end = 0; end < 2; ++end) {
+      const double step = end == 0 ? k_pose_step : -k_pose_step;
+      a = start;
+      if (c == 2) {
+        set_angle(a, start.theta + step);
+        const Pair<double> before = to_ground(start, specs[0].point_a), after = to_ground(a, specs[0].point_a);
+        a.x += before.x - after.x;
+        a.y += before.y - after.y;
+      } else {
+        const Pair<double> e = to_ground(b, specs[c].direction);
+        a.x += step * e.x;
+        a.y += step * e.y;
+      }
+      sliding.friction.slip_wrench(sliding.moved, sliding.state, sliding.rate, ends[end]);
+    }
+    a = start;
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 6; ++k)
+        sliding.by_state[r][k] += (ends[0][r] - ends[1][r]) / (2.0 * k_pose_step) * sliding.rows[c].j[k].v;
+  }
+  sliding.moved.motion = dynamics_->evaluation().motion;
+}
+
+// Into the equation of coordinate k of the rows: derivatives by a coordinate of a cluster and by its rate.
+void Linearization::put_along(const Sliding& sliding, int k, int cluster, int coordinate, double by_pose, double by_velocity) {
+  const int own = sliding.rows[0].cluster[k / 3];
+  if (own < 0 || cluster < 0) return;
+  const int row = 3 * own + k % 3, column = 3 * cluster + coordinate;
+  put(stiffness_, row, column, by_pose);
+  put(damping_, row, column, by_velocity);
+}
+
+// The rows' own turning, and what the wrench does along them.
+void Linearization::add_sliding_rows(const Sliding& sliding) {
+  const DualRow* const rows = sliding.rows;
   for (int k = 0; k < 6; ++k)
     for (int l = 0; l < 6; ++l) {
       double by_pose = 0.0, by_velocity = 0.0;
-      for (int r = 0; r < count; ++r) {
-        by_pose += wrench[r] * rows[r].j[k].d[l] + rows[r].j[k].v * by_state[r][l];
-        by_velocity += rows[r].j[k].v * by_state[r][6 + l];
+      for (int r = 0; r < sliding.count; ++r) {
+        by_pose += sliding.wrench[r] * rows[r].j[k].d[l] + rows[r].j[k].v * sliding.by_state[r][l];
+        by_velocity += rows[r].j[k].v * sliding.by_state[r][6 + l];
       }
-      scatter(k, rows[0].cluster[l / 3], l % 3, by_pose, by_velocity);
+      put_along(sliding, k, rows[0].cluster[l / 3], l % 3, by_pose, by_velocity);
     }
-  // add_transport has counted the wrench's force on bodies off their clusters' centres; the rows'
-  // gradients above hold the whole of it.
+}
+
+// add_transport has counted the wrench's force on bodies off their clusters' centres; the gradients of the rows hold the
+// whole of it.
+void Linearization::take_out_transport(const Sliding& sliding) {
   for (int side = 0; side < 2; ++side) {
-    const int body = side == 0 ? specs[0].a : specs[0].b;
+    const int body = side == 0 ? sliding.specs[0].a : sliding.specs[0].b;
     const Placement& place = layout_->placements[body];
     if (place.cluster < 0 || place.is_trivial) continue;
     const Motion<double>&m = dynamics_->motion()[body],
                        &centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
     double along_lever = 0.0;
-    for (int r = 0; r < count; ++r)
-      along_lever += wrench[r] * ((m.x - centre.x) * rows[r].j[3 * side].v + (m.y - centre.y) * rows[r].j[3 * side + 1].v);
+    for (int r = 0; r < sliding.count; ++r) {
+      const DualRow& row = sliding.rows[r];
+      along_lever += sliding.wrench[r] * ((m.x - centre.x) * row.j[3 * side].v + (m.y - centre.y) * row.j[3 * side + 1].v);
+    }
     put(stiffness_, 3 * place.cluster + 2, 3 * place.cluster + 2, along_lever);
   }
-  // Normal forces, through the contacts that feel the motion.
-  normal_.assign(moved.contact_force, moved.contact_force + dynamics_->system().contact_count);
-  moved.contact_force = normal_.data();
+}
+
+// Normal forces, through the contacts that feel the motion.
+void Linearization::add_normal_forces(Sliding& sliding) {
+  normal_.assign(sliding.moved.contact_force, sliding.moved.contact_force + dynamics_->system().contact_count);
+  sliding.moved.contact_force = normal_.data();
   for (const PairJacobian& part : parts_) {
     if (part.contact < 0) continue;
     double slope[3];
-    difference(normal_[part.contact], k_relative_step * (1.0 + normal_[part.contact]), slope);
-    for (int k = 0; k < 6; ++k) {
-      double along = 0.0;
-      for (int r = 0; r < count; ++r) along += rows[r].j[k].v * slope[r];
-      if (along == 0.0) continue;
-      // To body coordinates of the contact, then to its clusters'.
-      for (int side = 0; side < 2; ++side) {
-        const int body = side == 0 ? part.a : part.b;
-        const Placement& place = layout_->placements[body];
-        if (place.cluster < 0) continue;
-        Vec3 by_q = part.normal.segment<3>(3 * side), by_v = part.normal.segment<3>(6 + 3 * side);
-        if (!place.is_trivial) {
-          const Motion<double>& centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
-          const double x = dynamics_->motion()[body].x - centre.x, y = dynamics_->motion()[body].y - centre.y;
-          by_q[2] += -y * by_q[0] + x * by_q[1] - centre.omega * (x * by_v[0] + y * by_v[1]);
-          by_v[2] += -y * by_v[0] + x * by_v[1];
-        }
-        for (int c = 0; c < 3; ++c) scatter(k, place.cluster, c, along * by_q[c], along * by_v[c]);
-      }
+    sliding.difference(normal_[part.contact], k_relative_step * (1.0 + normal_[part.contact]), slope);
+    for (int k = 0; k < 6; ++k)
+      if (const double along = sliding.along(k, slope); along != 0.0) add_normal_force(sliding, part, k, along);
+  }
+}
+
+// To body coordinates of the contact, then to its clusters'.
+void Linearization::add_normal_force(const Sliding& sliding, const PairJacobian& contact, int k, double along) {
+  for (int side = 0; side < 2; ++side) {
+    const int body = side == 0 ? contact.a : contact.b;
+    const Placement& place = layout_->placements[body];
+    if (place.cluster < 0) continue;
+    Vec3 by_q = contact.normal.segment<3>(3 * side), by_v = contact.normal.segment<3>(6 + 3 * side);
+    if (!place.is_trivial) {
+      const Motion<double>& centre = dynamics_->motion()[layout_->clusters[place.cluster].motion];
+      const double x = dynamics_->motion()[body].x - centre.x, y = dynamics_->motion()[body].y - centre.y;
+      by_q[2] += -y * by_q[0] + x * by_q[1] - centre.omega * (x * by_v[0] + y * by_v[1]);
+      by_v[2] += -y * by_v[0] + x * by_v[1];
     }
+    for (int c = 0; c < 3; ++c) put_along(sliding, k, place.cluster, c, along * by_q[c], along * by_v[c]);
   }
 }
 

@@ -89,7 +89,15 @@ private:
   [[nodiscard]] bool is_of_carrier(int coordinate) const;
   void add_inertia(const Mechanism& m, const Member& member);
   void reduce_rows();
+  struct Sliding;
   void add_sliding(int friction);
+  void differentiate_by_rate(Sliding& sliding) const;
+  void differentiate_by_pose(Sliding& sliding);
+  void put_along(const Sliding& sliding, int k, int cluster, int coordinate, double by_pose, double by_velocity);
+  void add_sliding_rows(const Sliding& sliding);
+  void take_out_transport(const Sliding& sliding);
+  void add_normal_forces(Sliding& sliding);
+  void add_normal_force(const Sliding& sliding, const PairJacobian& contact, int k, double along);
   void add_body_block(int row_body, int column_body, const Mat3& by_pose, const Mat3& by_velocity);
   void put(std::vector<Triplet>& entries, int row, int column, double value);
 

@@ -18,15 +18,15 @@
 
 namespace steplap {
 
-namespace {
-
-using Pattern = Eigen::SparseMatrix<double>;
-
-// Pairs (i, j, side i, side j) of rows that share a body.
-struct Coupling {
+// Rows i and j share a body, which is on these sides of them.
+struct SchurCoupling {
   int i, j;
   unsigned char side_i, side_j;
 };
+
+namespace {
+
+using Pattern = Eigen::SparseMatrix<double>;
 
 constexpr int k_max_refinements = 4;
 // With all pivots above this no row is so near to others that it has to be asked which stay out: the square of
@@ -51,7 +51,7 @@ int count_bodies(const std::vector<SchurRow>& rows, int n, const std::vector<Sch
   return count;
 }
 
-std::vector<Coupling> couplings(const std::vector<SchurRow>& rows, int n, const std::vector<SchurPart>& parts, int body_count) {
+std::vector<SchurCoupling> couplings(const std::vector<SchurRow>& rows, int n, const std::vector<SchurPart>& parts, int body_count) {
   std::vector<std::vector<std::pair<int, unsigned char>>> at_body(body_count);
   const auto enter = [&](int i) {
     for (unsigned char side = 0; side < 2; ++side)
@@ -59,7 +59,7 @@ std::vector<Coupling> couplings(const std::vector<SchurRow>& rows, int n, const 
   };
   for (int i = 0; i < n; ++i) enter(i);
   for (const SchurPart& part : parts) enter(part.row);
-  std::vector<Coupling> result;
+  std::vector<SchurCoupling> result;
   for (const auto& members : at_body)
     for (const auto& [i, side_i] : members)
       for (const auto& [j, side_j] : members) result.push_back({i, j, side_i, side_j});
@@ -74,9 +74,9 @@ std::vector<int> rows_of(std::size_t count, const std::vector<SchurPart>& parts)
   return of;
 }
 
-std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled, const std::vector<int>& of) {
+std::vector<int> fill_reducing_order(int n, const std::vector<SchurCoupling>& coupled, const std::vector<int>& of) {
   std::vector<Eigen::Triplet<double>> entries;
-  for (const Coupling& c : coupled) entries.emplace_back(of[c.i], of[c.j], 1.0);
+  for (const SchurCoupling& c : coupled) entries.emplace_back(of[c.i], of[c.j], 1.0);
   for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
   Pattern pattern(n, n);
   pattern.setFromTriplets(entries.begin(), entries.end());
@@ -91,14 +91,14 @@ std::vector<int> fill_reducing_order(int n, const std::vector<Coupling>& coupled
 } // namespace
 
 // Rows that are coupled with each other, directly or by others: the first of them, for each.
-static std::vector<int> components(int n, const std::vector<Coupling>& coupled, const std::vector<int>& of) {
+static std::vector<int> components(int n, const std::vector<SchurCoupling>& coupled, const std::vector<int>& of) {
   std::vector<int> first(n);
   std::iota(first.begin(), first.end(), 0);
   const auto root = [&first](int i) {
     while (first[i] != i) i = first[i] = first[first[i]];
     return i;
   };
-  for (const Coupling& c : coupled) {
+  for (const SchurCoupling& c : coupled) {
     const int i = root(of[c.i]), j = root(of[c.j]);
     first[std::max(i, j)] = std::min(i, j);
   }
@@ -118,72 +118,75 @@ void SchurSolver::order_blocks(const std::vector<int>& block, const std::vector<
   found_.assign(block_begin_.size() - 1, {});
 }
 
-void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts, const std::vector<int>& block) {
-  n_ = count;
-  parts_ = parts;
-  length_ = std::max(1.0, n_ / k_usual_rows);
-  body_count_ = count_bodies(rows, n_, parts);
-  const std::vector<Coupling> coupled = couplings(rows, n_, parts, body_count_);
-  const std::vector<int> of = rows_of(rows.size(), parts);
-  right_.assign(n_, 0.0);
-  correction_.assign(n_, 0.0);
-  response_.assign(3 * static_cast<std::size_t>(body_count_), 0.0);
-  position_.resize(n_);
-  inverse_d_.assign(n_, 0.0);
-  if (n_ <= k_max_dense) {
-    dense_products_.clear();
-    for (int k = 0; k < n_; ++k) position_[k] = k;
-    const auto place = [](int row, std::size_t member, int side) {
-      const std::size_t at = (row * sizeof(SchurRow) + member) / sizeof(double) + 3 * side;
-      if (at > std::numeric_limits<std::uint16_t>::max()) // only parts of rows can stand so far behind
-        throw NumericalFailure("ropes over so many points that move are too much for so few other constraints: give them a 'stiffness'");
-      return static_cast<std::uint16_t>(at);
-    };
-    dense_turns_.clear();
-    dense_constant_.fill(0.0);
-    for (const Coupling& c : coupled) {
-      if (of[c.j] > of[c.i]) continue;
-      const SchurRow &row = rows[c.i], &other = rows[c.j];
-      const auto entry = static_cast<std::uint16_t>(of[c.i] * n_ + of[c.j]);
-      const DenseProduct product{entry, place(c.i, offsetof(SchurRow, wj), c.side_i),
-                                 place(c.j, offsetof(SchurRow, j), c.side_j)};
-      if (row.is_constant && other.is_constant)
-        dense_constant_[entry] += row.wj[c.side_i][2] * other.j[c.side_j][2];
-      else (row.is_constant || other.is_constant ? dense_turns_ : dense_products_).push_back(product);
-    }
-    return;
-  }
-  order_ = fill_reducing_order(n_, coupled, of);
-  order_blocks(block, block.empty() ? of : components(n_, coupled, of));
-  for (int k = 0; k < n_; ++k) position_[order_[k]] = k;
+namespace {
 
-  // Upper triangle of the permuted matrix, column by column: products that make up A(i, k), i ≤ k.
-  std::vector<std::vector<Product>> by_column(n_);
-  std::vector<std::vector<PartProduct>> of_parts(parts.empty() ? 0 : n_);
-  for (const Coupling& c : coupled) {
+// Where a number of the rows' member stands, as doubles from the first row's start.
+std::uint16_t place_in_rows(int row, std::size_t member, int side) {
+  const std::size_t at = (row * sizeof(SchurRow) + member) / sizeof(double) + 3 * side;
+  if (at > std::numeric_limits<std::uint16_t>::max()) // only parts of rows can stand so far behind
+    throw NumericalFailure("ropes over so many points that move are too much for so few other constraints: give them a 'stiffness'");
+  return static_cast<std::uint16_t>(at);
+}
+
+} // namespace
+
+void SchurSolver::list_dense_products(const std::vector<SchurRow>& rows, const std::vector<SchurCoupling>& coupled, const std::vector<int>& of) {
+  for (int k = 0; k < n_; ++k) position_[k] = k;
+  dense_products_.clear();
+  dense_turns_.clear();
+  dense_constant_.fill(0.0);
+  for (const SchurCoupling& c : coupled) {
+    if (of[c.j] > of[c.i]) continue;
+    const SchurRow &row = rows[c.i], &other = rows[c.j];
+    const auto entry = static_cast<std::uint16_t>(of[c.i] * n_ + of[c.j]);
+    const DenseProduct product{entry, place_in_rows(c.i, offsetof(SchurRow, wj), c.side_i),
+                               place_in_rows(c.j, offsetof(SchurRow, j), c.side_j)};
+    if (row.is_constant && other.is_constant)
+      dense_constant_[entry] += row.wj[c.side_i][2] * other.j[c.side_j][2];
+    else (row.is_constant || other.is_constant ? dense_turns_ : dense_products_).push_back(product);
+  }
+}
+
+// Upper triangle of the permuted matrix, column by column: products that make up A(i, k), i ≤ k.
+struct SchurSolver::Columns {
+  std::vector<std::vector<Product>> of_rows;
+  std::vector<std::vector<PartProduct>> of_parts; // none without parts
+};
+
+SchurSolver::Columns SchurSolver::columns_of(const std::vector<SchurCoupling>& coupled, const std::vector<int>& of, bool has_parts) const {
+  Columns columns;
+  columns.of_rows.resize(n_);
+  columns.of_parts.resize(has_parts ? n_ : 0);
+  for (const SchurCoupling& c : coupled) {
     const int k = position_[of[c.i]], i = position_[of[c.j]];
     if (i > k) continue;
     const Product product{c.j, i, c.side_i, c.side_j};
-    if (c.i < n_) by_column[k].push_back(product);
-    else of_parts[k].push_back({c.i, product});
+    if (c.i < n_) columns.of_rows[k].push_back(product);
+    else columns.of_parts[k].push_back({c.i, product});
   }
+  for (auto& column : columns.of_rows)
+    std::sort(column.begin(), column.end(), [](const Product& x, const Product& y) { return x.position < y.position; });
+  return columns;
+}
+
+void SchurSolver::list_products(const Columns& columns) {
   product_begin_.assign(1, 0);
   products_.clear();
-  for (auto& column : by_column) {
-    std::sort(column.begin(), column.end(),
-              [](const Product& x, const Product& y) { return x.position < y.position; });
+  for (const auto& column : columns.of_rows) {
     products_.insert(products_.end(), column.begin(), column.end());
     product_begin_.push_back(static_cast<int>(products_.size()));
   }
   part_begin_.assign(1, 0);
   part_products_.clear();
-  for (const auto& column : of_parts) {
+  for (const auto& column : columns.of_parts) {
     part_products_.insert(part_products_.end(), column.begin(), column.end());
     part_begin_.push_back(static_cast<int>(part_products_.size()));
   }
+}
 
-  // Elimination tree and the pattern of each row of L (T. A. Davis, Direct Methods for Sparse Linear
-  // Systems, §4.1): row k of L is the union of the paths from each i with A(i, k) ≠ 0 up to k.
+// Elimination tree and the pattern of each row of L (T. A. Davis, Direct Methods for Sparse Linear
+// Systems, §4.1): row k of L is the union of the paths from each i with A(i, k) ≠ 0 up to k.
+void SchurSolver::find_pattern(const Columns& columns) {
   std::vector<int> parent(n_, -1), mark(n_, -1), length(n_, 0);
   pattern_begin_.assign(1, 0);
   pattern_.clear();
@@ -197,9 +200,9 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const st
         ++length[i];
       }
     };
-    for (const Product& p : by_column[k]) enter(p.position);
-    if (!of_parts.empty())
-      for (const PartProduct& p : of_parts[k]) enter(p.product.position);
+    for (const Product& p : columns.of_rows[k]) enter(p.position);
+    if (!columns.of_parts.empty())
+      for (const PartProduct& p : columns.of_parts[k]) enter(p.product.position);
     std::sort(pattern_.begin() + pattern_begin_.back(), pattern_.end());
     pattern_begin_.push_back(static_cast<int>(pattern_.size()));
   }
@@ -209,7 +212,30 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const st
   std::vector<int> next(column_begin_.begin(), column_begin_.end() - 1);
   for (int k = 0; k < n_; ++k)
     for (int p = pattern_begin_[k]; p < pattern_begin_[k + 1]; ++p) column_row_[next[pattern_[p]]++] = k;
+}
 
+void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts, const std::vector<int>& block) {
+  n_ = count;
+  parts_ = parts;
+  length_ = std::max(1.0, n_ / k_usual_rows);
+  body_count_ = count_bodies(rows, n_, parts);
+  const std::vector<SchurCoupling> coupled = couplings(rows, n_, parts, body_count_);
+  const std::vector<int> of = rows_of(rows.size(), parts);
+  right_.assign(n_, 0.0);
+  correction_.assign(n_, 0.0);
+  response_.assign(3 * static_cast<std::size_t>(body_count_), 0.0);
+  position_.resize(n_);
+  inverse_d_.assign(n_, 0.0);
+  if (n_ <= k_max_dense) {
+    list_dense_products(rows, coupled, of);
+    return;
+  }
+  order_ = fill_reducing_order(n_, coupled, of);
+  order_blocks(block, block.empty() ? of : components(n_, coupled, of));
+  for (int k = 0; k < n_; ++k) position_[order_[k]] = k;
+  const Columns columns = columns_of(coupled, of, !parts.empty());
+  list_products(columns);
+  find_pattern(columns);
   column_fill_.assign(n_, 0);
   l_.assign(column_begin_.back(), 0.0);
   d_.assign(n_, 0.0);

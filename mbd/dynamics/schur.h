@@ -47,6 +47,8 @@ struct SchurPart {
   int row = 0, of = 0;
 };
 
+struct SchurCoupling; ///< of two rows (schur.cpp)
+
 class SchurSolver {
 public:
   /// Pattern from the bodies of the first `count` rows, which are all that it solves, and of the parts of some of them that
@@ -95,6 +97,11 @@ private:
   void eliminate(double* x) const;
   void refine(const std::vector<SchurRow>& rows, const double* right, double* x) const;
   template <int N> void factor_dense(const std::vector<SchurRow>& rows);
+  struct Columns;
+  void list_dense_products(const std::vector<SchurRow>& rows, const std::vector<SchurCoupling>& coupled, const std::vector<int>& of);
+  [[nodiscard]] Columns columns_of(const std::vector<SchurCoupling>& coupled, const std::vector<int>& of, bool has_parts) const;
+  void list_products(const Columns& columns);
+  void find_pattern(const Columns& columns);
   void order_blocks(const std::vector<int>& block, const std::vector<int>& component);
   void factor_sparse(const std::vector<SchurRow>& rows);
   void factor_block(const std::vector<SchurRow>& rows, int block);

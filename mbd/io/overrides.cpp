@@ -24,7 +24,7 @@ public:
   Override(Document& document, const std::string& assignment, const TopLevelNames& names)
       : document_(document), names_(names) {
     const std::size_t equals = assignment.find('=');
-    file_ = &document.sources->emplace_back(Document::Source{"--set " + assignment, ""}).file;
+    file_ = &document.sources->emplace_back(Document::Source{"override " + assignment, ""}).file;
     path_ = assignment.substr(0, equals);
     is_complete_ = equals != std::string::npos && !path_.empty();
     if (!is_complete_) return;

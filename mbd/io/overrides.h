@@ -1,4 +1,4 @@
-// Values given on the command line, laid over a merged document: --set path=value.
+// Values laid over a merged document: "path=value", on the command line behind --set.
 //
 // A path is a top-level key ("title"), a key of a table ("simulation.step"), or a key of a named
 // entry

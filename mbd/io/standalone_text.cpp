@@ -1,6 +1,7 @@
 #include "mbd/io/standalone_text.h"
 
 #include "mbd/io/input_files.h"
+#include "mbd/io/overrides.h"
 #include "mbd/io/toml_writer.h"
 
 #include <algorithm>
@@ -64,6 +65,13 @@ std::string standalone_text(const Document& document, const Catalogue& catalogue
     entry->children.push_back(text_node("sha256", checksum));
   }
   return write_toml(root);
+}
+
+std::string text_with_settings(const std::string& text, const std::vector<std::string>& assignments) {
+  Document document = parse_document(text, "the model");
+  for (const std::string& assignment : assignments) apply_override(document, assignment, {{}, {"simulation", "output"}, {}});
+  if (!document.problems.empty()) throw ModelError(std::move(document.problems));
+  return write_toml(document.root);
 }
 
 } // namespace steplap

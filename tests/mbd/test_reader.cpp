@@ -310,14 +310,14 @@ TEST_CASE("overrides that lead nowhere") {
     return "";
   };
   CHECK(message("element.rope.c.at=3") ==
-        "--set element.rope.c.at=3: error: there is no 'c' to set 'at' of");
+        "override element.rope.c.at=3: error: there is no 'c' to set 'at' of");
   CHECK(message("element.rope.b.at.7=3") ==
-        "--set element.rope.b.at.7=3: error: '7' is not an item of a list");
+        "override element.rope.b.at.7=3: error: '7' is not an item of a list");
   CHECK(message("simulation=3") ==
-        "--set simulation=3: error: name a key of 'simulation', as in simulation.key=value");
-  CHECK(message("=3") == "--set =3: error: expected path=value, for example simulation.step=1e-4");
+        "override simulation=3: error: name a key of 'simulation', as in simulation.key=value");
+  CHECK(message("=3") == "override =3: error: expected path=value, for example simulation.step=1e-4");
   CHECK(message("element.rope.stifness=3") ==
-        "--set element.rope.stifness=3: error: unknown key 'stifness' in spring 'rope' (did you "
+        "override element.rope.stifness=3: error: unknown key 'stifness' in spring 'rope' (did you "
         "mean 'stiffness'?)");
 }
 

@@ -128,7 +128,7 @@ TEST_CASE("a store goes on with its own study only") {
     const std::string longer = reliability_text("samples = 30000\nseed = 1");
     Outcome outcome = bench.run(reliability_text("samples = 20000\nstarts = 9"));
     CHECK(outcome.code == 2);
-    CHECK(has(outcome.err, "--changed"));
+    CHECK(has(outcome.err, "(steplap study run: --changed, --restart, -o)"));
     CHECK(bench.samples() == before);
     CHECK(bench.run(reliability_text("samples = 20000\nstarts = 9"), {"--changed"}).code != 2);
     StudyBench anew;

@@ -94,7 +94,7 @@ TEST_CASE("simulate --estimate-error tells the global error, on the screen and i
   const Outcome plain = steplap_does({"simulate", "-v", model, "-o", bench.at("plain"), "--no-estimate"});
   CHECK_FALSE(has(plain.out, "Global error"));
   CHECK_FALSE(has(plain.out, "±"));
-  CHECK(has(plain.out, "error not estimated: left out with --no-estimate"));
+  CHECK(has(plain.out, "error not estimated: left out as asked"));
   CHECK_FALSE(has(text_of(bench.at("plain/a/summary.json")), "\"global_error\""));
   CHECK(steplap_does({"simulate", model, "-o", bench.at("x"), "--no-estimate", "--estimate-error"}).code == 2);
 }
@@ -173,5 +173,5 @@ TEST_CASE("an estimate of much work is left out by count, not by the clock, and 
   CHECK(slow.code == 0);
   CHECK(has(slow.out, "error not estimated: would take about "));
   CHECK(has(slow.out, "ask with --estimate-error"));
-  CHECK(has(text_of(bench.at("out/a/summary.json")), "\"error_not_estimated\": \"would take long; ask with --estimate-error\""));
+  CHECK(has(text_of(bench.at("out/a/summary.json")), "\"error_not_estimated\": \"would take long; ask for it explicitly\""));
 }

@@ -46,7 +46,7 @@ TEST_CASE("results are written as a whole or not at all") {
   const std::string folder = bench.at("deep/er/run");
   write_results(folder, {{"summary.json", "1"}, {"events.csv", "2"}}, false);
   CHECK(bench.content("deep/er") == std::set<std::string>{"run", "run/summary.json", "run/events.csv"});
-  CHECK_THROWS_AS(write_results(folder, {{"summary.json", "3"}}, false), FileError);
+  CHECK_THROWS_AS(write_results(folder, {{"summary.json", "3"}}, false), ResultsInTheWay);
   CHECK(text_of(folder + "/summary.json") == "1");
   write_results(folder, {{"partial_summary.json", "4"}}, true);
   CHECK(bench.content("deep/er") == std::set<std::string>{"run", "run/partial_summary.json"});

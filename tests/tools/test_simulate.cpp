@@ -105,7 +105,7 @@ TEST_CASE("earlier results are kept unless they may be overwritten") {
   const Outcome refused = steplap_does({"simulate", model, "-o", out, "--end", "0.05"});
   CHECK(refused.code == 2);
   CHECK(refused.err == "steplap: error: '" + out + "/a' holds the results of an earlier run: choose " +
-                           "another folder with -o, or overwrite them with --force\n");
+                           "another folder, or overwrite them (-o, --force)\n");
   CHECK(refused.out.empty());
   CHECK(text_of(bench.at("out/a/trajectory.csv")) == before);
   bench.write("out/a/notes.txt", "mine");
@@ -123,13 +123,14 @@ TEST_CASE("options are laid over the model") {
   const std::string model = bench.write("a.toml", k_oscillator);
   const Outcome outcome =
       steplap_does({"simulate", "-v", model, "-o", bench.at("out"), "--end", "50 ms", "--integrator", "dop853",
-                    "--tolerance", "1e-9", "--set", "body.mass.mass=3 kg", "--set",
+                    "--tolerance", "1e-9", "--output-step", "25 ms", "--set", "body.mass.mass=3 kg", "--set",
                     "output.channels=[\"mass.x\"]"});
   CHECK(outcome.code == 0);
   CHECK(has(outcome.out, "dop853, tolerance 1e-09, t = 0 to 0.05 s"));
   CHECK(text_of(bench.at("out/a/trajectory.csv")).rfind("t [s],mass.x [m]\n", 0) == 0);
   const std::string summary = text_of(bench.at("out/a/summary.json"));
   CHECK(has(summary, "\"simulation.end=50 ms\""));
+  CHECK(has(summary, "\"output.step=25 ms\""));
   CHECK(has(summary, "\"integrator\": \"dop853\""));
   CHECK(has(text_of(bench.at("out/a/model.toml")), "mass = \"3 kg\""));
 

@@ -405,7 +405,7 @@ TEST_CASE("impossible cores are refused, with what would be right") {
   CHECK(refusal(counted) == "");
   CHECK(refusal(built) == "");
   CHECK(has(refusal(counted, {"core.core.limbs=[\"front lim\"]"}),
-            "--set core.core.limbs=[\"front lim\"]: error: core 'core': limb 'front lim' is no body (did you mean 'front limb'?)"));
+            "override core.core.limbs=[\"front lim\"]: error: core 'core': limb 'front lim' is no body (did you mean 'front limb'?)"));
   CHECK(has(refusal(counted, {"core.core.limbs=[\"active part\"]"}), "is the active part itself"));
   CHECK(has(refusal(counted, {"core.core.limbs=[\"back limb\",\"back limb\"]"}), "twice"));
   CHECK(has(refusal(counted, {"core.core.limbs=[]"}), "at least one"));

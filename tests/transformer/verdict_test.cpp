@@ -305,7 +305,7 @@ Judgement judged_swing(const std::string& settings, const std::string& text = k_
 TEST_CASE("a run whose energy does not balance is not to be trusted, and says what to try") {
   const Judgement bad = judged_swing("integrator = \"moreau\"");
   CHECK(bad.distrust.find("the energy balance is off by") != std::string::npos);
-  CHECK(bad.distrust.find("try --step 0.001, or --integrator auto") != std::string::npos);
+  CHECK(bad.distrust.find("try a step of 0.001 s, or the integrator auto") != std::string::npos);
   CHECK(bad.verdict == Verdict::open);
   for (const char* method : {"auto", "dop853", "tsit5", "rodas5p", "rk4"}) {
     CAPTURE(method);

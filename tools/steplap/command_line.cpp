@@ -2,6 +2,7 @@
 
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/atomic_file.h"
+#include "run/result_files.h"
 #include "run/version.h"
 #include "tools/steplap/commands.h"
 #include "tools/steplap/log.h"
@@ -84,6 +85,9 @@ ExitCode run_command(const Command& command, Console& console) {
     return command.run(console);
   } catch (const UsageError& error) {
     log_error(error.what());
+    return ExitCode::usage;
+  } catch (const ResultsInTheWay& error) {
+    log_error(std::string(error.what()) + " (-o, --force)");
     return ExitCode::usage;
   } catch (const FileError& error) {
     log_error(error.what());

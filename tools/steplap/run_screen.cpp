@@ -30,10 +30,15 @@ std::string rough_text(double value) {
   return text;
 }
 
+// With the option that asks for what was too dear.
+std::string why_not_estimated(const Estimate& estimate) {
+  return estimate.reason + (estimate.status == EstimateStatus::too_dear ? " (--estimate-error)" : "");
+}
+
 void print_no_estimate(std::ostream& out, const Report& report) {
   if (report.estimate.errors) return;
   out << "  error not estimated: ";
-  if (!report.estimate.cost) out << report.estimate.reason << "\n";
+  if (!report.estimate.cost) out << why_not_estimated(report.estimate) << "\n";
   else out << "would take about " << rough_text(*report.estimate.cost) << " s; ask with --estimate-error\n";
 }
 
@@ -225,7 +230,7 @@ void print_judgement(std::ostream& out, const FinishedRun& finished) {
     if (!c.doubt.empty()) out << "  '" << c.name << "', " << c.text << ": " << c.doubt << "\n";
   const bool is_in_doubt = std::any_of(judgement.criteria.begin(), judgement.criteria.end(),
                                        [](const CriterionResult& c) { return !c.doubt.empty(); });
-  if (!finished.report.estimate.errors) out << "  judged without the errors of the numbers: " << finished.report.estimate.reason << "\n";
+  if (!finished.report.estimate.errors) out << "  judged without the errors of the numbers: " << why_not_estimated(finished.report.estimate) << "\n";
   if (is_in_doubt) out << "  A smaller tolerance or step decides.\n";
   if (finished.report.second_opinion) print_second_opinion(out, *finished.report.second_opinion, finished.report.run.result.final_state.t);
 }

@@ -32,7 +32,7 @@ struct SimulateOptions {
   std::vector<std::string> models;
   std::vector<std::string> overrides;
   std::string output = "out";
-  std::optional<std::string> end, step, integrator, tolerance, threads;
+  std::optional<std::string> end, step, integrator, tolerance, output_step, threads;
   bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false,
        is_hold_required = false;
 
@@ -43,6 +43,7 @@ struct SimulateOptions {
     if (step) all.push_back("simulation.step=" + *step);
     if (integrator) all.push_back("simulation.integrator=" + *integrator);
     if (tolerance) all.push_back("simulation.tolerance=" + *tolerance);
+    if (output_step) all.push_back("output.step=" + *output_step);
     return all;
   }
 
@@ -209,6 +210,7 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
       {"-o,--output", &o->output, "DIR", "folder for the results (default: out)"},
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
       {"--end", &o->end, "T", "end of the run, s; short for --set simulation.end=T"},
+      {"--output-step", &o->output_step, "H", "time between two rows of the trajectory, s; short for --set output.step=H"},
       {"--step", &o->step, "H", "step of a fixed-step integrator, s"},
       {"--integrator", &o->integrator, "NAME",
        "integration method; see steplap elements simulation"},

@@ -38,6 +38,13 @@ bool is_database(const std::string& file) {
   return stream.read(head, sizeof head) && std::string(head, 15) == "SQLite format 3";
 }
 
+// A store that cannot be used, with what to type.
+FileError with_options(const StoreError& error) {
+  std::string options;
+  for (const StoreMode mode : error.helps()) options += mode == StoreMode::changed ? "--changed, " : "--restart, ";
+  return {error.path(), options.empty() ? error.what() : error.what() + (" (steplap study run: " + options + "-o)"), error.line()};
+}
+
 // What is given is the study file or the store itself.
 std::string store_of(const Options& o) {
   return o.store ? *o.store : is_database(o.file) ? o.file : default_store(o.file);
@@ -259,7 +266,16 @@ Command schema_command() {
 } // namespace
 
 std::vector<Command> study_commands(const Ranks& ranks) {
-  return {run_command(ranks), show_command(), report_command(), export_command(), replay_command(), schema_command()};
+  std::vector<Command> commands = {run_command(ranks), show_command(), report_command(), export_command(), replay_command(), schema_command()};
+  for (Command& command : commands)
+    command.run = [run = std::move(command.run)](Console& console) {
+      try {
+        return run(console);
+      } catch (const StoreError& error) {
+        throw with_options(error);
+      }
+    };
+  return commands;
 }
 
 Program study_program(const Ranks& ranks) {
