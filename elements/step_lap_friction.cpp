@@ -481,11 +481,22 @@ void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state
   }
 }
 
+// Where a small turn of ν turns the wrench by much (narrow sheets; a centre of rotation near a corner), ν has to be known so
+// much better. Measured by |ν| tr ∇²h in scaled twists, which is 1.5 F where a round overlap is translated: F across the
+// slip and F/2 from turning (∬ w x² dA is half of F gyration²). Beyond that, ν is asked for as much finer.
 SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const {
+  constexpr double k_round = 1.5;
   SlipScale scale;
   scale.lever = portable::hypot(gyration_, arm_.norm());
+  const Vec3 nu = law_twist(e, state, Vec3(rate[0], rate[1], rate[2]));
+  const double speed = scaled(nu).norm();
+  const Patch& patch = fit(e.scratch, pose_of(e.motion), GripLaw::sliding, pressure_at(e.t).tilt).patch;
+  const Mat3 curvature = evaluate(patch, nu).hessian;
+  const Vec3 turn(arm_.y() / gyration_, -arm_.x() / gyration_, 1.0 / gyration_); // ν of a scaled turn
+  const double trace = curvature(0, 0) + curvature(1, 1) + turn.dot(curvature * turn);
+  const double sharpness = speed * trace / (k_round * patch.force());
   // Below the speed of rest there is nothing left to be known.
-  scale.speed = std::max(scaled(law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).norm(), end_speed(e));
+  scale.speed = std::max(speed / std::max(1.0, sharpness), end_speed(e));
   return scale;
 }
 

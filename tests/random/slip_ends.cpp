@@ -124,7 +124,7 @@ void widen_by_errors(const Follower& follower, const Motion6& m, double speed, d
 // turns faster: the centre of rotation passes by a corner or along a slender sheet. Directions tend to their limit as powers of the
 // time left, some of them slow: they are followed to a speed below all that a run knows.
 SlipEnd follow(const SlidingSheet& sheet, double tolerance) {
-  constexpr double k_share = 0.1, k_known = 1e-6, k_last = 1e-12, k_errors = 4.0;
+  constexpr double k_share = 0.1, k_known = 1e-6, k_last = 1e-12;
   constexpr double k_step_error = 1e-10; // of the speed: some hundred steps sum to less than 1e-7
   constexpr double k_least_share = 1e-6; // a kink is passed by steps so short that it is nothing
   constexpr int k_most_steps = 20000;
@@ -141,7 +141,7 @@ SlipEnd follow(const SlidingSheet& sheet, double tolerance) {
   const double first = follower.speed(m.velocity, 0.0);
   double speed = first, fall = grip, share = k_share;
   end.fastest = first;
-  const double unknown = k_errors * let_through(tolerance, sheet, gyration, first); // m/s, of the last few steps
+  const double unknown = let_through(tolerance, sheet, gyration, first); // m/s
   for (int steps = 0; speed > k_last * first; ++steps) {
     if (steps == k_most_steps) return end; // it does not come to rest
     if (speed > k_known * first) widen(follower.wrench(m), end.surely);
