@@ -1,6 +1,7 @@
 #include "run/core_drawing.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/math/portable_math.h"
 #include "run/core_sheet.h"
 #include "transformer/core_builder.h"
 #include "transformer/core_geometry.h"
@@ -229,7 +230,7 @@ Round round_about(const std::vector<Slab>& slabs) {
   const auto farthest = [&](double centre) {
     double most = 0.0;
     for (const Slab& s : slabs)
-      for (const double y : {s.low, s.high}) most = std::max(most, std::hypot(0.5 * s.width, y - centre));
+      for (const double y : {s.low, s.high}) most = std::max(most, portable::hypot(0.5 * s.width, y - centre));
     return most;
   };
   double low = slabs.front().low, high = slabs.back().high;

@@ -190,7 +190,7 @@ Trust trust_of(const Report& report) {
       trust.text += " A second method, " + second->method.substr(0, second->method.find_first_of(" @")) + ", agrees.";
     return trust;
   }
-  if (report.estimate.status == EstimateStatus::too_dear) return {TrustLevel::limited, "Errors are not estimated, since that takes long: ask with --estimate-error."};
+  if (report.estimate.status == EstimateStatus::too_dear) return {TrustLevel::limited, "Errors are not estimated, since that takes long, unless it is asked for."};
   return {TrustLevel::limited, "Errors are not estimated: " + first_sentence(report.estimate.reason) + "."};
 }
 

@@ -112,8 +112,9 @@ private:
   bool is_upright(const std::string& element) const {
     const ElementEntry* entry = entry_of(element);
     const Model& model = report_.run.loaded->model;
-    if (!entry || entry->kind->name != "unilateral_contact") return false;
-    const auto& contact = static_cast<const UnilateralContact&>(*entry->element);
+    const auto* const found = entry ? dynamic_cast<const UnilateralContact*>(entry->element.get()) : nullptr;
+    if (!found) return false;
+    const UnilateralContact& contact = *found;
     const Place b = place_of(model, contact.b);
     const Vec2 normal = rotated(contact.normal, b.angle + (b.body ? b.body->angle : 0.0));
     constexpr double k_upright = 0.7; // of the cosine: less than 45° off
@@ -244,11 +245,11 @@ private:
   void add_tipped() {
     std::unordered_set<std::string> standing, guided;
     for (const ElementEntry& entry : report_.run.loaded->model.elements) {
-      if (entry.kind->name == "unilateral_contact") {
-        note_body(static_cast<const UnilateralContact&>(*entry.element).a, standing);
-      } else if (entry.kind->name == "polygon_contact") {
-        note_body(static_cast<const PolygonContact&>(*entry.element).a, standing);
-        note_body(static_cast<const PolygonContact&>(*entry.element).b, standing);
+      if (const auto* contact = dynamic_cast<const UnilateralContact*>(entry.element.get())) {
+        note_body(contact->a, standing);
+      } else if (const auto* faces = dynamic_cast<const PolygonContact*>(entry.element.get())) {
+        note_body(faces->a, standing);
+        note_body(faces->b, standing);
       }
     }
     if (standing.empty()) return;

@@ -208,8 +208,9 @@ private:
       if (force && range.high.value > 0.0 && force->largest().value != 0.0) frictions.push_back({element, force, range.high.value});
     }
     for (const ElementEntry& entry : report_.run.loaded->model.elements) {
-      if (entry.kind->name != "joint_friction") continue;
-      const auto& joint = static_cast<const JointFriction&>(*entry.element);
+      const auto* const found = dynamic_cast<const JointFriction*>(entry.element.get());
+      if (!found) continue;
+      const JointFriction& joint = *found;
       const ChannelRange* force = ranges_.find(joint.name + ".friction");
       if (!force || !std::isfinite(force->largest().value)) continue;
       const Extreme& largest = force->largest();

@@ -25,7 +25,7 @@ steplap.verdict = (() => {
   }
   function errorText(run) {
     const e = run.summary.global_error;
-    if (!e) return `not estimated: ${run.summary.error_not_estimated || 'ask with simulate --estimate-error'}`;
+    if (!e) return `not estimated: ${run.summary.error_not_estimated || 'it was not asked for'}`;
     const size = (v) => (v.error === null ? Infinity : v.error);
     const worst = Object.entries(e).filter(([, v]) => v && typeof v === 'object').sort((a, b) => size(b[1]) - size(a[1]))[0];
     return worst ? `${worst[1].error === null ? 'unknown' : `${few(worst[1].error)} of range`} (${worst[0]}: ${worst[1].where})` : '–';

@@ -167,11 +167,13 @@ std::vector<std::string> sources_in(const std::vector<std::string>& rooms) {
 
 Source stripped(const std::string& path) { return Stripper(text_of(fs::path(STEPLAP_SOURCE) / path)).strip(); }
 
-// "--restart", or " -o" by itself.
+// "--restart", or " -o" by itself; not a variable of a style sheet, "var(--ink)" or "--ink:".
 bool names_option(const std::string& text) {
   for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at + 2)) {
     const bool is_at_start = at == 0 || text[at - 1] == ' ' || text[at - 1] == '(' || text[at - 1] == '`';
-    if (is_at_start && at + 2 < text.size() && std::islower(static_cast<unsigned char>(text[at + 2]))) return true;
+    const std::size_t end = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at + 2);
+    const bool is_of_style = (at >= 4 && text.compare(at - 4, 4, "var(") == 0) || (end != std::string::npos && text.compare(end, 2, ":#") == 0);
+    if (is_at_start && !is_of_style && at + 2 < text.size() && std::islower(static_cast<unsigned char>(text[at + 2]))) return true;
   }
   const std::size_t at = (" " + text + " ").find(" -o");
   return at != std::string::npos && !is_of_word((" " + text + " ")[at + 3]);
@@ -241,5 +243,5 @@ const int k[] = {
 
 TEST_CASE("an option is told from other dashes") {
   for (const char* text : {"--restart", "with -o", "ask (--x)", "-o names another", "type `--set`"}) CHECK(names_option(text));
-  for (const char* text : {"--", "a -- b", "a--b", "x -other", "-1"}) CHECK_FALSE(names_option(text));
+  for (const char* text : {"--", "a -- b", "a--b", "x -other", "-1", "fill:var(--ink)", "--ink:#fff"}) CHECK_FALSE(names_option(text));
 }

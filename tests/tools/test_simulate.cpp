@@ -251,7 +251,7 @@ TEST_CASE("a run that is not to be trusted says so everywhere, and holds nothing
   CHECK(has(summary, "\"so_far\": \"hold\""));
   const std::string page = text_of(bench.at("out/coarse/report.html"));
   CHECK(has(page, "the energy balance is off by"));
-  CHECK(has(page, "NOT TO BE TRUSTED"));
+  CHECK(has(page, "The run is not to be trusted: "));
 
   std::vector<std::string> strict = command;
   strict.push_back("--require-hold");

@@ -13,11 +13,11 @@ from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 
-# Image: page, width of the window, time shown [s], element of the page
+# Image: page, width of the window, time shown [s] (None: the one that the page opens at), element of the page (None: its first screen)
 IMAGES = {
-    "report_verdict": ("paper.html", 1280, 0.0, "#verdict"),
+    "report_verdict": ("weak_clamping.html", 1300, None, None),
     "report_machine": ("paper.html", 1280, 0.1218, "#scenes"),
-    "report_slipped": ("weak_clamping.html", 1280, 0.1535, "#machine"),
+    "report_slipped": ("weak_clamping.html", 1280, 0.1535, "#sheets"),
 }
 
 # Image: page of a study, width of the window, elements of the page from which and to whose end
@@ -48,12 +48,16 @@ def main(pages, images):
     for image, (page, width, moment, selector) in IMAGES.items():
         browser.set_window_size(width, 900)
         browser.get("file://" + os.path.abspath(os.path.join(pages, page)))
-        browser.execute_script("steplap.page.show(arguments[0])", moment)
-        height = browser.execute_script("return document.documentElement.scrollHeight")
+        if moment is not None:
+            browser.execute_script("steplap.page.show(arguments[0])", moment)
+        height = 700 if selector is None else browser.execute_script("return document.documentElement.scrollHeight")
         browser.set_window_size(width, height + 200)
         time.sleep(0.5)
         path = os.path.join(images, image + ".png")
-        browser.find_element(By.CSS_SELECTOR, selector).screenshot(path)
+        if selector is None:
+            browser.save_screenshot(path)
+        else:
+            browser.find_element(By.CSS_SELECTOR, selector).screenshot(path)
         print(path)
     for image, (page, width, first, last) in STUDIES.items():
         photograph_study(browser, os.path.join(pages, page), width, first, last, os.path.join(images, image + ".png"))

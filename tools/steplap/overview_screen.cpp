@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -37,13 +38,14 @@ std::string cut(const std::string& text, std::size_t most) {
   return kept + "…";
 }
 
-// Broken at blanks; at most so many lines, all but the first indented.
+// Broken at blanks, but not between a number and what follows it, its unit; at most so many lines, all but the first indented.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t most_lines) {
   std::string result, line;
   std::size_t lines = 1;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t begin = std::min(text.find_first_not_of(' ', at), text.size() - 1); // blanks before a word stay with it
-    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    std::size_t end = std::min(text.find(' ', begin), text.size());
+    if (std::isdigit(static_cast<unsigned char>(text[end - 1])) && end < text.size()) end = std::min(text.find(' ', end + 1), text.size());
     const std::string word = text.substr(at, end - at);
     if (!line.empty() && width(line) + 1 + width(word) > k_columns && lines < most_lines) {
       result += line + "\n";
@@ -138,7 +140,8 @@ void print_overview(std::ostream& out, const Report& report, const std::string& 
   print_head(out, report, overview, is_coloured);
   print_story(out, report, overview);
   print_bars(out, overview);
-  out << "\n" << wrapped(std::string("Trust: ") + name_of(overview.trust.level) + ". " + shown(overview.trust.text), 7, 2) << "\n";
+  const char* const remedy = report.estimate.status == EstimateStatus::too_dear ? " (--estimate-error)" : "";
+  out << "\n" << wrapped(std::string("Trust: ") + name_of(overview.trust.level) + ". " + shown(overview.trust.text) + remedy, 7, 2) << "\n";
   print_warnings(out, report, is_coloured);
   out << "Results: " << shown(folder) << "\n";
   out << "Page: steplap report RESULTS. Tables of all extremes: steplap simulate -v MODEL.\n";
