@@ -50,7 +50,7 @@ def main(pages, images):
         browser.get("file://" + os.path.abspath(os.path.join(pages, page)))
         if moment is not None:
             browser.execute_script("steplap.page.show(arguments[0])", moment)
-        height = 700 if selector is None else browser.execute_script("return document.documentElement.scrollHeight")
+        height = 850 if selector is None else browser.execute_script("return document.documentElement.scrollHeight")
         browser.set_window_size(width, height + 200)
         time.sleep(0.5)
         path = os.path.join(images, image + ".png")
