@@ -91,3 +91,31 @@ TEST_CASE("-v shows the tables of all extremes") {
   CHECK(has(tables.out, "Accuracy and cost"));
   CHECK(has(brief.out, "Floor touches "));
 }
+
+TEST_CASE("--digits sets how many digits the screen shows, up to all with their errors") {
+  const Workbench bench;
+  const std::string model = bench.write("a.toml", k_bouncer);
+  const auto shown = [&](const char* digits) {
+    const Outcome outcome = steplap_does({"simulate", model, "-o", bench.at(digits), "--digits", digits});
+    CHECK(outcome.code == 0);
+    return outcome.out;
+  };
+  // The first event's time, as the story tells it: its digits and what stands behind the last.
+  const auto first_time = [](const std::string& screen) {
+    std::smatch found;
+    REQUIRE(std::regex_search(screen, found, std::regex("(from|at|between) ([0-9.]+)([^,]*)")));
+    return found[2].str();
+  };
+  const std::string two = shown("2"), seven = shown("7"), full = shown("full");
+  CHECK(first_time(two).size() < first_time(seven).size());
+  CHECK(std::abs(std::stod(first_time(two)) - std::stod(first_time(seven))) <= 0.05 * std::stod(first_time(seven)));
+  CHECK(has(full, " ± "));
+  CHECK(first_time(full).size() > first_time(seven).size());
+  // Files do not hang on it.
+  CHECK(text_of(bench.at("2/a/summary.json")) == text_of(bench.at("full/a/summary.json")));
+  for (const char* wrong : {"0", "16", "-3", "4.5", "all", ""}) {
+    CAPTURE(wrong);
+    const Outcome refused = steplap_does({"simulate", model, "-o", bench.at("no"), std::string("--digits=") + wrong});
+    CHECK(refused.code == 2);
+  }
+}

@@ -17,7 +17,7 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_columns = 100;
+constexpr std::size_t k_columns = 100, k_all_columns = 1000; // the second for all digits
 constexpr std::size_t k_story_lines = 10, k_most_bars = 5, k_most_warnings = 3; // with them the screen has at most 30 lines
 constexpr double k_least_share = 0.005;                                         // less is 0 %, and no news
 constexpr int k_bar = 20;                                                       // characters
@@ -106,7 +106,7 @@ std::string bar_of(double share) {
   return "[" + std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(k_bar - filled), '-') + "]";
 }
 
-void print_bars(std::ostream& out, const Overview& overview) {
+void print_bars(std::ostream& out, const Overview& overview, ShownDigits digits) {
   const auto is_idle = [](const Utilisation& u) { return u.share < k_least_share; };
   const auto used = std::find_if(overview.utilisations.begin(), overview.utilisations.end(), is_idle) - overview.utilisations.begin();
   const std::size_t count = std::min(k_most_bars, static_cast<std::size_t>(used));
@@ -117,10 +117,10 @@ void print_bars(std::ostream& out, const Overview& overview) {
   widest = std::min<std::size_t>(widest, 36);
   for (std::size_t i = 0; i < count; ++i) {
     const Utilisation& u = overview.utilisations[i];
-    const std::string name = cut(shown(u.name), widest), share = shown_share(u.share, u.error);
+    const std::string name = cut(shown(u.name), widest), share = shown_share(u.share, u.error, digits);
     const std::string line = "  " + name + std::string(widest - width(name), ' ') + "  " + bar_of(u.share) + std::string(width(share) < 6 ? 6 - width(share) : 0, ' ') +
                              " " + share + (u.detail.empty() ? "" : "   " + u.detail);
-    out << cut(line, k_columns) << "\n";
+    out << cut(line, digits.is_full ? k_all_columns : k_columns) << "\n";
   }
 }
 
@@ -135,11 +135,11 @@ void print_warnings(std::ostream& out, const Report& report, bool is_coloured) {
 
 } // namespace
 
-void print_overview(std::ostream& out, const Report& report, const std::string& folder, bool is_coloured) {
-  const Overview overview = overview_of(report);
+void print_overview(std::ostream& out, const Report& report, const std::string& folder, bool is_coloured, ShownDigits digits) {
+  const Overview overview = overview_of(report, digits);
   print_head(out, report, overview, is_coloured);
   print_story(out, report, overview);
-  print_bars(out, overview);
+  print_bars(out, overview, digits);
   const char* const remedy = report.estimate.status == EstimateStatus::too_dear ? " (--estimate-error)" : "";
   out << "\n" << wrapped(std::string("Trust: ") + name_of(overview.trust.level) + ". " + shown(overview.trust.text) + remedy, 7, 2) << "\n";
   print_warnings(out, report, is_coloured);

@@ -32,7 +32,7 @@ struct SimulateOptions {
   std::vector<std::string> models;
   std::vector<std::string> overrides;
   std::string output = "out";
-  std::optional<std::string> end, step, integrator, tolerance, output_step, threads;
+  std::optional<std::string> end, step, integrator, tolerance, output_step, threads, digits;
   bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false,
        is_hold_required = false;
 
@@ -57,6 +57,19 @@ struct SimulateOptions {
     if (error != std::errc() || last != end_of_text || count < 1 || count > k_most)
       throw UsageError("--threads takes a whole number from 1 to " + std::to_string(k_most) + ", not '" + *threads + "'");
     return count;
+  }
+
+  /// Of the numbers on the screen.
+  [[nodiscard]] ShownDigits shown_digits() const {
+    constexpr int k_most = 15;
+    if (!digits) return {};
+    if (*digits == "full") return {.is_full = true};
+    int count = 0;
+    const char* const end_of_text = digits->data() + digits->size();
+    const auto [last, error] = std::from_chars(digits->data(), end_of_text, count);
+    if (error != std::errc() || last != end_of_text || count < 1 || count > k_most)
+      throw UsageError("--digits takes a whole number from 1 to " + std::to_string(k_most) + ", or full, not '" + *digits + "'");
+    return {.most = count + 1}; // of numbers that begin with 1
   }
 
   [[nodiscard]] std::string folder_of(const LoadedModel& loaded) const {
@@ -146,6 +159,7 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
   if (options.is_error_estimated && options.is_estimate_left_out)
     throw UsageError("--estimate-error and --no-estimate exclude each other");
   (void)options.thread_count(); // wrong ones are told before anything is read
+  (void)options.shown_digits();
   const Models models = load_models(options.models, options.all_overrides());
   check_step(options, models);
   check_folders(options, models);
@@ -179,7 +193,7 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
   }
   if (console.verbosity == Verbosity::quiet) return code;
   if (models.size() == 1 && console.verbosity != Verbosity::verbose)
-    print_overview(console.out, runs.front().report, runs.front().folder, takes_colour(console.out));
+    print_overview(console.out, runs.front().report, runs.front().folder, takes_colour(console.out), options.shown_digits());
   else if (models.size() == 1)
     print_run(console.out, runs.front());
   else
@@ -224,6 +238,9 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
        "estimate the error of all numbers, from runs at a finer tolerance or step, however long they take; without "
        "it, where they take about a second"},
       {"--no-estimate", &o->is_estimate_left_out, "", "do not estimate the error"},
+      {"--digits", &o->digits, "N|full",
+       "digits of the numbers on the screen (default: 3; one more where the first is a 1), or all that are known, with their errors; "
+       "files and the tables of -v always have all"},
       {"--report", &o->is_reported, "", "write a page of the runs, too; see steplap report"},
       {"--require-hold", &o->is_hold_required, "",
        "exit code 5 unless the verdict on every run is hold, 4 if a second method, which is run for it, disagrees beyond both "
