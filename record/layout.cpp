@@ -25,7 +25,7 @@ std::string heading_text(const TableShape& shape, std::size_t column) {
 }
 
 // The columns of the axes by the options, "-" turns the sign.
-std::vector<AxisColumn> chosen_axes(const Layout& layout, const ReadOptions& options) {
+std::vector<AxisColumn> chosen_axes(const RecordLayout& layout, const ReadOptions& options) {
   std::vector<AxisColumn> axes;
   const std::pair<char, const std::optional<std::string>*> chosen[] = {{'x', &options.x}, {'y', &options.y}, {'z', &options.z}};
   for (const auto& [axis, option] : chosen) {
@@ -38,7 +38,7 @@ std::vector<AxisColumn> chosen_axes(const Layout& layout, const ReadOptions& opt
 }
 
 // Of several columns that may be the axis the one whose name says most; two that say as much are refused.
-void add_named_axis(const Layout& layout, char axis, Role role, std::vector<AxisColumn>& axes) {
+void add_named_axis(const RecordLayout& layout, char axis, Role role, std::vector<AxisColumn>& axes) {
   int best = 0;
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < layout.shape.names.size(); ++i) {
@@ -54,7 +54,7 @@ void add_named_axis(const Layout& layout, char axis, Role role, std::vector<Axis
   if (!found.empty()) axes.push_back({axis, found.front(), "", 1.0, "", ""});
 }
 
-std::vector<AxisColumn> named_axes(const Layout& layout) {
+std::vector<AxisColumn> named_axes(const RecordLayout& layout) {
   std::vector<AxisColumn> axes;
   add_named_axis(layout, 'x', Role::x, axes);
   add_named_axis(layout, 'y', Role::y, axes);
@@ -67,7 +67,7 @@ std::vector<AxisColumn> named_axes(const Layout& layout) {
 }
 
 // Without names: those that are left beside a first column of times.
-std::vector<AxisColumn> unnamed_axes(const Layout& layout, const std::vector<HeaderLine>& head, const ReadOptions& options) {
+std::vector<AxisColumn> unnamed_axes(const RecordLayout& layout, const std::vector<HeaderLine>& head, const ReadOptions& options) {
   const std::size_t width = layout.shape.width, line = head[layout.shape.first_data].number;
   std::vector<std::string_view> fields;
   static_cast<void>(layout.shape.split(head[layout.shape.first_data].text, fields));
@@ -110,7 +110,7 @@ std::optional<SaidScale> scale_of(const Metadata& metadata) {
   return SaidScale{*counts, *unit, range.value_or(0.0) * unit->factor, said->line};
 }
 
-void scale_counts(AxisColumn& axis, const Layout& layout, std::size_t line, const Metadata& metadata, const ReadOptions& options) {
+void scale_counts(AxisColumn& axis, const RecordLayout& layout, std::size_t line, const Metadata& metadata, const ReadOptions& options) {
   axis.unit = "counts";
   if (options.counts_per_g) {
     axis.factor *= k_gravity / *options.counts_per_g;
@@ -123,7 +123,7 @@ void scale_counts(AxisColumn& axis, const Layout& layout, std::size_t line, cons
   }
 }
 
-void scale_axis(AxisColumn& axis, const Layout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options) {
+void scale_axis(AxisColumn& axis, const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options) {
   const std::size_t line = layout.shape.names_line > 0 ? layout.shape.names_line : head[layout.shape.first_data].number;
   std::string text = options.unit.value_or("");
   axis.heading = heading_text(layout.shape, axis.column);
@@ -148,7 +148,7 @@ void scale_axis(AxisColumn& axis, const Layout& layout, const std::vector<Header
 }
 
 // Columns named as peaks, and none as an axis: a list of peaks without waveforms.
-bool find_peaks(Layout& layout) {
+bool find_peaks(RecordLayout& layout) {
   PeakColumns& peaks = layout.peaks;
   std::string unit_text, source;
   for (std::size_t i = 0; i < layout.shape.names.size(); ++i) {
@@ -180,7 +180,7 @@ bool find_peaks(Layout& layout) {
   return peaks.magnitude >= 0 || peaks.axis[0] >= 0 || peaks.axis[1] >= 0 || peaks.axis[2] >= 0;
 }
 
-void scale_peaks(Layout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options) {
+void scale_peaks(RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options) {
   AxisColumn axis;
   for (const int column : {layout.peaks.magnitude, layout.peaks.axis[2], layout.peaks.axis[1], layout.peaks.axis[0]})
     if (column >= 0) axis.column = static_cast<std::size_t>(column);
@@ -190,7 +190,7 @@ void scale_peaks(Layout& layout, const std::vector<HeaderLine>& head, const Meta
   layout.notes.push_back("The file holds peaks only, no waveform: how long a shock lasted and what it did to velocity is known only where a column says so.");
 }
 
-void find_range_and_holding(Layout& layout, const Metadata& metadata, const ReadOptions& options) {
+void find_range_and_holding(RecordLayout& layout, const Metadata& metadata, const ReadOptions& options) {
   if (const auto scale = scale_of(metadata); scale && scale->range > 0.0) layout.range = scale->range;
   const auto* deadband = metadata.find({"deadband"});
   const auto band = deadband ? parse_number(deadband->values.front(), '.') : std::nullopt;
@@ -215,8 +215,8 @@ std::size_t column_of(const TableShape& shape, const std::string& name_or_number
                               counted(shape.width, "column", "columns") + (known.empty() ? ", by numbers from 1." : ": " + quoted_list(shape.names) + "."));
 }
 
-Layout find_layout(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options) {
-  Layout layout;
+RecordLayout find_record_layout(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options) {
+  RecordLayout layout;
   layout.file = file;
   layout.shape = find_shape(head, file, options);
   const std::vector<HeaderLine> before(head.begin(), head.begin() + static_cast<std::ptrdiff_t>(layout.shape.first_data));

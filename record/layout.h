@@ -66,7 +66,7 @@ struct PeakColumns {
   std::string unit;
 };
 
-struct Layout {
+struct RecordLayout {
   std::string file, encoding, family;
   TableShape shape;
   TimeBase time;
@@ -80,10 +80,10 @@ struct Layout {
 };
 
 /// Throws RecordError for what is ambiguous, unknown or impossible.
-[[nodiscard]] Layout find_layout(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options);
+[[nodiscard]] RecordLayout find_record_layout(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options);
 
-/// Used by find_layout(): needs shape, axes and family.
-[[nodiscard]] TimeBase find_time(const Layout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options, std::vector<std::string>& notes);
+/// Used by find_record_layout(): needs shape, axes and family.
+[[nodiscard]] TimeBase find_time(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options, std::vector<std::string>& notes);
 /// Column by name or number from 1.
 [[nodiscard]] std::size_t column_of(const TableShape& shape, const std::string& name_or_number, const std::string& option, const std::string& file);
 

@@ -68,7 +68,7 @@ public:
 
   Recording read() {
     read_head();
-    recording_.layout = find_layout(head_, source_.name(), options_);
+    recording_.layout = find_record_layout(head_, source_.name(), options_);
     recording_.layout.encoding = source_.encoding();
     layout_ = &recording_.layout;
     prepare();
@@ -318,7 +318,7 @@ private:
   // True: the row replaces nothing and goes on.
   bool take_repeated(std::string_view place) {
     if (options_.repeated == IfRepeated::refuse)
-      fail(place, "The time '" + shown(place.substr(0, 40)) + "' is that of the row before. Give --repeated first or last to keep one row of each time; if the clock is too coarse for the rate, give --time none and --rate HZ.");
+      fail(place, "The time '" + shown(place.substr(0, 40)) + "' is that of the row before. Give --repeated first to keep the first row of each time; if the clock is too coarse for the rate, give --time none and --rate HZ.");
     recording_.facts.repeated.note(line_);
     return false;
   }
@@ -392,7 +392,7 @@ private:
   const ReadOptions& options_;
   SampleSink& sink_;
   Recording recording_;
-  const Layout* layout_ = nullptr;
+  const RecordLayout* layout_ = nullptr;
   std::vector<HeaderLine> head_;
   bool head_is_terminated_ = true, is_terminated_ = true;
   std::string_view text_; ///< the line

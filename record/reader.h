@@ -22,7 +22,7 @@ class SampleSink {
 public:
   virtual ~SampleSink() = default;
   /// Before the first segment: what the file was taken for.
-  virtual void begin(const Layout& layout) = 0;
+  virtual void begin(const RecordLayout& layout) = 0;
   virtual void begin_segment(std::size_t line) = 0;
   /// t in s, one acceleration (m/s²) for each axis of the layout.
   virtual void put(double t, const double* a) = 0;
@@ -66,7 +66,7 @@ struct ReadFacts {
 };
 
 struct Recording {
-  Layout layout;
+  RecordLayout layout;
   ReadFacts facts;
   std::vector<PeakEntry> peaks; ///< of a table of peaks
 };

@@ -37,7 +37,7 @@ ColumnHead head_of_column(const std::vector<HeaderLine>& head, const TableShape&
 
 class TimeFinder {
 public:
-  TimeFinder(const Layout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options, std::vector<std::string>& notes)
+  TimeFinder(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options, std::vector<std::string>& notes)
       : layout_(layout), shape_(layout.shape), head_(head), options_(options), notes_(notes), said_rate_(rate_of(metadata)), metadata_(metadata) {}
 
   TimeBase find() {
@@ -235,18 +235,18 @@ private:
   }
 
   void find_rate() {
-    const std::optional<double> by_times = has_time_ ? rate_by_times() : std::nullopt;
+    const double by_times = has_time_ ? rate_by_times().value_or(0.0) : 0.0; // 0: unknown
     if (options_.rate) {
       base_.rate = *options_.rate;
       base_.rate_text = "--rate";
-    } else if (said_rate_ && (!by_times || layout_.holds || std::abs(*by_times / said_rate_->hz - 1.0) < 0.02)) {
+    } else if (said_rate_ && (by_times == 0.0 || layout_.holds || std::abs(by_times / said_rate_->hz - 1.0) < 0.02)) {
       base_.rate = said_rate_->hz;
       base_.rate_text = "line " + std::to_string(said_rate_->line);
-    } else if (by_times && !layout_.holds) {
-      base_.rate = *by_times;
+    } else if (by_times > 0.0 && (!layout_.holds || base_.index_column)) {
+      base_.rate = by_times;
       base_.rate_text = "the first " + std::to_string(first_.texts.size()) + " times";
       if (said_rate_)
-        notes_.push_back("Line " + std::to_string(said_rate_->line) + " says " + rounded_text(said_rate_->hz) + " Hz, but the times say " + rounded_text(*by_times) + " Hz: the times are believed. Give --rate if they are wrong.");
+        notes_.push_back("Line " + std::to_string(said_rate_->line) + " says " + rounded_text(said_rate_->hz) + " Hz, but the times say " + rounded_text(by_times) + " Hz: the times are believed. Give --rate if they are wrong.");
     } else {
       throw RecordError(layout_.file, head_[shape_.first_data].number, 1, layout_.holds ? "Samples are left out of this record, and no line says how often was sampled. Give --rate HZ."
                                                                                        : "Nothing says how often was sampled: there is no column of times, or its first times do not rise, and no line gives a rate. Give --rate HZ, or --time COLUMN.");
@@ -281,7 +281,7 @@ private:
     return (*last - *first) / (times.back() - times.front());
   }
 
-  const Layout& layout_;
+  const RecordLayout& layout_;
   const TableShape& shape_;
   const std::vector<HeaderLine>& head_;
   const ReadOptions& options_;
@@ -296,7 +296,7 @@ private:
 
 } // namespace
 
-TimeBase find_time(const Layout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options, std::vector<std::string>& notes) {
+TimeBase find_time(const RecordLayout& layout, const std::vector<HeaderLine>& head, const Metadata& metadata, const ReadOptions& options, std::vector<std::string>& notes) {
   return TimeFinder(layout, head, metadata, options, notes).find();
 }
 
