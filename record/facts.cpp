@@ -40,7 +40,7 @@ std::string gravity_text(const Recording& recording) {
   if (size > 0.9 && size < 1.1)
     return "gravity: in the record, as it seems (the first second reads " + rounded_text(size, 4) + " g, mostly along " + axis + "); --gravity " + axis + " subtracts it";
   if (size < 0.1) return "gravity: not in the record, as it seems (the first second reads " + rounded_text(size, 3) + " g)";
-  return "gravity: cannot be told (the first second reads " + rounded_text(size, 3) + " g); --gravity AXIS or --quiet FROM,TO subtracts what is there at rest";
+  return "gravity: cannot be told (the first second reads " + rounded_text(size, 3) + " g); --gravity AXIS or --rest FROM,TO subtracts what is there at rest";
 }
 
 void add_clipping(const Recording& recording, std::vector<std::string>& lines) {
@@ -49,7 +49,7 @@ void add_clipping(const Recording& recording, std::vector<std::string>& lines) {
     const std::string axis(1, recording.layout.axes[i].axis);
     if (facts.beyond_range.count > 0)
       lines.push_back("Axis " + axis + " is at the end of the sensor's range in " + times_text(facts.beyond_range, "sample", "samples") + ": its peaks were higher.");
-    else if (facts.flat_longest >= 3)
+    else if (facts.flat_longest >= 3 && !recording.layout.holds)
       lines.push_back("Axis " + axis + " stays at " + in_g(facts.flat_value) + " for " + std::to_string(facts.flat_longest) + " samples (first line " + std::to_string(facts.flat_line) +
                       "): it seems clipped, and its peaks were higher.");
   }

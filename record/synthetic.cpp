@@ -72,7 +72,7 @@ std::string gcdc_epoch() {
 std::string phone() {
   std::string text = "DateTime;Magnitude;X [g];Y [g];Z [g]\r\n";
   add_rows(text, 100.0, [](int i, double, const auto& a) {
-    const std::string stamp = stamp_text(k_start_ns + i * 10'000'000).substr(11, 12); // of one day
+    const std::string stamp = stamp_text(k_start_ns + std::int64_t{i} * 10'000'000).substr(11, 12); // of one day
     const double size = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
     return "04.01.2016 " + with_comma(stamp + printed(";%.4f;%.4f;%.4f;%.4f\r\n", size, a[0], a[1], a[2]));
   });
@@ -101,7 +101,7 @@ std::string monilog() {
 
 std::string msr() {
   std::string text = "*CREATOR\nMSR145\n*STARTTIME\n2016-01-04;10:25:14\n*MODUL\n*NAME\n*DATA\nTIME;ACC x;ACC y;ACC z\n;g;g;g\n";
-  add_rows(text, 50.0, [](int i, double, const auto& a) { return stamp_text(k_start_ns + i * 20'000'000) + printed(";%.3f;%.3f;%.3f\n", a[0], a[1], a[2]); });
+  add_rows(text, 50.0, [](int i, double, const auto& a) { return stamp_text(k_start_ns + std::int64_t{i} * 20'000'000) + printed(";%.3f;%.3f;%.3f\n", a[0], a[1], a[2]); });
   return text;
 }
 
@@ -112,7 +112,7 @@ std::string lansmont() {
 }
 
 std::string solve() {
-  std::string text = "# SOLVE g-log vibra\n# rate = 200 Hz\nt_s x_m/s2 y_m/s2 z_m/s2\n";
+  std::string text = "# SOLVE g-log vibra\n# rate = 200 Hz\nt[s] x[m/s^2] y[m/s^2] z[m/s^2]\n";
   add_rows(text, 200.0, [](int, double t, const auto& a) { return printed("%.3f %.3f %.3f %.3f\n", t, a[0] * 9.80665, a[1] * 9.80665, a[2] * 9.80665); });
   return text;
 }

@@ -105,12 +105,12 @@ private:
 std::array<double, 3> quiet_offset(const std::string& file, const std::string& quiet, const ReadOptions& options) {
   const auto comma = quiet.find(',');
   const auto from = parse_number(quiet.substr(0, comma), '.'), to = comma == std::string::npos ? std::nullopt : parse_number(quiet.substr(comma + 1), '.');
-  if (!from || !to || !(*to > *from)) throw UsageError("--quiet '" + quiet + "': give two times in s, such as 0,2");
-  if (is_standard_input(file)) throw UsageError("--quiet needs a file that can be read twice, not standard input");
+  if (!from || !to || !(*to > *from)) throw UsageError("--rest '" + quiet + "': give two times in s, such as 0,2");
+  if (is_standard_input(file)) throw UsageError("--rest needs a file that can be read twice, not standard input");
   QuietMean mean(*from, *to);
   LineSource source(file);
   static_cast<void>(read_record(source, options, mean));
-  if (mean.count() < 2) throw RecordError(source.name(), 0, 0, "The record has no two samples from " + number_text(*from) + " s to " + number_text(*to) + " s. Give a stretch within it with --quiet.");
+  if (mean.count() < 2) throw RecordError(source.name(), 0, 0, "The record has no two samples from " + number_text(*from) + " s to " + number_text(*to) + " s. Give a stretch within it with --rest.");
   return {mean.mean(0), mean.mean(1), mean.mean(2)};
 }
 
@@ -315,7 +315,7 @@ ExitCode make(const RecordOptions& options, Console& console) {
 ExitCode record(const RecordOptions& options, Console& console) {
   if (options.make) return make(options, console);
   Outputs outputs;
-  if (options.quiet && options.gravity) throw UsageError("--quiet takes away all that is there at rest, gravity included: leave --gravity out");
+  if (options.quiet && options.gravity) throw UsageError("--rest takes away all that is there at rest, gravity included: leave --gravity out");
   if (options.drift) outputs.drift = choice<DriftCorrection>(options.drift, "--drift", {{"none", DriftCorrection::none}, {"line", DriftCorrection::line}});
   if (options.event) outputs.event = static_cast<std::size_t>(std::floor(number_of(options.event, "--event", 0.0)));
   if (options.event && std::to_string(outputs.event) != *options.event) throw UsageError("--event '" + *options.event + "': give the number of an event, from 1");
@@ -366,7 +366,7 @@ What cannot be known from the file is asked for, with the option that settles it
       {"--backward", &o->backward, "HOW", "times before that of the row before: refuse (default), split or drop"},
       {"--hold", &o->holds, "", "left-out samples have the value before them"},
       {"--gap", &o->gap, "N", "sampling intervals beyond which a gap splits the record: 3.5"},
-      {"--quiet", &o->quiet, "FROM,TO", "subtract the mean from FROM to TO, s"},
+      {"--rest", &o->quiet, "FROM,TO", "subtract the mean from FROM to TO, s"},
       {"--gravity", &o->gravity, "AXIS", "subtract gravity from x, y, z, -x, -y or -z"},
       {"--cfc", &o->cfc, "HZ", "low-pass of a channel frequency class (ISO 6487): 10 to 1000"},
       {"--resample", &o->resample, "HZ", "higher rate of the cleaned signal"},
