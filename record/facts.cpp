@@ -69,7 +69,8 @@ void add_irregularities(const ReadFacts& facts, const RecordLayout& layout, std:
   add(facts.backward, "step", "steps", " back in time, as asked.");
   add(facts.midnights, "midnight", "midnights", " passed.");
   add(facts.held, "place", "places", " where samples were left out: the value before is held (" + layout.hold_reason + ").");
-  if (facts.cut_line > 0) lines.push_back("The last line (" + std::to_string(facts.cut_line) + ") does not end with a line break and may be cut: it was left out.");
+  if (facts.cut_line > 0) lines.push_back("The last line (" + std::to_string(facts.cut_line) + ") is cut: it was left out.");
+  if (facts.unended_line > 0) lines.push_back("The last line (" + std::to_string(facts.unended_line) + ") does not end with a line break. It has all fields and was kept; if the file was cut there, its last number may lack digits.");
 }
 
 std::string delimiter_text(char delimiter) { return delimiter == '\t' ? "tab" : delimiter == ' ' ? "blanks" : std::string("'") + delimiter + "'"; }

@@ -78,7 +78,7 @@ std::string family_of(const std::vector<HeaderLine>& lines) {
     const char* word;
     const char* family;
   };
-  constexpr Mark k_marks[] = {{"gcdc", "Gulf Coast Data Concepts"}, {"gulf coast", "Gulf Coast Data Concepts"}, {";deadband", "Gulf Coast Data Concepts"},
+  constexpr Mark k_marks[] = {{"gcdc", "Gulf Coast Data Concepts"}, {"gulf coast", "Gulf Coast Data Concepts"}, {"gcdataconcepts", "Gulf Coast Data Concepts"}, {";deadband", "Gulf Coast Data Concepts"},
                               {"; deadband", "Gulf Coast Data Concepts"}, {"shocklog", "ShockLog"}, {"monilog", "MONILOG"}, {"lansmont", "Lansmont"},
                               {"endaq", "enDAQ"}, {"slam stick", "enDAQ"}, {"solve", "SOLVE"}, {"palt", "PALT"}, {"*creator", "MSR"}, {"msr", "MSR"}};
   for (const Mark& mark : k_marks)
@@ -145,6 +145,7 @@ NamedRole role_of(std::string_view name) {
   if (holds(words, {"datetime", "timestamp", "zeitstempel"}) || (holds(words, {"date"}) && holds(words, {"time"}))) return {Role::time, 3};
   if (holds(words, {"date", "datum"})) return {Role::date, 2};
   if (holds(words, {"time", "times", "zeit", "elapsed", "epoch", "uhrzeit"})) return {Role::time, 2};
+  if (trimmed_blanks(name) == "T") return {}; // temperature as well as time: asked for if nothing else is a time
   if (words.size() == 1 && holds(words, {"t", "seconds", "sec", "s", "ms", "millis"})) return {Role::time, 1};
   if (holds(words, {"sample", "samples", "index", "idx", "nr", "no", "n", "scan"})) return {Role::index, 1};
   if (std::any_of(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("accel"); }) || holds(words, {"acc", "shock", "a"}))

@@ -59,14 +59,16 @@ std::vector<AxisColumn> named_axes(const RecordLayout& layout) {
   add_named_axis(layout, 'x', Role::x, axes);
   add_named_axis(layout, 'y', Role::y, axes);
   add_named_axis(layout, 'z', Role::z, axes);
-  if (axes.empty()) add_named_axis(layout, 'x', Role::acceleration, axes);
+  for (std::size_t i = 0; i < layout.shape.names.size() && axes.empty(); ++i)
+    if (const std::string name = heading_of(layout.shape.names[i]).name; role_of(name).role == Role::acceleration)
+      throw RecordError(layout.file, layout.shape.names_line, 1, "The column '" + shown(name) + "' is an acceleration, but its name gives no axis. Give --x, --y or --z with its number, for example --x " + std::to_string(i + 1) + ".");
   if (axes.empty())
     throw RecordError(layout.file, layout.shape.names_line, 1, "No column is named as an axis of acceleration: there are " + quoted_list(layout.shape.names) +
                                                                    ". Choose columns with --x, --y or --z, by name or number.");
   return axes;
 }
 
-// Without names: those that are left beside a first column of times.
+// Without names: x, y and z if three columns are left beside a first column of times.
 std::vector<AxisColumn> unnamed_axes(const RecordLayout& layout, const std::vector<HeaderLine>& head, const ReadOptions& options) {
   const std::size_t width = layout.shape.width, line = head[layout.shape.first_data].number;
   std::vector<std::string_view> fields;
@@ -76,7 +78,7 @@ std::vector<AxisColumn> unnamed_axes(const RecordLayout& layout, const std::vect
   if (options.time && *options.time != "none") time = column_of(layout.shape, *options.time, "--time", layout.file);
   else if (!options.time && begins_with_stamp) time = 0;
   const bool is_settled = time || options.time == "none";
-  if (!is_settled || width - (time ? 1 : 0) > 3 || width == (time ? 1U : 0U))
+  if (!is_settled || width != (time ? 4U : 3U))
     throw RecordError(layout.file, line, 1, "No line names the " + counted(width, "column", "columns") + " of this table. Say which is which by number, for example --time 1 --x 2 --y 3 --z 4 (--time none if there is no column of times).");
   std::vector<AxisColumn> axes;
   for (std::size_t i = 0; i < width; ++i)

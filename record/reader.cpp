@@ -103,6 +103,9 @@ private:
     if (time.kind != TimeKind::none) need(time.column);
     if (time.kind == TimeKind::date_and_clock) need(time.clock_column);
     for (const AxisColumn& axis : layout_->axes) need(axis.column);
+    const PeakColumns& peaks = layout_->peaks;
+    for (const int column : {peaks.axis[0], peaks.axis[1], peaks.axis[2], peaks.magnitude, peaks.duration, peaks.velocity_change})
+      if (layout_->is_peaks && column >= 0) need(static_cast<std::size_t>(column));
     uses_index_ = time.index_column && (time.kind == TimeKind::none || layout_->holds);
     if (uses_index_) need(*time.index_column);
     if (time.rate > 0.0) step_ = 1.0 / time.rate;
@@ -126,8 +129,11 @@ private:
       throw RecordError(layout_->file, line_, 1, "The fields of this line do not come out: a quote is not closed, or a decimal comma is missing. Correct the line.");
     }
     while (fields_.size() > layout_->shape.width && fields_.back().empty()) fields_.pop_back();
-    if (!is_terminated_ && fields_.size() <= std::max(needed_, layout_->shape.width)) return cut();
-    if (is_text_line()) return take_text_line();
+    if (is_text_line()) return is_terminated_ ? take_text_line() : cut();
+    if (!is_terminated_ && !is_whole()) return cut();
+    if (!is_terminated_) facts.unended_line = line_;
+    row_fields_ = fields_.size();
+    row_decimals_ = decimals(fields_.back());
     if (fields_.size() > layout_->shape.width)
       fail(fields_[layout_->shape.width], "This row has " + counted(fields_.size(), "field", "fields") + ", " + std::to_string(layout_->shape.width) + " were expected. If two rows ran together, part them.");
     facts.last_comment.clear();
@@ -135,8 +141,21 @@ private:
     if (take_axes()) take_sample();
   }
 
-  // Whether the last line, which no line break ends, is whole cannot be known: its last number may be cut.
   void cut() { recording_.facts.cut_line = line_; }
+
+  std::size_t decimals(std::string_view field) const {
+    const auto sign = field.find(layout_->shape.decimal);
+    return sign == std::string_view::npos ? 0 : field.size() - sign - 1;
+  }
+
+  // Of a last line that no line break ends. It is whole if it has the fields of the header or of the row before, and the last of them as
+  // many decimals as there. A whole number may still have lost digits: it is kept and said.
+  bool is_whole() const {
+    if (fields_.size() > needed_) return true; // a delimiter follows all that is read
+    if (fields_.size() < std::min(layout_->shape.width, std::max(row_fields_, needed_))) return false;
+    const std::string_view last = fields_.back();
+    return !last.empty() && last.back() >= '0' && last.back() <= '9' && decimals(last) >= row_decimals_;
+  }
 
   // A title, names or units of another block of the file.
   bool is_text_line() const {
@@ -200,10 +219,17 @@ private:
     if (options_.missing == IfMissing::refuse)
       fail(first_missing, "There is no value for an axis here. Give --missing skip to leave such rows out, or --missing hold to keep the value before.");
     facts.missing.note(line_);
-    if (options_.missing == IfMissing::skip || !has_previous_) return false;
+    if (options_.missing == IfMissing::skip || !has_previous_) return skip_row();
     for (std::size_t i = 0; i < count; ++i)
       if (is_missing_[i]) values_[i] = previous_[i];
     return true;
+  }
+
+  // A row that is left out has its place in time where times are counted by rows.
+  bool skip_row() {
+    if (is_new_block_ && layout_->time.kind == TimeKind::none && !uses_index_) end_segment(), rows_in_block_ = 0, is_new_block_ = false;
+    ++rows_in_block_;
+    return false;
   }
 
   // Of a sensor beside the axes: a row that has one says nothing of accelerations.
@@ -381,7 +407,7 @@ private:
     ReadFacts& facts = recording_.facts;
     facts.lines = source_.number();
     if (facts.rows == 0)
-      throw RecordError(layout_->file, facts.lines, 1, facts.cut_line > 0 ? "The only row does not end with a line break and may be cut: no row is left. Copy the file again from the recorder." : "No row of the table holds an acceleration. Choose columns with --x, --y, --z.");
+      throw RecordError(layout_->file, facts.lines, 1, facts.cut_line > 0 ? "The only row is cut: no row is left. Copy the file again from the recorder." : "No row of the table holds an acceleration. Choose columns with --x, --y, --z.");
     for (std::size_t i = 0; i < layout_->axes.size(); ++i) {
       watches_[i].finish(facts.axes[i]);
       facts.axes[i].rest = summed_ > 0 ? sums_[i] / static_cast<double>(summed_) : 0.0;
@@ -398,6 +424,7 @@ private:
   std::string_view text_; ///< the line
   std::vector<std::string_view> fields_;
   std::size_t line_ = 0, needed_ = 0, rows_in_block_ = 0, summed_ = 0;
+  std::size_t row_fields_ = 0, row_decimals_ = 0; ///< of the row before: fields, and digits behind the decimal sign of the last
   double step_ = 0.0; ///< s
   std::array<double, 3> values_{}, previous_{}, sums_{};
   std::array<bool, 3> is_missing_{};

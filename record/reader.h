@@ -60,7 +60,8 @@ struct ReadFacts {
   double first = 0.0, last = 0.0;                ///< s
   double longest_gap = 0.0;                      ///< s
   Counted gaps, blocks, comments, short_rows, other_rows, missing, repeated, backward, held, midnights;
-  std::size_t cut_line = 0;                      ///< 0: the last line was whole
+  std::size_t cut_line = 0;                      ///< the last line, left out because it is cut; 0: it is not
+  std::size_t unended_line = 0;                  ///< the last line, kept though no line break ends it; 0: one does
   std::string last_comment;                      ///< after the last row
   std::array<AxisFacts, 3> axes;
 };

@@ -152,6 +152,14 @@ bool is_names_row(const Fields& fields) {
          std::any_of(fields.begin(), fields.end(), [](std::string_view f) { return role_of(heading_of(f).name).role != Role::other; });
 }
 
+// Fields such as "s" name a unit as well as a column: units all of them, if no other field names an axis or the like.
+bool are_only_units(const Fields& fields) {
+  return is_units_row(fields) && std::all_of(fields.begin(), fields.end(), [](std::string_view f) {
+    const Role role = role_of(heading_of(f).name).role;
+    return role == Role::other || role == Role::time;
+  });
+}
+
 // "; Headers, time, Ax" and "; Time, Ax": what follows the sign of a comment, and the word "Headers".
 std::string uncommented(std::string_view line) {
   line = trimmed_blanks(line);
@@ -182,7 +190,7 @@ void find_names(const std::vector<HeaderLine>& head, const std::string& file, st
       if (!in_comments && back == 1 && numbers > 0 && 2 * (numbers + 1) >= fields.size() && fields.size() >= row_width)
         throw RecordError(file, line.number, 1, "This line before the first row holds both words and numbers: '" + shown(line.text.substr(0, 40)) +
                                                     "'. If it is a row, correct the word in it; if it names columns, take names that are not numbers.");
-      if (fields.size() > 1 && shape.units_line == 0 && is_units_row(fields) && !is_names_row(fields)) {
+      if (fields.size() > 1 && shape.units_line == 0 && are_only_units(fields)) {
         take_names(fields, shape.units);
         shape.units_line = line.number;
       } else if (is_names_row(fields) && (fields.size() >= row_width || fields.size() > 1 || row_width == 1)) {
@@ -192,6 +200,28 @@ void find_names(const std::vector<HeaderLine>& head, const std::string& file, st
         break; // a line of another kind: names stand right before the data
       }
     }
+}
+
+// Files in blocks say where their rows begin: "*DATA".
+std::size_t begin_of_data(const std::vector<HeaderLine>& head) {
+  for (std::size_t i = 0; i < head.size(); ++i)
+    if (lower_case(trimmed_blanks(head[i].text)) == "*data") return i + 1;
+  return 0;
+}
+
+// A line such as the date of the start looks like a row, but the names of columns come after it.
+bool is_before_names(const std::vector<HeaderLine>& head, const std::string& file, std::size_t row, const TableShape& shape) {
+  Fields fields;
+  const auto has_names = [&](std::size_t i) { return !is_comment(head[i].text, shape.delimiter) && split_fields(head[i].text, shape.delimiter, fields) && is_names_row(fields); };
+  for (std::size_t i = 0; i < row; ++i)
+    if (has_names(i) || (is_comment(head[i].text, shape.delimiter) && split_fields(uncommented(head[i].text), shape.delimiter, fields) && is_names_row(fields))) return false;
+  for (std::size_t i = row + 1, seen = 0; i < head.size() && seen < 4; ++i) {
+    seen += !trimmed_blanks(head[i].text).empty();
+    if (!has_names(i)) continue;
+    if (fields.size() > shape.width) return true;
+    throw RecordError(file, head[row].number, 1, "This row stands before line " + std::to_string(head[i].number) + ", which names the columns. Take it out, or put the line with the names before it.");
+  }
+  return false;
 }
 
 } // namespace
@@ -227,7 +257,7 @@ TableShape find_shape(const std::vector<HeaderLine>& head, const std::string& fi
   const auto is_row = [&](std::size_t i) {
     return !is_comment(head[i].text, shape.delimiter) && split_fields(head[i].text, shape.delimiter, fields) && looks_like_row(fields);
   };
-  std::size_t first = 0;
+  std::size_t first = begin_of_data(head);
   for (bool is_found = false; first < head.size(); ++first) {
     if (!is_row(first)) continue;
     shape.width = fields.size();
@@ -237,7 +267,7 @@ TableShape find_shape(const std::vector<HeaderLine>& head, const std::string& fi
       ++seen;
       rows += is_row(i);
     }
-    is_found = 2 * rows >= seen;
+    is_found = 2 * rows >= seen && !is_before_names(head, file, first, shape);
     if (is_found) break;
   }
   if (first >= head.size())

@@ -151,38 +151,25 @@ private:
     std::string unit = options_.time_unit.value_or(""), source = "--time-unit";
     if (unit.empty() && base_.column < shape_.names.size()) unit = heading_of(shape_.names[base_.column]).unit, source = "line " + std::to_string(shape_.names_line);
     if (unit.empty() && base_.column < shape_.units.size()) unit = shape_.units[base_.column], source = "line " + std::to_string(shape_.units_line);
-    if (unit.empty() && !settle_by_size()) unit = unit_by_rate(source);
-    if (!unit.empty()) settle_unit(unit, source);
+    if (unit.empty()) unit = unit_by_family_or_rate(source);
+    settle_unit(unit, source);
   }
 
-  // Seconds since 1970 in one of four units, or the days of a spreadsheet: by their size, which no time of a journey has.
-  bool settle_by_size() {
-    struct Epoch {
-      double factor;
-      const char* unit;
-    };
-    constexpr Epoch k_epochs[] = {{1.0, "epoch"}, {1e-3, "epoch ms"}, {1e-6, "epoch us"}, {1e-9, "epoch ns"}};
+  // What numbers of this size often are, offered where the unit is asked for. "": nothing comes to mind.
+  std::string likely_unit() const {
     const double value = numbers_.front();
-    for (const Epoch& epoch : k_epochs)
-      if (value * epoch.factor > 9.4e8 && value * epoch.factor < 2.6e9) { // 1999 to 2052
-        settle_unit(epoch.unit, "the size of its numbers");
-        return true;
-      }
-    const double step = typical_step();
-    const bool is_date = role_of(heading_of(base_.column < shape_.names.size() ? shape_.names[base_.column] : "").name).role == Role::date;
-    if (value > 20000.0 && value < 80000.0 && step > 0.0 && (step < 1e-5 || is_date)) { // 1954 to 2119; as seconds beyond 100 kHz
-      settle_unit("days", "the size of its numbers");
-      return true;
-    }
-    return false;
+    const std::pair<double, const char*> epochs[] = {{1.0, "epoch"}, {1e-3, "\"epoch ms\""}, {1e-6, "\"epoch us\""}, {1e-9, "\"epoch ns\""}};
+    for (const auto& [factor, unit] : epochs)
+      if (value * factor > 9.4e8 && value * factor < 2.6e9) return std::string(" Numbers of this size are often times since 1970: that is --time-unit ") + unit + "."; // 1999 to 2052
+    return is_size_of_days() ? " Numbers of this size are often the days of a spreadsheet: that is --time-unit days." : "";
   }
+  bool is_size_of_days() const { return numbers_.front() > 20000.0 && numbers_.front() < 80000.0; } // 1954 to 2119
 
-  // Which unit makes the times agree with the rate that a line says.
-  std::string unit_by_rate(std::string& source) const {
-    if (layout_.family == "Gulf Coast Data Concepts") {
-      source = "the family of the recorder";
-      return "s";
-    }
+  // Which unit the family of the recorder writes, or makes the times agree with the rate that a line says.
+  std::string unit_by_family_or_rate(std::string& source) const {
+    source = "the family of the recorder";
+    if (layout_.family == "Gulf Coast Data Concepts") return "s";
+    if (layout_.family == "PALT" && is_size_of_days()) return "days";
     const auto rate = options_.rate ? options_.rate : said_rate_ ? std::optional(said_rate_->hz) : std::nullopt;
     if (rate && !layout_.holds)
       for (const char* unit : {"s", "ms", "us"}) {
@@ -190,7 +177,7 @@ private:
         source = options_.rate ? "--rate" : "the rate in line " + std::to_string(said_rate_->line);
         if (samples > 0.8 && samples < 1.25) return unit;
       }
-    fail(0, "Nothing says in which unit the times are. Give --time-unit s, ms, us, epoch or days.");
+    fail(0, "Nothing says in which unit the times are. Give --time-unit s, ms, us, epoch or days." + likely_unit());
   }
 
   void settle_unit(const std::string& unit, const std::string& source) {

@@ -7,6 +7,7 @@
 #include "record/fields.h"
 #include "record/outputs.h"
 #include "record/record_error.h"
+#include "record/result_folder.h"
 #include "record/synthetic.h"
 #include "record/time_text.h"
 #include "tools/steplap/text_table.h"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <ostream>
 
 namespace steplap {
@@ -226,22 +228,15 @@ void print_result(std::ostream& out, const RecordResult& result) {
 }
 
 struct Outputs {
-  std::string folder; ///< "": none
+  std::string folder; ///< where files are written; "": none are
   std::size_t event = 0; ///< 0: all
   DriftCorrection drift = DriftCorrection::none;
 };
 
-std::vector<std::string> write_tables(const RecordResult& result, const Outputs& outputs, bool is_overwriting) {
-  const IfExists if_exists = is_overwriting ? IfExists::replace : IfExists::refuse;
-  std::vector<std::string> written;
-  const auto write = [&](const char* name, const std::string& text) {
-    write_file(outputs.folder + "/" + name, text, if_exists);
-    written.push_back(outputs.folder + "/" + name);
-  };
-  write("events.csv", record_events_csv(result));
-  if (!result.recording.layout.is_peaks) write("shock_spectra.csv", spectra_csv(result));
-  write("record.json", record_json(result));
-  return written;
+void write_tables(const RecordResult& result, const Outputs& outputs) {
+  write_file(outputs.folder + "/events.csv", record_events_csv(result));
+  if (!result.recording.layout.is_peaks) write_file(outputs.folder + "/shock_spectra.csv", spectra_csv(result));
+  write_file(outputs.folder + "/record.json", record_json(result));
 }
 
 void process(const std::string& file, const RecordOptions& options, const Outputs& outputs, Console& console) {
@@ -251,7 +246,6 @@ void process(const std::string& file, const RecordOptions& options, const Output
   Conditioning conditioning;
   if (options.cfc) conditioning.frequency_class = number_of(options.cfc, "--cfc", 0.0, ", in Hz");
   if (options.quiet) conditioning.offset = quiet_offset(file, *options.quiet, reading);
-  if (!outputs.folder.empty()) fs::create_directories(outputs.folder);
   std::optional<std::string> window;
   const RecordLayout* layout = nullptr;
   ShockFinder finder(result.rules, [&](const ShockEvent& event, const Window& samples) {
@@ -260,7 +254,7 @@ void process(const std::string& file, const RecordOptions& options, const Output
     if (event.number == outputs.event) window = window_csv(samples, *layout, outputs.drift);
     result.events.push_back(std::move(found));
   });
-  SignalWriter writer(outputs.folder, options.is_overwriting);
+  SignalWriter writer(outputs.folder, false);
   const bool writes_signal = !outputs.folder.empty() && outputs.event == 0;
   Tee tee(finder, writes_signal ? &writer : nullptr);
   struct Keep : GravityFirst {
@@ -285,16 +279,28 @@ void process(const std::string& file, const RecordOptions& options, const Output
   if (console.verbosity != Verbosity::quiet && !options.is_json) print_result(console.out, result);
   if (options.is_json) console.out << record_json(result);
   if (outputs.folder.empty()) return;
-  std::vector<std::string> written = write_tables(result, outputs, options.is_overwriting);
-  if (window) {
-    const std::string name = outputs.folder + "/event_" + std::to_string(outputs.event) + ".csv";
-    write_file(name, *window, options.is_overwriting ? IfExists::replace : IfExists::refuse);
-    written.push_back(name);
+  write_tables(result, outputs);
+  if (window) write_file(outputs.folder + "/event_" + std::to_string(outputs.event) + ".csv", *window);
+  static_cast<void>(writer.commit());
+}
+
+// One folder for each file; of several files each has one of its own, named as the file.
+std::vector<std::unique_ptr<RecordFolder>> result_folders(const RecordOptions& options) {
+  std::vector<std::unique_ptr<RecordFolder>> folders;
+  for (const std::string& file : options.files) {
+    const std::string path = options.files.size() > 1 ? (fs::path(*options.output) / fs::path(file).stem()).string() : *options.output;
+    for (const auto& other : folders)
+      if (fs::path(other->path()) == fs::path(path).lexically_normal()) throw UsageError("-o: two of the files have the name '" + fs::path(file).stem().string() + "', so that their results would have the same folder. Read them one by one");
+    folders.push_back(std::make_unique<RecordFolder>(path, options.is_overwriting));
   }
-  for (const std::string& name : writer.commit()) written.push_back(name);
-  if (console.verbosity == Verbosity::quiet || options.is_json) return;
-  console.out << "\nWritten to " << outputs.folder << ": ";
-  for (std::size_t i = 0; i < written.size() && i < 6; ++i) console.out << (i > 0 ? ", " : "") << fs::path(written[i]).filename().string();
+  return folders;
+}
+
+void commit(RecordFolder& folder, bool is_silent, Console& console) {
+  const std::vector<std::string> written = folder.commit();
+  if (is_silent) return;
+  console.out << "\nWritten to " << folder.path() << ": ";
+  for (std::size_t i = 0; i < written.size() && i < 6; ++i) console.out << (i > 0 ? ", " : "") << written[i];
   console.out << (written.size() > 6 ? ", ..." : "") << "\n";
 }
 
@@ -321,13 +327,15 @@ ExitCode record(const RecordOptions& options, Console& console) {
   if (options.event && std::to_string(outputs.event) != *options.event) throw UsageError("--event '" + *options.event + "': give the number of an event, from 1");
   if (options.event && !options.output) throw UsageError("--event writes the window of one event: say where with -o DIR");
   if (outputs.drift != DriftCorrection::none && !options.event) throw UsageError("--drift corrects the window of one event: give --event N");
-  bool is_first = true;
-  for (const std::string& file : options.files) {
-    if (!is_first && console.verbosity != Verbosity::quiet && !options.is_json) console.out << "\n";
-    is_first = false;
-    if (options.output) outputs.folder = options.files.size() > 1 ? (fs::path(*options.output) / fs::path(file).stem()).string() : *options.output;
-    process(file, options, outputs, console);
+  const bool is_silent = console.verbosity == Verbosity::quiet || options.is_json;
+  std::vector<std::unique_ptr<RecordFolder>> folders;
+  if (options.output) folders = result_folders(options);
+  for (std::size_t i = 0; i < options.files.size(); ++i) {
+    if (i > 0 && !is_silent) console.out << "\n";
+    if (options.output) outputs.folder = folders[i]->staging();
+    process(options.files[i], options, outputs, console);
   }
+  for (const auto& folder : folders) commit(*folder, is_silent, console); // all files are read: none is refused any more
   return ExitCode::done;
 }
 
