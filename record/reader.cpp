@@ -124,6 +124,8 @@ private:
       facts.comments.note(line_);
       return;
     }
+    const bool may_name = layout_->shape.joins_pairs && split_fields(text, layout_->shape.delimiter, fields_); // names do not come in pairs
+    if (may_name && fields_.size() == layout_->shape.width && is_terminated_ && is_text_line()) return take_text_line();
     if (!layout_->shape.split(text, fields_)) {
       if (!is_terminated_) return cut();
       throw RecordError(layout_->file, line_, 1, "The fields of this line do not come out: a quote is not closed, or a decimal comma is missing. Correct the line.");

@@ -146,10 +146,11 @@ bool is_units_row(const Fields& fields) {
   return units > 0;
 }
 
-// Words, of which none is a number: names of columns.
-bool is_names_row(const Fields& fields) {
-  return fields.size() > 0 && std::none_of(fields.begin(), fields.end(), [](std::string_view f) { return is_number(f) || is_stamp(f); }) &&
-         std::any_of(fields.begin(), fields.end(), [](std::string_view f) { return role_of(heading_of(f).name).role != Role::other; });
+// Words, of which none is a number: names of columns. Where blanks part them a sentence looks alike, so that half of them must be known.
+bool is_names_row(const Fields& fields, char delimiter) {
+  if (std::any_of(fields.begin(), fields.end(), [](std::string_view f) { return is_number(f) || is_stamp(f); })) return false;
+  const auto known = static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), [](std::string_view f) { return role_of(heading_of(f).name).role != Role::other; }));
+  return known > 0 && (delimiter != ' ' || 2 * known >= fields.size());
 }
 
 // Fields such as "s" name a unit as well as a column: units all of them, if no other field names an axis or the like.
@@ -192,8 +193,9 @@ void find_names(const std::vector<HeaderLine>& head, const std::string& file, st
                                                     "'. If it is a row, correct the word in it; if it names columns, take names that are not numbers.");
       if (fields.size() > 1 && shape.units_line == 0 && are_only_units(fields)) {
         take_names(fields, shape.units);
+        std::replace(shape.units.begin(), shape.units.end(), std::string("-"), std::string());
         shape.units_line = line.number;
-      } else if (is_names_row(fields) && (fields.size() >= row_width || fields.size() > 1 || row_width == 1)) {
+      } else if (is_names_row(fields, shape.delimiter) && (fields.size() >= row_width || fields.size() > 1 || row_width == 1)) {
         take_names(fields, shape.names);
         shape.names_line = line.number;
       } else if (!in_comments && shape.units_line == 0) {
@@ -212,9 +214,9 @@ std::size_t begin_of_data(const std::vector<HeaderLine>& head) {
 // A line such as the date of the start looks like a row, but the names of columns come after it.
 bool is_before_names(const std::vector<HeaderLine>& head, const std::string& file, std::size_t row, const TableShape& shape) {
   Fields fields;
-  const auto has_names = [&](std::size_t i) { return !is_comment(head[i].text, shape.delimiter) && split_fields(head[i].text, shape.delimiter, fields) && is_names_row(fields); };
+  const auto has_names = [&](std::size_t i) { return !is_comment(head[i].text, shape.delimiter) && split_fields(head[i].text, shape.delimiter, fields) && is_names_row(fields, shape.delimiter); };
   for (std::size_t i = 0; i < row; ++i)
-    if (has_names(i) || (is_comment(head[i].text, shape.delimiter) && split_fields(uncommented(head[i].text), shape.delimiter, fields) && is_names_row(fields))) return false;
+    if (has_names(i) || (is_comment(head[i].text, shape.delimiter) && split_fields(uncommented(head[i].text), shape.delimiter, fields) && is_names_row(fields, shape.delimiter))) return false;
   for (std::size_t i = row + 1, seen = 0; i < head.size() && seen < 4; ++i) {
     seen += !trimmed_blanks(head[i].text).empty();
     if (!has_names(i)) continue;

@@ -101,7 +101,7 @@ private:
     if (manner_.clock != Clock::none) {
       const std::string unit = !manner_.says_clock_unit || !is_number(manner_.clock) ? "" : manner_.clock == Clock::milliseconds ? "ms" : manner_.clock == Clock::days ? "days" : "s";
       names.push_back("Time" + (in_names && !unit.empty() ? "[" + unit + "]" : ""));
-      units.push_back(unit);
+      units.push_back(unit.empty() && manner_.delimiter == ' ' ? "-" : unit);
     }
     for (const char* axis : {"Ax", "Ay", "Az"}) {
       names.push_back(axis + (in_names ? "[" + std::string(unit_of(manner_.scale)) + "]" : ""));
@@ -186,7 +186,7 @@ private:
       if (k > 0) text += manner_.delimiter;
       put(decimal(row.fields[k]));
     }
-    if (manner_.is_ragged && i % 7 == 3) text += manner_.delimiter + decimal("21.5");
+    if (manner_.is_ragged && i % 7 == 2) text += manner_.delimiter + decimal("21.5");
     line(text);
   }
 

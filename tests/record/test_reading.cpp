@@ -18,7 +18,7 @@ void check_manner(const Manner& manner, std::uint32_t seed) {
   const ReadFacts& facts = read.recording.facts;
   CHECK((facts.cut_line > 0) == (manner.ending == Ending::cut_row));
   CHECK((facts.unended_line > 0) == (manner.ending == Ending::no_line_break));
-  CHECK((facts.comments.count > 0) == (manner.trap == RowTrap::comment || manner.ending == Ending::comment || (manner.trap == RowTrap::block && manner.are_names_comment)));
+  CHECK((facts.comments.count > 0) == (manner.trap == RowTrap::comment || manner.ending == Ending::comment));
   if (manner.trap == RowTrap::clipped) CHECK((facts.axes[0].flat_longest == 5 || facts.axes[0].beyond_range.count == 5));
 }
 
