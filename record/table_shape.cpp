@@ -186,9 +186,10 @@ void find_names(const std::vector<HeaderLine>& head, const std::string& file, st
       const bool is_beside = is_comment(line.text, shape.delimiter);
       if (trimmed_blanks(line.text).empty() || is_beside != in_comments) continue;
       const std::string text = is_beside ? uncommented(line.text) : line.text;
-      if (!split_fields(text, shape.delimiter, fields)) continue;
+      if (!split_fields(text, shape.delimiter, fields) || fields.empty()) continue;
       const std::size_t numbers = static_cast<std::size_t>(std::count_if(fields.begin(), fields.end(), is_number));
-      if (!in_comments && back == 1 && numbers > 0 && 2 * (numbers + 1) >= fields.size() && fields.size() >= row_width)
+      const bool is_key = !begins_like_number(fields.front()) && fields.front().find_first_of(":=") != std::string_view::npos; // "Rate: 100 Hz"
+      if (!in_comments && back == 1 && !is_key && numbers > 0 && 2 * (numbers + 1) >= fields.size() && fields.size() >= row_width)
         throw RecordError(file, line.number, 1, "This line before the first row holds both words and numbers: '" + shown(line.text.substr(0, 40)) +
                                                     "'. If it is a row, correct the word in it; if it names columns, take names that are not numbers.");
       if (fields.size() > 1 && shape.units_line == 0 && are_only_units(fields)) {

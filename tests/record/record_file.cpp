@@ -130,7 +130,7 @@ private:
     case Clock::local_dots: return day + "." + month + "." + year + " " + clock;
     case Clock::local_slashes: return day + "/" + month + "/" + year + " " + clock;
     case Clock::epoch: return decimal(printed("%.6f", 1451903114.0 + t));
-    case Clock::days: return decimal(printed("%.12f", k_start_days + t / 86400.0));
+    case Clock::days: return decimal(printed("%.11f", k_start_days + t / 86400.0));
     case Clock::none: break;
     }
     return "";

@@ -85,3 +85,32 @@ TEST_CASE("a digit of a time or an acceleration that is changed changes what is 
   }
   CHECK(read > 100);
 }
+
+TEST_CASE("a file that is cut at any byte is refused, or read to the rows before the cut") {
+  for (const Scale scale : {Scale::g, Scale::counts_with_scale})
+    for (const char delimiter : {',', ' '}) {
+      Manner manner;
+      manner.scale = scale;
+      manner.delimiter = delimiter;
+      manner.comment = '#';
+      const std::string text = make_file(manner, 5).text;
+      const std::vector<Sample> whole = read_text(text, {}).segments.at(0);
+      std::size_t read = 0;
+      for (std::size_t length = 0; length < text.size(); ++length) {
+        const auto result = attempt(text.substr(0, length), {});
+        if (!result) continue;
+        ++read;
+        CAPTURE(length);
+        REQUIRE(result->segments.size() == 1);
+        const std::vector<Sample>& samples = result->segments[0];
+        // The digits that a whole number has lost cannot be known: that it may have is said.
+        const bool may_lack_digits = scale != Scale::g && result->recording.facts.unended_line > 0;
+        const std::size_t sure = samples.size() - (may_lack_digits ? 1 : 0);
+        REQUIRE(samples.size() <= whole.size());
+        bool is_same = true;
+        for (std::size_t i = 0; i < sure; ++i) is_same &= samples[i].t == whole[i].t && samples[i].a == whole[i].a;
+        CHECK(is_same);
+      }
+      CHECK(read > text.size() / 2);
+    }
+}
