@@ -115,3 +115,23 @@ TEST_CASE("what a made record holds is found: two shocks, their peaks and durati
     std::getline(events, line);
   }
 }
+
+TEST_CASE("the commands of docs/how-to/read_a_record.md do what it says, typed in their order") {
+  const Place place;
+  std::ifstream page(STEPLAP_SOURCE "/docs/how-to/read_a_record.md");
+  int typed = 0, refused = 0;
+  for (std::string line; std::getline(page, line);) {
+    const std::string begin = "steplap record ";
+    if (!line.starts_with(begin)) continue;
+    const bool is_refused = line.ends_with("# refused");
+    CAPTURE(line);
+    const int code = place.record(line.substr(begin.size(), line.find(" #") - begin.size()));
+    CHECK_MESSAGE(code == (is_refused ? 2 : 0), place.screen());
+    ++typed;
+    refused += is_refused;
+  }
+  CHECK(typed == 10);
+  CHECK(refused == 1);
+  CHECK(place.has("out/shock/signal.csv"));
+  CHECK(place.read("out/first/event_1.csv").starts_with("time [s],x [m/s^2],"));
+}
