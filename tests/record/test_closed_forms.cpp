@@ -36,9 +36,9 @@ double greatest_response(double quality) {
 } // namespace
 
 TEST_CASE("a half sine has the known maxima in its shock response spectrum") {
-  // The first 1.76828 is the maximum over f T of the undamped response in closed form below, the second is its damped counterpart.
-  CHECK(greatest_response(std::numeric_limits<double>::infinity()) == doctest::Approx(1.7685).epsilon(1e-4));
-  CHECK(greatest_response(10.0) == doctest::Approx(1.6516).epsilon(1e-4));
+  // Greatest values of the closed forms over f T: 1.76846 at 0.810 undamped (the formula of the next test), 1.65163 at 0.823 for Q = 10.
+  CHECK(std::abs(greatest_response(std::numeric_limits<double>::infinity()) - 1.7685) < 1e-4);
+  CHECK(std::abs(greatest_response(10.0) - 1.6516) < 1e-4);
 }
 
 TEST_CASE("the undamped response to a half sine follows its closed form at every frequency") {
