@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 using namespace steplap;
 using namespace steplap::test;
 
@@ -119,3 +121,29 @@ TEST_CASE("two signs of decimals in one file are asked for, and then refused whe
 }
 
 TEST_CASE("a comma that may part thousands is asked for") { check_refused("Time[s];Ax[mG]\n0;1,234\n1;2,345\n2;3,456\n", 2, "--decimal comma"); }
+
+TEST_CASE("dates and times of day in all their forms give the time from the first row") {
+  for (const char* text : {"Date;Time;Ax[g]\n04.01.2016;23:59:59.98;0.1\n04.01.2016;23:59:59.99;0.2\n05.01.2016;00:00:00.00;0.3\n",
+                           "Time;Ax[g]\n23:59:59.98;0.1\n23:59:59.99;0.2\n00:00:00.00;0.3\n",
+                           "Time;Ax[g]\n01/31/2016 11:59:59.98 PM;0.1\n01/31/2016 11:59:59.99 PM;0.2\n02/01/2016 12:00:00.00 AM;0.3\n",
+                           "Time;Ax[g]\n2016-02-28T23:59:59.98+01:00;0.1\n2016-02-28T23:59:59.99+01:00;0.2\n2016-02-29T00:00:00.00+01:00;0.3\n",
+                           "Time;Ax[g]\n31-Dec-2015 23:59:59,98;0.1\n31-Dec-2015 23:59:59,99;0.2\n01-Jan-2016 00:00:00,00;0.3\n"}) {
+    CAPTURE(text);
+    const ReadResult read = read_text(text);
+    REQUIRE(read.segments.size() == 1);
+    REQUIRE(read.segments[0].size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(std::abs(read.segments[0][i].t - 0.01 * static_cast<double>(i)) < 1e-12);
+      CHECK(std::abs(read.segments[0][i].a[0] - 0.1 * static_cast<double>(i + 1) * 9.80665) < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("with a deadband the value before is held up to the sample that differs") {
+  const ReadResult read = read_text(";Deadband, 5, counts\n;SampleRate, 100, Hz\n;Accel, 100, 1000, 16, g\n;Headers, time,Ax\n0.00,100\n0.01,200\n0.05,300\n0.06,400\n");
+  REQUIRE(read.segments.size() == 1);
+  REQUIRE(read.segments[0].size() == 5); // one row more, a step before the change
+  CHECK(read.segments[0][2].t == doctest::Approx(0.04).epsilon(1e-12));
+  CHECK(read.segments[0][2].a[0] == doctest::Approx(0.2 * 9.80665).epsilon(1e-12));
+  CHECK(read.recording.facts.held.count == 1);
+}
