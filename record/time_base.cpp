@@ -15,6 +15,7 @@ namespace steplap {
 
 namespace {
 
+constexpr double k_year_2200 = 7.258e9;    // s since 1970; nanoseconds since then fit into 64 bits
 constexpr std::size_t k_most_rows = 4000; // of the head that are looked at
 
 /// Fields of one column in the first rows.
@@ -186,10 +187,13 @@ private:
     if (!factor) fail(0, "'" + shown(unit) + "' (" + source + ") is no unit of time. Give --time-unit s, ms, us, epoch or days, or another column with --time.");
     base_.factor = *factor;
     base_.is_relative = is_epoch || is_days || numbers_.front() * *factor > 9.4e8;
+    const double since_1970 = is_days ? (numbers_.front() - 25569.0) * 86400.0 : numbers_.front() * *factor;
+    if (base_.is_relative && !(std::abs(since_1970) < k_year_2200))
+      fail(0, "'" + shown(first_.texts.front()) + "' as " + (is_days ? "days of a spreadsheet" : "time since 1970") + " is beyond the year 2200. Correct it, or give another --time-unit.");
     const std::string what = is_epoch || (base_.is_relative && !is_days) ? "time since 1970 in " + std::string(unit == "epoch" ? "s" : is_epoch ? unit.substr(6) : unit) : is_days ? "days of a spreadsheet" : shown(unit);
     base_.text = what + " in " + column_text() + ", by " + source;
-    if (is_days) base_.start = stamp_text(static_cast<std::int64_t>(std::llround((numbers_.front() - 25569.0) * 86400e3)) * 1'000'000);
-    else if (base_.is_relative) base_.start = stamp_text(static_cast<std::int64_t>(std::llround(numbers_.front() * *factor * 1e6)) * 1000) + " UTC";
+    if (is_days) base_.start = stamp_text(static_cast<std::int64_t>(std::llround(since_1970 * 1e3)) * 1'000'000);
+    else if (base_.is_relative) base_.start = stamp_text(static_cast<std::int64_t>(std::llround(since_1970 * 1e6)) * 1000) + " UTC";
   }
 
   // Of the first times, in their own unit: the median of the steps forward.

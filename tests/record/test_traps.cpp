@@ -147,3 +147,8 @@ TEST_CASE("with a deadband the value before is held up to the sample that differ
   CHECK(read.segments[0][2].a[0] == doctest::Approx(0.2 * 9.80665).epsilon(1e-12));
   CHECK(read.recording.facts.held.count == 1);
 }
+
+TEST_CASE("a time beyond the calendar is refused") {
+  check_refused("Time [days],Ax[g]\n34401485539999,0.1\n34401485540000,0.2\n34401485540001,0.3\n", 2, "beyond the year 2200");
+  check_refused("Time [s],Ax[g]\n14519031140,0.1\n14519031141,0.2\n14519031142,0.3\n", 2, "--time-unit");
+}
