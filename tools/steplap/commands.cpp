@@ -9,6 +9,7 @@
 #include "tools/steplap/joint.h"
 #include "tools/steplap/modes.h"
 #include "tools/steplap/plot.h"
+#include "tools/steplap/record.h"
 #include "tools/steplap/report.h"
 #include "tools/steplap/schema.h"
 #include "tools/steplap/simulate.h"
@@ -21,6 +22,7 @@ std::vector<Command> all_commands() {
   commands.push_back(simulate_command());
   commands.push_back(report_command());
   commands.push_back(plot_command());
+  commands.push_back(record_command());
   commands.push_back(check_command());
   commands.push_back(equilibrium_command());
   commands.push_back(modes_command());
