@@ -28,6 +28,7 @@ TEST_CASE("what cannot be said is an error, of every command") {
   const std::string model = bench.write("a.toml", k_bouncer), core = STEPLAP_MODELS "/layouts/three_limb.toml";
   const std::string quick = " --end 0.2 --no-estimate";
   REQUIRE(steplap_does({"simulate", model, "-o", bench.at("ran"), "--end", "0.2", "--no-estimate"}).code == 0);
+  REQUIRE(steplap_does({"record", "--make", "endaq", bench.at("shock.csv")}).code == 0);
   const std::vector<std::pair<std::string, std::string>> all = {
       {"simulate", model + " -o " + bench.at("s") + quick},
       {"report", bench.at("ran") + "/a -o " + bench.at("r.html")},
@@ -39,6 +40,7 @@ TEST_CASE("what cannot be said is an error, of every command") {
       {"joint", core},
       {"core", core},
       {"accuracy", model + " --end 0.2 --setting rk4@1e-2 -o " + bench.at("acc")},
+      {"record", bench.at("shock.csv")},
       {"elements", ""},
       {"schema", ""},
       {"--help", ""},
