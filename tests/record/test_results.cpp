@@ -58,13 +58,13 @@ const std::string k_names = "Time[s],Ax[g],Ay[g],Az[g]\n";
 TEST_CASE("a file that is read leaves its results, and a second reading replaces them only if it is told to") {
   const Place place;
   place.write("good.csv", k_names + rows(0, 100) + rows(200, 300));
-  REQUIRE_MESSAGE(place.record("good.csv -o out/deep/") == 0, place.screen());
+  REQUIRE_MESSAGE(place.record("good.csv --gravity none -o out/deep/") == 0, place.screen());
   const std::set<std::string> two = {"events.csv", "record.json", "shock_spectra.csv", "signal_001.csv", "signal_002.csv"};
   CHECK(place.files("out/deep") == two);
-  CHECK(place.record("good.csv -o out/deep") == 2);
+  CHECK(place.record("good.csv --gravity none -o out/deep") == 2);
   CHECK(place.screen().find("--force") != std::string::npos);
   place.write("good.csv", k_names + rows(0, 100));
-  REQUIRE_MESSAGE(place.record("good.csv -o out/deep --force") == 0, place.screen());
+  REQUIRE_MESSAGE(place.record("good.csv --gravity none -o out/deep --force") == 0, place.screen());
   CHECK(place.files("out/deep") == std::set<std::string>{"events.csv", "record.json", "shock_spectra.csv", "signal.csv"}); // no segments of the file before
 }
 
@@ -72,16 +72,16 @@ TEST_CASE("a file that is refused halfway leaves nothing") {
   const Place place;
   place.write("good.csv", k_names + rows(0, 100));
   place.write("bad.csv", k_names + rows(0, 60) + rows(100, 9000) + "90.5,abc,0.2,1.0\n");
-  CHECK(place.record("bad.csv -o out") == 2);
+  CHECK(place.record("bad.csv --gravity none -o out") == 2);
   CHECK(place.screen().find("bad.csv:8962:6: 'abc'") != std::string::npos);
   CHECK_FALSE(place.has("out"));
-  CHECK(place.record("good.csv bad.csv -o out") == 2);
+  CHECK(place.record("good.csv bad.csv --gravity none -o out") == 2);
   CHECK_FALSE(place.has("out"));
-  CHECK(place.record("good.csv --event 3 -o out") == 2);
+  CHECK(place.record("good.csv --event 3 --gravity none -o out") == 2);
   CHECK_FALSE(place.has("out"));
-  REQUIRE(place.record("good.csv -o out") == 0);
+  REQUIRE(place.record("good.csv --gravity none -o out") == 0);
   const std::string before = place.read("out/signal.csv");
-  CHECK(place.record("bad.csv -o out --force") == 2);
+  CHECK(place.record("bad.csv --gravity none -o out --force") == 2);
   CHECK(place.files("out") == std::set<std::string>{"events.csv", "record.json", "shock_spectra.csv", "signal.csv"});
   CHECK(place.read("out/signal.csv") == before);
 }
@@ -90,8 +90,23 @@ TEST_CASE("two files of one name are not written to one folder") {
   const Place place;
   place.write("a.csv", k_names + rows(0, 100));
   place.write("a.txt", k_names + rows(0, 100));
-  CHECK(place.record("a.csv a.txt -o out") == 2);
+  CHECK(place.record("a.csv a.txt --gravity none -o out") == 2);
   CHECK_FALSE(place.has("out"));
+}
+
+TEST_CASE("gravity that would count as a shock is asked for: no event is listed, and no file written, before it is said what it is") {
+  const Place place;
+  REQUIRE(place.record("--make endaq shock.csv") == 0);
+  REQUIRE(place.record("shock.csv") == 0);
+  CHECK(place.screen().find("Events are not listed: axis z reads 1 g at rest") != std::string::npos);
+  CHECK(place.screen().find("peak g") == std::string::npos);
+  CHECK(place.record("shock.csv -o out") == 2);
+  CHECK(place.screen().find("--gravity z") != std::string::npos);
+  CHECK_FALSE(place.has("out"));
+  REQUIRE(place.record("shock.csv --threshold 2.5 --gravity none") == 0); // as it is: gravity alone does not reach it
+  CHECK(place.screen().find("1 event beyond 2.5 g") != std::string::npos);
+  REQUIRE(place.record("shock.csv --threshold 2.5") == 0); // 1 g at rest is less than half of it
+  CHECK(place.screen().find("1 event beyond 2.5 g") != std::string::npos);
 }
 
 TEST_CASE("what a made record holds is found: two shocks, their peaks and durations") {

@@ -148,7 +148,7 @@ public:
   GravityFirst(Conditioning conditioning, Text gravity, const RecordOptions& options, SignalSink& sink)
       : conditioning_(conditioning), gravity_(std::move(gravity)), options_(options), sink_(sink) {}
   void begin(const RecordLayout& layout) override {
-    if (gravity_) {
+    if (gravity_ && *gravity_ != "none") {
       const bool is_turned = gravity_->starts_with('-');
       const std::string axis = gravity_->substr(is_turned ? 1 : 0);
       const auto found = std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return axis == std::string(1, each.axis); });
@@ -214,7 +214,7 @@ void print_peaks(std::ostream& out, const RecordResult& result) {
   if (number > k_shown_events) out << "  ... " << result.recording.peaks.size() - k_shown_events << " more; -o DIR writes all\n";
 }
 
-void print_result(std::ostream& out, const RecordResult& result) {
+void print_result(std::ostream& out, const RecordResult& result, const std::optional<std::string>& no_events_because) {
   const RecordLayout& layout = result.recording.layout;
   out << layout.file << "\n";
   for (const std::string& line : facts_text(result.recording)) out << "  " << line << "\n";
@@ -224,7 +224,22 @@ void print_result(std::ostream& out, const RecordResult& result) {
   for (std::size_t i = 0; i < layout.axes.size(); ++i)
     out << (i > 0 ? "; " : " ") << layout.axes[i].axis << " " << rounded_text(result.drift.velocity[i], 3) << " m/s, " << rounded_text(result.drift.displacement[i], 3) << " m";
   out << "\n";
-  print_events(out, result);
+  if (no_events_because) out << "\nEvents are not listed: " << *no_events_because << ".\n";
+  else print_events(out, result);
+}
+
+// What an axis reads at rest counts towards the threshold: beyond this share of it events would tell of gravity, not of shocks.
+std::optional<std::string> events_hang_on_gravity(const RecordOptions& options, const RecordResult& result) {
+  constexpr double k_felt = 0.5;
+  if (options.gravity || options.quiet || result.recording.layout.is_peaks) return {};
+  for (std::size_t i = 0; i < result.recording.layout.axes.size(); ++i) {
+    const double rest = result.recording.facts.axes[i].rest;
+    if (std::abs(rest) < k_felt * result.rules.threshold) continue;
+    const std::string axis = std::string(rest < 0.0 ? "-" : "") + result.recording.layout.axes[i].axis;
+    return "axis " + axis + " reads " + in_g(std::abs(rest)) + " g at rest, which counts towards the threshold of " + in_g(result.rules.threshold) +
+           " g. Say --gravity " + axis + " to subtract it, or --gravity none to keep it";
+  }
+  return {};
 }
 
 struct Outputs {
@@ -275,8 +290,10 @@ void process(const std::string& file, const RecordOptions& options, const Output
     result.interpolated = first.conditioner().interpolated();
     result.drift = first.conditioner().drift();
   }
+  const std::optional<std::string> no_events = events_hang_on_gravity(options, result);
+  if (no_events && (options.is_json || !outputs.folder.empty())) throw UsageError("'" + file + "': " + *no_events);
   if (outputs.event > 0 && !window) throw UsageError("--event " + std::to_string(outputs.event) + ": the record has " + counted(result.events.size(), "event", "events") + " beyond the threshold");
-  if (console.verbosity != Verbosity::quiet && !options.is_json) print_result(console.out, result);
+  if (console.verbosity != Verbosity::quiet && !options.is_json) print_result(console.out, result, no_events);
   if (options.is_json) console.out << record_json(result);
   if (outputs.folder.empty()) return;
   write_tables(result, outputs);
@@ -375,7 +392,7 @@ What cannot be known from the file is asked for, with the option that settles it
       {"--hold", &o->holds, "", "left-out samples have the value before them"},
       {"--gap", &o->gap, "N", "sampling intervals beyond which a gap splits the record: 3.5"},
       {"--rest", &o->quiet, "FROM,TO", "subtract the mean from FROM to TO, s"},
-      {"--gravity", &o->gravity, "AXIS", "subtract gravity from x, y, z, -x, -y or -z"},
+      {"--gravity", &o->gravity, "AXIS", "subtract gravity from x, y, z, -x, -y or -z; none keeps what the record has"},
       {"--cfc", &o->cfc, "HZ", "low-pass of a channel frequency class (ISO 6487): 10 to 1000"},
       {"--resample", &o->resample, "HZ", "higher rate of the cleaned signal"},
       {"--threshold", &o->threshold, "A", "events begin beyond it: \"1 g\""},
