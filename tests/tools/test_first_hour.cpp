@@ -97,7 +97,7 @@ TEST_CASE("runs side by side tell of the channels that the model asks for, too")
                                          "[[body]]\nname = \"sledge\"\nmass = 2\ninertia = 1\nvelocity = [") + speed + ", 0.0]\n"
                              "[[element]]\nkind = \"prismatic\"\nname = \"rail\"\na = \"sledge\"\n");
   };
-  const Outcome two = steplap_does({"simulate", model("slow.toml", "1.0"), model("fast.toml", "3.0"), "-o", bench.at("out")});
+  const Outcome two = steplap_does({"simulate", "-v", model("slow.toml", "1.0"), model("fast.toml", "3.0"), "-o", bench.at("out")});
   CAPTURE(two.out);
   CAPTURE(two.err);
   const std::size_t table = two.out.find("Channels on request, extremes of the whole run (their times: summary.json)");

@@ -148,7 +148,7 @@ TEST_CASE("options are laid over the model") {
   CHECK(has(error({"--end", "3 kg"}), "a unit like 's' is needed"));
 }
 
-TEST_CASE("several models: each its folder, one table") {
+TEST_CASE("several models: each its folder and its few lines; with -v one table") {
   const Workbench bench;
   const std::string first = bench.write("first.toml", k_oscillator);
   const std::string second = bench.write("second.toml", k_bouncer);
@@ -156,8 +156,13 @@ TEST_CASE("several models: each its folder, one table") {
   CHECK(outcome.code == 0);
   CHECK(bench.content("out/first") == k_files);
   CHECK(bench.content("out/second") == k_files);
-  CHECK(has(outcome.out, "Side by side"));
-  CHECK(has(outcome.out, "floor.force"));
+  CHECK(has(outcome.out, "\nfirst"));
+  CHECK(has(outcome.out, "\nsecond"));
+  CHECK(std::count(outcome.out.begin(), outcome.out.end(), '\n') <= 2 * 30 + 1);
+  CHECK_FALSE(has(outcome.out, "Side by side"));
+  const Outcome tables = steplap_does({"simulate", "-v", first, second, "-o", bench.at("tables")});
+  CHECK(has(tables.out, "Side by side"));
+  CHECK(has(tables.out, "floor.force"));
   const std::string same = bench.write("below/first.toml", k_oscillator);
   const Outcome refused = steplap_does({"simulate", first, same, "-o", bench.at("other")});
   CHECK(refused.code == 2);

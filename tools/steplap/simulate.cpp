@@ -192,12 +192,16 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
     write_report(folders, page_of(options, models), options.is_overwriting);
   }
   if (console.verbosity == Verbosity::quiet) return code;
-  if (models.size() == 1 && console.verbosity != Verbosity::verbose)
-    print_overview(console.out, runs.front().report, runs.front().folder, takes_colour(console.out), options.shown_digits());
-  else if (models.size() == 1)
+  if (console.verbosity != Verbosity::verbose) {
+    for (const FinishedRun& run : runs) {
+      if (&run != &runs.front()) console.out << "\n";
+      print_overview(console.out, run.report, run.folder, takes_colour(console.out), options.shown_digits());
+    }
+  } else if (models.size() == 1) {
     print_run(console.out, runs.front());
-  else
+  } else {
     print_comparison(console.out, runs);
+  }
   if (options.is_reported) console.out << "Report: " << page_of(options, models) << "\n";
   return code;
 }
@@ -215,7 +219,7 @@ Command simulate_command() {
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --set body.tank.mass="48 t"
 Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv,
 summary.json and model.toml. The screen tells the verdict, what happened and what came nearest to its limit; with -v it has
-tables of all events and extremes. In files and tables all numbers stand with their estimated error, where that takes about a second of computing
+tables of all events and extremes, of several models beside each other. In files and tables all numbers stand with their estimated error, where that takes about a second of computing
 or a few; else it is said what it would take, or when it was given up. If the computation fails, or Ctrl-C (SIGINT, SIGTERM, SIGHUP) stops it, what there is is saved
 as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends it at once.
 )";
