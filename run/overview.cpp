@@ -141,6 +141,19 @@ double largest_error(const Report& report, const std::string& unit) {
   return largest;
 }
 
+// Channels with an extreme whose error is not known, as where a reaction diverges.
+std::vector<std::string> channels_without_error(const Report& report) {
+  std::vector<std::string> names;
+  for (const ChannelRange& range : report.ranges()) {
+    const auto is_unknown = [&](const Extreme& extreme, double ChannelError::*which) {
+      const auto error = report.error_of(range, which);
+      return std::isfinite(extreme.value) && error && !std::isfinite(*error);
+    };
+    if (is_unknown(range.low, &ChannelError::low) || is_unknown(range.high, &ChannelError::high)) names.push_back(range.channel->name);
+  }
+  return names;
+}
+
 // An error on the coarse side: "3 N", "better than 1 µm".
 std::string error_text(double error, const std::string& unit) {
   const double floor = unit == "N" ? 1e-3 : unit == "m" ? 1e-9 : 1e-9; // mN, nm, ns: nobody asks for less
@@ -170,10 +183,14 @@ Trust trust_by_errors(const Report& report) {
   const double worst = estimate.error.of(ErrorKind::position).value;
   const WorstError& reaction = estimate.error.of(ErrorKind::reaction);
   if (worst > k_large_error || reaction.value > k_large_error) trust.level = TrustLevel::limited;
+  if (const std::vector<std::string> names = channels_without_error(report); !names.empty()) {
+    trust.level = TrustLevel::limited;
+    trust.text += names.size() == 1 ? " That of " + quoted(names.front()) + " is not known."
+                                    : " Those of " + counted(names.size(), "channel", "channels") + ", such as " + quoted(names.front()) + ", are not known.";
+  }
   const std::size_t lone = estimate.error.unmatched_events > 0 ? static_cast<std::size_t>(estimate.error.unmatched_events) : unknown;
   if (lone == 0) return trust;
   trust.level = TrustLevel::limited;
-  trust.text.back() = ';';
   trust.text += " " + counted(lone, "event is", "events are") + " in one of the runs only.";
   return trust;
 }

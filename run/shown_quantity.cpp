@@ -1,13 +1,11 @@
 #include "run/shown_quantity.h"
 
+#include "run/decimal_digits.h"
 #include "run/measured_text.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <string_view>
 
 namespace steplap {
@@ -15,40 +13,6 @@ namespace steplap {
 namespace {
 
 constexpr double k_rounding = 1e-9; // of a scale: what computing leaves of zero
-
-// Of the digits as they are written, not of a logarithm, which rounding may put on the wrong side of a power of ten.
-int exponent_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.15e", std::abs(value));
-  return std::atoi(std::strchr(text, 'e') + 1);
-}
-
-double power_of_ten(int exponent) {
-  char text[16];
-  std::snprintf(text, sizeof text, "1e%d", exponent);
-  return std::strtod(text, nullptr);
-}
-
-std::string plain(double value, int decimals) {
-  char text[400];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  std::string number = text;
-  if (decimals > 0) number.erase(number.find_last_not_of('0') + 1);
-  if (number.back() == '.') number.pop_back();
-  return number == "-0" ? "0" : number;
-}
-
-// One digit, never smaller than the error: the exponent that it stands for, and the digit.
-struct ErrorDigit {
-  int exponent = 0, digit = 1;
-};
-
-ErrorDigit rounded_up(double error) {
-  constexpr double k_as_good_as = 1.0 + 1e-12;
-  ErrorDigit d{exponent_of(error), 1};
-  while (d.digit < 10 && d.digit * power_of_ten(d.exponent) * k_as_good_as < error) ++d.digit;
-  return d.digit == 10 ? ErrorDigit{d.exponent + 1, 1} : d;
-}
 
 // "m/s²" for "m/s^2"
 std::string shown_unit(std::string unit) {
@@ -69,11 +33,7 @@ bool is_rounding(double value, const ShownContext& context) { return std::abs(va
 
 } // namespace
 
-int ShownDigits::of(double value) const {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.15e", std::abs(value));
-  return text[0] == '1' ? most : std::max(1, most - 1);
-}
+int ShownDigits::of(double value) const { return first_digit(value).digit == 1 ? most : std::max(1, most - 1); }
 
 UnitPrefix shown_prefix(double largest, const std::string& unit) {
   const double size = std::abs(largest);
@@ -90,9 +50,10 @@ UnitPrefix shown_prefix(double largest, const std::string& unit) {
 }
 
 std::string rounded_to(double value, int last) {
-  if (last <= 0) return plain(value, -last);
-  const double step = power_of_ten(last);
-  return plain(std::round(value / step) * step, 0);
+  std::string number = rounded_at(value, last);
+  if (last < 0) number.erase(number.find_last_not_of('0') + 1);
+  if (number.back() == '.') number.pop_back();
+  return number;
 }
 
 std::string shown_quantity(double value, const std::string& unit, const ShownContext& context, ShownDigits digits) {
@@ -112,8 +73,8 @@ std::string shown_quantity(double value, const std::string& unit, const ShownCon
   const double factor = power_of_ten(prefix.exponent);
   const bool is_reached = error >= 0.5 * power_of_ten(last) || (reaches_limit && error > 0.0);
   if (!is_reached) return with_unit(rounded_to(value * factor, last + prefix.exponent), prefix, unit) + unknown;
-  ErrorDigit e = rounded_up(error);
-  if (e.exponent < last && !reaches_limit) e = {last, 1};
+  DecimalDigit e = rounded_up(error);
+  if (e.exponent < last && !reaches_limit) e = {1, last};
   last = e.exponent + prefix.exponent;
   return with_unit(rounded_to(value * factor, last), prefix, unit) + " ± " +
          with_unit(rounded_to(e.digit * power_of_ten(last), last), prefix, unit);
@@ -129,8 +90,8 @@ std::string shown_share(double share, std::optional<double> error, ShownDigits d
   const bool is_error_shown = error && !(100.0 * std::abs(*error) < std::min(0.5, std::abs(percent - 100.0))) && *error != 0.0;
   if (digits.is_full || is_error_shown) return shown_quantity(percent, "%", context, digits);
   int decimals = std::abs(percent) < 10.0 ? 1 : 0;
-  while (decimals < 3 && percent != 100.0 && plain(percent, decimals) == "100") ++decimals; // beyond or not has to be seen
-  return plain(percent, decimals) + " %";
+  while (decimals < 3 && percent != 100.0 && rounded_to(percent, -decimals) == "100") ++decimals; // beyond or not has to be seen
+  return rounded_to(percent, -decimals) + " %";
 }
 
 } // namespace steplap

@@ -84,6 +84,15 @@ TEST_CASE("a run that breaks off has no trust and says where it stopped") {
   CHECK(overview.reason.starts_with("The run stopped at "));
 }
 
+TEST_CASE("reactions that diverge have no error, and trust says so") {
+  // Driven through the pose in which all links lie on one line, the pins bear forces without bound along it: 2 of each of 2 chains.
+  const Report report = run_of("benchmarks/hard/singular_parallelogram");
+  REQUIRE(report.estimate.errors.has_value());
+  const Overview overview = overview_of(report);
+  CHECK(overview.trust.level == TrustLevel::limited);
+  CHECK(overview.trust.text.find("Those of 4 channels, such as 'pin of first.force_x', are not known.") != std::string::npos);
+}
+
 TEST_CASE("many elements that do the same are one entry") {
   const Overview overview = overview_of(run_of("machines/pile"));
   CHECK(overview.story.size() <= 8);
