@@ -13,7 +13,7 @@ version = release = re.search(r"project\(steplap\s+VERSION\s+([0-9.]+)", (root /
 extensions = ["myst_parser"]
 source_suffix = {".md": "markdown"}
 root_doc = "docs/index"
-include_patterns = ["docs/**.md", "README.md", "CHANGELOG.md", "KNOWN_ISSUES.md", "CONTRIBUTING.md", "tools/bench/peers/README.md"]
+include_patterns = ["docs/**.md", "README.md", "CHANGELOG.md", "KNOWN_ISSUES.md", "CONTRIBUTING.md", "THIRD_PARTY.md", "tools/bench/peers/README.md"]
 exclude_patterns = ["build", "out", ".git", "tests", "models", "mbd", "elements", "transformer", "run", "report", "study/**"]
 
 myst_heading_anchors = 4  # anchors are those that GitHub makes

@@ -1,6 +1,6 @@
 #include "elements/patch/convex_cut.h"
 
-#include "elements/patch/exact_polygon.h"
+#include "elements/patch/exact_triangulation.h"
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,7 @@
 // Polygon questions answered with exact arithmetic, so that no coincidence of edges or vertices
-// can mislead or crash them. The only door to CGAL: its headers stay in exact_polygon.cpp, and
-// none of its exceptions leave it. Slow (tens to hundreds of microseconds) and allocating.
+// can mislead or crash them. With exact_triangulation.h the only door to CGAL, of which only the kernels and the algorithms on
+// single rings are used: these are under the LGPL, while its set operations and triangulations are under the GPL, which would bind
+// whoever links steplap. Slow (tens to hundreds of microseconds) and allocating.
 #pragma once
 
 #include "elements/patch/polygon.h"
@@ -31,9 +32,5 @@ struct Pose {
 
 /// What of `a` lies outside the hole (either sense), as above.
 [[nodiscard]] Region exact_difference(const Polygon& a, const Ring& hole);
-
-/// Triangles (counter-clockwise) that make up the polygon: numbers of its vertices, counted through
-/// the outer ring and the holes.
-[[nodiscard]] std::vector<std::array<std::size_t, 3>> triangulated(const Polygon& polygon);
 
 } // namespace steplap

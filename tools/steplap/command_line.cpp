@@ -5,6 +5,7 @@
 #include "run/result_files.h"
 #include "run/version.h"
 #include "tools/steplap/commands.h"
+#include "tools/steplap/licences.h"
 #include "tools/steplap/log.h"
 
 #include <CLI/CLI.hpp>
@@ -132,6 +133,8 @@ int run_program(const Program& program, const std::vector<std::string>& argument
   const std::vector<Command>& commands = program.commands;
   VerbosityFlags flags;
   app.set_version_flag("--version", program.name + " " + k_version);
+  app.add_flag_callback("--licences", [] { throw CLI::CallForVersion(std::string(k_licences), 0); }, "Print the licence, and those of all parts made by others")
+      ->configurable(false);
   app.require_subcommand(1);
   app.footer((program.exit_codes.empty() ? k_exit_codes : program.exit_codes) + (program.name == "steplap" ? k_examples : ""));
   for (const Command& command : commands)
