@@ -7,6 +7,7 @@
 #include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
+#include "mbd/simulation/trajectory.h"
 #include "run/failure.h"
 #include "run/tipping.h"
 
