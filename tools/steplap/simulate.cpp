@@ -2,6 +2,7 @@
 
 #include "mbd/base/shown_text.h"
 #include "mbd/base/team.h"
+#include "mbd/model/validate.h"
 #include "run/quantity_text.h"
 #include "run/findings.h"
 #include "run/report.h"
