@@ -75,15 +75,15 @@ private:
   };
 
   [[nodiscard]] std::vector<Limb> limbs() const;
-  void draw_yokes(Panel& panel, const Core& core, const std::vector<Limb>& all) const;
-  void draw_limb(Panel& panel, const Limb& limb) const;
-  void dimension_elevation(Panel& panel, const std::vector<Limb>& all) const;
-  void draw_packets(Panel& panel) const;
+  void draw_yokes(SheetPanel& panel, const Core& core, const std::vector<Limb>& all) const;
+  void draw_limb(SheetPanel& panel, const Limb& limb) const;
+  void dimension_elevation(SheetPanel& panel, const std::vector<Limb>& all) const;
+  void draw_packets(SheetPanel& panel) const;
   void draw_elevation();
   void draw_section();
   void draw_corner(const PanelFrame& frame);
   void draw_book();
-  void draw_laps(Panel& panel, long layers, double edge);
+  void draw_laps(SheetPanel& panel, long layers, double edge);
 
   const Core& core_;
   const Model& model_;
@@ -124,7 +124,7 @@ double width_of(const Core& core) {
   return geometry.stack().packets[geometry.largest()].width;
 }
 
-void Drawing::draw_yokes(Panel& panel, const Core& core, const std::vector<Limb>& all) const {
+void Drawing::draw_yokes(SheetPanel& panel, const Core& core, const std::vector<Limb>& all) const {
   const CoreGeometry geometry(core);
   for (const std::size_t p : packets_by_width(geometry.stack())) {
     const Mitre m = geometry.mitre(p, false);
@@ -140,7 +140,7 @@ void Drawing::draw_yokes(Panel& panel, const Core& core, const std::vector<Limb>
   }
 }
 
-void Drawing::draw_limb(Panel& panel, const Limb& limb) const {
+void Drawing::draw_limb(SheetPanel& panel, const Limb& limb) const {
   const CoreGeometry geometry(*limb.core);
   for (const std::size_t p : packets_by_width(geometry.stack())) {
     const Mitre m = geometry.mitre(p, limb.is_middle);
@@ -160,7 +160,7 @@ void Drawing::draw_elevation() {
     low = low.cwiseMin(limb.middle - half);
     high = high.cwiseMax(limb.middle + half);
   }
-  Panel panel(out_, k_upper_left, "Elevation, dimensions in mm", low, high, {66.0, 92.0, 60.0, 66.0});
+  SheetPanel panel(out_, k_upper_left, "Elevation, dimensions in mm", low, high, {66.0, 92.0, 60.0, 66.0});
   std::vector<const Core*> drawn;
   for (const Limb& limb : all)
     if (std::find(drawn.begin(), drawn.end(), limb.core) == drawn.end()) {
@@ -179,7 +179,7 @@ void Drawing::draw_elevation() {
   panel.note("", drawn.size() > 1 ? "limbs of '" + core_.name + "' dark blue, all other limbs pale, yokes brown" : "limbs blue, yokes brown");
 }
 
-void Drawing::dimension_elevation(Panel& panel, const std::vector<Limb>& all) const {
+void Drawing::dimension_elevation(SheetPanel& panel, const std::vector<Limb>& all) const {
   const Mitre largest = geometry_.mitre(geometry_.largest(), false);
   const double h = 0.5 * largest.core_height, window = h - largest.yoke_height;
   const auto own = std::find_if(all.begin(), all.end(), [&](const Limb& limb) { return limb.core == &core_; });
@@ -241,7 +241,7 @@ Round round_about(const std::vector<Slab>& slabs) {
   return {0.5 * (low + high), 2.0 * farthest(0.5 * (low + high))};
 }
 
-void Drawing::draw_packets(Panel& panel) const {
+void Drawing::draw_packets(SheetPanel& panel) const {
   const Stack& stack = geometry_.stack();
   std::vector<double> first(stack.packets.size(), HUGE_VAL), last(stack.packets.size(), -HUGE_VAL);
   for (const Slab& s : slabs_of(stack)) {
@@ -249,7 +249,7 @@ void Drawing::draw_packets(Panel& panel) const {
     first[s.packet] = std::min(first[s.packet], s.low);
     last[s.packet] = std::max(last[s.packet], s.high);
   }
-  std::vector<Panel::Label> labels;
+  std::vector<SheetPanel::Label> labels;
   for (std::size_t i = 0; i < stack.packets.size(); ++i) {
     const Packet& p = stack.packets[i];
     labels.push_back({{0.5 * p.width, 0.5 * (first[i] + last[i])},
@@ -265,7 +265,7 @@ void Drawing::draw_section() {
   const std::vector<Slab> slabs = slabs_of(stack);
   const Round round = round_about(slabs);
   const double half = 0.5 * round.diameter;
-  Panel panel(out_, k_upper_right, "Section of a limb, front face below, mm", {-half, round.centre - half}, {half, round.centre + half},
+  SheetPanel panel(out_, k_upper_right, "Section of a limb, front face below, mm", {-half, round.centre - half}, {half, round.centre + half},
               {52.0, 172.0, 40.0, 84.0});
   panel.circle({0.0, round.centre}, round.diameter, "round");
   draw_packets(panel);
@@ -289,7 +289,7 @@ void Drawing::draw_corner(const PanelFrame& frame) {
   const std::size_t p = geometry_.largest();
   const Mitre m = geometry_.mitre(p, is_middle);
   const double top = 0.5 * m.core_height, low = top - 1.35 * m.yoke_height, half = 0.5 * m.limb_width;
-  Panel panel(out_, frame, is_middle ? "Corner: T-joint of the largest packet" : "Corner: mitre of the largest packet",
+  SheetPanel panel(out_, frame, is_middle ? "Corner: T-joint of the largest packet" : "Corner: mitre of the largest packet",
               {-1.35 * half, low}, {1.1 * half, top}, {34.0, 70.0, 34.0, 62.0});
   panel.rectangle(-1.35 * half, is_middle ? 1.1 * half : half, top - m.yoke_height, top, "yoke");
   CornerFrame floor; // cuts the limb off at the lower edge
@@ -351,7 +351,7 @@ void Drawing::draw_book() {
   const long layers = std::min({layers_in(stack, stack.packets[p]), 2 * period_of(stack.book) + 1, k_most_layers});
   const double s = geometry_.pitch(p, is_middle), n = static_cast<double>(stack.book.steps);
   const double edge = 0.5 * (n - 1.0) * s + 1.6 * s;
-  Panel panel(out_, k_lower_right, "Book across the mitre, thickness enlarged", {-edge, -0.9},
+  SheetPanel panel(out_, k_lower_right, "Book across the mitre, thickness enlarged", {-edge, -0.9},
               {edge, static_cast<double>(layers) + 0.3}, {34.0, 34.0, 34.0, 34.0}, false);
   for (long i = 0; i < layers; ++i) {
     const double q = geometry_.line({p, position_of(stack.book, i)}, is_middle),
@@ -376,7 +376,7 @@ void Drawing::draw_book() {
                  millimetres(book.clearance));
 }
 
-void Drawing::draw_laps(Panel& panel, long layers, double edge) {
+void Drawing::draw_laps(SheetPanel& panel, long layers, double edge) {
   const Stack& stack = geometry_.stack();
   const std::size_t p = geometry_.largest();
   const bool is_middle = core_.limbs.empty();

@@ -33,7 +33,7 @@ std::string escaped_svg(const std::string& text) {
 std::string pixels(double value) { return number_text(std::round(value * 100.0) / 100.0); }
 std::string plain_millimetres(double metres) { return number_text(std::round(metres * 1e4) / 10.0); }
 
-Panel::Panel(std::ostream& out, const PanelFrame& frame, const std::string& title, const Vec2& low, const Vec2& high,
+SheetPanel::SheetPanel(std::ostream& out, const PanelFrame& frame, const std::string& title, const Vec2& low, const Vec2& high,
              const PanelEdges& edges, bool is_to_scale)
     : out_(out), frame_(frame), low_(low) {
   const Vec2 size = (high - low).cwiseMax(1e-9);
@@ -46,39 +46,39 @@ Panel::Panel(std::ostream& out, const PanelFrame& frame, const std::string& titl
        << "' height='" << pixels(frame.height) << "' class='panel'/>\n";
 }
 
-Vec2 Panel::at(const Vec2& p) const {
+Vec2 SheetPanel::at(const Vec2& p) const {
   const Vec2 q = (p - low_).cwiseProduct(scale_) + offset_;
   return {frame_.x + q.x(), frame_.y + frame_.height - q.y()};
 }
 
-void Panel::polygon(const std::vector<Vec2>& ring, const std::string& kind) {
+void SheetPanel::polygon(const std::vector<Vec2>& ring, const std::string& kind) {
   out_ << "<polygon points='";
   for (const Vec2& p : ring) out_ << pixels(at(p).x()) << "," << pixels(at(p).y()) << " ";
   out_ << "' class='" << kind << "'/>\n";
 }
 
-void Panel::rectangle(double x0, double x1, double y0, double y1, const std::string& kind) {
+void SheetPanel::rectangle(double x0, double x1, double y0, double y1, const std::string& kind) {
   polygon({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}, kind);
 }
 
-void Panel::line_between(const Vec2& a, const Vec2& b, const std::string& kind) {
+void SheetPanel::line_between(const Vec2& a, const Vec2& b, const std::string& kind) {
   out_ << "<line x1='" << pixels(a.x()) << "' y1='" << pixels(a.y()) << "' x2='" << pixels(b.x()) << "' y2='"
        << pixels(b.y()) << "' class='" << kind << "'/>\n";
 }
 
-void Panel::line(const Vec2& a, const Vec2& b, const std::string& kind) { line_between(at(a), at(b), kind); }
+void SheetPanel::line(const Vec2& a, const Vec2& b, const std::string& kind) { line_between(at(a), at(b), kind); }
 
-void Panel::circle(const Vec2& centre, double diameter, const std::string& kind) {
+void SheetPanel::circle(const Vec2& centre, double diameter, const std::string& kind) {
   out_ << "<circle cx='" << pixels(at(centre).x()) << "' cy='" << pixels(at(centre).y()) << "' r='"
        << pixels(0.5 * length(diameter)) << "' class='" << kind << "'/>\n";
 }
 
-void Panel::text(const Vec2& place, const std::string& words, const std::string& anchor, double down) {
+void SheetPanel::text(const Vec2& place, const std::string& words, const std::string& anchor, double down) {
   out_ << "<text x='" << pixels(at(place).x()) << "' y='" << pixels(at(place).y() + down) << "' text-anchor='" << anchor
        << "'>" << escaped_svg(words) << "</text>\n";
 }
 
-void Panel::note(const std::string& below, const std::string& above) {
+void SheetPanel::note(const std::string& below, const std::string& above) {
   out_ << "<text x='" << pixels(frame_.x + 8.0) << "' y='" << pixels(frame_.y + frame_.height - 9.0) << "'>"
        << escaped_svg(below) << "</text>\n";
   if (!above.empty())
@@ -86,14 +86,14 @@ void Panel::note(const std::string& below, const std::string& above) {
          << "</text>\n";
 }
 
-void Panel::arrow(const Vec2& tip, const Vec2& direction) {
+void SheetPanel::arrow(const Vec2& tip, const Vec2& direction) {
   const Vec2 back = tip - k_arrow * direction, side = 0.32 * k_arrow * Vec2(-direction.y(), direction.x());
   out_ << "<polygon points='";
   for (const Vec2& p : {tip, Vec2(back + side), Vec2(back - side)}) out_ << pixels(p.x()) << "," << pixels(p.y()) << " ";
   out_ << "' class='arrow'/>\n";
 }
 
-void Panel::dimension_across(const Vec2& a, const Vec2& b, double off, const std::string& words) {
+void SheetPanel::dimension_across(const Vec2& a, const Vec2& b, double off, const std::string& words) {
   Vec2 p = at(a), q = at(b);
   if (p.x() > q.x()) std::swap(p, q);
   const double y = off > 0.0 ? std::max(p.y(), q.y()) + off : std::min(p.y(), q.y()) + off, beyond = off > 0.0 ? 4.0 : -4.0;
@@ -109,7 +109,7 @@ void Panel::dimension_across(const Vec2& a, const Vec2& b, double off, const std
        << (is_short ? "start" : "middle") << "'>" << escaped_svg(words) << "</text>\n";
 }
 
-void Panel::dimension_upwards(const Vec2& a, const Vec2& b, double off, const std::string& words) {
+void SheetPanel::dimension_upwards(const Vec2& a, const Vec2& b, double off, const std::string& words) {
   Vec2 p = at(a), q = at(b);
   if (p.y() < q.y()) std::swap(p, q);
   const double x = off > 0.0 ? std::max(p.x(), q.x()) + off : std::min(p.x(), q.x()) + off, beyond = off > 0.0 ? 4.0 : -4.0;
@@ -129,7 +129,7 @@ void Panel::dimension_upwards(const Vec2& a, const Vec2& b, double off, const st
          << escaped_svg(words) << "</text>\n";
 }
 
-void Panel::labels_at_right(std::vector<Label> labels, double x) {
+void SheetPanel::labels_at_right(std::vector<Label> labels, double x) {
   if (labels.empty()) return;
   std::stable_sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.place.y() > b.place.y(); });
   const double top = frame_.y + 34.0, bottom = frame_.y + frame_.height - 44.0;

@@ -30,10 +30,10 @@ struct PanelEdges {
 };
 
 /// A frame of the image with a scale of its own.
-class Panel {
+class SheetPanel {
 public:
   /// Draws frame and title. Shows at least the rectangle from `low` to `high`, in the middle of what `edges` leave.
-  Panel(std::ostream& out, const PanelFrame& frame, const std::string& title, const Vec2& low, const Vec2& high,
+  SheetPanel(std::ostream& out, const PanelFrame& frame, const std::string& title, const Vec2& low, const Vec2& high,
         const PanelEdges& edges, bool is_to_scale = true);
 
   /// Where a place, m, is in the image, pixels.

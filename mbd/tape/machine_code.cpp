@@ -170,20 +170,20 @@ private:
     return x86::Zmm(id);
   }
 
-  x86::Mem memory(Place place) const {
+  x86::Mem memory(OperandPlace place) const {
     const std::int32_t offset = 8 * lanes_ * place.index;
     switch (place.kind) {
-    case Place::Kind::input: return x86::ptr(x86::rdi, offset);
-    case Place::Kind::constant: return x86::ptr(x86::rsi, offset);
-    case Place::Kind::output: return x86::ptr(x86::rdx, offset);
-    case Place::Kind::slot: return x86::ptr(x86::rsp, slots_begin() + offset);
-    case Place::Kind::sign_bits: return x86::ptr(sign_bits_);
+    case OperandPlace::Kind::input: return x86::ptr(x86::rdi, offset);
+    case OperandPlace::Kind::constant: return x86::ptr(x86::rsi, offset);
+    case OperandPlace::Kind::output: return x86::ptr(x86::rdx, offset);
+    case OperandPlace::Kind::slot: return x86::ptr(x86::rsp, slots_begin() + offset);
+    case OperandPlace::Kind::sign_bits: return x86::ptr(sign_bits_);
     default: return x86::ptr(value_bits_);
     }
   }
 
-  asmjit::Operand operand(Place place) const {
-    if (place.kind == Place::Kind::in_register) return reg(place.index);
+  asmjit::Operand operand(OperandPlace place) const {
+    if (place.kind == OperandPlace::Kind::in_register) return reg(place.index);
     return memory(place);
   }
 
@@ -262,8 +262,8 @@ private:
       a_.mov(x86::ptr(x86::rsp, k_saved_lanes), x86::eax);
     }
     a_.lea(x86::rdi, memory(i.second));
-    a_.lea(x86::rsi, memory({Place::Kind::slot, i.sine_slot}));
-    a_.lea(x86::rdx, memory({Place::Kind::slot, i.cosine_slot}));
+    a_.lea(x86::rsi, memory({OperandPlace::Kind::slot, i.sine_slot}));
+    a_.lea(x86::rdx, memory({OperandPlace::Kind::slot, i.cosine_slot}));
     a_.mov(x86::rax, sin_cos_address(lanes_));
     if (lanes_ > 1 && has_avx_) a_.vzeroupper();
     a_.call(x86::rax);

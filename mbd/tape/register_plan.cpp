@@ -51,7 +51,7 @@ private:
     std::int32_t next = k_never; ///< position of the next use
     std::int32_t position = -1;  ///< in the order
     std::int8_t reg = -1;
-    Place home;                  ///< where it lies in memory
+    OperandPlace home;                  ///< where it lies in memory
     std::int32_t output = k_none; ///< first of its outputs
     std::int32_t partner = k_none; ///< the cosine of a sine, the sine of a cosine, of the same argument
   };
@@ -95,7 +95,7 @@ private:
   void look_at_steps() {
     for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
       const TapeStep& s = tape_.steps[i];
-      if (is_given(s.operation)) values_[i].home = {s.operation == input ? Place::Kind::input : Place::Kind::constant, s.a};
+      if (is_given(s.operation)) values_[i].home = {s.operation == input ? OperandPlace::Kind::input : OperandPlace::Kind::constant, s.a};
       if (s.operation != sine && s.operation != cosine) continue;
       if (call_of_.empty()) call_of_.assign(tape_.steps.size(), k_none);
       std::int32_t& other = call_of_[at(s.a)]; // one without a partner
@@ -169,7 +169,7 @@ private:
     for (int r = 0; r < rules_.registers; ++r) {
       if (busy_ >> r & 1) continue;
       const Value& v = values_[at(owner_[r])];
-      const std::int64_t score = std::int64_t{v.next} + (v.home.kind == Place::Kind::nowhere ? 0 : k_worth_of_store);
+      const std::int64_t score = std::int64_t{v.next} + (v.home.kind == OperandPlace::Kind::nowhere ? 0 : k_worth_of_store);
       if (score > best_score) best_score = score, best = r;
     }
     return best;
@@ -177,8 +177,8 @@ private:
 
   void evict(int r) {
     Value& v = values_[at(owner_[r])];
-    if (v.home.kind == Place::Kind::nowhere) {
-      v.home = {Place::Kind::slot, free_slot()};
+    if (v.home.kind == OperandPlace::Kind::nowhere) {
+      v.home = {OperandPlace::Kind::slot, free_slot()};
       store(r, v.home);
     }
     v.reg = -1;
@@ -198,7 +198,7 @@ private:
   }
 
   void free_slot_of(Value& v) {
-    if (v.next != k_never || v.home.kind != Place::Kind::slot) return;
+    if (v.next != k_never || v.home.kind != OperandPlace::Kind::slot) return;
     free_slots_.push_back(v.home.index);
     v.home = {};
   }
@@ -218,19 +218,19 @@ private:
     return i;
   }
 
-  void load(int r, Place from) {
+  void load(int r, OperandPlace from) {
     PlannedInstruction& i = plan(Kind::load);
     i.destination = static_cast<std::int8_t>(r);
     i.second = from;
   }
 
-  void store(int r, Place to) {
+  void store(int r, OperandPlace to) {
     PlannedInstruction& i = plan(Kind::store);
     i.first = static_cast<std::int8_t>(r);
     i.second = to;
   }
 
-  void arithmetic(Kind kind, TapeOperation o, int destination, int first, Place second) {
+  void arithmetic(Kind kind, TapeOperation o, int destination, int first, OperandPlace second) {
     PlannedInstruction& i = plan(kind);
     i.operation = o;
     i.destination = static_cast<std::int8_t>(destination);
@@ -262,14 +262,14 @@ private:
     return v.reg;
   }
 
-  Place in_register_or_memory(std::int32_t step) {
+  OperandPlace in_register_or_memory(std::int32_t step) {
     const Value& v = values_[at(step)];
     if (v.reg >= 0) {
       busy_ |= 1u << v.reg;
-      return {Place::Kind::in_register, v.reg};
+      return {OperandPlace::Kind::in_register, v.reg};
     }
-    if (v.home.kind == Place::Kind::slot || rules_.takes_given_in_memory) return v.home;
-    return {Place::Kind::in_register, in_register(step)};
+    if (v.home.kind == OperandPlace::Kind::slot || rules_.takes_given_in_memory) return v.home;
+    return {OperandPlace::Kind::in_register, in_register(step)};
   }
 
   // Free are, from here on, the registers of operands that are used no more.
@@ -297,7 +297,7 @@ private:
       r = free_register();
       PlannedInstruction& i = plan(Kind::move);
       i.destination = static_cast<std::int8_t>(r);
-      i.second = {Place::Kind::in_register, first};
+      i.second = {OperandPlace::Kind::in_register, first};
     }
     let_operands_go(s);
     return r;
@@ -314,7 +314,7 @@ private:
     }
     keep(b);
     const int first = in_register(a);
-    const Place second = in_register_or_memory(b);
+    const OperandPlace second = in_register_or_memory(b);
     const int r = destination(s, first);
     arithmetic(Kind::arithmetic, s.operation, r, rules_.has_three_operands ? first : r, second);
     let_slots_go(s);
@@ -323,9 +323,9 @@ private:
 
   void unary(std::size_t p, const TapeStep& s) {
     const int first = in_register(s.a);
-    Place second{Place::Kind::nowhere};
-    if (s.operation == negate) second.kind = Place::Kind::sign_bits;
-    if (s.operation == absolute) second.kind = Place::Kind::value_bits;
+    OperandPlace second{OperandPlace::Kind::nowhere};
+    if (s.operation == negate) second.kind = OperandPlace::Kind::sign_bits;
+    if (s.operation == absolute) second.kind = OperandPlace::Kind::value_bits;
     const int r = destination(s, first);
     arithmetic(Kind::arithmetic, s.operation, r, rules_.has_three_operands ? first : r, second);
     let_slots_go(s);
@@ -337,7 +337,7 @@ private:
     const std::int32_t a = rules_.swaps_conditions ? s.b : s.a, b = rules_.swaps_conditions ? s.a : s.b;
     keep(b);
     const int first = in_register(a);
-    const Place second = in_register_or_memory(b);
+    const OperandPlace second = in_register_or_memory(b);
     int r = first;
     if (rules_.conditions_take_register)
       r = destination(s, first);
@@ -349,7 +349,7 @@ private:
 
   void call(std::size_t p, const TapeStep& s) {
     Value& v = values_[at(order_[p])];
-    if (v.home.kind != Place::Kind::nowhere) { // found with its partner
+    if (v.home.kind != OperandPlace::Kind::nowhere) { // found with its partner
       v.next = next_[p].result;
       store_known(order_[p]);
       let_operands_go(s);
@@ -366,8 +366,8 @@ private:
     let_slots_go(s);
     const bool is_sine = s.operation == sine;
     v.next = next_[p].result;
-    v.home = {Place::Kind::slot, slots[is_sine ? 0 : 1]};
-    const Place other{Place::Kind::slot, slots[is_sine ? 1 : 0]};
+    v.home = {OperandPlace::Kind::slot, slots[is_sine ? 0 : 1]};
+    const OperandPlace other{OperandPlace::Kind::slot, slots[is_sine ? 1 : 0]};
     if (v.partner != k_none && !is_idle(at(values_[at(v.partner)].position)))
       values_[at(v.partner)].home = other;
     else
@@ -389,9 +389,9 @@ private:
   }
 
   void store_output(Value& v, int r, std::int32_t k) {
-    const Place to{Place::Kind::output, k};
+    const OperandPlace to{OperandPlace::Kind::output, k};
     store(r, to);
-    if (v.home.kind == Place::Kind::nowhere) v.home = to;
+    if (v.home.kind == OperandPlace::Kind::nowhere) v.home = to;
   }
 
   // Outputs of a value that lies in memory.
@@ -405,7 +405,7 @@ private:
   void copy_output(Value& v, std::int32_t k) {
     const int r = free_register();
     load(r, v.home);
-    store(r, {Place::Kind::output, k});
+    store(r, {OperandPlace::Kind::output, k});
   }
 
   void store_outputs(std::size_t p) {

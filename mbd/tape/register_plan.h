@@ -14,7 +14,7 @@
 namespace steplap {
 
 /// Where a value lies.
-struct Place {
+struct OperandPlace {
   enum class Kind : std::uint8_t {
     nowhere,
     in_register,
@@ -43,7 +43,7 @@ struct PlannedInstruction {
   TapeOperation operation = TapeOperation::constant;
   Kind kind = Kind::load;
   std::int8_t destination = 0, first = 0; ///< registers
-  Place second;
+  OperandPlace second;
   std::int32_t sine_slot = 0, cosine_slot = 0;
 };
 
