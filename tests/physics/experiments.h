@@ -35,6 +35,9 @@ struct Compared {
 /// Changes of speed of two cars, m/s, with a coefficient of restitution.
 [[nodiscard]] std::vector<Compared> car_to_car(double restitution);
 
+/// Time that a brick takes from a tilt of 35 degrees to the ground, s.
+[[nodiscard]] std::vector<Compared> toppling_brick();
+
 /// A block that rocks on two corners.
 struct RockingBlock {
   double width = 0.2, height = 1.0; ///< m

@@ -14,6 +14,21 @@ namespace {
 // Standard error of the mean.
 double error_of(const Compared& c) { return c.scatter / std::sqrt(static_cast<double>(c.count)); }
 
+// Intervals of a ball that keeps a share of its speed at each bounce and is held back by the air, in closed form: against a drag of m g v^2/u^2 it rises
+// for u/g atan(v/u) to u^2/(2 g) ln(1 + v^2/u^2), and falls from a height h to the speed u sqrt(1 - exp(-2 g h/u^2)) in u/g artanh(v/u).
+std::vector<double> intervals_in_air(double share, double height, double terminal_speed) {
+  const double g = 9.81, u = terminal_speed;
+  const auto speed_from = [&](double h) { return u * std::sqrt(1.0 - std::exp(-2.0 * g * h / (u * u))); };
+  std::vector<double> intervals;
+  double speed = speed_from(height);
+  for (int bounce = 0; bounce < 8; ++bounce) {
+    const double up = share * speed;
+    speed = speed_from(u * u / (2.0 * g) * std::log(1.0 + up * up / (u * u)));
+    intervals.push_back(u / g * (std::atan(up / u) + std::atanh(speed / u)));
+  }
+  return intervals;
+}
+
 } // namespace
 
 // One value of the contact, from eight intervals after a fall from 1.1 m. A single throw scatters by `scatter`; the prediction, which is one
@@ -43,6 +58,20 @@ TEST_CASE("a table tennis ball's bounces are missed: too long from above the fit
     else CHECK(c.miss() < -2.0 * c.scatter);
     CHECK(std::abs(c.miss()) < 0.1 * c.measured);
   }
+}
+
+// What is missing is air. A sphere of 40 mm and 2.7 g with a drag coefficient of 0.45 falls at 8.8 m/s at most (general knowledge, the mass alone is
+// the source's). With that in a closed form, one share of speed kept, 0.956, comes within 4.1 % of all forty intervals; steplap misses by up to 9 %.
+TEST_CASE("air drag explains more than half of what is missed of the table tennis ball") {
+  const double terminal_speed = std::sqrt(2.0 * 0.0027 * 9.81 / (1.2 * 0.45 * 3.14159265 * 0.02 * 0.02));
+  double worst = 0.0, worst_without = 0.0;
+  for (const Compared& c : bounces("table_tennis_ball", 0.18)) {
+    const double with_air = intervals_in_air(0.956, c.setting, terminal_speed)[static_cast<std::size_t>(c.number - 1)];
+    worst = std::max(worst, std::abs(with_air / c.measured - 1.0));
+    worst_without = std::max(worst_without, std::abs(c.miss() / c.measured));
+  }
+  CHECK(worst < 0.041);
+  CHECK(worst_without > 2.0 * worst);
 }
 
 // The mean of 20 runs against a prediction that has the standard error of the 20 runs that the slope was found from.
@@ -98,6 +127,14 @@ TEST_CASE("two cars: the change of speed of the one that strikes lies within the
   CHECK(high[1].predicted > high[1].measured);
   CHECK(low[0].miss() > 2.0 * low[0].scatter);
   CHECK(high[0].miss() > 0.2 * high[0].measured);
+}
+
+// From inputs alone the brick lies after 0.33 s; measured was 0.4 to 0.5 s, the whole of it by ear and hand. Turning about its edge with J it obeys
+// J a = m g r sin p, which takes 0.335 s by quadrature: the model is not what misses.
+TEST_CASE("a toppling brick falls faster than was measured") {
+  const Compared brick = toppling_brick().front();
+  CHECK(brick.predicted == doctest::Approx(0.335).epsilon(0.02));
+  CHECK(brick.miss() < -brick.scatter);
 }
 
 // "approximately 0.97", written to 0.01: within 0.02, and below Housner's value, as measured.
