@@ -117,7 +117,7 @@ TEST_CASE("a trolley on an air track is missed from masses alone, and predicted 
   }
 }
 
-// 770 kg by 3.5 mph and 950 kg by 3.1 mph differ by 8.5 %, more than the digits written allow (3.6 % of each at most): the measured momentum is not
+// 770 kg by 3.5 mph and 950 kg by 3.1 mph differ by 8.5 %, more than the digits written allow (3 % together): the measured momentum is not
 // kept, and no model that keeps it meets both. By half of the difference, 4.3 %, one of them must be missed; 5 % is asked for.
 TEST_CASE("two cars: the change of speed of the one that strikes lies within the prediction, that of the one struck is missed by what momentum lacks") {
   const std::vector<Compared> low = car_to_car(0.2), high = car_to_car(0.4); // ends of the published range of the coefficient of restitution
