@@ -185,10 +185,10 @@ double lighter_mass(const ContactGeometry& g, const SystemBuilder& builder) {
   return mass;
 }
 
-// The angle φ = θ_A − θ_B at which both feet touch. With d from the rear to the front foot in a's frame, t and n the line's tangent and normal in
-// b's, gap_front − gap_rear = n·R(φ) d − h = |d| sin(φ + β) − h, where tan β = n·d/t·d and h is by how much b's line stands higher in front.
-// The feet are told apart in the reference pose, so φ is the solution within a right angle of it. Less than a hundredth is what
-// preloads and rounded coordinates make of feet that are meant to be level.
+// The angle φ = θ_A − θ_B at which both feet touch. With d from the rear to the front foot in a's frame, t and n the line's
+// tangent and normal in b's, gap_front − gap_rear = n·R(φ) d − h = |d| sin(φ + β) − h, where tan β = n·d/t·d and h is by how much
+// b's line stands higher in front. The feet are told apart in the reference pose, so φ is the solution within a right angle of
+// it. Less than a hundredth is what preloads and rounded coordinates make of feet that are meant to be level.
 double level_angle(const ContactGeometry& rear, const ContactGeometry& front, const SystemBuilder& builder) {
   constexpr double k_meant_level = 0.01, k_whole_turn = 6.283185307179586;
   const Vec2 n = front.gap.normal, t(n.y(), -n.x()), d = front.gap.point_a - rear.gap.point_a;

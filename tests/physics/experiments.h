@@ -1,5 +1,5 @@
-// Published measurements beside what steplap computes of them: data in tests/data/experiments, models in models/experiments, told in
-// docs/evidence/experiments.md.
+// Published measurements beside what steplap computes of them: data in tests/data/experiments, models in models/experiments, told
+// in docs/evidence/experiments.md.
 #pragma once
 
 #include <string>

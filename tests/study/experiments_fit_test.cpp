@@ -4,7 +4,8 @@
 using namespace steplap;
 using namespace steplap::testing;
 
-// Intervals of both fits are some 2 and 4 % wide; the models give the value with four digits, half of the last of which is 0.03 %.
+// Intervals of both fits are some 2 and 4 % wide; the models give the value with four digits, half of the last of which is 0.03
+// %.
 TEST_CASE("damping of the bouncing balls is what their fits say, and the golf ball's fit says that its interval is off") {
   struct Ball {
     std::string name;
@@ -22,6 +23,7 @@ TEST_CASE("damping of the bouncing balls is what their fits say, and the golf ba
     for (const study::Finding& finding : study::Store(store).findings())
       if (finding.subject == "damping" && finding.quantity == "value") found = finding.value;
     CHECK(found == doctest::Approx(ball.damping).epsilon(1e-3));
-    CHECK(has(text_of(STEPLAP_MODELS "/experiments/" + ball.name + ".toml"), "damping = " + std::string(ball.damping > 1.0 ? "15.784" : "0.6284")));
+    CHECK(has(text_of(STEPLAP_MODELS "/experiments/" + ball.name + ".toml"),
+              "damping = " + std::string(ball.damping > 1.0 ? "15.784" : "0.6284")));
   }
 }
