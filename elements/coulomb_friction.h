@@ -12,7 +12,7 @@ namespace steplap {
 
 class CoulombFriction : public FrictionElement {
 public:
-  // θ_A = θ_B exactly is the normal state at rest: the foot is kept within this dead band, rad.
+  // Level feet are the normal state at rest: the foot is kept within this dead band, rad.
   static constexpr double k_foot_dead_band = 1e-13;
   // |λ| may pass the bound by rounding, relative: ten times below the 1e-12 that a load can resolve.
   static constexpr double k_bound_slack = 1e-13;
@@ -23,6 +23,7 @@ public:
   std::vector<ContactIndex> contacts;
   std::vector<RowSpec> feet; ///< rear-most, front-most; the same twice for one contact
   bool has_two_feet = false;
+  double level = 0.0; ///< θ_A − θ_B at which both feet touch, rad
   double mu_static = 0.0, mu_kinetic = 0.0;
   double damping = 0.0, mass = 0.0, lever = 0.0; ///< of the contacts; of the lighter body; from its centre
 
@@ -109,7 +110,8 @@ private:
   }
   template <class S> [[nodiscard]] S turn_to_other_foot(const Evaluated<S>& e, const FrictionState& state) const {
     if (!has_two_feet) return 1.0;
-    const S turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
+    S turn = e.motion[feet[0].a].theta - e.motion[feet[0].b].theta;
+    if (level != 0.0) turn = turn - S(level);
     return k_foot_dead_band + (state.foot == 0 ? turn : -turn);
   }
 };

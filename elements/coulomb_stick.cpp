@@ -4,6 +4,7 @@
 #include "elements/round_contacts.h"
 #include "elements/round_measures.h"
 #include "elements/unilateral_contact.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -184,6 +185,24 @@ double lighter_mass(const ContactGeometry& g, const SystemBuilder& builder) {
   return mass;
 }
 
+// The angle φ = θ_A − θ_B at which both feet touch. With d from the rear to the front foot in a's frame, t and n the line's
+// tangent and normal in b's, gap_front − gap_rear = n·R(φ) d − h = |d| sin(φ + β) − h, where tan β = n·d/t·d and h is by how much
+// b's line stands higher in front. The feet are told apart in the reference pose, so φ is the solution within a right angle of
+// it. Less than a hundredth is what preloads and rounded coordinates make of feet that are meant to be level.
+double level_angle(const ContactGeometry& rear, const ContactGeometry& front, const SystemBuilder& builder) {
+  constexpr double k_meant_level = 0.01, k_whole_turn = 6.283185307179586;
+  const Vec2 n = front.gap.normal, t(n.y(), -n.x()), d = front.gap.point_a - rear.gap.point_a;
+  const double length = d.norm(), h = n.dot(front.gap.point_b - rear.gap.point_b);
+  if (length == 0.0) return 0.0;
+  RowSpec turn = slide_row(rear, -1);
+  turn.kind = MeasureKind::angle;
+  const double reference = evaluate_row<false>(turn, &builder.reference(0)).value;
+  const double sine = std::clamp(h / length, -1.0, 1.0);
+  const double angle = portable::atan2(sine, std::sqrt(1.0 - sine * sine)) - portable::atan2(n.dot(d), t.dot(d));
+  const double level = angle + k_whole_turn * std::round((reference - angle) / k_whole_turn);
+  return std::abs(level) < k_meant_level ? 0.0 : level;
+}
+
 void compile_coulomb(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const CoulombStick&>(element);
   if (e.contacts.empty()) return builder.error("'contacts' is empty: name the contacts that carry the friction");
@@ -205,6 +224,7 @@ void compile_coulomb(const Element& element, SystemBuilder& builder) {
       });
   friction->feet = {slide_row(*rear, memory), slide_row(*front, memory)};
   friction->has_two_feet = rear != front;
+  if (friction->has_two_feet) friction->level = level_angle(*rear, *front, builder);
   friction->mass = lighter_mass(geometry.front(), builder);
   for (const ContactGeometry& g : geometry)
     friction->lever = std::max({friction->lever, g.gap.point_a.norm(), g.gap.point_b.norm()});
