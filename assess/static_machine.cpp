@@ -102,7 +102,7 @@ std::vector<double> StaticMachine::left_of(const Probe& probe) const {
   return left;
 }
 
-Probe StaticMachine::probe(const State& start, const Vec2& pull, History history) {
+Probe StaticMachine::probe(const State& start, const Vec2& pull) {
   struct Restored { // whatever happens, the machine is as it was
     System& system;
     Vec2 gravity;
@@ -111,7 +111,7 @@ Probe StaticMachine::probe(const State& start, const Vec2& pull, History history
   system_->gravity = gravity_ + pull;
   Probe probe;
   try {
-    Equilibrium found = history == History::ramped ? find_ramped_rest(*system_, start) : find_equilibrium(*system_, start);
+    Equilibrium found = find_ramped_rest(*system_, start);
     if (!found.left.empty()) {
       probe.failure = "the pose balances, but a nudge of " + part_text(*system_, found.left.front()) + " leaves it";
       return probe;
@@ -131,13 +131,18 @@ Probe StaticMachine::probe(const State& start, const Vec2& pull, History history
   return probe;
 }
 
-Probe StaticMachine::ramped(const Vec2& pull) { return probe(at_rest_.rest->state, pull, History::ramped); }
+Probe StaticMachine::ramped(const Vec2& pull) { return probe(at_rest_.rest->state, pull); }
 
 Probe StaticMachine::ramped_from(const Probe& before, const Vec2& pull) {
-  return probe(before.rest->state, pull, History::ramped);
+  return probe(before.rest->state, pull);
 }
 
-Probe StaticMachine::worked_loose(const Vec2& pull) { return probe(at_rest_.rest->state, pull, History::worked_loose); }
+Probe StaticMachine::worked_loose(const Vec2& pull) {
+  State loose = at_rest_.rest->state;
+  for (std::size_t w = 0; w < watches_.size(); ++w)
+    if (watches_[w].kind == LimitKind::slides) loose.friction[static_cast<std::size_t>(friction_[w])].phase = FrictionPhase::apart;
+  return probe(loose, pull);
+}
 
 double StaticMachine::value(const Probe& probe, const std::string& channel) const {
   const int index = channel_index(*system_, channel);

@@ -60,15 +60,14 @@ public:
   [[nodiscard]] Probe ramped(const Vec2& pull);
   /// The same on the machine at rest under another pull.
   [[nodiscard]] Probe ramped_from(const Probe& before, const Vec2& pull);
-  /// Friction between bodies bears as little as it can.
+  /// Friction on lines and about pins bears nothing, as after long vibration; joints that friction holds in the plane hold.
   [[nodiscard]] Probe worked_loose(const Vec2& pull);
   /// The value of a channel; not-a-number if there is none of that name.
   [[nodiscard]] double value(const Probe& probe, const std::string& channel) const;
 
 private:
-  enum class History { ramped, worked_loose };
   void find_watches();
-  Probe probe(const State& start, const Vec2& pull, History history);
+  Probe probe(const State& start, const Vec2& pull);
   [[nodiscard]] std::vector<double> left_of(const Probe& probe) const;
 
   Model model_;

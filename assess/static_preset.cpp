@@ -86,6 +86,8 @@ private:
       if (problems_.size() > before) continue;
       if (!(load.pull.cwiseAbs().maxCoeff() <= k_most))
         problems_.push_back({entry.where(), "'pull' of load '" + load.name + "' is beyond 10000 m/s^2: is the unit right? \"0.8 gravity\" is 7.8 m/s^2"});
+      if (!load.plane.empty() && load.plane != name_of(Plane::lengthwise) && load.plane != name_of(Plane::transverse))
+        problems_.push_back({entry.find("plane")->where(), "'plane' of load '" + load.name + "' is '" + load.plane + "': give lengthwise or transverse, or leave it out for both"});
       if (!names.insert(load.name).second)
         problems_.push_back({entry.where(), "there are two loads '" + load.name + "': give each a name of its own"});
       preset_.loads.push_back(std::move(load));

@@ -132,7 +132,7 @@ private:
     }
     loose_ = machine_.worked_loose(pull);
     if (loose_.rest) ways_.push_back(&loose_);
-    else note(Verdict::open, "there is a rest if the load grows from nothing, but none is found with friction that bears as little as it can: " + loose_.failure);
+    else case_.remarks.push_back("it needs friction between bodies to hold: without, " + loose_.failure);
   }
 
   void collect() {
@@ -204,12 +204,10 @@ private:
         else note(Verdict::open, criterion_text(criteria[i]) + ": it hangs on what came before, since friction allows several rests");
         if (w > 0 && weight(outcome) > weight(proof_of(case_.criteria[i].outcome))) case_.criteria[i] = criteria[i];
       }
-      if (!ways_[w]->rest->indifferent.empty())
+      if (ways_[w] != &loose_ && !ways_[w]->rest->indifferent.empty())
         note(Verdict::open, "nothing holds " + part_text(machine_.system(), ways_[w]->rest->indifferent.front()) + ": it rests wherever it is");
       for (std::string& remark : remarks_on(machine_.system(), *ways_[w]->rest))
         if (std::find(case_.remarks.begin(), case_.remarks.end(), remark) == case_.remarks.end()) case_.remarks.push_back(std::move(remark));
-      if (ways_[w]->rest->hangs_on_way)
-        note(Verdict::open, "with friction that bears as little as it can it comes to another rest, after it has moved");
     }
     for (const StaticJoint& joint : case_.joints)
       if (!(std::abs(joint.margin - 1.0) > k_close)) note(Verdict::open, "the margin of '" + joint.name + "' is 1 within rounding");

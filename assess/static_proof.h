@@ -2,11 +2,11 @@
 //
 // The machine is at rest on its vehicle; the pull of each load (static_preset.h) is laid over its gravity (static_machine.h). With friction
 // there are many rests under one load, and which one a machine comes to hangs on what was before. So each load is asked in three ways:
-// it grows from nothing; it grows from the same load turned round; friction between bodies bears as little as it can, as after
-// hours of vibration. Only what all of them bear is proven: where they disagree the verdict is open, and margins and
-// reactions are the worst of them.
+// it grows from nothing; it grows from the same load turned round; friction between bodies bears nothing, as after
+// hours of vibration (if there is a rest then: what needs friction to hold is taken to have it, which is said). Only what all of them
+// bear is proven: where they disagree the verdict is open, and margins and reactions are the worst of them.
 //
-//   hold    there is a rest in all three ways, and all criteria that a rest can answer are met
+//   hold    there is a rest in all of these ways, and all criteria that a rest can answer are met
 //   reject  the machine leaves its rest below the load, and it is known by what; or a criterion is not met
 //   open    anything else: no rest was found and nothing explains it, nothing holds a body where it rests, the ways disagree, a margin
 //           lies within rounding of its limit
