@@ -244,14 +244,20 @@ StaticDirection look_along(StaticMachine& machine, double angle, double largest)
   return found;
 }
 
-void conclude(StaticProof& proof) {
+void conclude(StaticProof& proof, const StaticMachine& machine) {
   proof.verdict = Verdict::hold;
   for (const StaticCase& one : proof.cases) {
     if (weight(one.verdict) <= weight(proof.verdict)) continue;
     proof.verdict = one.verdict;
     proof.reason = one.load.name + ": " + one.why;
   }
-  if (proof.verdict == Verdict::hold) proof.reason = "at rest under every load, with all criteria met that a rest can answer";
+  if (proof.verdict != Verdict::hold) return;
+  proof.reason = "at rest under every load, with all criteria met that a rest can answer";
+  const bool is_asked = !machine.watches().empty() ||
+                        std::any_of(proof.cases.begin(), proof.cases.end(), [](const StaticCase& one) { return !one.criteria.empty(); });
+  if (is_asked) return;
+  proof.verdict = Verdict::open;
+  proof.reason = "at rest under every load, but nothing was asked: the model has no joint, contact or friction that could give way, and no criterion on a force or a place";
 }
 
 } // namespace
@@ -296,7 +302,7 @@ StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& pres
   const RunResult rest = as_run(machine, machine.at_rest());
   for (const Criterion& criterion : machine.model().criteria)
     if (criterion.channel.empty() || !is_of_rest(judge_criterion(criterion, rest).unit)) proof.unasked.push_back(criterion.name);
-  conclude(proof);
+  conclude(proof, machine);
   return proof;
 }
 

@@ -147,6 +147,11 @@ TEST_CASE("what a rest cannot prove is open") {
     CHECK(proof.verdict == Verdict::open);
     CHECK(proof.reason.find("Hold its vehicle by a drive") != std::string::npos);
   }
+  SUBCASE("nothing is asked") {
+    const StaticProof proof = proof_of("[[body]]\nname = 'post'\nmass = 10\ninertia = 1\n[[element]]\nkind = 'weld'\nname = 'foot'\na = 'post'\nb = 'ground'\n", {1.0, 0.0});
+    CHECK(proof.verdict == Verdict::open);
+    CHECK(proof.reason.find("nothing was asked") != std::string::npos);
+  }
   SUBCASE("a stop bears with friction or without it") {
     // Friction μ m g = 3.9 kN of the 5.9 kN that pull; the spring bears the rest, or after a shake all of it.
     const std::string stop = "[[element]]\nkind = 'spring_damper'\nname = 'stop'\na = { body = 'block', at = [0, 0.1] }\nb = { body = 'ground', at = [0, 0.1] }\n"

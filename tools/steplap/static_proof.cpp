@@ -14,6 +14,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <utility>
 
 namespace steplap {
 
@@ -24,6 +25,8 @@ using Align = TextTable::Align;
 
 constexpr int k_most_directions = 3600;
 constexpr double k_most_acceleration = 1e4; // m/s²
+constexpr double k_unloaded = 1e6;          // of a margin: what is left of a load is rounding
+constexpr std::size_t k_most_feet = 2;      // named in a row
 
 double number_of(const std::string& text, const std::string& option, double low, double high) {
   double value = 0.0;
@@ -58,13 +61,15 @@ std::string margin_text(const StaticCase& one) {
   double least = INFINITY;
   for (const StaticJoint& joint : one.joints)
     if (!(joint.margin >= least)) least = joint.margin;
-  return std::isinf(least) ? "no load" : rounded_text(least, 4);
+  return least > k_unloaded ? "no load" : rounded_text(least, 4);
 }
 
 std::string feet_text(const StaticCase& one) {
   std::string text;
+  std::size_t count = 0;
   for (const StaticFoot& foot : one.feet)
-    if (foot.lifts) text += (text.empty() ? "" : ", ") + foot.name;
+    if (foot.lifts && ++count <= k_most_feet) text += (text.empty() ? "" : ", ") + foot.name;
+  if (count > k_most_feet) text += " and " + std::to_string(count - k_most_feet) + " more";
   return text.empty() ? "-" : text;
 }
 
@@ -83,7 +88,7 @@ void print_cases(std::ostream& out, const StaticProof& proof) {
 void print_weakest(std::ostream& out, const StaticProof& proof) {
   if (proof.polar.empty()) return;
   TextTable table({Align::left, Align::right, Align::right, Align::right});
-  table.add_row({"weakest direction", "towards", "pull", "error"});
+  bool is_any = false;
   for (const LimitKind kind : {LimitKind::slips, LimitKind::slides, LimitKind::lifts, LimitKind::ends}) {
     const StaticDirection* weakest = nullptr;
     std::size_t which = 0;
@@ -96,10 +101,12 @@ void print_weakest(std::ostream& out, const StaticProof& proof) {
       }
     if (!weakest) continue;
     const StaticLimit& limit = weakest->ray.limits[which];
+    if (!std::exchange(is_any, true)) table.add_row({"weakest direction", "towards", "pull", "error"});
     table.add_row({limit_words(weakest->ray, which), rounded_text(weakest->angle * 57.29577951308232, 4) + "°", acceleration_text(limit.acceleration),
                    small_text(limit.error) + " m/s²"});
   }
-  out << "\n" << table;
+  if (is_any) out << "\n" << table;
+  else out << "\n  Nothing gives way up to " << acceleration_text(proof.largest) << " in " << counted(proof.polar.size(), "direction", "directions") << ".\n";
   const auto open = std::count_if(proof.polar.begin(), proof.polar.end(), [](const StaticDirection& d) { return !d.is_unique; });
   if (open > 0) out << "  In " << counted(static_cast<std::size_t>(open), "direction", "directions") << " of " << proof.polar.size() << " the first limit hangs on what came before.\n";
 }
