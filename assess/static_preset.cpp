@@ -58,7 +58,7 @@ public:
     FieldTable fields;
     fields.add("name", &PresetHeader::name).required().doc("what results call these loads");
     fields.add("source", &PresetHeader::source).required().doc("who asks for them, by which document");
-    read_fields(document_.root, fields, &header, {"the loads", {"load"}, {}, {}}, problems_);
+    read_fields(document_.root, fields, &header, {"the loads", {"case"}, {}, {}}, problems_);
     preset_ = {header.name, header.source, {}};
     read_loads();
     if (!problems_.empty()) throw ModelError(std::move(problems_));
@@ -67,11 +67,11 @@ public:
 
 private:
   void read_loads() {
-    const Node* const array = document_.root.find("load");
+    const Node* const array = document_.root.find("case");
     if (!array || !array->is_array_of_tables()) {
       Location where = array ? array->where() : document_.root.where();
       if (where.file.empty()) where.file = path_;
-      problems_.push_back({where, "there are no loads: give each as [[load]] with a name and 'pull', its two accelerations beside gravity"});
+      problems_.push_back({where, "there are no loads: give each as [[case]] with a name and 'pull', its two accelerations beside gravity"});
       return;
     }
     FieldTable fields;
@@ -82,14 +82,14 @@ private:
     for (const Node& entry : array->children) {
       StaticLoad load;
       const std::size_t before = problems_.size();
-      read_fields(entry, fields, &load, {"load '" + entry_name(entry) + "'", {}, {}, {}}, problems_);
+      read_fields(entry, fields, &load, {"case '" + entry_name(entry) + "'", {}, {}, {}}, problems_);
       if (problems_.size() > before) continue;
       if (!(load.pull.cwiseAbs().maxCoeff() <= k_most))
-        problems_.push_back({entry.where(), "'pull' of load '" + load.name + "' is beyond 10000 m/s^2: is the unit right? \"0.8 gravity\" is 7.8 m/s^2"});
+        problems_.push_back({entry.where(), "'pull' of case '" + load.name + "' is beyond 10000 m/s^2: is the unit right? \"0.8 gravity\" is 7.8 m/s^2"});
       if (!load.plane.empty() && load.plane != name_of(Plane::lengthwise) && load.plane != name_of(Plane::transverse))
-        problems_.push_back({entry.find("plane")->where(), "'plane' of load '" + load.name + "' is '" + load.plane + "': give lengthwise or transverse, or leave it out for both"});
+        problems_.push_back({entry.find("plane")->where(), "'plane' of case '" + load.name + "' is '" + load.plane + "': give lengthwise or transverse, or leave it out for both"});
       if (!names.insert(load.name).second)
-        problems_.push_back({entry.where(), "there are two loads '" + load.name + "': give each a name of its own"});
+        problems_.push_back({entry.where(), "there are two cases '" + load.name + "': give each a name of its own"});
       preset_.loads.push_back(std::move(load));
     }
   }

@@ -26,7 +26,7 @@ struct Folder {
 };
 
 std::string own(double pull) {
-  return "name = 'own'\nsource = 'a test'\n[[load]]\nname = 'forward'\npull = ['" + std::to_string(pull) + " gravity', 0]\n";
+  return "name = 'own'\nsource = 'a test'\n[[case]]\nname = 'forward'\npull = ['" + std::to_string(pull) + " gravity', 0]\n";
 }
 
 } // namespace
@@ -38,7 +38,7 @@ TEST_CASE("exit codes: proven, rejected, open") {
   const Outcome rejected = steplap_does({"assess", "--static", hard, "--directions", "0", k_paper});
   CHECK(rejected.code == 5);
   CHECK(has(rejected.out, "reject"));
-  const std::string up = folder.file("up.toml", "name = 'up'\nsource = 'a test'\n[[load]]\nname = 'up'\npull = [0, 9.81]\n");
+  const std::string up = folder.file("up.toml", "name = 'up'\nsource = 'a test'\n[[case]]\nname = 'up'\npull = [0, 9.81]\n");
   const Outcome open = steplap_does({"assess", "--static", up, "--directions", "0", STEPLAP_MODELS "/paper/no_interference.toml"});
   CHECK(open.code == 4);
   CHECK(has(open.out, "nothing holds"));
@@ -90,12 +90,12 @@ TEST_CASE("what is wrong is said once, with place and remedy") {
   refused({"--static", (folder.path / "none.toml").string(), k_paper}, 3, "none.toml");
   const auto preset = [&](const std::string& text) { return folder.file("own.toml", text); };
   refused({"--static", preset("name = 'a'\nsource = 'b'\n"), k_paper}, 3, "there are no loads");
-  refused({"--static", preset("name = 'a'\n[[load]]\nname = 'x'\npull = [1, 0]\n"), k_paper}, 3, "source");
-  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[load]]\nname = 'x'\npull = [1]\n"), k_paper}, 3, "own.toml:5");
-  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[load]]\nname = 'x'\npull = ['1 kN', 0]\n"), k_paper}, 3, "own.toml:5");
-  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[load]]\nname = 'x'\npull = [1e6, 0]\n"), k_paper}, 3, "is the unit right");
-  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[load]]\nname = 'x'\npull = [1, 0]\nplane = 'up'\n"), k_paper}, 3, "own.toml:6");
-  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[load]]\nname = 'x'\npull = [1, 0]\n[[load]]\nname = 'x'\npull = [2, 0]\n"), k_paper}, 3, "two loads 'x'");
-  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[load]]\nname = 'x'\npul = [1, 0]\npull = [1, 0]\n"), k_paper}, 3, "'pul'");
-  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[load]]\nname = 'x'\npull = [1, 0]\nplane = 'transverse'\n"), "--plane", "lengthwise", k_paper}, 2, "has no load for a model");
+  refused({"--static", preset("name = 'a'\n[[case]]\nname = 'x'\npull = [1, 0]\n"), k_paper}, 3, "source");
+  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1]\n"), k_paper}, 3, "own.toml:5");
+  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = ['1 kN', 0]\n"), k_paper}, 3, "own.toml:5");
+  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1e6, 0]\n"), k_paper}, 3, "is the unit right");
+  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1, 0]\nplane = 'up'\n"), k_paper}, 3, "own.toml:6");
+  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1, 0]\n[[case]]\nname = 'x'\npull = [2, 0]\n"), k_paper}, 3, "two cases 'x'");
+  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npul = [1, 0]\npull = [1, 0]\n"), k_paper}, 3, "'pul'");
+  refused({"--static", preset("name = 'a'\nsource = 'b'\n[[case]]\nname = 'x'\npull = [1, 0]\nplane = 'transverse'\n"), "--plane", "lengthwise", k_paper}, 2, "has no load for a model");
 }

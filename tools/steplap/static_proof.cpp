@@ -75,7 +75,7 @@ std::string feet_text(const StaticCase& one) {
 
 void print_cases(std::ostream& out, const StaticProof& proof) {
   TextTable table({Align::left, Align::right, Align::right, Align::left, Align::right, Align::left, Align::left});
-  table.add_row({"load", "pull x", "pull y", "verdict", "least margin", "feet that lift", "first, while the pull grows"});
+  table.add_row({"case", "pull x", "pull y", "verdict", "least margin", "feet that lift", "first, while the pull grows"});
   for (const StaticCase& one : proof.cases)
     table.add_row({one.load.name, acceleration_text(one.load.pull.x()), acceleration_text(one.load.pull.y()), steplap::name_of(one.verdict),
                    margin_text(one), feet_text(one), one.first.empty() ? "-" : one.first});
