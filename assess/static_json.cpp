@@ -96,6 +96,7 @@ OrderedJson proof_json(const StaticProof& proof, const std::string& sha256) {
   OrderedJson json = {{"model", proof.model},
                       {"file", proof.file},
                       {"sha256", sha256},
+                      {"overrides", proof.overrides},
                       {"plane", name_of(proof.plane)},
                       {"preset", proof.preset.name},
                       {"source", proof.preset.source},
@@ -105,6 +106,7 @@ OrderedJson proof_json(const StaticProof& proof, const std::string& sha256) {
                       {"largest_acceleration", number(proof.largest)},
                       {"unit", "m/s^2"},
                       {"not_asked", proof.unasked},
+                      {"assumptions", proof.assumptions},
                       {"cases", OrderedJson::array()},
                       {"polar", OrderedJson::array()}};
   for (const StaticCase& one : proof.cases) json["cases"].push_back(case_json(one));

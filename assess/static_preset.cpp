@@ -84,7 +84,7 @@ private:
       const std::size_t before = problems_.size();
       read_fields(entry, fields, &load, {"case '" + entry_name(entry) + "'", {}, {}, {}}, problems_);
       if (problems_.size() > before) continue;
-      if (!(load.pull.cwiseAbs().maxCoeff() <= k_most))
+      if (!(std::abs(load.pull.x()) <= k_most && std::abs(load.pull.y()) <= k_most))
         problems_.push_back({entry.where(), "'pull' of case '" + load.name + "' is beyond 10000 m/s^2: is the unit right? \"0.8 gravity\" is 7.8 m/s^2"});
       if (!load.plane.empty() && load.plane != name_of(Plane::lengthwise) && load.plane != name_of(Plane::transverse))
         problems_.push_back({entry.find("plane")->where(), "'plane' of case '" + load.name + "' is '" + load.plane + "': give lengthwise or transverse, or leave it out for both"});

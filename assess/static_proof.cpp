@@ -3,6 +3,7 @@
 #include "mbd/acceptance/criteria.h"
 #include "mbd/acceptance/element_judgement.h"
 #include "mbd/base/name_pattern.h"
+#include "mbd/base/shown_text.h"
 #include "mbd/math/portable_math.h"
 #include "run/prominence.h"
 #include "run/quantity_text.h"
@@ -64,11 +65,11 @@ Verdict proof_of(Verdict outcome) { return outcome == Verdict::inspect ? Verdict
 int weight(Verdict verdict) { return verdict == Verdict::hold ? 0 : verdict == Verdict::open ? 1 : 2; }
 
 std::string number(double value, const std::string& unit) { return quantity_text(value, unit, 1.0); }
+std::string acceleration(double a) { return rounded_text(a, 4) + " m/s²"; }
 
-std::string criterion_text(const CriterionResult& c) {
-  std::string text = "'" + c.where + "': " + c.text;
-  if (c.value) text += ", but it is " + number(*c.value, c.unit);
-  return text;
+std::string criterion_text(const CriterionResult& c, const std::string& begin) {
+  const std::string what = "'" + (c.channel.empty() ? c.where : c.channel) + "'";
+  return begin + ": " + c.text + " (" + what + (c.value ? " is " + number(*c.value, c.unit) : " has no value") + ")";
 }
 
 // One load, asked in several ways.
@@ -105,14 +106,14 @@ private:
     const StaticRay ray = grow_pull(machine_, case_.load.pull / a, a);
     if (!ray.limits.empty()) {
       const std::string words = limit_words(ray, 0);
-      case_.first = words + " at " + number(ray.limits.front().acceleration, "m/s^2");
+      case_.first = words + " at " + acceleration(ray.limits.front().acceleration);
     }
     if (grown_.rest) return;
     const StaticLimit* const end = ray.limits.empty() || ray.limits.back().kind != LimitKind::ends ? nullptr : &ray.limits.back();
     const bool is_explained = end && ray.is_explained;
     if (is_explained)
-      case_.why = limit_words(ray, ray.limits.size() - 1) + " at " + number(end->acceleration, "m/s^2") + ", " +
-                  number(100.0 * end->acceleration / a, "%") + " of this load";
+      case_.why = limit_words(ray, ray.limits.size() - 1) + " at " + acceleration(end->acceleration) + ", " +
+                  rounded_text(100.0 * end->acceleration / a, 3) + " % of this load";
     else if (end && end->acceleration < 1e-3 * a)
       case_.why = "no rest: the machine gives way to the least pull (" + end->text + "). Hold its vehicle by a drive";
     else
@@ -200,8 +201,8 @@ private:
       for (std::size_t i = 0; i < criteria.size(); ++i) {
         const Verdict outcome = proof_of(criteria[i].outcome);
         const bool agrees = w == 0 || proof_of(case_.criteria[i].outcome) == outcome;
-        if (agrees) note(outcome, criterion_text(criteria[i]));
-        else note(Verdict::open, criterion_text(criteria[i]) + ": it hangs on what came before, since friction allows several rests");
+        if (agrees) note(outcome, criterion_text(criteria[i], "not met"));
+        else note(Verdict::open, criterion_text(criteria[i], "not met after some ways to the load") + "; friction allows several rests");
         if (w > 0 && weight(outcome) > weight(proof_of(case_.criteria[i].outcome))) case_.criteria[i] = criteria[i];
       }
       if (ways_[w] != &loose_ && !ways_[w]->rest->indifferent.empty())
@@ -244,6 +245,13 @@ StaticDirection look_along(StaticMachine& machine, double angle, double largest)
   return found;
 }
 
+std::vector<std::string> assumptions_of(Plane plane) {
+  return {std::string("x of the model points ") + (plane == Plane::lengthwise ? "forward" : "to one side of the vehicle") + ", y up",
+          "the vehicle is held by the drives of the model, and its acceleration is constant; the swing with which a sudden one begins is not part of it",
+          "friction, pressures and stiffnesses are those of the model: their scatter is not part of the margins",
+          "the bodies of the model are rigid: what bends in them, and the other plane, is not known to it"};
+}
+
 void conclude(StaticProof& proof, const StaticMachine& machine) {
   proof.verdict = Verdict::hold;
   for (const StaticCase& one : proof.cases) {
@@ -283,6 +291,8 @@ StaticProof prove_statically(const LoadedModel& loaded, const StaticPreset& pres
   StaticProof proof;
   proof.model = loaded.name;
   proof.file = loaded.path;
+  proof.overrides = loaded.overrides;
+  proof.assumptions = assumptions_of(options.plane);
   proof.plane = options.plane;
   proof.preset = preset;
   proof.gravity = machine.gravity();

@@ -69,6 +69,8 @@ struct StaticDirection {
 
 struct StaticProof {
   std::string model, file;
+  std::vector<std::string> overrides;    ///< "path=value", laid over the file
+  std::vector<std::string> assumptions;  ///< sentences
   Plane plane = Plane::lengthwise;
   StaticPreset preset;
   Vec2 gravity = Vec2::Zero();

@@ -10,6 +10,8 @@
 // velocity that the pulse takes away are held against the motion: a pulse that misses either by 1e-7 is refused.
 #include "mbd/model/shunting_signal.h"
 
+#include "mbd/base/shown_text.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -78,8 +80,7 @@ private:
   [[noreturn]] void fail(const std::string& what) const { throw ModelError(given_.where, "shunting '" + given_.name + "': " + what); }
   [[noreturn]] void fail_at_end(const Node& now) const {
     const double left = 0.5 * reduced_ * (k_buffers * now.rate) * (k_buffers * now.rate);
-    fail("the buffers reach the end of their 'buffer' curve and " + std::to_string(std::llround(left)) +
-         " J are left: give the 'stop_stiffness' of what is behind them, or points up to their full travel");
+    fail("the buffers reach the end of their 'buffer' curve and " + rounded_text(left, 4) + " J are left: give the 'stop_stiffness' of what is behind them, or points up to their full travel");
   }
 
   void check_curve(const std::vector<Vec2>& curve, const char* key) const {

@@ -181,3 +181,40 @@ TEST_CASE("joints that would slip are rejected with their margin") {
   // 411.9 kN at 0.1 MPa; two weights of 9 t. The limb's own lever arms are none in translation.
   for (const StaticJoint& joint : proof.cases[0].joints) CHECK(joint.margin == doctest::Approx(0.2 * 411894.0 / (2.0 * 9000.0 * k_g)).epsilon(1e-3));
 }
+
+// An elastic joint yields before it slides, in the search as in a run: where it lets go is its limit surface's matter alone.
+TEST_CASE("an elastic joint slips where a rigid one does") {
+  const std::string file = STEPLAP_MODELS "/paper/weak_clamping.toml";
+  const auto slip = [&](const std::vector<std::string>& overrides) {
+    const auto loaded = load_model(file, overrides);
+    StaticMachine asked(*loaded);
+    const StaticRay ray = grow_pull(asked, {0.0, -1.0}, 20.0);
+    const StaticLimit* const limit = first_of(ray, LimitKind::slips);
+    REQUIRE(limit);
+    return limit->acceleration;
+  };
+  const double rigid = slip({});
+  // The limb sinks by its weight over the stiffness, 0.1 mm; friction in translation does not change with the place of the overlap.
+  CHECK(slip({"element.front joint.tangential_stiffness=1e9", "element.back joint.tangential_stiffness=1e9"}) == doctest::Approx(rigid).epsilon(1e-5));
+}
+
+// Friction at its bound and the stop share the pull: F = m (a − μ g). Feet a hundred times stiffer than the stop make the symmetric
+// part of the stiffness indefinite while it slides, and the rest is stable all the same.
+TEST_CASE("what slides comes to rest where the stop bears what friction does not") {
+  for (const double stiffness : {1e6, 1e7, 1e8, 1e9})
+    for (const double mu : {0.1, 0.4, 0.55})
+      for (const double sign : {1.0, -1.0}) {
+        const std::string stop = "[[element]]\nkind = 'spring_damper'\nname = 'stop'\na = { body = 'block', at = [0, 0.1] }\nb = { body = 'ground', at = [0, 0.1] }\naxis = [1, 0]\nstiffness = " +
+                                 std::to_string(stiffness) + "\ndamping = 1e4\n";
+        const auto loaded = machine(block_on_deck(0.9, 0.5, mu, stop));
+        StaticMachine asked(*loaded);
+        const Probe probe = asked.ramped({sign * 0.6 * k_g, 0.0});
+        CAPTURE(stiffness);
+        CAPTURE(mu);
+        REQUIRE(probe.rest);
+        CHECK(probe.rest->slid.size() == 1);
+        // The stop has been strained by what friction gave before it slid, with the block's turn of 1e-6: a millionth.
+        CHECK(asked.value(probe, "stop.force") == doctest::Approx(-sign * 1000.0 * (0.6 - mu) * k_g).epsilon(1e-4));
+        CHECK(asked.value(probe, "deck.friction") == doctest::Approx(-sign * 1000.0 * mu * k_g).epsilon(1e-4));
+      }
+}

@@ -26,6 +26,7 @@ using Align = TextTable::Align;
 constexpr int k_most_directions = 3600;
 constexpr double k_most_acceleration = 1e4; // m/s²
 constexpr double k_unloaded = 1e6;          // of a margin: what is left of a load is rounding
+constexpr double k_rounding = 1e-9;         // of a reaction's share of what it may be
 constexpr std::size_t k_most_feet = 2;      // named in a row
 
 double number_of(const std::string& text, const std::string& option, double low, double high) {
@@ -54,7 +55,8 @@ StaticProofOptions options_of(const StaticProofArguments& arguments, const Stati
   return options;
 }
 
-std::string acceleration_text(double a) { return quantity_text(a, "m/s^2", 1.0); }
+// Four digits: files have all.
+std::string acceleration_text(double a) { return rounded_text(a, 4) + " m/s²"; }
 
 std::string margin_text(const StaticCase& one) {
   if (one.joints.empty()) return "-";
@@ -73,12 +75,21 @@ std::string feet_text(const StaticCase& one) {
   return text.empty() ? "-" : text;
 }
 
+// The reaction nearest to what it may be.
+std::string reaction_text(const StaticCase& one) {
+  const StaticReaction* nearest = nullptr;
+  const auto share = [](const StaticReaction& r) { return std::abs(r.value) / *r.allowed; };
+  for (const StaticReaction& reaction : one.reactions)
+    if (reaction.allowed && *reaction.allowed > 0.0 && (!nearest || share(reaction) > share(*nearest))) nearest = &reaction;
+  return nearest && share(*nearest) > k_rounding ? rounded_text(100.0 * share(*nearest), 3) + " % " + nearest->name : "-";
+}
+
 void print_cases(std::ostream& out, const StaticProof& proof) {
-  TextTable table({Align::left, Align::right, Align::right, Align::left, Align::right, Align::left, Align::left});
-  table.add_row({"case", "pull x", "pull y", "verdict", "least margin", "feet that lift", "first, while the pull grows"});
+  TextTable table({Align::left, Align::right, Align::left, Align::right, Align::left, Align::left, Align::left});
+  table.add_row({"case", "pull, m/s²", "verdict", "least margin", "reaction, of allowed", "feet that lift", "first, while the pull grows"});
   for (const StaticCase& one : proof.cases)
-    table.add_row({one.load.name, acceleration_text(one.load.pull.x()), acceleration_text(one.load.pull.y()), steplap::name_of(one.verdict),
-                   margin_text(one), feet_text(one), one.first.empty() ? "-" : one.first});
+    table.add_row({one.load.name, rounded_text(one.load.pull.x(), 4) + ", " + rounded_text(one.load.pull.y(), 4), steplap::name_of(one.verdict),
+                   margin_text(one), reaction_text(one), feet_text(one), one.first.empty() ? "-" : one.first});
   out << table;
   for (const StaticCase& one : proof.cases)
     if (one.verdict != Verdict::hold) out << "  " << steplap::name_of(one.verdict) << ", " << one.load.name << ": " << one.why << "\n";
