@@ -34,7 +34,7 @@ OrderedJson case_json(const StaticCase& one) {
   OrderedJson json = {{"name", one.load.name},
                       {"ax", one.apparent.x()},
                       {"ay", one.apparent.y()},
-                      {"pull", {one.load.pull.x(), one.load.pull.y()}},
+                      {"load", {one.load.pull.x(), one.load.pull.y()}},
                       {"verdict", steplap::name_of(one.verdict)},
                       {"why", one.why},
                       {"first", one.first},

@@ -55,6 +55,7 @@ TEST_CASE("static.json has what the screen says, and is not overwritten unasked"
   CHECK(proof["cases"].size() == 2);
   CHECK(proof["cases"][0]["ax"].get<double>() == doctest::Approx(0.8 * 9.81));
   CHECK(proof["cases"][0]["ay"].get<double>() == -9.81);
+  CHECK(proof["cases"][1]["load"][0].get<double>() == doctest::Approx(-0.5 * 9.81));
   CHECK(proof["polar"].size() == 8);
   for (const auto& direction : proof["polar"])
     if (!direction["acceleration"].is_null()) {
