@@ -19,6 +19,7 @@
 #include "elements/unilateral_contact.h"
 #include "elements/wound_rope.h"
 #include "mbd/io/record_signal.h"
+#include "mbd/model/shunting_signal.h"
 #include "mbd/io/presentation.h"
 
 namespace steplap {
@@ -41,6 +42,7 @@ const Catalogue& element_catalog() {
                   &joint_friction_kind(),    &rope_kind(),
                   &wound_rope_kind(),        &load_kind()};
     c.signals = signal_kinds();
+    c.signals.push_back(&shunting_kind());
     c.signals.push_back(&record_signal_kind());
     c.tables = {&channel_kind(), &plot_kind(), &acceptance_kind()};
     return c;

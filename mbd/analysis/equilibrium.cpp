@@ -2,6 +2,7 @@
 
 #include "mbd/analysis/admissible_rest.h"
 #include "mbd/analysis/indifference.h"
+#include "mbd/analysis/ramped_rest.h"
 #include "mbd/analysis/settling.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/events/blow.h"
@@ -66,10 +67,12 @@ std::string unstable_text(const System& system, const MotionPart& nudge) {
   return "a pose on the way balances, but not stably: a nudge of " + part_text(system, nudge) + " leaves it";
 }
 
+enum class LoadHistory { any, ramped };
+
 class RestSearch {
 public:
-  RestSearch(const System& system, const State& start, RestAlgebra algebra)
-      : system_(system), algebra_(algebra), start_(start), state_(start) {
+  RestSearch(const System& system, const State& start, RestAlgebra algebra, LoadHistory history = LoadHistory::any)
+      : system_(system), algebra_(algebra), history_(history), start_(start), state_(start) {
     std::fill(state_.v.begin(), state_.v.end(), 0.0);
     start_drives(system_, state_);
     for (FrictionState& friction : state_.friction)
@@ -82,7 +85,7 @@ public:
     try {
       return search();
     } catch (const ElementFailure& none) {
-      if (system_.units.empty() && system_.frictions.empty()) throw;
+      if (history_ == LoadHistory::ramped || (system_.units.empty() && system_.frictions.empty())) throw;
       return settled(none);
     }
   }
@@ -343,7 +346,7 @@ private:
 
   // Friction bears what it got when it got its load: another admissible set of forces may hold the machine.
   bool share_anew(const Descent& descent) {
-    if (was_shared_anew_) return false;
+    if (was_shared_anew_ || history_ == LoadHistory::ramped) return false;
     // All ways to share a load are dense algebra: hours in large scenes. There friction slides to where it holds.
     if (3 * (system_.body_count() - 1) > k_most_shared) {
       is_too_large_ = true;
@@ -424,6 +427,7 @@ private:
     std::vector<std::string> names;
     if (!slips_.empty()) names.push_back(name_of(slips_.front().friction));
     names.push_back(system_.bodies[part.body].name);
+    if (end == DescentEnd::no_way) throw RestNotFound(text, std::move(names));
     throw ElementFailure(text, std::move(names));
   }
 
@@ -475,6 +479,7 @@ private:
 
   const System& system_;
   const RestAlgebra algebra_;
+  const LoadHistory history_;
   int flows_ = 0;                  ///< of elastic joints, in the search
   std::vector<double> last_flow_;  ///< per inner state
   const State& start_;
@@ -524,6 +529,10 @@ std::vector<std::string> remarks_on(const System& system, const Equilibrium& fou
 
 Equilibrium find_equilibrium(const System& system, const State& start, RestAlgebra algebra) {
   return RestSearch(system, start, algebra).run();
+}
+
+Equilibrium find_ramped_rest(const System& system, const State& start) {
+  return RestSearch(system, start, RestAlgebra::by_size, LoadHistory::ramped).run();
 }
 
 } // namespace steplap

@@ -91,6 +91,9 @@ public:
   std::optional<Unstable> most_unstable() override {
     Eigen::Index worst = 0;
     if (value_.size() == 0 || !(value_.minCoeff(&worst) < -value_rounding_[worst])) return std::nullopt;
+    // Friction that slides answers to normal forces, and those do not answer to it: its stiffness k μ beside the diagonal makes
+    // the symmetric part indefinite although nothing runs away. What does has an eigenvalue of the whole in that half plane.
+    if (is_skew() && (eigenvalues(reduced_).real().array() >= -value_rounding_.maxCoeff()).all()) return std::nullopt;
     return Unstable{shape_.col(worst), share_[worst], share_rounding_[worst]};
   }
 

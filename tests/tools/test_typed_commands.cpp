@@ -33,6 +33,7 @@ TEST_CASE("what cannot be said is an error, of every command") {
       {"simulate", model + " -o " + bench.at("s") + quick},
       {"report", bench.at("ran") + "/a -o " + bench.at("r.html")},
       {"plot", bench.at("ran") + "/a --channels ball.y -o " + bench.at("p.svg")},
+      {"assess", "--static iec-1g --directions 0 " + core},
       {"check", model},
       {"channels", model},
       {"equilibrium", model},

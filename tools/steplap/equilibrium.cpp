@@ -1,10 +1,10 @@
 #include "tools/steplap/equilibrium.h"
 
-#include "mbd/analysis/statics.h"
 #include "mbd/base/shown_text.h"
 #include "run/edges.h"
 #include "run/prominence.h"
 #include "run/quantity_text.h"
+#include "run/rest_values.h"
 #include "run/run.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/text_table.h"
@@ -46,51 +46,17 @@ void print_poses(std::ostream& out, const System& system, const State& start, co
   out << table;
 }
 
-// While this lives drives stay where they are at `state`, whether they move or accelerate now: what they take is what
-// holding takes.
-class HeldDrives {
-public:
-  HeldDrives(System& system, State& state) : system_(system) {
-    static const Signal k_still;
-    for (RowSpec& row : system.rows) {
-      drives_.push_back(row.drive);
-      if (!row.drive) continue;
-      const double now = static_target(row, state);
-      row.drive = &k_still;
-      state.memory[row.memory + 1] = 0.0;
-      state.memory[row.memory] += now - static_target(row, state);
-    }
-  }
-  HeldDrives(const HeldDrives&) = delete;
-  HeldDrives& operator=(const HeldDrives&) = delete;
-  ~HeldDrives() {
-    for (std::size_t r = 0; r < drives_.size(); ++r) system_.rows[r].drive = drives_[r];
-  }
-
-private:
-  System& system_;
-  std::vector<const Signal*> drives_;
-};
-
-void print_reactions(std::ostream& out, const Model& model, State found) {
-  const std::unique_ptr<System> own = compile(model); // its drives are held
-  System& system = *own;
-  std::fill(found.v.begin(), found.v.end(), 0.0);
-  const HeldDrives held(system, found);
-  Dynamics dynamics(system);
-  dynamics.set_state(found);
-  std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
-  dynamics.pack(found, y.data());
-  dynamics.rates(found.t, y.data(), dy.data());
-  const Snapshot snapshot = dynamics.snapshot(dy.data());
+void print_reactions(std::ostream& out, const Model& model, const State& found) {
+  const std::unique_ptr<System> system = compile(model); // its drives are held
+  const std::vector<double> values = values_at_rest(*system, found);
   std::map<std::string, double> scale; // by unit
-  for (const Channel& channel : system.channels)
-    scale[channel.unit] = std::max(scale[channel.unit], std::abs(channel.value(snapshot)));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    scale[system->channels[i].unit] = std::max(scale[system->channels[i].unit], std::abs(values[i]));
   TextTable table({Align::left, Align::right});
-  for (const Channel& channel : system.channels)
-    if (is_reaction(channel))
-      table.add_row({channel.name,
-                     quantity_text(channel.value(snapshot), channel.unit, scale[channel.unit])});
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Channel& channel = system->channels[i];
+    if (is_reaction(channel)) table.add_row({channel.name, quantity_text(values[i], channel.unit, scale[channel.unit])});
+  }
   if (!table.is_empty()) out << "\nReactions\n" << table;
 }
 
