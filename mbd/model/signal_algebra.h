@@ -18,7 +18,7 @@ inline constexpr int k_most_power = 12;           ///< of time, in one piece
 [[nodiscard]] Signal sum_of(const std::vector<const Signal*>& parts, const std::vector<double>& factors);
 /// Π part, at least one.
 [[nodiscard]] Signal product_of(const std::vector<const Signal*>& parts);
-/// The same history, later by `delay`: a constant then begins at t = delay.
-[[nodiscard]] Signal delayed(const Signal& signal, double delay);
+/// The same history, later by `delay` and times `factor`: a constant then begins at t = delay.
+[[nodiscard]] Signal delayed(const Signal& signal, double delay, double factor = 1.0);
 
 } // namespace steplap
