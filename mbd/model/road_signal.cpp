@@ -71,7 +71,7 @@ const SignalKind& road_kind() {
     SignalKind k;
     k.name = "road";
     k.doc = "Height of a road that is passed at a constant speed: waves of random phase with the spectral density roughness (n / reference)^-exponent "
-            "over the wave number n (ISO 8608). An axle behind the first one sees it later: `scaled` with a distance.";
+            "over the wave number n (ISO 8608). An axle behind the first one sees it later: `scaled` with `behind`.";
     k.holds<Road>();
     k.build = build_road;
     FieldTable& f = k.fields;

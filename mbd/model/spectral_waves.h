@@ -21,12 +21,13 @@ struct SpectralDensity {
   std::vector<double> values;      ///< > 0, of the signal's unit squared over that of frequencies
 };
 
+/// How a density is cut into waves.
 struct WaveRules {
   double relative_width = 0.01; ///< of a band, of its frequency
   double least_width = 0.0;     ///< of a band, in the unit of frequencies
   /// Amplitudes as they are drawn from Rayleigh's distribution, as a Gaussian process has them; else each is the root of its mean square.
   bool is_gaussian = false;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;   ///< of all that is drawn
   std::uint32_t stream = 0; ///< tells apart what one seed is used for
 };
 

@@ -115,8 +115,8 @@ TEST_CASE("a road belongs to places: another speed passes the same one, another 
 
 TEST_CASE("axles see one road, each when it gets there, at the speed of the road") {
   const std::string text = "[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\n[[signal]]\nkind = \"road\"\nname = \"front\"\nclass = \"C\"\nspeed = \"40 km/h\"\n"
-                           "[[signal]]\nkind = \"scaled\"\nname = \"rear\"\nsignal = \"front\"\ndistance = 7.0\n"
-                           "[[signal]]\nkind = \"scaled\"\nname = \"last\"\nsignal = \"rear\"\ndistance = 2.0\n";
+                           "[[signal]]\nkind = \"scaled\"\nname = \"rear\"\nsignal = \"front\"\nbehind = 7.0\n"
+                           "[[signal]]\nkind = \"scaled\"\nname = \"last\"\nsignal = \"rear\"\nbehind = 2.0\n";
   const Model model = parse_model(text, "scene.toml", element_catalog());
   SignalNetwork network(model);
   const Signal &front = *network.build("front"), &rear = *network.build("rear"), &last = *network.build("last");
@@ -135,12 +135,12 @@ TEST_CASE("axles see one road, each when it gets there, at the speed of the road
   CHECK(std::abs(lag_of_best - 7.0 / v) < 0.01);
 }
 
-TEST_CASE("a distance without a speed, and one at another speed than the road's, are refused") {
+TEST_CASE("a way behind without a speed, and one at another speed than the road's, are refused") {
   const std::string on_road = "[[signal]]\nkind = \"road\"\nname = \"r\"\nclass = \"C\"\nspeed = 10.0\n";
-  CHECK(problem_of("kind = \"scaled\"\nsignal = \"r\"\ndistance = 7.0\n" + on_road) == "");
-  CHECK(problem_of("kind = \"scaled\"\nsignal = \"r\"\ndistance = 7.0\nspeed = 11.0\n" + on_road).find("leave it out") != std::string::npos);
+  CHECK(problem_of("kind = \"scaled\"\nsignal = \"r\"\nbehind = 7.0\n" + on_road) == "");
+  CHECK(problem_of("kind = \"scaled\"\nsignal = \"r\"\nbehind = 7.0\nspeed = 11.0\n" + on_road).find("leave it out") != std::string::npos);
   const std::string still = "[[signal]]\nkind = \"constant\"\nname = \"c\"\nvalue = 1.0\n";
-  CHECK(problem_of("kind = \"scaled\"\nsignal = \"c\"\ndistance = 7.0\n" + still).find("needs a speed") != std::string::npos);
+  CHECK(problem_of("kind = \"scaled\"\nsignal = \"c\"\nbehind = 7.0\n" + still).find("needs a speed") != std::string::npos);
 }
 
 // The place is at (0, h) + R(θ) r in axes that stand still; what it feels, in the vessel's axes, is its acceleration less gravity's.
