@@ -98,22 +98,28 @@ struct Conditioned : SignalSink {
   }
   void put(double t, const double*, const double* filtered) override {
     segments.back().times.push_back(t);
-    for (std::size_t i = 0; i < axes; ++i) segments.back().filtered[i].push_back(filtered[i]);
+    for (std::size_t i = 0; i < axes; ++i)
+      segments.back().filtered[i].push_back(filtered[i]);
   }
   void end_segment() override {}
 };
 
 // "-z": the axis's place in the record and −1.
-std::pair<std::size_t, double> axis_of(const Recorder& r, const RecordLayout& layout, const std::string& text, const char* field) {
+std::pair<std::size_t, double> axis_of(const Recorder& r, const RecordLayout& layout, const std::string& text,
+                                       const char* field) {
   const char letter = text.back();
-  const auto found = std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return each.axis == letter; });
-  if (found == layout.axes.end()) fail(r, std::string("'") + field + "' is " + text + ", but the record has no axis " + letter + ": name its column by '" + letter + "'");
+  const auto found =
+      std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return each.axis == letter; });
+  if (found == layout.axes.end())
+    fail(r, std::string("'") + field + "' is " + text + ", but the record has no axis " + letter + ": name its column by '" +
+                letter + "'");
   return {static_cast<std::size_t>(found - layout.axes.begin()), text.front() == '-' ? -1.0 : 1.0};
 }
 
 // How much of each axis of the record the signal takes.
 std::array<double, 3> direction_of(const Recorder& r, const RecordLayout& layout) {
-  if (r.axis.has_value() == !r.map.empty()) fail(r, "give 'axis', such as \"x\" or \"-z\", or 'map', the three shares of x, y and z");
+  if (r.axis.has_value() == !r.map.empty())
+    fail(r, "give 'axis', such as \"x\" or \"-z\", or 'map', the three shares of x, y and z");
   std::array<double, 3> direction{};
   if (r.axis) {
     const auto [k, sign] = axis_of(r, layout, *r.axis, "axis");
@@ -123,13 +129,15 @@ std::array<double, 3> direction_of(const Recorder& r, const RecordLayout& layout
   if (r.map.size() != 3) fail(r, "'map' must have three numbers, the shares of x, y and z, got " + std::to_string(r.map.size()));
   constexpr double k_rough = 1e-3; // of directions that are typed
   const double length = std::sqrt(r.map[0] * r.map[0] + r.map[1] * r.map[1] + r.map[2] * r.map[2]);
-  if (std::abs(length - 1.0) > k_rough) fail(r, "'map' must be a direction of length 1, got one of length " + rounded_text(length) + "; a scale is 'factor'");
+  if (std::abs(length - 1.0) > k_rough)
+    fail(r, "'map' must be a direction of length 1, got one of length " + rounded_text(length) + "; a scale is 'factor'");
   for (int i = 0; i < 3; ++i)
     if (r.map[i] != 0.0) direction[axis_of(r, layout, k_directions[2 * i], "map").first] = r.map[i];
   return direction;
 }
 
-std::array<double, 3> offset_of(const Recorder& r, const Recording& recording, const Samples& samples, const std::array<double, 3>& direction) {
+std::array<double, 3> offset_of(const Recorder& r, const Recording& recording, const Samples& samples,
+                                const std::array<double, 3>& direction) {
   std::array<double, 3> offset{};
   if (!r.rest.empty()) {
     if (r.rest.size() != 2 || !(r.rest[1] > r.rest[0])) fail(r, "'rest' must be two times of the record that ascend");
@@ -138,10 +146,12 @@ std::array<double, 3> offset_of(const Recorder& r, const Recording& recording, c
       for (const Samples::Row& row : segment.rows) {
         if (row.t < r.rest[0] || row.t > r.rest[1]) continue;
         ++count;
-        for (std::size_t i = 0; i < 3; ++i) offset[i] += row.a[i];
+        for (std::size_t i = 0; i < 3; ++i)
+          offset[i] += row.a[i];
       }
     if (count < 2) fail(r, "the record has no two samples within 'rest'");
-    for (double& each : offset) each /= static_cast<double>(count);
+    for (double& each : offset)
+      each /= static_cast<double>(count);
   }
   if (r.gravity && *r.gravity != "none") {
     if (!r.rest.empty()) fail(r, "give 'gravity' or 'rest', not both: the mean at rest has gravity in it");
@@ -150,9 +160,11 @@ std::array<double, 3> offset_of(const Recorder& r, const Recording& recording, c
   }
   constexpr double k_felt = 0.5 * k_gravity; // as the command refuses to list events
   double felt = 0.0;
-  for (std::size_t i = 0; i < recording.layout.axes.size(); ++i) felt += direction[i] * recording.facts.axes[i].rest;
+  for (std::size_t i = 0; i < recording.layout.axes.size(); ++i)
+    felt += direction[i] * recording.facts.axes[i].rest;
   if (!r.gravity && r.rest.empty() && std::abs(felt) > k_felt)
-    fail(r, "it reads " + rounded_text(felt / k_gravity, 3) + " g at rest: say which axis gravity is on by 'gravity', or \"none\" to keep it");
+    fail(r, "it reads " + rounded_text(felt / k_gravity, 3) +
+                " g at rest: say which axis gravity is on by 'gravity', or \"none\" to keep it");
   return offset;
 }
 
@@ -161,7 +173,8 @@ Window window_of(const Recorder& r, const Conditioned& signal, const std::vector
   if (r.event) {
     if (r.from || r.to) fail(r, "give 'event' or 'from' and 'to', not both");
     if (*r.event > static_cast<long>(events.size()))
-      fail(r, "'event' is " + std::to_string(*r.event) + ", but the record has " + counted(events.size(), "event", "events") + " beyond 'threshold'");
+      fail(r, "'event' is " + std::to_string(*r.event) + ", but the record has " + counted(events.size(), "event", "events") +
+                  " beyond 'threshold'");
     return events[static_cast<std::size_t>(*r.event) - 1];
   }
   Window found;
@@ -173,17 +186,20 @@ Window window_of(const Recorder& r, const Conditioned& signal, const std::vector
     ++segments;
     const auto a = begin - segment.times.begin(), b = end - segment.times.begin();
     found.times.assign(begin, end);
-    for (std::size_t i = 0; i < signal.axes; ++i) found.filtered[i].assign(segment.filtered[i].begin() + a, segment.filtered[i].begin() + b);
+    for (std::size_t i = 0; i < signal.axes; ++i)
+      found.filtered[i].assign(segment.filtered[i].begin() + a, segment.filtered[i].begin() + b);
   }
   if (segments == 0) fail(r, "the record has no two samples from 'from' to 'to'");
-  if (segments > 1) fail(r, "gaps part the record into " + std::to_string(segments) + " segments: choose one by 'event', or by 'from' and 'to'");
+  if (segments > 1)
+    fail(r, "gaps part the record into " + std::to_string(segments) + " segments: choose one by 'event', or by 'from' and 'to'");
   return found;
 }
 
 Signal signal_of(const Recorder& r, const Window& window, const std::array<double, 3>& direction) {
   std::vector<double> values(window.times.size(), 0.0);
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t k = 0; k < values.size() && direction[i] != 0.0; ++k) values[k] += r.factor * direction[i] * window.filtered[i][k];
+    for (std::size_t k = 0; k < values.size() && direction[i] != 0.0; ++k)
+      values[k] += r.factor * direction[i] * window.filtered[i][k];
   const double begin = window.times.front(), length = window.times.back() - begin;
   double mean = 0.0; // after which velocity ends as it began
   for (std::size_t k = 1; k < values.size() && r.drift == "line"; ++k)
@@ -202,11 +218,15 @@ Signal read_signal(const Recorder& r) {
   const std::string text = read_input(r.file, r.where, "the record ");
   note_input(r.file, text, true);
   if (!r.sha256.empty() && sha256(text) != r.sha256)
-    fail(r, "'" + r.file + "' is not the file that was meant: its SHA-256 is " + sha256(text) + ". Take the file of that time, or drop 'sha256' to take this one");
+    fail(r, "'" + r.file + "' is not the file that was meant: its SHA-256 is " + sha256(text) +
+                ". Take the file of that time, or drop 'sha256' to take this one");
   LineSource source(text, r.file);
   Samples samples;
   const Recording recording = read_record(source, read_options(r), samples);
-  if (recording.layout.is_peaks) fail(r, "'" + r.file + "' holds peaks without waveforms: use a half_sine with such a peak and duration, and say that its shape is assumed");
+  if (recording.layout.is_peaks)
+    fail(r,
+         "'" + r.file +
+             "' holds peaks without waveforms: use a half_sine with such a peak and duration, and say that its shape is assumed");
   const std::array<double, 3> direction = direction_of(r, recording.layout);
   Conditioned signal;
   std::vector<Window> events;
@@ -215,13 +235,15 @@ Signal read_signal(const Recorder& r) {
   ShockFinder finder(rules, [&events](const ShockEvent&, const Window& window) { events.push_back(window); });
   Conditioning conditioning{offset_of(r, recording, samples, direction), r.cfc, r.resample};
   if (r.resample && *r.resample < recording.layout.time.rate * (1.0 - 1e-9))
-    fail(r, "'resample' is below the record's " + rounded_text(recording.layout.time.rate) + " Hz, which would fold high frequencies into low ones: keep the rate and filter by 'cfc'");
+    fail(r, "'resample' is below the record's " + rounded_text(recording.layout.time.rate) +
+                " Hz, which would fold high frequencies into low ones: keep the rate and filter by 'cfc'");
   SignalSink& sink = r.event ? static_cast<SignalSink&>(finder) : signal;
   Conditioner conditioner(conditioning, sink);
   conditioner.begin(recording.layout);
   for (const Samples::Segment& segment : samples.segments) {
     conditioner.begin_segment(segment.line);
-    for (const Samples::Row& row : segment.rows) conditioner.put(row.t, row.a.data());
+    for (const Samples::Row& row : segment.rows)
+      conditioner.put(row.t, row.a.data());
     conditioner.end_segment();
   }
   return signal_of(r, window_of(r, signal, events), direction);
@@ -243,7 +265,7 @@ void add_reading_fields(FieldTable& f) {
   f.add("time", &Recorder::time).doc("column of times, or \"none\"");
   f.add("time_unit", &Recorder::time_unit).doc("s, ms, epoch, \"epoch ms\" or days");
   f.add("rate", &Recorder::rate).in("Hz").positive().doc("of sampling, where there is no column of times");
-  f.add("unit", &Recorder::unit).doc("of the accelerations: g, mg, m/s^2 or counts");
+  f.add("unit", &Recorder::unit).one_of({"g", "mg", "m/s^2", "counts"}).doc("of the accelerations in the file");
   f.add("counts_per_g", &Recorder::counts_per_g).positive().doc("scale of counts");
   f.add("delimiter", &Recorder::delimiter).one_of(words_of(k_delimiters)).doc("sign between columns");
   f.add("decimal", &Recorder::decimal).one_of(words_of(k_decimals)).doc("decimal sign");
@@ -258,7 +280,9 @@ void add_reading_fields(FieldTable& f) {
 void add_conditioning_fields(FieldTable& f) {
   std::vector<std::string> gravity = k_directions;
   gravity.insert(gravity.begin(), "none");
-  f.add("gravity", &Recorder::gravity).one_of(std::move(gravity)).doc("axis that reads 1 g at rest, which is subtracted; none: it is kept");
+  f.add("gravity", &Recorder::gravity)
+      .one_of(std::move(gravity))
+      .doc("axis that reads 1 g at rest, which is subtracted; none: it is kept");
   f.add("rest", &Recorder::rest).in("s").doc("two times of the record between which it is at rest: the mean is subtracted");
   f.add("cfc", &Recorder::cfc).in("Hz").positive().doc("channel frequency class of a low-pass without phase shift (ISO 6487)");
   f.add("resample", &Recorder::resample).in("Hz").positive().doc("rate of the signal; that of the record if not given");
@@ -266,7 +290,9 @@ void add_conditioning_fields(FieldTable& f) {
   f.add("threshold", &Recorder::threshold).in("m/s^2").positive().doc("beyond which there is an event");
   f.add("from", &Recorder::from).in("s").doc("time of the record where the window begins; its first if not given");
   f.add("to", &Recorder::to).in("s").doc("time of the record where it ends");
-  f.add("drift", &Recorder::drift).one_of({"none", "line"}).doc("line: a constant is taken away, so that velocity ends as it began");
+  f.add("drift", &Recorder::drift)
+      .one_of({"none", "line"})
+      .doc("line: a constant is taken away, so that velocity ends as it began");
   f.add("factor", &Recorder::factor).doc("on the values");
   f.add("start", &Recorder::start).in("s").doc("time of the run at which the window begins");
 }
@@ -277,7 +303,8 @@ const SignalKind& recorder_signal_kind() {
   static const SignalKind kind = [] {
     SignalKind k;
     k.name = "recorder";
-    k.doc = "Acceleration (m/s^2) along a direction from the file of a shock recorder, read as `steplap record` reads it, whose options are fields here. "
+    k.doc = "Acceleration (m/s^2) along a direction from the file of a shock recorder, read as `steplap record` reads it, whose "
+            "options are fields here. "
             "Linear between samples, 0 outside the window.";
     k.holds<Recorder>();
     k.build = build_recorder;

@@ -22,8 +22,10 @@ Signal road(long seed, double speed = 40.0 / 3.6, const std::string& letter = "C
   return made_signal("road", {{"class", letter}, {"speed", speed}, {"seed", seed}});
 }
 Signal vibration(long seed) {
-  return made_signal("random", {{"frequencies", std::vector<double>{2.0, 20.0, 80.0}}, {"densities", std::vector<double>{0.01, 0.1, 0.02}},
-                                {"duration", 6.0}, {"seed", seed}});
+  return made_signal("random", {{"frequencies", std::vector<double>{2.0, 20.0, 80.0}},
+                                {"densities", std::vector<double>{0.01, 0.1, 0.02}},
+                                {"duration", 6.0},
+                                {"seed", seed}});
 }
 Signal sea(const std::string& component, const FieldValues& more = {}) {
   FieldValues values{{"component", component}, {"place", Vec2(14.0, 9.0)}, {"heave_phase", 0.4}, {"heave_period", 8.0}};
@@ -31,11 +33,15 @@ Signal sea(const std::string& component, const FieldValues& more = {}) {
   return made_signal("sea", values);
 }
 
-// Of all signals of a file, none of which may be left out.
+// Of the signal 's' with these fields, as the height of a body, or as its acceleration if it is one.
 std::string problem_of(const std::string& fields) {
+  const bool is_height = fields.find("\"road\"") != std::string::npos;
   try {
-    const Model model = parse_model("[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"load\"\nname = \"l\"\n"
-                                    "at = \"b\"\nforce_x = \"s\"\n[[signal]]\nname = \"s\"\n" + fields, "scene.toml", element_catalog());
+    const Model model =
+        parse_model("[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = \"prescribed_motion\"\nname = \"p\"\n"
+                    "a = \"b\"\ncoordinate = \"y\"\nsignal = \"s\"\nas = \"" +
+                        std::string(is_height ? "position" : "acceleration") + "\"\n[[signal]]\nname = \"s\"\n" + fields,
+                    "scene.toml", element_catalog());
     static_cast<void>(compile(model));
   } catch (const std::exception& error) {
     return error.what();
@@ -59,14 +65,16 @@ std::uint64_t digest(const Signal& signal) {
 } // namespace
 
 TEST_CASE("loads begin with nothing, go on without jumps, and their derivatives are those of their values") {
-  const std::pair<const char*, Signal> signals[] = {{"road", road(3)}, {"random", vibration(3)}, {"sea", sea("x")}, {"heave", sea("height")}};
+  const std::pair<const char*, Signal> signals[] = {
+      {"road", road(3)}, {"random", vibration(3)}, {"sea", sea("x")}, {"heave", sea("height")}};
   for (const auto& [name, signal] : signals) {
     CAPTURE(name);
     CHECK(std::abs(signal.value(0.0)) < 1e-12);
     CHECK(std::abs(signal.drive(0.0, DriveLevel::position).rate) < 1e-10);
     CHECK_FALSE(signal.first_jump(DriveLevel::position, -1.0, 1e3));
     double size = 0.0;
-    for (double t = 0.01; t < 6.0; t += 0.173) size = std::max(size, std::abs(signal.value(t)));
+    for (double t = 0.01; t < 6.0; t += 0.173)
+      size = std::max(size, std::abs(signal.value(t)));
     for (double t = 0.01; t < 6.0; t += 0.173) {
       constexpr double h = 2e-5;
       const SignalJet jet = signal.drive(t, DriveLevel::position);
@@ -114,7 +122,8 @@ TEST_CASE("a road belongs to places: another speed passes the same one, another 
 }
 
 TEST_CASE("axles see one road, each when it gets there, at the speed of the road") {
-  const std::string text = "[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\n[[signal]]\nkind = \"road\"\nname = \"front\"\nclass = \"C\"\nspeed = \"40 km/h\"\n"
+  const std::string text = "[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\n[[signal]]\nkind = \"road\"\nname = "
+                           "\"front\"\nclass = \"C\"\nspeed = \"40 km/h\"\n"
                            "[[signal]]\nkind = \"scaled\"\nname = \"rear\"\nsignal = \"front\"\nbehind = 7.0\n"
                            "[[signal]]\nkind = \"scaled\"\nname = \"last\"\nsignal = \"rear\"\nbehind = 2.0\n";
   const Model model = parse_model(text, "scene.toml", element_catalog());
@@ -138,12 +147,14 @@ TEST_CASE("axles see one road, each when it gets there, at the speed of the road
 TEST_CASE("a way behind without a speed, and one at another speed than the road's, are refused") {
   const std::string on_road = "[[signal]]\nkind = \"road\"\nname = \"r\"\nclass = \"C\"\nspeed = 10.0\n";
   CHECK(problem_of("kind = \"scaled\"\nsignal = \"r\"\nbehind = 7.0\n" + on_road) == "");
-  CHECK(problem_of("kind = \"scaled\"\nsignal = \"r\"\nbehind = 7.0\nspeed = 11.0\n" + on_road).find("leave it out") != std::string::npos);
+  CHECK(problem_of("kind = \"scaled\"\nsignal = \"r\"\nbehind = 7.0\nspeed = 11.0\n" + on_road).find("leave it out") !=
+        std::string::npos);
   const std::string still = "[[signal]]\nkind = \"constant\"\nname = \"c\"\nvalue = 1.0\n";
   CHECK(problem_of("kind = \"scaled\"\nsignal = \"c\"\nbehind = 7.0\n" + still).find("needs a speed") != std::string::npos);
 }
 
-// The place is at (0, h) + R(θ) r in axes that stand still; what it feels, in the vessel's axes, is its acceleration less gravity's.
+// The place is at (0, h) + R(θ) r in axes that stand still; what it feels, in the vessel's axes, is its acceleration less
+// gravity's.
 TEST_CASE("accelerations at sea are those of the place that angle and heave move") {
   const double g = 9.81;
   const Vec2 place(14.0, 9.0);
@@ -185,6 +196,9 @@ TEST_CASE("what is no load is refused once, with what to do") {
       {table + "frequencies = [1.0, 2.0]\ndensities = [1.0]\n", "equally many"},
       {table + "frequencies = [1.0, 2.0]\ndensities = [1.0, nan]\n", "densities"},
       {table + "frequencies = [1.0, 2.0]\ndensities = [1.0, 1.0]\nrise = 3.0\nfall = 3.0\n", "more than 'duration'"},
+      {table + "frequencies = [1e-300, 1e300]\ndensities = [1.0, 1.0]\n", "1e+06 times"},
+      {"kind = \"road\"\nclass = \"C\"\nspeed = 3.0\nfrom = 1e-300\n", "1e+06 times"},
+      {"kind = \"road\"\nroughness = 1e300\nexponent = 10.0\nspeed = 3.0\n", "finite"},
       {"kind = \"sea\"\n", "component"},
       {"kind = \"sea\"\ncomponent = \"x\"\nperiod = 0.0\n", "period"},
       {"kind = \"sea\"\ncomponent = \"x\"\nangle = \"80 deg\"\n", "angle"},
@@ -197,6 +211,31 @@ TEST_CASE("what is no load is refused once, with what to do") {
     CHECK(problem.find("scene.toml:") != std::string::npos);
     CHECK(problem.find('\n') == std::string::npos);
   }
+}
+
+// A road that is taken for an acceleration would be a load of nothing, and nobody would see it.
+TEST_CASE("a load is refused where its unit is another one") {
+  const auto problem_as = [](const std::string& fields, const std::string& coordinate, const std::string& as) {
+    try {
+      static_cast<void>(parse_model("[[body]]\nname = \"b\"\nmass = 1.0\ninertia = 1.0\n[[element]]\nkind = "
+                                    "\"prescribed_motion\"\nname = \"p\"\na = \"b\"\n"
+                                    "signal = \"s\"\ncoordinate = \"" +
+                                        coordinate + "\"\nas = \"" + as + "\"\n[[signal]]\nname = \"s\"\n" + fields,
+                                    "scene.toml", element_catalog()));
+    } catch (const ModelError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string a_road = "kind = \"road\"\nclass = \"C\"\nspeed = 3.0\n", a_sea = "kind = \"sea\"\ncomponent = ";
+  CHECK(problem_as(a_road, "y", "position") == "");
+  CHECK(problem_as(a_road, "y", "acceleration").find("is in m") != std::string::npos);
+  CHECK(problem_as(a_road, "angle", "position").find("is in m") != std::string::npos);
+  CHECK(problem_as(a_sea + "\"angle\"\n", "angle", "position") == "");
+  CHECK(problem_as(a_sea + "\"angle\"\n", "y", "position").find("is in rad") != std::string::npos);
+  CHECK(problem_as(a_sea + "\"height\"\n", "y", "position") == "");
+  CHECK(problem_as(a_sea + "\"x\"\n", "x", "acceleration") == "");
+  CHECK(problem_as(a_sea + "\"x\"\n", "x", "position").find("is in m/s^2") != std::string::npos);
 }
 
 namespace {
@@ -256,10 +295,13 @@ TEST_CASE("methods converge with their orders on a road") {
   };
   for (const Case& c : {Case{"rk4", 4.0, 1e-3}, Case{"tsit5", 5.0, 7e-3}}) {
     CAPTURE(std::string(c.integrator));
-    const double coarse = std::abs(height_at_end(c.integrator, c.coarse, 0.0) - exact), fine = std::abs(height_at_end(c.integrator, 0.5 * c.coarse, 0.0) - exact);
+    const double coarse = std::abs(height_at_end(c.integrator, c.coarse, 0.0) - exact),
+                 fine = std::abs(height_at_end(c.integrator, 0.5 * c.coarse, 0.0) - exact);
     CAPTURE(fine);
     CHECK(fine > 1e-15);
-    CHECK(std::log2(coarse / fine) > c.order - 0.5); // tsit5 comes nearer by its next order: the road is nearly all that it integrates
+    CHECK(std::log2(coarse / fine) >
+          c.order - 0.5); // tsit5 comes nearer by its next order: the road is nearly all that it integrates
   }
-  for (const double tolerance : {1e-6, 1e-8, 1e-10}) CHECK(std::abs(height_at_end("dop853", 1e-3, tolerance) - exact) < 10.0 * tolerance);
+  for (const double tolerance : {1e-6, 1e-8, 1e-10})
+    CHECK(std::abs(height_at_end("dop853", 1e-3, tolerance) - exact) < 10.0 * tolerance);
 }

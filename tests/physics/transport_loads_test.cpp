@@ -1,5 +1,5 @@
-// Loads of transport in runs: what a vehicle answers to a road is what its transfer function says, axles follow one another, the deck of a
-// vessel moves as the formula of its accelerations has it, and the models of models/loads do what their loads are.
+// Loads of transport in runs: what a vehicle answers to a road is what its transfer function says, axles follow one another, the
+// deck of a vessel moves as the formula of its accelerations has it, and the models of models/loads do what their loads are.
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 
@@ -18,20 +18,25 @@ constexpr double k_pi = std::numbers::pi;
 
 double mean_square(const std::vector<double>& series, std::size_t from, std::size_t to) {
   double sum = 0.0;
-  for (std::size_t k = from; k < to; ++k) sum += series[k] * series[k] / static_cast<double>(to - from);
+  for (std::size_t k = from; k < to; ++k)
+    sum += series[k] * series[k] / static_cast<double>(to - from);
   return sum;
 }
 
-Model load_model(const std::string& name) { return read_model(std::string(STEPLAP_MODELS) + "/loads/" + name + ".toml", transformer_catalog()); }
+Model load_model(const std::string& name) {
+  return read_model(std::string(STEPLAP_MODELS) + "/loads/" + name + ".toml", transformer_catalog());
+}
 
 } // namespace
 
-// One mass on a spring and a damper, 1.51 Hz with a damping ratio of 0.16: the variance of its acceleration is ∫ |H|² (2πf)⁴ Gd(f/v)/v df.
+// One mass on a spring and a damper, 1.51 Hz with a damping ratio of 0.16: the variance of its acceleration is ∫ |H|² (2πf)⁴
+// Gd(f/v)/v df.
 TEST_CASE("the response of a vehicle to roads has the variance that its transfer function gives") {
   constexpr double m = 1000.0, k = 9e4, c = 3e3, v = 11.0, end = 60.0, rough = 256e-6;
-  const std::string text = body("body", "mass = 1000; inertia = 1; position = [0, 1]") + body("road", "mass = 1; inertia = 1") +
-                           element("prescribed_motion", "height", "a = 'road'; coordinate = 'y'; signal = 'rough'; as = 'position'") +
-                           element("spring_damper", "spring", "a = 'body'; b = 'road'; axis = [0, 1]; stiffness = 9e4; damping = 3e3; preload = 9810");
+  const std::string text =
+      body("body", "mass = 1000; inertia = 1; position = [0, 1]") + body("road", "mass = 1; inertia = 1") +
+      element("prescribed_motion", "height", "a = 'road'; coordinate = 'y'; signal = 'rough'; as = 'position'") +
+      element("spring_damper", "spring", "a = 'body'; b = 'road'; axis = [0, 1]; stiffness = 9e4; damping = 3e3; preload = 9810");
   double measured = 0.0;
   constexpr int k_seeds = 8;
   for (int seed = 1; seed <= k_seeds; ++seed) {
@@ -48,8 +53,8 @@ TEST_CASE("the response of a vehicle to roads has the variance that its transfer
     const std::complex<double> h = std::complex<double>(k, c * w) / std::complex<double>(k - m * w * w, c * w);
     exact += std::norm(h) * std::pow(w, 4) * rough * std::pow(n / 0.1, -2) * (2.83 - 0.011) / k_steps;
   }
-  // Forces beyond the damper's corner are broad, so 8 roads of 50 s hold more than 2 · 1.5 Hz · 400 s independent values: 3.3 of their
-  // standard deviations, √(2/1200), are 13 %.
+  // Forces beyond the damper's corner are broad, so 8 roads of 50 s hold more than 2 · 1.5 Hz · 400 s independent values: 3.3 of
+  // their standard deviations, √(2/1200), are 13 %.
   CHECK(measured == doctest::Approx(exact).epsilon(0.13));
 }
 
@@ -64,13 +69,15 @@ TEST_CASE("the axles of the trailer pass one road, 7 m apart at 40 km/h") {
   }
   CHECK(size > 5e-3);  // mm of a class whose r.m.s. is 15 mm
   CHECK(apart < 1e-9); // positions are given
-  for (const char* joint : {"front joint", "rear joint", "middle joint"}) CHECK(r.event_times(joint).empty());
+  for (const char* joint : {"front joint", "rear joint", "middle joint"})
+    CHECK(r.event_times(joint).empty());
 }
 
 // The trailer is stiff beside the sea: its supports carry what it weighs in the deck's axes.
 TEST_CASE("the barge's deck presses on what it carries by the formula of its accelerations") {
   const Run r = run(load_model("barge"), {"dop853", 1e-8, 30.0, 0.05});
-  const std::vector<double> force = r.series("front axles.force"), rear = r.series("rear axles.force"), angle = r.series("barge.theta");
+  const std::vector<double> force = r.series("front axles.force"), rear = r.series("rear axles.force"),
+                            angle = r.series("barge.theta");
   const double theta = 12.5 * k_pi / 180.0, omega = 2.0 * k_pi / 10.0, heave = 0.2 * 9.80665, mass = 112e3;
   double largest = 0.0, most = 0.0, least = 1e9;
   for (std::size_t k = 0; k < angle.size(); ++k) {
