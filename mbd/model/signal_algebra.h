@@ -11,7 +11,7 @@
 
 namespace steplap {
 
-inline constexpr std::size_t k_most_terms = 1000; ///< of one piece
+inline constexpr std::size_t k_most_terms = 10'000; ///< of one piece: a road and a vibration that grow have some thousands
 inline constexpr int k_most_power = 12;           ///< of time, in one piece
 
 /// Σ factor · part; as many factors as parts.

@@ -1,6 +1,7 @@
 // Roads, random vibrations and the sea: continuity, seeds, axles behind each other, the lever-arm formula, and what is refused.
 #include "elements/catalog.h"
 #include "mbd/io/reader.h"
+#include "mbd/model/signal_algebra.h"
 #include "mbd/model/signal_network.h"
 #include "mbd/simulation/simulation.h"
 #include "tests/mbd/made_signal.h"
@@ -81,6 +82,9 @@ TEST_CASE("loads begin with nothing, go on without jumps, and their derivatives 
       const double before = signal.value(t - h), at = signal.value(t), after = signal.value(t + h);
       // Errors of the differences: rates and accelerations of waves of 503 rad/s times (ω h)²/6 = 2e-5, and rounding.
       const double fastest = signal.fastest_at(t);
+      const SignalJet early = signal.drive(t - h, DriveLevel::acceleration), late = signal.drive(t + h, DriveLevel::acceleration);
+      CHECK(std::abs((late.rate - early.rate) / (2 * h) - at) < 1e-4 * size);
+      CHECK(std::abs((late.value - early.value) / (2 * h) - signal.drive(t, DriveLevel::velocity).value) < 1e-6 * size);
       CHECK(std::abs(jet.rate - (after - before) / (2 * h)) < 1e-4 * size * fastest);
       CHECK(std::abs(jet.acceleration - (after - 2 * at + before) / (h * h)) < 1e-4 * size * fastest * fastest + 1e-4 * size);
     }
@@ -111,6 +115,15 @@ TEST_CASE("a seed means the same signal on every machine, and another seed anoth
   CHECK(digest(sea("x")) == 7446854983053314027ULL);
   CHECK(digest(road(1)) != digest(road(2)));
   CHECK(digest(vibration(1)) != digest(vibration(2)));
+}
+
+TEST_CASE("a bump may lie on a rough road, and a vibration may have an envelope of its own") {
+  const Signal rough = road(1), bump = made_signal("haversine", {{"peak", 0.04}, {"start", 1.0}, {"duration", 0.3}}), vibrating = vibration(1);
+  const Signal both = sum_of({&rough, &bump}, {1.0, 1.0}), shaped = product_of({&vibrating, &bump});
+  for (double t = 0.03; t < 3.0; t += 0.17) { // phases are counted from another start: of sines of 1e3 rad
+    CHECK(std::abs(both.value(t) - rough.value(t) - bump.value(t)) < 1e-13);
+    CHECK(std::abs(shaped.value(t) - vibrating.value(t) * bump.value(t)) < 1e-12);
+  }
 }
 
 TEST_CASE("a road belongs to places: another speed passes the same one, another class scales it") {
