@@ -1,11 +1,17 @@
 #include "run/catalogue.h"
 
+#include "record/recorder_signal.h"
 #include "transformer/catalog.h"
 
 namespace steplap {
 
 const Catalogue& program_catalogue() {
-  return transformer_catalog();
+  static const Catalogue catalogue = [] {
+    Catalogue c = transformer_catalog();
+    c.signals.push_back(&recorder_signal_kind());
+    return c;
+  }();
+  return catalogue;
 }
 
 } // namespace steplap

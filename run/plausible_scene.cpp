@@ -1,6 +1,8 @@
 #include "run/plausible_scene.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/model/load_signals.h"
 #include "mbd/model/signal_network.h"
 #include "run/loaded_model.h"
 
@@ -47,6 +49,27 @@ bool is_used(const Model& model, const std::string& name) {
                      [&](const ElementEntry& entry) { return names_it(entry.kind->fields, entry.element.get()); });
 }
 
+bool is_part(const Model& model, const std::string& name) {
+  return std::any_of(model.signals.begin(), model.signals.end(), [&name](const SignalEntry& entry) {
+    const std::vector<std::string> parts = parts_of(entry.kind->fields, entry.definition.get());
+    return std::find(parts.begin(), parts.end(), name) != parts.end();
+  });
+}
+
+// Roads and the sea grow from nothing, within a time that hangs on the speed or the period: a run that ends before has not seen them.
+void find_growing(const Model& model, SignalNetwork& network, std::vector<Finding>& findings) {
+  const double end = model.simulation.end;
+  for (const SignalEntry& entry : model.signals) {
+    const std::string& name = entry.definition->name;
+    if ((entry.kind != &road_kind() && entry.kind != &sea_kind()) || (!is_used(model, name) && !is_part(model, name))) continue;
+    const Signal* const signal = network.build(name);
+    if (!signal || signal->breakpoints().size() < 2 || signal->breakpoints()[0] >= end || signal->breakpoints()[1] <= end) continue;
+    findings.push_back(warning("load_still_grows", "signal '" + name + "' has its full size from t = " + rounded_text(signal->breakpoints()[1]) +
+                                                       " s on, but the run ends at " + number_text(end) + " s: it is not judged under the whole load",
+                               entry.definition->where));
+  }
+}
+
 // The two bodies that move whose values differ most, as smaller and larger.
 template <class Value> std::pair<const Body*, const Body*> extremes_of(const Model& model, const Value& value) {
   const Body *least = nullptr, *most = nullptr;
@@ -65,6 +88,7 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   const double end = model.simulation.end;
   std::vector<Finding> findings;
   SignalNetwork network(model);
+  find_growing(model, network, findings);
   for (const SignalEntry& entry : model.signals) {
     const std::string& name = entry.definition->name;
     const Signal* const signal = is_used(model, name) ? network.build(name) : nullptr;

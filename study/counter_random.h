@@ -1,21 +1,18 @@
-// Random numbers by counter: the k-th number of the n-th sample of a stream is a function of (seed, stream, n, k) and
-// of nothing that came before. Philox 4x32-10 of Salmon, Moraes, Dror and Shaw, SC 2011.
+// What studies draw: numbers by counter (mbd/math/counter_random.h) of one seed and one purpose.
 #pragma once
 
-#include <array>
+#include "mbd/math/counter_random.h"
+
 #include <cstdint>
 
 namespace steplap::study {
-
-using PhiloxBlock = std::array<std::uint32_t, 4>;
-[[nodiscard]] PhiloxBlock philox(PhiloxBlock counter, std::array<std::uint32_t, 2> key);
 
 /// Streams keep apart what one study draws for different purposes.
 class CounterRandom {
 public:
   CounterRandom(std::uint64_t seed, std::uint32_t stream) : seed_(seed), stream_(stream) {}
   /// In (0, 1), never an end of it; `index` < 2³¹.
-  [[nodiscard]] double uniform(std::uint64_t sample, std::uint32_t index) const;
+  [[nodiscard]] double uniform(std::uint64_t sample, std::uint32_t index) const { return counter_uniform(seed_, stream_, sample, index); }
   [[nodiscard]] double normal(std::uint64_t sample, std::uint32_t index) const;
 
 private:

@@ -27,6 +27,16 @@ std::string problem_of(const Node& node, const std::string& unit) {
   return problem;
 }
 
+// Of kinds whose values are of one unit, whatever their fields are given in; "" of others.
+std::string own_unit(const std::string& kind, const std::vector<GivenField>& given) {
+  if (kind == "road") return "m";
+  if (kind == "recorder") return "m/s^2";
+  if (kind != "sea") return "";
+  for (const GivenField& each : given)
+    if (each.field->name == "component") return each.node->text() == "angle" ? "rad" : each.node->text() == "height" ? "m" : "m/s^2";
+  return "";
+}
+
 bool is_factor(const GivenField& given) {
   return given.field->name == "factor" || given.field->name == "factors";
 }
@@ -48,6 +58,10 @@ std::string SignalUnits::misfit(const std::string& signal, const std::string& un
   for (const GivenField& given : *found->second.given) {
     if (!given.node || !given.is_usable) return "";
     is_of_its_parts = is_of_its_parts && !is_factor(given);
+  }
+  if (const std::string own = own_unit(found->second.kind, *found->second.given); !own.empty()) {
+    const Quantity one = parse_quantity("1 " + own, unit);
+    return one.problem.empty() ? "" : "its signal '" + signal + "' is in " + own + ": " + one.problem;
   }
   for (const GivenField& given : *found->second.given) {
     const Field& field = *given.field;

@@ -1,6 +1,7 @@
 #include "mbd/model/signal.h"
 
 #include "mbd/math/portable_math.h"
+#include "mbd/tape/sine_lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +18,11 @@ struct PieceJet {
   double value = 0.0, rate = 0.0, second_rate = 0.0, integral = 0.0, double_integral = 0.0;
 };
 
+constexpr double k_small_angle = 0.5; // rad
+
 // sin x − x without cancellation.
 double sine_minus_argument(double x) {
-  if (std::abs(x) > 0.5) return portable::sin(x) - x;
+  if (std::abs(x) > k_small_angle) return portable::sin(x) - x;
   const double y = x * x;
   // Taylor series; the first term left out is x¹⁷/17! < 1e-19 of the first at |x| = 0.5.
   return x * y *
@@ -30,21 +33,50 @@ double sine_minus_argument(double x) {
                          y * (-1.0 / 39916800 + y * (1.0 / 6227020800.0 - y / 1307674368000.0))))));
 }
 
-// With x = ωτ: cos(x+φ) = cos φ cos x − sin φ sin x, and
-// ∫ = A/ω [cos φ sin x − sin φ (1−cos x)], ∬ = A/ω² [cos φ (1−cos x) + sin φ (sin x − x)].
-void add_harmonic(const Signal::Harmonic& h, double tau, PieceJet& jet) {
-  const double x = h.frequency * tau;
-  const auto [s, c] = portable::sin_cos(0.5 * x);
+// With x = ωτ, s and c of x/2: cos(x+φ) = cos φ cos x − sin φ sin x, and
+// ∫ = A/ω [cos φ sin x − sin φ (1−cos x)], ∬ = A/ω² [cos φ (1−cos x) + sin φ (sin x − x)]; `lag`: sin x − x.
+template <bool has_integrals>
+void add_harmonic(const Signal::Harmonic& h, double s, double c, double lag, PieceJet& jet) {
   const double sine = 2.0 * s * c, versine = 2.0 * s * s, cosine = 1.0 - versine;
   const double value = h.amplitude * (h.cos_phase * cosine - h.sin_phase * sine);
   const double slope = -h.amplitude * (h.sin_phase * cosine + h.cos_phase * sine);
   jet.value += value;
   jet.rate += h.frequency * slope;
   jet.second_rate -= h.frequency * h.frequency * value;
+  if constexpr (!has_integrals) return;
   jet.integral += h.integral_scale * (h.cos_phase * sine - h.sin_phase * versine);
   double bracket = h.cos_phase * versine;
-  if (h.sin_phase != 0.0) bracket += h.sin_phase * sine_minus_argument(x);
+  if (h.sin_phase != 0.0) bracket += h.sin_phase * lag;
   jet.double_integral += h.double_integral_scale * bracket;
+}
+
+constexpr std::size_t k_block = 8; // of sin_cos_of_block
+
+// Of k_block harmonics: the same bits as one after the other.
+template <bool has_integrals> void add_block(const Signal::Harmonic* h, double tau, PieceJet& jet) {
+  double x[k_block], half[k_block], s[k_block], c[k_block], lag[k_block] = {}, unused[k_block];
+  for (std::size_t i = 0; i < k_block; ++i) {
+    x[i] = h[i].frequency * tau;
+    half[i] = 0.5 * x[i];
+  }
+  sin_cos_of_block(half, s, c);
+  if constexpr (has_integrals) {
+    sin_cos_of_block(x, lag, unused);
+    for (std::size_t i = 0; i < k_block; ++i)
+      lag[i] = std::abs(x[i]) > k_small_angle ? lag[i] - x[i] : sine_minus_argument(x[i]);
+  }
+  for (std::size_t i = 0; i < k_block; ++i) add_harmonic<has_integrals>(h[i], s[i], c[i], lag[i], jet);
+}
+
+template <bool has_integrals> void add_harmonics(const std::vector<Signal::Harmonic>& harmonics, double tau, PieceJet& jet) {
+  std::size_t i = 0;
+  for (; i + k_block <= harmonics.size(); i += k_block) add_block<has_integrals>(&harmonics[i], tau, jet);
+  for (; i < harmonics.size(); ++i) {
+    const double x = harmonics[i].frequency * tau;
+    const auto [s, c] = portable::sin_cos(0.5 * x);
+    const bool has_lag = has_integrals && harmonics[i].sin_phase != 0.0;
+    add_harmonic<has_integrals>(harmonics[i], s, c, has_lag ? sine_minus_argument(x) : 0.0, jet);
+  }
 }
 
 void add_polynomial(const double* c, double tau, PieceJet& jet) {
@@ -128,8 +160,8 @@ PieceJet evaluate(const Signal::Piece& piece, double tau, bool has_integrals = t
   } else {
     add_polynomial(c, tau, jet);
   }
-  for (const Signal::Harmonic& h : piece.harmonics)
-    add_harmonic(h, tau, jet);
+  if (has_integrals) add_harmonics<true>(piece.harmonics, tau, jet);
+  else add_harmonics<false>(piece.harmonics, tau, jet);
   for (const Signal::Modulated& m : piece.modulated)
     add_modulated(m, tau, has_integrals, jet);
   return jet;
@@ -319,7 +351,8 @@ SignalJet driven_by_acceleration(const Signal::Piece& piece, double tau) {
 
 SignalJet Signal::drive(double t, DriveLevel level) const {
   const Piece* piece = piece_at(t);
-  if (piece && level == DriveLevel::acceleration && piece->is_level && piece->modulated.empty())
+  const bool is_usual = piece && piece->is_level && piece->modulated.empty() && piece->harmonics.size() < k_block;
+  if (is_usual && level == DriveLevel::acceleration)
     return driven_by_acceleration(*piece, t - piece->start);
   PieceJet jet;
   if (piece) {

@@ -138,8 +138,8 @@ struct SignalKind {
   }
 };
 
-/// constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics, sum, product, scaled (mbd/io adds
-/// `record`).
+/// constant, haversine, half_sine, triangle, trapezoid, rectangle, harmonics, sum, product, scaled, road, random, sea
+/// (mbd/io adds `record`).
 [[nodiscard]] const std::vector<const SignalKind*>& signal_kinds();
 
 } // namespace steplap

@@ -171,9 +171,14 @@ Signal product_of(const std::vector<const Signal*>& parts) {
   });
 }
 
-Signal delayed(const Signal& signal, double delay) {
+Signal delayed(const Signal& signal, double delay, double factor) {
   std::vector<Signal::Piece> pieces = signal.pieces();
-  for (Signal::Piece& piece : pieces) piece.start += delay;
+  for (Signal::Piece& piece : pieces) {
+    piece.start += delay;
+    for (double& c : piece.c) c *= factor;
+    for (Signal::Harmonic& h : piece.harmonics) h.amplitude *= factor;
+    for (Signal::Modulated& m : piece.modulated) m.amplitude *= factor;
+  }
   return Signal(std::move(pieces));
 }
 

@@ -11,14 +11,14 @@
 
 namespace steplap {
 
-inline constexpr std::size_t k_most_terms = 1000; ///< of one piece
+inline constexpr std::size_t k_most_terms = 10'000; ///< of one piece: a road and a vibration that grow have some thousands
 inline constexpr int k_most_power = 12;           ///< of time, in one piece
 
 /// Σ factor · part; as many factors as parts.
 [[nodiscard]] Signal sum_of(const std::vector<const Signal*>& parts, const std::vector<double>& factors);
 /// Π part, at least one.
 [[nodiscard]] Signal product_of(const std::vector<const Signal*>& parts);
-/// The same history, later by `delay`: a constant then begins at t = delay.
-[[nodiscard]] Signal delayed(const Signal& signal, double delay);
+/// The same history, later by `delay` and times `factor`: a constant then begins at t = delay.
+[[nodiscard]] Signal delayed(const Signal& signal, double delay, double factor = 1.0);
 
 } // namespace steplap

@@ -20,6 +20,7 @@ struct Scaled : SignalDefinition {
   double factor = 1.0;
   double offset = 0.0;
   double delay = 0.0; // s
+  std::optional<double> behind, speed; // m, m/s
 };
 
 using Parts = std::vector<const Signal*>;
@@ -45,7 +46,11 @@ Signal build_product(const SignalDefinition& definition, const Parts& parts) {
 
 Signal build_scaled(const SignalDefinition& definition, const Parts& parts) {
   const auto& scaled = static_cast<const Scaled&>(definition);
-  const Signal later = delayed(*parts.at(0), scaled.delay), one = Signal::constant(1.0);
+  if (scaled.behind && !scaled.speed)
+    throw ModelError(scaled.where, "scaled '" + scaled.name + "': 'behind' needs a speed: give 'speed', or a 'signal' that has one, as a road has");
+  const double delay = scaled.delay + (scaled.behind ? *scaled.behind / *scaled.speed : 0.0);
+  if (scaled.offset == 0.0) return delayed(*parts.at(0), delay, scaled.factor);
+  const Signal later = delayed(*parts.at(0), delay), one = Signal::constant(1.0);
   return sum_of({&later, &one}, {scaled.factor, scaled.offset});
 }
 
@@ -93,6 +98,8 @@ const SignalKind& scaled_kind() {
     k.fields.add("delay", &Scaled::delay)
         .in("s")
         .doc("by which it comes later (negative: earlier); a constant begins at t = delay");
+    k.fields.add("behind", &Scaled::behind).in("m").doc("way by which it comes later, at its speed: from the first axle on a road to this one");
+    k.fields.add("speed", &Scaled::speed).in("m/s").positive().doc("at which that way is made; that of the signal if not given");
     return k;
   }();
   return kind;

@@ -2,6 +2,7 @@
 // a deceleration is a pulse with a negative peak.
 #include "mbd/model/signal.h"
 
+#include "mbd/model/load_signals.h"
 #include "mbd/model/signal_composites.h"
 
 #include <cmath>
@@ -239,7 +240,8 @@ const std::vector<const SignalKind*>& signal_kinds() {
   static const std::vector<const SignalKind*> kinds{
       &constant_kind(),  &haversine_kind(), &half_sine_kind(), &triangle_kind(),
       &trapezoid_kind(), &rectangle_kind(), &harmonics_kind(),
-      &sum_kind(),       &product_kind(),   &scaled_kind()};
+      &sum_kind(),       &product_kind(),   &scaled_kind(),
+      &road_kind(),      &random_kind(),    &sea_kind()};
   return kinds;
 }
 

@@ -1,5 +1,6 @@
 #include "mbd/model/signal_network.h"
 
+#include "mbd/base/number_text.h"
 #include "mbd/model/validate.h"
 
 #include <stdexcept>
@@ -18,6 +19,41 @@ std::vector<std::string> parts_of(const FieldTable& fields, const void* object) 
   }
   return names;
 }
+
+namespace {
+
+// Signals that pass places at a speed have a field of that name; one that is made of one other passes at that one's.
+constexpr const char* k_speed = "speed";
+
+template <class Items> std::optional<double> speed_of(const Items& items, const std::string& name) {
+  const SignalEntry& entry = *items.at(name).entry;
+  const Field* const field = entry.kind->fields.find(k_speed);
+  if (!field) return std::nullopt;
+  const FieldValue value = field->get(entry.definition.get());
+  if (const double* given = std::get_if<double>(&value)) return *given;
+  const std::vector<std::string> parts = parts_of(entry.kind->fields, entry.definition.get());
+  return parts.size() == 1 ? speed_of(items, parts.front()) : std::nullopt;
+}
+
+// The definition with the speed of what it is made of, if it gives none itself.
+template <class Items> std::shared_ptr<const SignalDefinition> completed(const Items& items, const SignalEntry& entry) {
+  const Field* const field = entry.kind->fields.find(k_speed);
+  const std::vector<std::string> parts = parts_of(entry.kind->fields, entry.definition.get());
+  const std::optional<double> speed = field && parts.size() == 1 ? speed_of(items, parts.front()) : std::nullopt;
+  if (!speed) return entry.definition;
+  const FieldValue value = field->get(entry.definition.get());
+  const double* const given = std::get_if<double>(&value);
+  if (given && *given != *speed)
+    throw ModelError(entry.definition->where, subject_text(entry.kind->name, entry.definition->name) + ": 'speed' is " + number_text(*given) +
+                                                  " m/s, but that of its signal '" + parts.front() + "' is " + number_text(*speed) +
+                                                  " m/s: leave it out");
+  if (given) return entry.definition;
+  const auto copy = entry.kind->copy(*entry.definition);
+  field->set(copy.get(), *speed);
+  return copy;
+}
+
+} // namespace
 
 SignalNetwork::SignalNetwork(const Model& model) {
   for (const SignalEntry& entry : model.signals) items_.try_emplace(entry.definition->name, Item{&entry, {}, {}});
@@ -59,7 +95,7 @@ const Signal* SignalNetwork::build(Item& item) {
         parts.push_back(build(name));
         is_complete = is_complete && parts.back();
       }
-    if (is_complete) item.signal = kind.combine ? kind.combine(definition, parts) : kind.build(definition);
+    if (is_complete) item.signal = kind.combine ? kind.combine(*completed(items_, *item.entry), parts) : kind.build(definition);
     item.status = is_complete ? Status::built : Status::failed;
   } catch (const std::exception& error) {
     item.status = Status::failed;

@@ -42,6 +42,10 @@ void sin_cos_of_one(const double* x, double* sine, double* cosine) {
   *cosine = of.cos;
 }
 
+template <int lanes, void (*sin_cos)(const double*, double*, double*)> void sin_cos_by(const double* x, double* sines, double* cosines) {
+  for (int l = 0; l < 8; l += lanes) sin_cos(x + l, sines + l, cosines + l);
+}
+
 std::uint64_t sin_cos_address(int lanes) {
   const auto function = lanes == 1 ? sin_cos_of_one : lanes == 2 ? sin_cos_of_two : lanes == 4 ? sin_cos_of_four : sin_cos_of_eight;
   return reinterpret_cast<std::uint64_t>(function);
@@ -307,6 +311,18 @@ void* executable_copy(const std::uint8_t* bytes, std::size_t size) {
 }
 
 } // namespace
+
+void sin_cos_of_block(const double* x, double* sines, double* cosines) {
+  switch (k_best_instructions) {
+  case InstructionSet::avx512:
+    return sin_cos_of_eight(x, sines, cosines);
+  case InstructionSet::avx2:
+    return sin_cos_by<4, sin_cos_of_four>(x, sines, cosines);
+  case InstructionSet::sse2:
+    break;
+  }
+  sin_cos_by<2, sin_cos_of_two>(x, sines, cosines);
+}
 
 bool MachineCode::is_available() {
   return true;

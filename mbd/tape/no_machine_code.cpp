@@ -1,6 +1,9 @@
 // What stands for machine_code.cpp where the program is built without machine code.
 #include "mbd/tape/machine_code.h"
 
+#include "mbd/math/portable_math.h"
+#include "mbd/tape/sine_lanes.h"
+
 #include <utility>
 
 namespace steplap {
@@ -13,6 +16,14 @@ InstructionSet MachineCode::best_instructions() {
 }
 int MachineCode::most_lanes(InstructionSet) {
   return 1;
+}
+
+void sin_cos_of_block(const double* x, double* sines, double* cosines) {
+  for (int l = 0; l < 8; ++l) {
+    const portable::SinCos of = portable::sin_cos(x[l]);
+    sines[l] = of.sin;
+    cosines[l] = of.cos;
+  }
 }
 
 MachineCode::MachineCode(const Tape&, int lanes, InstructionSet) : lanes_(lanes) {}

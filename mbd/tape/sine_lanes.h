@@ -9,4 +9,7 @@ void sin_cos_of_two(const double* x, double* sines, double* cosines);   ///< SSE
 void sin_cos_of_four(const double* x, double* sines, double* cosines);  ///< AVX2
 void sin_cos_of_eight(const double* x, double* sines, double* cosines); ///< AVX-512 F and DQ
 
+/// As sin_cos_of_eight, the same bits, on any processor: with the best instructions that it has.
+void sin_cos_of_block(const double* x, double* sines, double* cosines);
+
 } // namespace steplap

@@ -181,8 +181,8 @@ TEST_CASE("a delayed signal is the same later, and a constant sum of constants s
 
 TEST_CASE("a product that would grow beyond bounds is refused") {
   const Signal slope({Piece{0.0, {1.0, 1.0, 0, 0}, {}, {}}});
-  std::vector<Signal> waves; // products have 2¹¹ sums and differences of their frequencies
-  for (int i = 0; i < 12; ++i) waves.push_back(sine(30.0 * std::sqrt(i + 1.0), 0.5));
+  std::vector<Signal> waves; // products have 2¹⁴ sums and differences of their frequencies
+  for (int i = 0; i < 15; ++i) waves.push_back(sine(30.0 * std::sqrt(i + 1.0), 0.5));
   std::vector<const Signal*> many;
   for (const Signal& one : waves) many.push_back(&one);
   CHECK_THROWS_AS(static_cast<void>(product_of(many)), std::invalid_argument);

@@ -40,7 +40,7 @@ public:
 private:
   std::string new_name(const std::string& stem);
   std::string record(double peak);
-  std::string composed(const std::string& part);
+  std::string composed(const std::string& part, double peak);
   int count_ = 0;
 };
 

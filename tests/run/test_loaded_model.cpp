@@ -2,6 +2,7 @@
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
 #include "run/catalogue.h"
+#include "run/findings.h"
 #include "run/report.h"
 #include "run/result_files.h"
 #include "run/with_settings.h"
@@ -225,4 +226,18 @@ TEST_CASE("settings are laid over a model made in code, too") {
   CHECK(run.loaded->name == "three_limb");
   CHECK(run.loaded->text.empty());
   CHECK(run.loaded->system->channels.size() == loaded->system->channels.size());
+}
+
+// A road at a walking pace: 20 m of run-in are 20 s, and a run of 12 s would hold because it hardly sees a load.
+TEST_CASE("a run that ends before its load has grown does not hold") {
+  const std::string file = STEPLAP_MODELS "/loads/road_class_c.toml";
+  const auto growing = [&](const std::vector<std::string>& overrides) {
+    const auto loaded = load_model(file, overrides);
+    const std::vector<Finding> findings = findings_of(*loaded);
+    const auto found = std::find_if(findings.begin(), findings.end(), [](const Finding& each) { return each.code == "load_still_grows"; });
+    return found != findings.end() && caps_verdict(*found) ? found->text : "";
+  };
+  CHECK(growing({}).empty());
+  CHECK(growing({"signal.road.speed=1 m/s"}).find("from t = 20 s on") != std::string::npos);
+  CHECK(growing({"signal.road.speed=1 m/s", "simulation.end=21"}).empty());
 }

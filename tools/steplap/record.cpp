@@ -5,6 +5,7 @@
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/read_input.h"
 #include "record/fields.h"
+#include "record/option_words.h"
 #include "record/outputs.h"
 #include "record/record_error.h"
 #include "record/result_folder.h"
@@ -27,6 +28,7 @@ using Align = TextTable::Align;
 using Text = std::optional<std::string>;
 
 constexpr std::size_t k_shown_events = 12; // the screen has thirty lines
+constexpr OptionWords<DriftCorrection, 2> k_drifts{{{"none", DriftCorrection::none}, {"line", DriftCorrection::line}}};
 
 struct RecordOptions {
   std::vector<std::string> files;
@@ -41,12 +43,10 @@ double number_of(const Text& text, const char* option, double least, const char*
   return *value;
 }
 
-template <class Value> Value choice(const Text& text, const char* option, std::initializer_list<std::pair<const char*, Value>> choices) {
+template <class Words> auto choice(const Text& text, const char* option, const Words& words) {
+  if (const auto meaning = meaning_of(words, *text)) return *meaning;
   std::string known;
-  for (const auto& [word, value] : choices) {
-    if (*text == word) return value;
-    known += (known.empty() ? "" : ", ") + std::string(word);
-  }
+  for (const std::string& word : words_of(words)) known += (known.empty() ? "" : ", ") + word;
   throw UsageError(std::string(option) + " '" + *text + "': give one of " + known);
 }
 
@@ -56,12 +56,12 @@ ReadOptions read_options(const RecordOptions& o) {
   if (o.rate) r.rate = number_of(o.rate, "--rate", 0.0, ", in Hz");
   if (o.counts_per_g) r.counts_per_g = number_of(o.counts_per_g, "--counts-per-g", 0.0);
   if (o.gap) r.gap = number_of(o.gap, "--gap", 1.5, ", in sampling intervals");
-  if (o.delimiter) r.delimiter = choice<char>(o.delimiter, "--delimiter", {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"blank", ' '}});
-  if (o.decimal) r.decimal = choice<char>(o.decimal, "--decimal", {{"point", '.'}, {"comma", ','}});
-  if (o.dates) r.dates = choice<unsigned>(o.dates, "--dates", {{"day-first", k_day_first}, {"month-first", k_month_first}, {"year-first", k_year_first}});
-  if (o.missing) r.missing = choice<IfMissing>(o.missing, "--missing", {{"refuse", IfMissing::refuse}, {"skip", IfMissing::skip}, {"hold", IfMissing::hold}});
-  if (o.repeated) r.repeated = choice<IfRepeated>(o.repeated, "--repeated", {{"refuse", IfRepeated::refuse}, {"first", IfRepeated::first}});
-  if (o.backward) r.backward = choice<IfBackward>(o.backward, "--backward", {{"refuse", IfBackward::refuse}, {"split", IfBackward::split}, {"drop", IfBackward::drop}});
+  if (o.delimiter) r.delimiter = choice(o.delimiter, "--delimiter", k_delimiters);
+  if (o.decimal) r.decimal = choice(o.decimal, "--decimal", k_decimals);
+  if (o.dates) r.dates = choice(o.dates, "--dates", k_dates);
+  if (o.missing) r.missing = choice(o.missing, "--missing", k_missing);
+  if (o.repeated) r.repeated = choice(o.repeated, "--repeated", k_repeated);
+  if (o.backward) r.backward = choice(o.backward, "--backward", k_backward);
   return r;
 }
 
@@ -339,7 +339,7 @@ ExitCode record(const RecordOptions& options, Console& console) {
   if (options.make) return make(options, console);
   Outputs outputs;
   if (options.quiet && options.gravity) throw UsageError("--rest takes away all that is there at rest, gravity included: leave --gravity out");
-  if (options.drift) outputs.drift = choice<DriftCorrection>(options.drift, "--drift", {{"none", DriftCorrection::none}, {"line", DriftCorrection::line}});
+  if (options.drift) outputs.drift = choice(options.drift, "--drift", k_drifts);
   if (options.event) outputs.event = static_cast<std::size_t>(std::floor(number_of(options.event, "--event", 0.0)));
   if (options.event && std::to_string(outputs.event) != *options.event) throw UsageError("--event '" + *options.event + "': give the number of an event, from 1");
   if (options.event && !options.output) throw UsageError("--event writes the window of one event: say where with -o DIR");
