@@ -1,6 +1,7 @@
 #include "tools/steplap/commands.h"
 
 #include "tools/steplap/accuracy.h"
+#include "tools/steplap/assess.h"
 #include "tools/steplap/channels.h"
 #include "tools/steplap/check.h"
 #include "tools/steplap/core.h"
@@ -23,6 +24,7 @@ std::vector<Command> all_commands() {
   commands.push_back(report_command());
   commands.push_back(plot_command());
   commands.push_back(record_command());
+  commands.push_back(assess_command());
   commands.push_back(check_command());
   commands.push_back(equilibrium_command());
   commands.push_back(modes_command());

@@ -1,0 +1,58 @@
+#include "tools/steplap/assess.h"
+
+#include <algorithm>
+
+namespace steplap {
+
+namespace {
+
+ExitCode assess_here(const AssessOptions& options, Console&) {
+  // The static proof is dispatched here: options.static_preset is the preset, options.records and options.models the models.
+  if (options.static_preset) throw UsageError("--static: this build has no static proof");
+  throw UsageError("assessments are made by the program of studies: begin with 'steplap assess'");
+}
+
+} // namespace
+
+bool is_assessment(const std::vector<std::string>& arguments) {
+  const auto command = std::find_if(arguments.begin(), arguments.end(), [](const std::string& word) { return !word.starts_with('-'); });
+  if (command == arguments.end() || *command != "assess") return false;
+  return std::none_of(arguments.begin(), arguments.end(), [](const std::string& word) { return word == "--static" || word.starts_with("--static=") || word == "--help" || word == "-h"; });
+}
+
+Command assess_command(const std::function<ExitCode(const AssessOptions& options, Console& console)>& work) {
+  const auto o = std::make_shared<AssessOptions>();
+  Command command;
+  command.name = "assess";
+  command.summary = "from a shock recorder's file and models to a decision: energise, inspect or return";
+  command.examples = R"(  steplap assess shock.csv --model models/assess/transformer.toml --gravity z -o out/arrival
+  steplap assess first.csv second.csv --model lengthwise.toml --model crosswise.toml --criteria mine.toml
+  steplap assess --print-criteria acceptance-3g > mine.toml
+Every event of the records goes through every model, in order of time, from where the one before left the machine; DIR/assessment.json
+holds all of it. Exit codes of a decision: 0 energise, 10 inspect, 11 return, 12 open (what is needed to decide is not known). An
+assessment that is interrupted goes on when it is asked for again. See docs/how-to/assess_a_transport.md.
+)";
+  command.options = {
+      {"RECORD", &o->records, "RECORD", "recorders' files, each with what its own --gravity and the like say"},
+      {"-m,--model", &o->models, "MODEL", "model with a [[recorder]]; one for each plane"},
+      {"-o,--output", &o->output, "DIR", "folder of assessment.json (default: out/assessment)"},
+      {"--criteria", &o->criteria, "FILE|PRESET", "what decides: a file, or acceptance-3g (default), joints, peaks-3g"},
+      {"--print-criteria", &o->print_criteria, "PRESET", "print a preset, to be edited"},
+      {"--set", &o->overrides, "PATH=VALUE", "lay a value over every model; may be repeated"},
+      {"--samples", &o->samples, "N", "voyages with other values of what is uncertain (default: 200); 0: none, and no probability"},
+      {"--seed", &o->seed, "N", "of the samples (default: 1)"},
+      {"--threads", &o->threads, "N", "of the samples (default: all processors); results are the same for any number"},
+      {"--accept", &o->accepted, "FAULT", "decide although the record is clipped, has gaps, or holds peaks only: clipped, gaps or peaks; may be repeated"},
+      {"--no-estimate", &o->is_estimate_left_out, "", "do not estimate errors of the runs"},
+      {"--static", &o->static_preset, "PRESET", "no record: quasi-static accelerations in every direction"},
+      {"--json", &o->is_json, "", "print assessment.json instead of the screen"},
+      {"-f,--force", &o->is_overwriting, "", "overwrite an earlier assessment"}};
+  const std::vector<Option> reading = reading_options(*o);
+  command.options.insert(command.options.end(), reading.begin(), reading.end());
+  command.run = [o, work](Console& console) { return work(*o, console); };
+  return command;
+}
+
+Command assess_command() { return assess_command(assess_here); }
+
+} // namespace steplap
