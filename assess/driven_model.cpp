@@ -89,12 +89,14 @@ bool looks_at(const std::string& channel, const std::set<std::string>& gone) {
 void take_out(Model& model, const Recorder& recorder, std::vector<std::string>& notes) {
   const std::set<std::string> gone(recorder.replaces.begin(), recorder.replaces.end());
   std::erase_if(model.elements, [&](const ElementEntry& e) { return gone.contains(e.element->name); });
-  for (const Criterion& criterion : model.criteria)
-    if (looks_at(criterion.channel, gone) || gone.contains(criterion.element))
-      notes.push_back("'" + criterion.name + "' is not asked: the record takes the place of what it looks at.");
-  std::erase_if(model.criteria, [&](const Criterion& c) { return looks_at(c.channel, gone) || gone.contains(c.element); });
+  for (const TableEntry& entry : model.tables)
+    if (const auto* const c = dynamic_cast<const Criterion*>(entry.table.get()); c && (looks_at(c->channel, gone) || gone.contains(c->element)))
+      notes.push_back("'" + c->name + "' is not asked: the record takes the place of what it looks at.");
+  std::erase_if(model.tables, [&](const TableEntry& entry) {
+    const auto* const c = dynamic_cast<const Criterion*>(entry.table.get());
+    return (c && (looks_at(c->channel, gone) || gone.contains(c->element))) || dynamic_cast<const Plot*>(entry.table.get()); // nothing is drawn
+  });
   for (const std::string& name : recorder.replaces) notes.push_back("The record takes the place of '" + name + "'.");
-  model.plots.clear(); // nothing is drawn
 }
 
 void begin_at_rest(Model& model, std::vector<std::string>& notes) {

@@ -32,7 +32,10 @@ VoyageRunner::VoyageRunner(const DrivenModel& model, const std::vector<DriveHist
   Model whole = completed(given_);
   const std::unique_ptr<System> system = compile(whole);
   static_cast<void>(check_presentation(whole, *system)); // limits in the units of their channels
-  given_.criteria = whole.criteria;
+  for (TableEntry& entry : given_.tables)
+    if (auto* const criterion = dynamic_cast<Criterion*>(entry.table.get()))
+      for (const Criterion& known : whole.criteria)
+        if (known.name == criterion->name) criterion->at_least = known.at_least, criterion->at_most = known.at_most, criterion->within = known.within;
   variants_ = std::make_unique<Variants>(given_, std::move(paths));
 }
 
