@@ -1,9 +1,11 @@
 #include "assess/voyage_runner.h"
 
 #include "elements/step_lap_assessment.h"
+#include "elements/step_lap_joint.h"
 #include "mbd/acceptance/judge.h"
 #include "mbd/analysis/start.h"
 #include "mbd/base/event_kind.h"
+#include "mbd/base/name_pattern.h"
 #include "mbd/io/presentation.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/model/completion.h"
@@ -22,6 +24,23 @@ std::vector<double> begins_of(const std::vector<DriveHistory>& histories, double
   return begins;
 }
 
+// Channels that joints, criteria and trust look at: the search for extremes of all others would take most of a sample's time.
+std::vector<std::string> channels_wanted(const Model& whole, const System& system) {
+  std::vector<std::string> wanted = channels_of_trust(whole);
+  const auto is_wanted = [&](const std::string& name) {
+    for (const ElementEntry& entry : whole.elements)
+      if (entry.kind == &step_lap_joint_kind() && name.starts_with(entry.element->name + ".")) return true;
+    for (const Criterion& criterion : whole.criteria)
+      if (!criterion.channel.empty() && matches_pattern(name, criterion.channel)) return true;
+    return false;
+  };
+  for (const Channel& channel : system.channels)
+    if (is_wanted(channel.name)) wanted.push_back(channel.name);
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  return wanted;
+}
+
 } // namespace
 
 VoyageRunner::VoyageRunner(const DrivenModel& model, const std::vector<DriveHistory>& histories, std::vector<std::string> paths)
@@ -36,7 +55,8 @@ VoyageRunner::VoyageRunner(const DrivenModel& model, const std::vector<DriveHist
     if (auto* const criterion = dynamic_cast<Criterion*>(entry.table.get()))
       for (const Criterion& known : whole.criteria)
         if (known.name == criterion->name) criterion->at_least = known.at_least, criterion->at_most = known.at_most, criterion->within = known.within;
-  variants_ = std::make_unique<Variants>(given_, std::move(paths));
+  const std::vector<std::string> wanted = channels_wanted(whole, *system);
+  variants_ = std::make_unique<Variants>(given_, std::move(paths), &wanted);
 }
 
 VoyageRunner::~VoyageRunner() = default;
