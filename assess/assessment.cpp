@@ -35,7 +35,11 @@ VoyageSummary summary_of(const Passage& passage, std::size_t number, const std::
     if (joint.slips && s.first_slip.empty()) s.first_slip = "'" + joint.name + "' slips in event " + std::to_string(number);
   }
   for (const auto* limits : {&passage.reactions, &passage.clearances, &passage.others})
-    for (const LimitPassage& limit : *limits) s.acceptance = std::max(s.acceptance, limit.outcome);
+    for (const LimitPassage& limit : *limits) {
+      if (limit.outcome <= s.acceptance) continue;
+      s.acceptance = limit.outcome;
+      s.first_unmet = "'" + limit.name + "' in event " + std::to_string(number) + (std::isfinite(limit.share) ? ", " + rounded_text(100.0 * limit.share, 3) + " % of its limit" : "");
+    }
   if (passage.is_made && passage.verdict == Verdict::open) s.acceptance = std::max(s.acceptance, Verdict::open);
   s.lifts = !passage.feet.empty();
   return s;

@@ -35,6 +35,9 @@ LimitPassage limit_of(const CriterionResult& criterion, const Overview& overview
   return limit;
 }
 
+// What the elements that gave way have left behind.
+bool is_of_replaced(const Finding& finding) { return finding.code == "unused_signal" || finding.code == "unused_marker"; }
+
 std::vector<FootPassage> feet_of(const Report& report) {
   std::vector<FootPassage> feet;
   for (const Event& event : report.run.result.events) {
@@ -86,7 +89,7 @@ void Traveller::look(const Report& report, Passage& passage) {
   for (const CriterionResult& criterion : report.judgement.criteria)
     (criterion.unit == "N" ? passage.reactions : criterion.unit == "m" ? passage.clearances : passage.others).push_back(limit_of(criterion, overview));
   for (const Finding& finding : report.findings)
-    if (finding.level == FindingLevel::warning) passage.findings.push_back(text_with_place(finding));
+    if (finding.level == FindingLevel::warning && !is_of_replaced(finding)) passage.findings.push_back(text_with_place(finding));
   if (!report.judgement.distrust.empty()) passage.findings.push_back(report.judgement.distrust);
   for (const std::string& cap : report.judgement.caps) passage.findings.push_back(cap);
 }

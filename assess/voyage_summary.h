@@ -19,6 +19,7 @@ struct VoyageSummary {
   Verdict acceptance = Verdict::hold;  ///< of what the models ask: [[acceptance]] and elements' own
   std::string unknown;                 ///< not empty: why a run of it could not be made or is not to be trusted
   std::string first_slip;              ///< "'front joint' slips in event 3", for people
+  std::string first_unmet;             ///< "'bottom arresting devices' in event 1", of the worst acceptance
 };
 
 /// The worse of both.
@@ -29,7 +30,7 @@ inline void worsen(VoyageSummary& summary, const VoyageSummary& other) {
   summary.slips |= other.slips;
   summary.lifts |= other.lifts;
   summary.comes_apart |= other.comes_apart;
-  if (other.acceptance > summary.acceptance) summary.acceptance = other.acceptance;
+  if (other.acceptance > summary.acceptance) summary.acceptance = other.acceptance, summary.first_unmet = other.first_unmet;
   if (summary.unknown.empty()) summary.unknown = other.unknown;
   if (summary.first_slip.empty()) summary.first_slip = other.first_slip;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace steplap {
 
@@ -39,7 +40,7 @@ std::optional<double> value_of_text(const Uncertain& uncertain, const std::strin
   const std::string unit = uncertain.is_factor ? "" : unit_of(model, uncertain.paths.front());
   double value = 0.0;
   const auto [rest, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status == std::errc() && rest == text.data() + text.size()) return value;
+  if (status == std::errc() && rest == text.data() + text.size() && std::isfinite(value)) return value;
   const Quantity quantity = parse_quantity(text, unit);
   if (!quantity.problem.empty())
     throw ModelError(uncertain.place(field), "'" + field + "' of uncertain '" + uncertain.name + "': " + quantity.problem);

@@ -86,7 +86,7 @@ private:
   std::chrono::steady_clock::time_point last_;
 };
 
-std::string percent(double share) { return rounded_text(100.0 * share, 2) + " %"; }
+std::string percent(double share) { return rounded_text(std::round(1e3 * share) / 10.0) + " %"; }
 
 void print_event(TextTable& table, const Assessment& a, std::size_t number) {
   const VoyageEvent& e = a.events[number];
