@@ -118,7 +118,9 @@ std::optional<std::int64_t> clock_of(const RecordLayout& layout) {
 void find_faults(RecordEvents& record) {
   const ReadFacts& facts = record.recording.facts;
   if (record.recording.layout.is_peaks) record.faults.push_back(RecordFault::peaks_only);
-  const auto is_clipped = [&](const AxisFacts& axis) { return axis.beyond_range.count > 0 || (axis.flat_longest >= 3 && !record.recording.layout.holds); };
+  // What stays where it rests is quiet, not clipped, as where a signal without noise begins at once.
+  const auto is_flat = [&](const AxisFacts& axis) { return axis.flat_longest >= 3 && std::abs(axis.flat_value - axis.rest) > k_felt * record.rules.threshold; };
+  const auto is_clipped = [&](const AxisFacts& axis) { return axis.beyond_range.count > 0 || (is_flat(axis) && !record.recording.layout.holds); };
   if (std::any_of(facts.axes.begin(), facts.axes.end(), is_clipped)) record.faults.push_back(RecordFault::clipped);
   if (facts.gaps.count > 0 || facts.missing.count > 0 || facts.backward.count > 0) record.faults.push_back(RecordFault::gaps);
 }

@@ -119,7 +119,7 @@ TEST_CASE("samples that were made are kept, and an assessment that was interrupt
   const std::vector<VoyageSample> whole = sample_voyages(voyage.models, voyage.histories, uncertain, options);
   options.store = folder.file("samples.sqlite");
   long asked = 0;
-  options.stop = [&] { return ++asked > 15 ? std::string("stopped by the test") : std::string(); };
+  options.stop = [&] { return ++asked > 8 ? std::string("stopped by the test") : std::string(); };
   CHECK_THROWS_AS(static_cast<void>(sample_voyages(voyage.models, voyage.histories, uncertain, options)), NumericalFailure);
   options.stop = {};
   long first = -1;
