@@ -84,7 +84,7 @@ void pass_events(const AssessmentOptions& options, Assessment& a) {
       if (options.progress) options.progress("events", done++, static_cast<long>(a.events.size() * a.models.size()));
       Passage passage = travellers[m].pass(a.histories[m][e], options.estimating);
       passage.event = e, passage.model = m;
-      if (passage.still_moving > k_still)
+      if (passage.still_moving > k_still && !a.histories[m][e].goes_on)
         passage.findings.push_back("The machine still moves at " + rounded_text(passage.still_moving, 2) + " m/s when the event is over: raise 'settle' of [[recorder]] if the next event begins from rest.");
       worsen(a.summary, summary_of(passage, e + 1, a.models[m].name));
       a.events[e].passages.push_back(std::move(passage));

@@ -4,7 +4,7 @@ namespace steplap::assess {
 
 namespace {
 
-constexpr const char* k_acceptance_3g = R"toml(# Criteria for a machine that has arrived. Copy, edit, and give your own file with --criteria.
+constexpr const char* k_acceptance_3g = R"toml(# Criteria for a machine that has arrived. Copy, edit, and give your own file instead.
 name = "3 g and a core that did not slip"
 text = "Energise after ordinary checks only if no axis read more than 3 g, no joint of the core slipped, and what the models ask is met with the probability asked for."
 source = "3 g: construction and acceptance code for transformers, clauses 3.3.1 to 3.3.3 (jianbiaoku.com/webarbs/book/27448/883684.shtml); slip: rules of this program"

@@ -127,6 +127,7 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
   };
   DriveHistory history;
   history.step = 1.0 / window.rate;
+  history.goes_on = event.event.goes_on;
   std::vector<double> a = along(recorder.x), b = along(recorder.y);
   for (std::vector<double>* const values : {&a, &b}) {
     if (recorder.drift != "line" || count < 2) continue;

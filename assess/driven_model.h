@@ -20,6 +20,7 @@ namespace steplap::assess {
 /// Acceleration of the marker along the ground's axes, m/s², linear between samples at equal times from `begin` on, 0 elsewhere.
 struct DriveHistory {
   double begin = 0.0, step = 0.0; ///< s
+  bool goes_on = false;           ///< the next event is its continuation: nothing comes to rest between
   std::vector<double> x, y;       ///< m/s²
   [[nodiscard]] double end() const { return begin + step * static_cast<double>(x.empty() ? 0 : x.size() - 1); }
 };

@@ -97,7 +97,7 @@ void Traveller::look(const Report& report, Passage& passage) {
 Passage Traveller::pass(const DriveHistory& history, Estimating estimating) {
   if (!ended_.empty()) return broken(std::string(ended_));
   Model model = model_.given;
-  drive_by(model, {history}, history.end() + model_.recorder.settle);
+  drive_by(model, {history}, history.end() + (history.goes_on ? 0.0 : model_.recorder.settle));
   const std::shared_ptr<const LoadedModel> loaded = load_given(model, model_.name);
   RunOptions options;
   options.estimating = estimating;

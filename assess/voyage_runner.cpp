@@ -20,7 +20,7 @@ namespace {
 
 std::vector<double> begins_of(const std::vector<DriveHistory>& histories, double settle) {
   std::vector<double> begins{0.0};
-  for (const DriveHistory& history : histories) begins.push_back(begins.back() + history.end() + settle);
+  for (const DriveHistory& history : histories) begins.push_back(begins.back() + history.end() + (history.goes_on ? 0.0 : settle));
   return begins;
 }
 
