@@ -40,7 +40,10 @@ VoyageSummary summary_of(const Passage& passage, std::size_t number, const std::
       s.acceptance = limit.outcome;
       s.first_unmet = "'" + limit.name + "' in event " + std::to_string(number) + (std::isfinite(limit.share) ? ", " + rounded_text(100.0 * limit.share, 3) + " % of its limit" : "");
     }
-  if (passage.is_made && passage.verdict == Verdict::open) s.acceptance = std::max(s.acceptance, Verdict::open);
+  if (passage.is_made && passage.verdict == Verdict::open && s.acceptance < Verdict::open) {
+    s.acceptance = Verdict::open;
+    s.first_unmet = "event " + std::to_string(number) + ": " + passage.reason;
+  }
   s.lifts = !passage.feet.empty();
   return s;
 }
@@ -130,6 +133,13 @@ void assume(Assessment& a) {
                           rounded_text(a.records.empty() ? 0.0 : a.records.front().rules.threshold / k_gravity, 3) + " g is not run.");
   for (const UncertainValue& value : a.uncertain->values())
     if (value.source == "assumed") a.assumptions.push_back("The " + value.name + " is assumed: " + value.source_text + ".");
+  constexpr double k_unlikely = 0.01; // on either side
+  for (std::size_t i = 0; i < a.uncertain->values().size(); ++i) {
+    const UncertainValue& value = a.uncertain->values()[i];
+    if (value.nominal >= a.uncertain->quantile(i, k_unlikely) && value.nominal <= a.uncertain->quantile(i, 1.0 - k_unlikely)) continue;
+    a.assumptions.push_back("The models' own " + value.name + ", " + rounded_text(value.nominal, 4) + ", lies outside the middle 98 % of its distribution (" + a.uncertain->law_text(i) +
+                            "): events in detail and probabilities are of different machines. Give both the same value.");
+  }
   if (a.uncertain->values().size() > 1) a.assumptions.push_back("Uncertain values are taken to be independent of each other.");
   for (const RecordEvents& record : a.records)
     for (const RecordFault fault : record.faults)

@@ -81,7 +81,7 @@ Reason judge_acceptance(const DecisionCriterion& c, const VoyageSummary& s) {
   if (s.acceptance == Verdict::reject) return judged(c, Decision::send_back, "A model rejects the machine: " + s.first_unmet + ".");
   if (s.acceptance == Verdict::inspect) return judged(c, outcome_of(c), "A model asks to inspect the machine: " + s.first_unmet + ".");
   if (!s.unknown.empty()) return judged(c, Decision::open, "It is not known: " + s.unknown);
-  if (s.acceptance == Verdict::open) return judged(c, Decision::open, "A limit of a model lies within the error of its number, or nothing is asked of it" + (s.first_unmet.empty() ? std::string(".") : ": " + s.first_unmet + "."));
+  if (s.acceptance == Verdict::open) return judged(c, Decision::open, "A model cannot say that the machine holds. " + s.first_unmet);
   return judged(c, Decision::energise, "All that the models ask is met in every event.");
 }
 

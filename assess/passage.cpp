@@ -78,7 +78,7 @@ void Traveller::look(const Report& report, Passage& passage) {
     p.came_apart = joint.has_come_apart;
     p.margin = joint.smallest_margin;
     p.at = joint.time_of_smallest;
-    p.slid = portable::hypot(joint.slid_x - slid_x_[i], joint.slid_y - slid_y_[i]);
+    if (joint.has_slipped) p.slid = portable::hypot(joint.slid_x - slid_x_[i], joint.slid_y - slid_y_[i]); // else it is rounding, or yields
     slid_x_[i] = joint.slid_x, slid_y_[i] = joint.slid_y;
     p.slid_total = slid_total_[i] += p.slid;
     if (const ChannelRange* const left = report.find(joint.joint + ".overlap_left")) p.overlap_left = left->final;
@@ -91,7 +91,8 @@ void Traveller::look(const Report& report, Passage& passage) {
   for (const Finding& finding : report.findings)
     if (finding.level == FindingLevel::warning && !is_of_replaced(finding)) passage.findings.push_back(text_with_place(finding));
   if (!report.judgement.distrust.empty()) passage.findings.push_back(report.judgement.distrust);
-  for (const std::string& cap : report.judgement.caps) passage.findings.push_back(cap);
+  for (const std::string& cap : report.judgement.caps)
+    if (std::find(passage.findings.begin(), passage.findings.end(), cap) == passage.findings.end()) passage.findings.push_back(cap);
 }
 
 Passage Traveller::pass(const DriveHistory& history, Estimating estimating) {

@@ -82,7 +82,7 @@ static void look(const Model& whole, const System& system, const RunResult& resu
     const JointAssessment& joint = joints[i];
     if (joint.verdict == JointVerdict::not_assessed) continue;
     if (joint.smallest_margin < now.least_margin) now.least_margin = joint.smallest_margin;
-    slid[i] += portable::hypot(joint.slid_x - x[i], joint.slid_y - y[i]);
+    if (joint.has_slipped) slid[i] += portable::hypot(joint.slid_x - x[i], joint.slid_y - y[i]);
     x[i] = joint.slid_x, y[i] = joint.slid_y;
     now.slid = std::max(now.slid, slid[i]);
     for (const ChannelRange& range : result.ranges)
