@@ -63,7 +63,8 @@ struct Assessment {
 
 /// Judges what was found: fills decision, reason, reasons and tests.
 void decide(Assessment& assessment);
-/// What criteria make of a voyage: the worst outcome; of records and probabilities as the assessment has them.
+/// What criteria make of a voyage with values of its own: the worst outcome, records as the assessment has them. Probabilities are of
+/// all values together, and are left out.
 [[nodiscard]] Decision decision_of(const Assessment& assessment, const VoyageSummary& summary);
 
 /// The text of assessment.json.

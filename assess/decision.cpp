@@ -136,8 +136,13 @@ std::vector<Reason> reasons_of(const Assessment& a, const VoyageSummary& s) {
 } // namespace
 
 Decision decision_of(const Assessment& assessment, const VoyageSummary& summary) {
-  const std::vector<Reason> reasons = reasons_of(assessment, summary);
-  return reasons.empty() ? Decision::open : reasons.front().outcome;
+  Decision worst = Decision::energise;
+  for (const DecisionCriterion& c : assessment.criteria.criteria)
+    if (!c.quantity.ends_with("probability")) worst = std::max(worst, judge_criterion(c, assessment, summary).outcome);
+  std::vector<Reason> own;
+  add_own(assessment, summary, own);
+  for (const Reason& reason : own) worst = std::max(worst, reason.outcome);
+  return worst;
 }
 
 void decide(Assessment& a) {

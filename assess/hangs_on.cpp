@@ -51,8 +51,10 @@ void find_what_it_hangs_on(const AssessmentOptions& options, Assessment& a) {
       if (options.progress) options.progress("what it hangs on", static_cast<long>(i), static_cast<long>(values.size()));
       const std::optional<Turn> turn = turn_towards(a, i, a.uncertain->quantile(i, p));
       if (!turn) continue;
-      const std::string why = turn->summary.slips && !a.summary.slips ? turn->summary.first_slip : !turn->summary.unknown.empty() ? turn->summary.unknown : "";
-      a.hangs_on.push_back("The decision hangs on the " + values[i].name + ": at " + quantity_text(turn->value, values[i].unit) + " instead of " + quantity_text(values[i].nominal, values[i].unit) +
+      const std::string why = turn->summary.slips && !a.summary.slips ? turn->summary.first_slip : !turn->summary.unknown.empty() ? turn->summary.unknown : turn->summary.first_unmet;
+      const Decision own = decision_of(a, a.summary);
+      const std::string by_itself = own == a.decision ? "The decision" : "By the models' own values the decision would be \"" + std::string(name_of(own)) + "\". It";
+      a.hangs_on.push_back(by_itself + " hangs on the " + values[i].name + ": at " + quantity_text(turn->value, values[i].unit) + " instead of " + quantity_text(values[i].nominal, values[i].unit) +
                            " it is \"" + name_of(decision_of(a, turn->summary)) + "\"" + (why.empty() ? "" : ", as " + why) + ".");
     }
   if (!a.hangs_on.empty()) return;

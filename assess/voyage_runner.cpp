@@ -75,7 +75,11 @@ static void look(const Model& whole, const System& system, const RunResult& resu
   VoyageSummary now;
   const Judgement judgement = judge(whole, system, result, "");
   now.unknown = judgement.distrust;
-  for (const CriterionResult& c : judgement.criteria) now.acceptance = std::max(now.acceptance, c.outcome);
+  for (const CriterionResult& c : judgement.criteria) {
+    if (c.outcome <= now.acceptance) continue;
+    now.acceptance = c.outcome;
+    now.first_unmet = "'" + c.name + "' is not met in event " + std::to_string(event + 1);
+  }
   const std::vector<JointAssessment> joints = assess_joints(whole, result);
   x.resize(joints.size(), 0.0), y.resize(joints.size(), 0.0), slid.resize(joints.size(), 0.0);
   for (std::size_t i = 0; i < joints.size(); ++i) {
