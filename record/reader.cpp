@@ -36,9 +36,11 @@ public:
     end_run(0.0);
     facts.least = low_.value;
     facts.greatest = -high_.value;
-    for (const End* end : {&low_, &high_})
-      if (end->longest >= 3 && end->jump >= 3.0 * step_ && end->longest > facts.flat_longest)
-        facts.flat_longest = end->longest, facts.flat_line = end->line, facts.flat_value = end == &low_ ? end->value : -end->value;
+    for (const End* end : {&low_, &high_}) { // of both the one further from where the axis rests: a long rest hides no peak
+      const double value = end == &low_ ? end->value : -end->value;
+      if (end->longest >= 3 && end->jump >= 3.0 * step_ && (facts.flat_longest == 0 || std::abs(value - facts.rest) > std::abs(facts.flat_value - facts.rest)))
+        facts.flat_longest = end->longest, facts.flat_line = end->line, facts.flat_value = value;
+    }
   }
 
 private:
@@ -411,8 +413,8 @@ private:
     if (facts.rows == 0)
       throw RecordError(layout_->file, facts.lines, 1, facts.cut_line > 0 ? "The only row is cut: no row is left. Copy the file again from the recorder." : "No row of the table holds an acceleration. Choose columns with --x, --y, --z.");
     for (std::size_t i = 0; i < layout_->axes.size(); ++i) {
-      watches_[i].finish(facts.axes[i]);
       facts.axes[i].rest = summed_ > 0 ? sums_[i] / static_cast<double>(summed_) : 0.0;
+      watches_[i].finish(facts.axes[i]);
     }
   }
 

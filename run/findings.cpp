@@ -54,6 +54,9 @@ References references_of(const Model& model) {
         found.markers.insert(over.begin(), over.end());
       }
     }
+  for (const TableEntry& entry : model.tables) // of other rooms: where a recorder sits
+    for (const Field& field : entry.kind->fields.fields())
+      if (field.type == FieldType::marker) found.markers.insert(std::get<std::string>(field.get(entry.table.get())));
   for (const Marker& marker : model.markers)
     if (found.markers.count(marker.name) > 0) found.bodies.insert(marker.body);
   return found;

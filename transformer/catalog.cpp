@@ -2,6 +2,8 @@
 
 #include "elements/catalog.h"
 #include "transformer/core.h"
+#include "transformer/recorder.h"
+#include "transformer/uncertain.h"
 
 namespace steplap {
 
@@ -9,6 +11,8 @@ const Catalogue& transformer_catalog() {
   static const Catalogue catalogue = [] {
     Catalogue c = element_catalog();
     c.tables.push_back(&core_kind());
+    c.tables.push_back(&recorder_kind());
+    c.tables.push_back(&uncertain_kind());
     return c;
   }();
   return catalogue;

@@ -21,7 +21,10 @@ enum class ExitCode : int {
   usage = 2,             ///< wrong command line, or results that cannot be written
   model_error = 3,       ///< the model cannot be used as it stands
   numerical_failure = 4, ///< the computation could not be finished
-  criterion_failed = 5   ///< finished, but a criterion that was asked for is not met
+  criterion_failed = 5,  ///< finished, but a criterion that was asked for is not met
+  inspect = 10,          ///< an assessment's decision
+  send_back = 11,        ///< the same: return
+  open = 12              ///< the same: what is needed to decide is not known
 };
 
 /// What the user asked for cannot be done as asked. Exit code 2.

@@ -11,6 +11,7 @@
 #include "record/result_folder.h"
 #include "record/synthetic.h"
 #include "record/time_text.h"
+#include "tools/steplap/record_options.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
@@ -25,63 +26,15 @@ namespace {
 
 namespace fs = std::filesystem;
 using Align = TextTable::Align;
-using Text = std::optional<std::string>;
 
 constexpr std::size_t k_shown_events = 12; // the screen has thirty lines
 constexpr OptionWords<DriftCorrection, 2> k_drifts{{{"none", DriftCorrection::none}, {"line", DriftCorrection::line}}};
 
-struct RecordOptions {
+struct RecordOptions : ReadingOptions {
   std::vector<std::string> files;
-  Text output, make, x, y, z, time, time_unit, rate, unit, counts_per_g, delimiter, decimal, dates, missing, repeated, backward, gap;
-  Text quiet, gravity, cfc, resample, threshold, before, after, merge, event, drift;
-  bool holds = false, is_json = false, is_overwriting = false;
+  Text output, make, event, drift;
+  bool is_json = false, is_overwriting = false;
 };
-
-double number_of(const Text& text, const char* option, double least, const char* unit = "") {
-  const auto value = parse_number(*text, '.');
-  if (!value || !(*value > least)) throw UsageError(std::string(option) + " '" + *text + "': a number above " + rounded_text(least) + " is needed" + unit);
-  return *value;
-}
-
-template <class Words> auto choice(const Text& text, const char* option, const Words& words) {
-  if (const auto meaning = meaning_of(words, *text)) return *meaning;
-  std::string known;
-  for (const std::string& word : words_of(words)) known += (known.empty() ? "" : ", ") + word;
-  throw UsageError(std::string(option) + " '" + *text + "': give one of " + known);
-}
-
-ReadOptions read_options(const RecordOptions& o) {
-  ReadOptions r;
-  r.x = o.x, r.y = o.y, r.z = o.z, r.time = o.time, r.time_unit = o.time_unit, r.unit = o.unit, r.holds = o.holds;
-  if (o.rate) r.rate = number_of(o.rate, "--rate", 0.0, ", in Hz");
-  if (o.counts_per_g) r.counts_per_g = number_of(o.counts_per_g, "--counts-per-g", 0.0);
-  if (o.gap) r.gap = number_of(o.gap, "--gap", 1.5, ", in sampling intervals");
-  if (o.delimiter) r.delimiter = choice(o.delimiter, "--delimiter", k_delimiters);
-  if (o.decimal) r.decimal = choice(o.decimal, "--decimal", k_decimals);
-  if (o.dates) r.dates = choice(o.dates, "--dates", k_dates);
-  if (o.missing) r.missing = choice(o.missing, "--missing", k_missing);
-  if (o.repeated) r.repeated = choice(o.repeated, "--repeated", k_repeated);
-  if (o.backward) r.backward = choice(o.backward, "--backward", k_backward);
-  return r;
-}
-
-// "3 g", "20 m/s^2", "3" in g.
-double threshold_of(const std::string& text) {
-  const auto end = text.find_first_not_of("0123456789.+-eE");
-  const auto value = parse_number(trimmed_blanks(text.substr(0, end)), '.');
-  const auto unit = acceleration_unit(end == std::string::npos ? "g" : text.substr(end));
-  if (!value || !(*value > 0.0) || !unit || unit->is_counts) throw UsageError("--threshold '" + text + "': give an acceleration above zero, such as \"3 g\" or \"20 m/s^2\"");
-  return *value * unit->factor;
-}
-
-EventRules event_rules(const RecordOptions& o) {
-  EventRules rules;
-  if (o.threshold) rules.threshold = threshold_of(*o.threshold);
-  if (o.before) rules.before = number_of(o.before, "--before", 0.0, ", in s");
-  if (o.after) rules.after = number_of(o.after, "--after", 0.0, ", in s");
-  if (o.merge) rules.merge = number_of(o.merge, "--merge", 0.0, ", in s");
-  return rules;
-}
 
 // The mean of each axis over a stretch of time.
 class QuietMean : public SampleSink {
@@ -105,14 +58,12 @@ private:
 };
 
 std::array<double, 3> quiet_offset(const std::string& file, const std::string& quiet, const ReadOptions& options) {
-  const auto comma = quiet.find(',');
-  const auto from = parse_number(quiet.substr(0, comma), '.'), to = comma == std::string::npos ? std::nullopt : parse_number(quiet.substr(comma + 1), '.');
-  if (!from || !to || !(*to > *from)) throw UsageError("--rest '" + quiet + "': give two times in s, such as 0,2");
+  const auto [from, to] = rest_stretch(quiet);
   if (is_standard_input(file)) throw UsageError("--rest needs a file that can be read twice, not standard input");
-  QuietMean mean(*from, *to);
+  QuietMean mean(from, to);
   LineSource source(file);
   static_cast<void>(read_record(source, options, mean));
-  if (mean.count() < 2) throw RecordError(source.name(), 0, 0, "The record has no two samples from " + number_text(*from) + " s to " + number_text(*to) + " s. Give a stretch within it with --rest.");
+  if (mean.count() < 2) throw RecordError(source.name(), 0, 0, "The record has no two samples from " + number_text(from) + " s to " + number_text(to) + " s. Give a stretch within it with --rest.");
   return {mean.mean(0), mean.mean(1), mean.mean(2)};
 }
 
@@ -145,7 +96,7 @@ private:
 // Gravity is along an axis of the record, which is known when its columns are.
 class GravityFirst : public SampleSink {
 public:
-  GravityFirst(Conditioning conditioning, Text gravity, const RecordOptions& options, SignalSink& sink)
+  GravityFirst(Conditioning conditioning, std::optional<std::string> gravity, const RecordOptions& options, SignalSink& sink)
       : conditioning_(conditioning), gravity_(std::move(gravity)), options_(options), sink_(sink) {}
   void begin(const RecordLayout& layout) override {
     if (gravity_ && *gravity_ != "none") {
@@ -171,7 +122,7 @@ public:
 
 private:
   Conditioning conditioning_;
-  Text gravity_;
+  std::optional<std::string> gravity_;
   const RecordOptions& options_;
   SignalSink& sink_;
   std::optional<Conditioner> conditioner_;
@@ -339,7 +290,7 @@ ExitCode record(const RecordOptions& options, Console& console) {
   if (options.make) return make(options, console);
   Outputs outputs;
   if (options.quiet && options.gravity) throw UsageError("--rest takes away all that is there at rest, gravity included: leave --gravity out");
-  if (options.drift) outputs.drift = choice(options.drift, "--drift", k_drifts);
+  if (options.drift) outputs.drift = choice(*options.drift, "--drift", k_drifts);
   if (options.event) outputs.event = static_cast<std::size_t>(std::floor(number_of(options.event, "--event", 0.0)));
   if (options.event && std::to_string(outputs.event) != *options.event) throw UsageError("--event '" + *options.event + "': give the number of an event, from 1");
   if (options.event && !options.output) throw UsageError("--event writes the window of one event: say where with -o DIR");
@@ -375,31 +326,9 @@ What cannot be known from the file is asked for, with the option that settles it
       {"--json", &o->is_json, "", "print the result as JSON"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier files"},
       {"--make", &o->make, "KIND", "write a synthetic record to FILE: gcdc, gcdc-epoch, phone, palt, shocklog, monilog, msr, lansmont, solve, endaq"},
-      {"--x", &o->x, "COLUMN", "column of axis x, by name or number; \"-\" before it turns the sign. Axes not given are then not read"},
-      {"--y", &o->y, "COLUMN", "the same of axis y"},
-      {"--z", &o->z, "COLUMN", "the same of axis z"},
-      {"--time", &o->time, "COLUMN", "column of times, or none"},
-      {"--time-unit", &o->time_unit, "UNIT", "s, ms, us, min, h, epoch, \"epoch ms\" or days (of a spreadsheet)"},
-      {"--rate", &o->rate, "HZ", "rate of sampling"},
-      {"--unit", &o->unit, "UNIT", "of accelerations: g, mg, m/s^2 or counts"},
-      {"--counts-per-g", &o->counts_per_g, "N", "counts that are 1 g"},
-      {"--delimiter", &o->delimiter, "SIGN", "comma, semicolon, tab or blank"},
-      {"--decimal", &o->decimal, "SIGN", "point or comma"},
-      {"--dates", &o->dates, "ORDER", "day-first, month-first or year-first"},
-      {"--missing", &o->missing, "HOW", "rows with empty or NaN fields: refuse (default), skip or hold"},
-      {"--repeated", &o->repeated, "HOW", "rows with the time of the row before: refuse (default) or first"},
-      {"--backward", &o->backward, "HOW", "times before that of the row before: refuse (default), split or drop"},
-      {"--hold", &o->holds, "", "left-out samples have the value before them"},
-      {"--gap", &o->gap, "N", "sampling intervals beyond which a gap splits the record: 3.5"},
-      {"--rest", &o->quiet, "FROM,TO", "subtract the mean from FROM to TO, s"},
-      {"--gravity", &o->gravity, "AXIS", "subtract gravity from x, y, z, -x, -y or -z; none keeps what the record has"},
-      {"--cfc", &o->cfc, "HZ", "low-pass of a channel frequency class (ISO 6487): 10 to 1000"},
-      {"--resample", &o->resample, "HZ", "higher rate of the cleaned signal"},
-      {"--threshold", &o->threshold, "A", "events begin beyond it: \"1 g\""},
-      {"--before", &o->before, "S", "kept before an event: 0.1"},
-      {"--after", &o->after, "S", "kept after an event: 0.3"},
-      {"--merge", &o->merge, "S", "what follows sooner belongs to the same event: 0.3"},
       {"--drift", &o->drift, "HOW", "of an event's window: none (default), or line: velocity ends where it began"}};
+  const std::vector<Option> reading = reading_options(*o);
+  command.options.insert(command.options.end() - 1, reading.begin(), reading.end());
   command.run = [o](Console& console) { return record(*o, console); };
   return command;
 }

@@ -136,13 +136,6 @@ void print_proof(std::ostream& out, const StaticProof& proof) {
 
 } // namespace
 
-std::vector<Option> static_proof_options(StaticProofArguments& arguments) {
-  return {{"--static", &arguments.preset, "PRESET", "constant loads instead of records: iec-1g, road, sea, or a file of your own (.toml)"},
-          {"--plane", &arguments.plane, "PLANE", "with --static: lengthwise (default where it makes no difference) or transverse, the section that the models show"},
-          {"--directions", &arguments.directions, "N", "with --static: directions in which a pull grows until something gives way: 72"},
-          {"--largest", &arguments.largest, "A", "with --static: how far it grows, m/s^2: 98.1"}};
-}
-
 ExitCode prove_statically(const StaticProofArguments& arguments, Console& console) {
   StaticPreset preset;
   StaticProofOptions options;

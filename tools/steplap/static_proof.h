@@ -12,8 +12,6 @@ struct StaticProofArguments {
   bool is_overwriting = false, is_json = false;
 };
 
-/// Options of `assess` that only a static proof has: --plane, --directions, --largest.
-[[nodiscard]] std::vector<Option> static_proof_options(StaticProofArguments& arguments);
 /// Precondition: `arguments.preset` is given.
 [[nodiscard]] ExitCode prove_statically(const StaticProofArguments& arguments, Console& console);
 

@@ -1,6 +1,7 @@
 // libexec/steplap-study: what `steplap study` runs. A program of its own, so that the libraries of studies cost the
 // other commands nothing at their start.
 #include "tools/steplap/command_line.h"
+#include "tools/study/assess.h"
 #include "tools/study/commands.h"
 #include "tools/study/mpi_session.h"
 
@@ -13,6 +14,10 @@ int main(int argc, char** argv) {
   using namespace steplap;
   std::vector<std::string> arguments(argv + 1, argv + argc);
   const study::MpiSession mpi;
+  if (is_assessment(arguments)) {
+    const Program assessment{"steplap", "from a shock recorder's file to a decision", {assess_command(run_assessment)}};
+    return code_of_output(std::cout, std::cerr, run_program(assessment, arguments, std::cout, std::cerr, isatty(STDERR_FILENO) == 1));
+  }
   const Program program = study::study_program(mpi.ranks());
   const bool is_file = !arguments.empty() && !arguments.front().starts_with('-') &&
                        std::none_of(program.commands.begin(), program.commands.end(),

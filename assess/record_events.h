@@ -1,0 +1,61 @@
+// Shocks of a recorder's file, ready to drive a model: conditioned windows with gravity taken away once, and what the record cannot say.
+#pragma once
+
+#include "record/events.h"
+#include "record/read_options.h"
+#include "record/reader.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace steplap::assess {
+
+/// How a file is read and searched for shocks.
+struct EventReading {
+  ReadOptions read;
+  EventRules rules;
+  std::optional<double> frequency_class;     ///< Hz
+  std::optional<double> rate;                ///< Hz of the conditioned signal; none: that of the record
+  std::optional<std::string> gravity;        ///< "z", "-z", …: axis that it is subtracted from; "none": it stays
+  std::optional<std::array<double, 2>> rest; ///< s: the mean of this stretch is subtracted
+};
+
+/// A shock with its samples.
+struct RecordedEvent {
+  ShockEvent event;
+  Window window;
+};
+
+/// What a record lacks for a decision that rests on it.
+enum class RecordFault { clipped, gaps, peaks_only };
+/// "clipped", "gaps" or "peaks"
+[[nodiscard]] const char* name_of(RecordFault fault);
+
+/// A file, read.
+struct RecordEvents {
+  std::string file, sha256;
+  Recording recording;
+  EventRules rules;
+  std::array<double, 3> offset{};        ///< m/s², subtracted from the axes
+  double rate = 0.0, bandwidth = 0.0;    ///< Hz, of the conditioned signal
+  std::vector<RecordedEvent> events;     ///< in order of time
+  std::vector<RecordFault> faults;       ///< each once
+  std::optional<std::int64_t> clock_ns;  ///< since 1970, of the time 0 of the record; none: it does not tell
+
+  /// Index of an axis in the layout; nothing if the record has none of that letter.
+  [[nodiscard]] std::optional<std::size_t> axis(char letter) const;
+  /// Whole sentences.
+  [[nodiscard]] std::vector<std::string> warnings() const;
+};
+
+/// Throws RecordError and FileError for what cannot be read or known, and if what an axis reads at rest would count as a shock.
+[[nodiscard]] RecordEvents read_events(const std::string& file, const EventReading& reading);
+
+/// In order of time: by their clocks where all have one, else as given. Throws FileError if two of them overlap in time. `note`
+/// becomes a sentence that says by what they were ordered; "" of a single one.
+void order_records(std::vector<RecordEvents>& records, std::string& note);
+
+} // namespace steplap::assess
