@@ -1,0 +1,290 @@
+#!/usr/bin/python3
+"""What a shock recorder must be able to do, so that its record tells whether a joint of the core slipped.
+
+A model runs. A recorder on the lid is made up from its acceleration: low-pass, rate of sampling, offset, noise and bits.
+`steplap record` reads the file, `prescribed_motion` drives the recorder's place as recorded, and the model runs again from rest,
+without being told what the vehicle did. Both runs are compared: the clamping pressure that the joints need, slip yes or no,
+the time of the first slip, the distances slid.
+
+    tools/bench/record_round_trip.py build/release/bin/steplap             the tables of docs/evidence/recorders.md
+    tools/bench/record_round_trip.py build/release/bin/steplap --check     a few of them against bounds; exit code 1 beyond
+
+Everything is seeded: the same numbers come out each time. Only the standard library of Python is needed.
+"""
+import argparse
+import concurrent.futures
+import csv
+import dataclasses
+import json
+import math
+import os
+import random
+import statistics
+import subprocess
+import sys
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+MODEL = os.path.join(HERE, "..", "..", "models", "paper", "weak_clamping.toml")
+GRAVITY = 9.80665  # of the recorder's unit, m/s^2
+LOCAL = 9.81       # of the model, m/s^2
+FINE = 1e-4        # s between samples of the truth
+QUIET = 0.5        # s of rest before the run, over which the recorder's offset is seen
+END = 0.8          # s
+JOINTS = ("front joint", "back joint")
+HOLDING = 80e3     # Pa: no joint slips at this pressure in either impact
+
+
+@dataclasses.dataclass(frozen=True)
+class Impact:
+    name: str
+    peak: float      # m/s^2, of the vehicle
+    duration: float  # s
+
+
+# The paper's emergency stop, and one like it that is harder and as short as a coupling of wagons.
+STOP = Impact("stop", -5.886, 0.1)
+SHUNT = Impact("shunt", -19.62, 0.025)
+# Where the recorder may sit: body, and the place in the settled pose. The vehicle's motion is that of the lower tank's centre of gravity.
+PLACES = {"frame": ("lower tank", (0.0, 0.79)), "floor": ("lower tank", (0.0, 0.0)), "far end": ("lower tank", (1.5, 0.79)),
+          "wall": ("upper tank", (1.81, 1.95)), "lid": ("upper tank", (0.0, 4.0))}
+# Pressure at which joints slip, as a share of what they need to hold: one slips clearly.
+WEAK = 0.875
+
+
+@dataclasses.dataclass(frozen=True)
+class Recorder:
+    rate: float = 200.0      # Hz
+    bits: int = 12
+    reach: float = 10.0      # g at the ends of the scale
+    noise: float = 5.0       # mg, standard deviation
+    offset: float = 20.0     # mg on both axes
+    low_pass: float = 0.4    # -3 dB of the recorder's own filter of two poles, as a share of the rate; 0: none
+    frequency_class: int = 0 # of the low-pass when the file is read; 0: none
+    rest: bool = True        # the offset is taken from the quiet stretch, else gravity alone is subtracted
+    tilt: float = 0.0        # degrees by which the recorder is mounted askew
+    axes: str = "xy"         # that are driven
+    place: str = "frame"     # of PLACES
+
+
+def toml(base, impact, pressure, body):
+    return (f'extends = "{base}"\ntitle = "round trip"\n[[core]]\nname = "core"\npressure = {pressure!r}\n'
+            f'[[signal]]\nname = "braking"\npeak = {impact.peak!r}\nduration = {impact.duration!r}\n'
+            + "".join(f'[[marker]]\nname = "{name}"\nbody = "{on}"\nat = [{x!r}, {y!r}]\n' for name, (on, (x, y)) in PLACES.items()) + body)
+
+
+def steplap(program, *arguments):
+    done = subprocess.run([program, *arguments], capture_output=True, text=True, check=False)
+    if done.returncode not in (0, 4): # 4: a verdict that is open is of no interest here
+        raise RuntimeError(f"steplap {' '.join(arguments)}: {done.stderr}")
+    return done.stdout
+
+
+def simulate(program, folder, name, text):
+    path = os.path.join(folder, name + ".toml")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    steplap(program, "simulate", path, "-o", os.path.join(folder, "out"), "--no-estimate", "-q", "--force")
+    with open(os.path.join(folder, "out", name, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    if not summary["completed"]:
+        raise RuntimeError(f"{name} did not come to its end")
+    return summary["joints"]
+
+
+def true_run(program, folder, impact, pressure, name):
+    """Joints of the run, and for each place ax, ay and angle from t = -QUIET on."""
+    columns = [f"{place}.{axis}" for place in PLACES for axis in ("ax", "ay")]
+    body = (f'[output]\nstep = {FINE!r}\nchannels = {json.dumps(columns + ["upper tank.theta"])}\nalso = {json.dumps(columns)}\n'
+            f'[simulation]\nend = {END!r}\n')
+    joints = simulate(program, folder, name, toml(MODEL, impact, pressure, body))
+    histories = {}
+    with open(os.path.join(folder, "out", name, "trajectory.csv"), encoding="utf-8") as file:
+        for row in csv.DictReader(line for line in file if not line.startswith("#")):
+            for key, value in row.items():
+                histories.setdefault(key.split(" [")[0], []).append(float(value))
+    if len(histories["upper tank.theta"]) < END / FINE:
+        raise RuntimeError("the run has fewer rows than asked for")
+    rest = [0.0] * round(QUIET / FINE)
+    return joints, {place: [rest + histories[key] for key in (f"{place}.ax", f"{place}.ay", "upper tank.theta")] for place in PLACES}
+
+
+def low_passed(values, cutoff):
+    """Butterworth filter of two poles, forwards only, as an analogue one before the sampling: it delays by 0.225/cutoff."""
+    if not cutoff:
+        return values
+    k = math.tan(math.pi * cutoff * FINE)
+    a0 = k * k / (1.0 + math.sqrt(2.0) * k + k * k)
+    b1 = 2.0 * a0 * (1.0 / (k * k) - 1.0)
+    b2 = 1.0 - 4.0 * a0 - b1
+    x1 = x2 = y1 = y2 = values[0]
+    filtered = []
+    for x in values:
+        y = a0 * (x + 2.0 * x1 + x2) + b1 * y1 + b2 * y2
+        x2, x1, y2, y1 = x1, x, y1, y
+        filtered.append(y)
+    return filtered
+
+
+def write_record(path, motion, recorder, seed):
+    """What the recorder feels is acceleration less gravity, in its own axes, which tilt with the lid; in g."""
+    dice = random.Random(seed)
+    step = 2.0 * recorder.reach / 2 ** recorder.bits
+    ax, ay, angles = motion[recorder.place]
+    felt_x, felt_y = [], []
+    for x, y, angle in zip(ax, ay, angles):
+        turned = angle + math.radians(recorder.tilt)
+        c, s = math.cos(turned), math.sin(turned)
+        felt_x.append((c * x + s * (y + LOCAL)) / GRAVITY)
+        felt_y.append((-s * x + c * (y + LOCAL)) / GRAVITY)
+    cutoff = recorder.low_pass * recorder.rate
+    felt = [low_passed(felt_x, cutoff), low_passed(felt_y, cutoff)]
+    stride = round(1.0 / (recorder.rate * FINE))
+    if abs(stride * recorder.rate * FINE - 1.0) > 1e-9:
+        raise ValueError("the rate does not divide the rate of the truth")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("time [s],x [g],y [g]\n")
+        for i in range(0, len(ax), stride):
+            fields = []
+            for values in felt:
+                value = values[i] + 1e-3 * recorder.offset + 1e-3 * recorder.noise * dice.gauss(0.0, 1.0)
+                value = min(max(round(value / step) * step, -recorder.reach), recorder.reach - step)
+                fields.append(f"{value:.9f}")
+            file.write(f"{i * FINE:.4f},{','.join(fields)}\n")
+
+
+def read_record(program, folder, path, recorder):
+    """Way to the cleaned signal, as steplap record makes it."""
+    out = os.path.join(folder, "record")
+    options = ["--rest", f"0,{QUIET - 0.05}"] if recorder.rest else ["--gravity", "y"]
+    if recorder.frequency_class:
+        options += ["--cfc", str(recorder.frequency_class)]
+    steplap(program, "record", path, *options, "-o", out, "-q", "--force")
+    return os.path.join(out, "signal.csv")
+
+
+def replay_text(impact, pressure, signal, recorder):
+    text = '[simulation]\nvelocity = [0.0, 0.0]\n' + f"end = {END!r}\n" + '[[element]]\nname = "vehicle"\nremove = true\n'
+    for axis in recorder.axes:
+        column = 2 + "xy".index(axis)
+        text += (f'[[signal]]\nname = "recorded {axis}"\nkind = "record"\nfile = "{signal}"\ncolumn = "{column}"\nunit = "m/s^2"\n'
+                 f"offset = {-QUIET!r}\n"
+                 f'[[element]]\nkind = "prescribed_motion"\nname = "recorder {axis}"\na = "{recorder.place}"\ncoordinate = "{axis}"\n'
+                 f'signal = "recorded {axis}"\nas = "acceleration"\n')
+    return toml(MODEL, impact, pressure, text)
+
+
+def slid(joint):
+    return math.hypot(joint["slid_x"], joint["slid_y"])
+
+
+@dataclasses.dataclass
+class Truth:
+    impact: Impact
+    weak: float        # Pa
+    held: dict         # joints at HOLDING
+    slipped: dict      # joints at the weak pressure
+    held_motion: dict
+    slipped_motion: dict
+
+
+def truth_of(program, folder, impact):
+    held, held_motion = true_run(program, folder, impact, HOLDING, f"{impact.name}_held")
+    if any(held[j]["slipped"] for j in JOINTS):
+        raise RuntimeError("a joint slips that was to hold")
+    weak = WEAK * min(held[j]["largest_required_pressure"] for j in JOINTS)
+    slipped, slipped_motion = true_run(program, folder, impact, weak, f"{impact.name}_slipped")
+    if not all(slipped[j]["slipped"] for j in JOINTS):
+        raise RuntimeError("a joint holds that was to slip")
+    return Truth(impact, weak, held, slipped, held_motion, slipped_motion)
+
+
+def compared(program, truth, recorder, seed):
+    """Errors of one record: of the required pressure, of slip times and slid distances; joints told wrongly."""
+    with tempfile.TemporaryDirectory() as folder:
+        runs = {}
+        for name, motion, pressure in (("held", truth.held_motion, HOLDING), ("slipped", truth.slipped_motion, truth.weak)):
+            path = os.path.join(folder, name + ".csv")
+            write_record(path, motion, recorder, seed)
+            signal = read_record(program, folder, path, recorder)
+            runs[name] = simulate(program, folder, name, replay_text(truth.impact, pressure, signal, recorder))
+    pressure, time, distance, wrong = [], [], [], 0
+    for joint in JOINTS:
+        needed = truth.held[joint]["largest_required_pressure"]
+        pressure.append(runs["held"][joint]["largest_required_pressure"] / needed - 1.0)
+        wrong += runs["held"][joint]["slipped"] + (not runs["slipped"][joint]["slipped"])
+        distance.append(slid(runs["slipped"][joint]) - slid(truth.slipped[joint]))
+        if runs["slipped"][joint]["slipped"]:
+            time.append(runs["slipped"][joint]["first_slip"] - truth.slipped[joint]["first_slip"])
+    worst = lambda values: max(values, key=abs) if values else math.nan
+    return {"pressure": worst(pressure), "time": worst(time), "distance": worst(distance), "wrong": wrong}
+
+
+# What is varied, one thing at a time: heading, and the recorders with their names. The first of all is the reference.
+def tables():
+    base, fast = Recorder(), Recorder(rate=1000.0)
+    vary = dataclasses.replace
+    return [
+        ("Rate", [(f"{rate:g} Hz", vary(base, rate=float(rate))) for rate in (50, 100, 200, 500, 1000)]),
+        ("The recorder's own low-pass, 1 kHz", [("none", vary(fast, low_pass=0.0)),
+                                                *[(f"{cut} Hz", vary(fast, low_pass=cut / 1000.0)) for cut in (400, 100, 50, 20, 10)]]),
+        ("Low-pass without phase shift when the file is read, 1 kHz", [(f"CFC {c}", vary(fast, frequency_class=c)) for c in (100, 60, 30, 10)]),
+        ("Bits at ±10 g", [(f"{bits} bits, {2e4 / 2 ** bits:.3g} mg", vary(base, bits=bits)) for bits in (8, 10, 12, 16)]),
+        ("Noise", [(f"{noise} mg", vary(base, noise=float(noise))) for noise in (0, 5, 20, 50, 100)]),
+        ("Noise, 1 kHz", [(f"{noise} mg", vary(fast, noise=float(noise))) for noise in (20, 100)]),
+        ("Offset that is left in the record", [(f"{offset} mg", vary(base, offset=float(offset), rest=False)) for offset in (0, 5, 20, 50)]),
+        ("Mounted askew", [(f"{tilt}°", vary(base, tilt=float(tilt))) for tilt in (1, 3, 5)]),
+        ("Clipped", [(f"±{reach} g", vary(base, reach=float(reach))) for reach in (1.2, 1.5, 2)]),
+        ("One axis only", [("along x, no y", vary(base, axes="x"))]),
+        ("Place", [(place, vary(base, place=place)) for place in PLACES]),
+        ("Best", [("1 kHz, 16 bits, no noise, no offset, no filter", Recorder(1000.0, 16, noise=0.0, offset=0.0, low_pass=0.0))]),
+    ]
+
+
+def row_of(errors):
+    """The error farthest from zero of all seeds; the seeds' spread tells how much is chance."""
+    worst = {key: max((e[key] for e in errors), key=lambda v: (not math.isnan(v), abs(v))) for key in ("pressure", "time", "distance")}
+    spread = statistics.pstdev([e["pressure"] for e in errors])
+    wrong = sum(e["wrong"] for e in errors)
+    time = "-" if math.isnan(worst["time"]) else f"{1e3 * worst['time']:+.1f} ms"
+    return f"{100 * worst['pressure']:+.1f} % | {100 * spread:.1f} % | {wrong} of {4 * len(errors)} | {time} | {1e3 * worst['distance']:+.3f} mm"
+
+
+def print_truth(truth):
+    print(f"\n## {truth.impact.name}: {abs(truth.impact.peak) / LOCAL:g} g for {1e3 * truth.impact.duration:g} ms\n")
+    for joint in JOINTS:
+        print(f"{joint}: needs {truth.held[joint]['largest_required_pressure'] / 1e3:.2f} kPa; at {truth.weak / 1e3:.2f} kPa slips at "
+              f"{1e3 * truth.slipped[joint]['first_slip']:.1f} ms and is {1e3 * slid(truth.slipped[joint]):.3f} mm from its place at the end")
+    for place, motion in truth.held_motion.items():
+        peak = [max(abs(v) for v in axis) / LOCAL for axis in motion[:2]]
+        print(f"{place}: up to {peak[0]:.2f} g along x, {peak[1]:.2f} g along y")
+
+
+def print_tables(program, truths, seeds, workers):
+    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
+        for truth in truths:
+            print_truth(truth)
+            waiting = [(heading, [(name, [pool.submit(compared, program, truth, recorder, seed) for seed in range(seeds)])
+                                  for name, recorder in rows]) for heading, rows in tables()]
+            for heading, rows in waiting:
+                print(f"\n| {heading} | pressure | its spread | told wrongly | first slip | slid |\n|---|---|---|---|---|---|")
+                for name, futures in rows:
+                    print(f"| {name} | {row_of([f.result() for f in futures])} |", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("steplap")
+    parser.add_argument("--check", action="store_true", help="a few records against bounds")
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--workers", type=int, default=1)
+    options = parser.parse_args()
+    program = os.path.abspath(options.steplap)
+    with tempfile.TemporaryDirectory() as folder:
+        truths = [truth_of(program, folder, impact) for impact in (STOP, SHUNT)]
+    print_tables(program, truths, options.seeds, options.workers)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
