@@ -4,7 +4,7 @@ steplap.events = (() => {
 
   // Of one event a row for each model; what the event has in common stands in the first.
   const heads = ['event', 'time', 'peaks, with their bandwidth', 'model', 'verdict', 'joints', 'least margin', 'slid', 'slid in all', 'overlap left', 'probability of slip', 'feet lifted', 'load of allowed', 'clearance left'];
-  const numeric = [6, 7, 8, 9, 12, 13];
+  const numeric = [6, 7, 8, 9, 12];
   const number = (text, value) => ({ text: text === '–' ? '' : text, value });
   const verdictCell = (m) => ({ text: A.outcomes[m.verdict] || String(m.verdict), class: m.verdict in A.outcomes ? m.verdict : 'open', full: m.trust || '' });
   function clearanceText(m) {

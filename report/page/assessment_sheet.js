@@ -27,7 +27,7 @@ steplap.sheet = (() => {
   }
   function totals(keep) {
     const sorted = [...A.totals].sort((a, b) => (b.slid_total || 0) - (a.slid_total || 0));
-    const rows = sorted.slice(0, keep.joints).map((j) => [short(j.name, keep.texts), short(j.model, keep.texts), one(j.slid_total, 'm'), String(j.slips ?? '–'), percent(j.overlap_left)]);
+    const rows = sorted.slice(0, keep.joints).map((j) => [short(j.name, Math.min(40, keep.texts)), short(j.model || '', Math.min(40, keep.texts)), one(j.slid_total, 'm'), String(j.slips ?? '–'), percent(j.overlap_left)]);
     return part('Joints over the voyage', ...(rows.length ? [table(['joint', 'model', 'slid in all', 'slips', 'overlap left'], rows, [])] : [make('p', {}, 'No joints were judged.')]), ...rest(sorted.length, keep.joints, 'joints'),
       ...(A.voyage.damage_probability ? [make('p', {}, `Probability of damage in the voyage: ${A.chanceText(A.voyage.damage_probability)}.`)] : []));
   }
