@@ -105,10 +105,10 @@ void thin_figure(Json& figure, std::size_t stretches) {
   if (!figure.is_object() || !figure.contains("times") || !figure["times"].is_array()) return;
   const std::size_t count = figure["times"].size();
   std::set<std::size_t> kept;
-  for (const char* axis : {"x", "y"})
+  for (const char* axis : {"x", "y", "z"})
     if (figure.contains(axis) && figure[axis].is_array() && figure[axis].size() == count)
       for (const std::size_t i : thinned(numbers_of(figure[axis]), stretches)) kept.insert(i);
-  for (const char* key : {"times", "x", "y"}) {
+  for (const char* key : {"times", "x", "y", "z"}) {
     if (!figure.contains(key) || !figure[key].is_array() || figure[key].size() != count) continue;
     Json list = Json::array();
     for (const std::size_t i : kept) list.push_back(std::string_view(key) == "times" ? figure[key][i] : rounded(figure[key][i]));
@@ -126,7 +126,7 @@ Json read_assessment(const fs::path& file) {
   Json assessment = read_json(file);
   check_assessment(file, assessment);
   Json& events = assessment["events"];
-  const std::size_t stretches = std::clamp<std::size_t>(k_most_points / std::max<std::size_t>(4 * events.size(), 1), 30, 250);
+  const std::size_t stretches = std::clamp<std::size_t>(k_most_points / std::max<std::size_t>(6 * events.size(), 1), 30, 250);
   for (Json& event : events)
     if (event.contains("figure")) thin_figure(event["figure"], stretches);
   return assessment;

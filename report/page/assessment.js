@@ -27,7 +27,7 @@
   }
   function voyage() {
     if (!A.totals.length) return;
-    put('voyage', table(['joint', 'model', 'slid in all', 'slips', 'overlap left'], A.totals.map((j) => [j.name, j.model || '', { text: one(j.slid_total, 'm'), value: j.slid_total }, String(j.slips ?? '–'), { text: percent(j.overlap_left), value: j.overlap_left }]), [2, 3, 4]),
+    put('voyage', table(['joint', 'model', 'slid in all', 'slips', 'overlap left'], A.totals.map((j) => [j.name, j.model || '', { text: A.slidText(j.slid_total), value: j.slid_total }, String(j.slips ?? '–'), { text: percent(j.overlap_left), value: j.overlap_left }]), [2, 3, 4]),
       note('What one event leaves slid is where the next one begins.'));
   }
   function hangs() {
@@ -36,10 +36,11 @@
     put('hangs', bullets(A.hangs), A.uncertain.length ? table(['uncertain value', 'model', 'taken', 'range', 'law', 'share of the uncertainty', 'known by', 'source'], [...A.uncertain].sort((a, b) => (b.share || 0) - (a.share || 0)).map((u) =>
       [make('span', { title: String(u.path || '') }, u.name || u.path || ''), u.model, one(u.nominal, u.unit), `${one(u.low, u.unit)} to ${one(u.high, u.unit)}`, u.law || '', share(u), { text: String(u.source || 'not stated'), class: u.source === 'measured' ? 'met' : u.source === 'assumed' ? 'beyond' : u.source === 'specified' ? 'plain' : 'words' }, u.source_text || '']), [2]) : null);
   }
+  const warnings = (r) => [...A.list(r.faults), ...A.list(r.warnings), ...(A.list(r.peaks_only).length ? [`${A.list(r.peaks_only).length} shocks of this record are peaks without a waveform: no model was run with them.`] : [])];
   function sources() {
     const c = A.criteria;
-    put('sources', c ? make('div', {}, make('h3', {}, `Criteria: ${c.name || ''}`), make('p', { class: 'note' }, c.file || ''), c.text ? make('pre', {}, c.text) : '') : null,
-      ...A.records.map((r) => make('div', {}, make('h3', {}, `Record: ${r.file}`), table(null, [['SHA-256', make('span', { class: 'hash' }, r.sha256 || 'unknown')]]), bullets(A.list(r.taken_for)) || '', A.list(r.warnings).length ? make('div', { class: 'warnings' }, make('h4', {}, 'Warnings'), bullets(A.list(r.warnings))) : '')),
+    put('sources', c ? make('div', {}, make('h3', {}, `Criteria: ${c.name || ''}`), make('p', { class: 'note' }, [c.file, c.source].filter((t) => t).join('. Source: ')), c.text ? make('pre', {}, c.text) : '') : null,
+      ...A.records.map((r) => make('div', {}, make('h3', {}, `Record: ${r.file}`), table(null, [['SHA-256', make('span', { class: 'hash' }, r.sha256 || 'unknown')]]), bullets(A.list(r.taken_for)) || '', warnings(r).length ? make('div', { class: 'warnings' }, make('h4', {}, 'Warnings'), bullets(warnings(r))) : '')),
       A.models.length ? make('div', {}, make('h3', {}, 'Models'), table(['model', 'plane', 'file', 'recorder at', 'its axes', 'SHA-256'], A.models.map((m) => [m.name, m.plane || '', m.file || '', m.recorder ? m.recorder.marker : 'not stated',
         m.recorder ? `x = ${m.recorder.x}, y = ${m.recorder.y}` : '', m.sha256 || '']))) : null);
   }
@@ -52,6 +53,7 @@
 
   at('title').textContent = given ? 'Assessment of a transport' : 'Static proof';
   at('subtitle').textContent = [A.records.map((r) => r.file).join(', '), (A.models.length ? A.models.map((m) => m.name) : A.statics.map((s) => s.model)).join(', ')].filter((t) => t).join(' · ');
+  const kept = steplap.sheet.fit(); // before the page is large: it is laid out some dozen times
   decision();
   events();
   voyage();
@@ -62,7 +64,6 @@
   put('static', ...A.statics.map(steplap.statics.section));
   sources();
   at('footer').textContent = `Written by ${A.program} from ${A.folder}.`;
-  const kept = steplap.sheet.fit();
   steplap.page = { kept };
   document.body.setAttribute('data-ready', 'true');
 })();

@@ -6,17 +6,17 @@ steplap.events = (() => {
   const heads = ['event', 'time', 'peaks, with their bandwidth', 'model', 'verdict', 'joints', 'least margin', 'slid', 'slid in all', 'overlap left', 'probability of slip', 'feet lifted', 'load of allowed', 'clearance left'];
   const numeric = [6, 7, 8, 9, 12];
   const number = (text, value) => ({ text: text === '–' ? '' : text, value });
-  const verdictCell = (m) => ({ text: A.outcomes[m.verdict] || String(m.verdict), class: m.verdict in A.outcomes ? m.verdict : 'open', full: m.trust || '' });
+  const verdictCell = (m) => ({ text: A.outcomes[m.verdict] || String(m.verdict), class: m.verdict in A.outcomes ? m.verdict : 'open', full: [m.reason, m.trust].filter((t) => t).join(' ') });
   function clearanceText(m) {
-    const worst = m.clearances.filter((c) => isKnown(c.left)).sort((a, b) => a.left - (a.allowed || 0) - (b.left - (b.allowed || 0)))[0];
-    return worst ? `${one(worst.left, worst.unit || 'm')}${isKnown(worst.allowed) ? ` of ${one(worst.allowed, worst.unit || 'm')} asked` : ''}` : '';
+    const worst = m.clearances.filter((c) => isKnown(c.left)).sort((a, b) => (b.share ?? -b.left) - (a.share ?? -a.left))[0];
+    return worst ? one(worst.left, worst.unit || 'm') : '';
   }
   const peaksOf = (e) => (e.peaks.length ? make('span', { title: e.peaks.map((p) => A.peakText(p)).join('; ') }, ...e.peaks.map((p) => make('span', { class: 'peak' }, A.peakText(p, true)))) : '');
   function rowsOf(e) {
     const common = [String(e.number), A.timeText(e), peaksOf(e)];
     if (!e.models.length) return [[...common, '–', { text: 'not run', class: 'open' }, ...Array(9).fill('')]];
-    return e.models.map((m, k) => [...(k ? [String(e.number), '', ''] : common), m.model, verdictCell(m), m.joints.length ? A.slipText(m) : '', number(A.marginText(m), m.margin), number(one(m.slid, 'm'), m.slid),
-      number(one(m.slidTotal, 'm'), m.slidTotal), number(percent(m.overlap), m.overlap), m.probability ? A.chanceText(m.probability) : '', m.lifted.length ? m.lifted.join(', ') : m.feet.length ? 'none' : '', number(percent(m.share), m.share), clearanceText(m)]);
+    return e.models.map((m, k) => [...(k ? [String(e.number), '', ''] : common), m.model, verdictCell(m), m.joints.length ? A.slipText(m) : '', number(A.marginText(m), m.margin), number(A.slidText(m.slid), m.slid),
+      number(A.slidText(m.slidTotal), m.slidTotal), number(percent(m.overlap), m.overlap), m.probability ? A.chanceText(m.probability) : '', m.lifted.length ? m.lifted.join(', ') : m.feet.length ? 'none' : '', number(percent(m.share), m.share), clearanceText(m)]);
   }
   function tableOf(events) {
     const box = table(heads, events.flatMap(rowsOf), numeric);
@@ -24,9 +24,9 @@ steplap.events = (() => {
     return box;
   }
 
-  // The recorded window: x full, y dashed; the scale is that of the event.
+  // The recorded window: x full, y dashed, z dotted; the scale is that of the event.
   function curve(e) {
-    const f = e.figure || {}, times = A.list(f.times), named = ['x', 'y'].filter((axis) => A.list(f[axis]).length === times.length && times.length > 1);
+    const f = e.figure || {}, times = A.list(f.times), named = ['x', 'y', 'z'].filter((axis) => A.list(f[axis]).length === times.length && times.length > 1);
     if (!named.length) return null;
     const w = 300, h = 96, left = 44, right = 4, top = 6, bottom = 18, size = Math.max(1e-9, ...named.flatMap((axis) => f[axis].filter(isKnown).map(Math.abs)));
     const t0 = times[0], t1 = times[times.length - 1], x = (t) => left + ((w - left - right) * (t - t0)) / (t1 - t0 || 1), y = (v) => top + ((h - top - bottom) * (size - v)) / (2 * size);
@@ -48,7 +48,7 @@ steplap.events = (() => {
     text(one(t0, 's'), { x: left, y: h - 5 });
     text(one(t1, 's'), { x: w - right, y: h - 5, 'text-anchor': 'end' });
     const m = e.models.find((q) => q.slipping.length);
-    return make('figure', { class: 'curve', 'data-event': e.number }, svg, make('figcaption', {}, `Event ${e.number}, ${A.timeText(e)}: ${named.join(' full, ')}${named.length > 1 ? ' dashed' : ''}. ${m ? `${m.model} ${A.slipText(m)}.` : ''}`));
+    return make('figure', { class: 'curve', 'data-event': e.number }, svg, make('figcaption', {}, `Event ${e.number}, ${A.timeText(e)}: ${named.map((axis) => `${axis} ${{ x: 'full', y: 'dashed', z: 'dotted' }[axis]}`).join(', ')}. ${m ? `${m.model} ${A.slipText(m)}.` : ''}`));
   }
   const curves = (events) => make('div', { class: 'curves' }, ...events.map(curve).filter((c) => c));
 
@@ -60,12 +60,12 @@ steplap.events = (() => {
     const drawing = curve(e);
     if (drawing) box.append(make('div', { class: 'curves' }, drawing));
     for (const m of e.models) {
-      box.append(make('h3', {}, `${m.model}: ${A.outcomes[m.verdict] || m.verdict}`), make('p', {}, `${m.trust ? `Trust: ${m.trust} ` : ''}Probability of slip: ${A.chanceText(m.probability)}.`));
-      if (m.joints.length) box.append(table(['joint', 'slips', 'margin', 'at', 'slid', 'slid in all', 'overlap left'], m.joints.map((j) => [j.name, { text: j.slips ? 'slips' : 'holds', class: j.slips ? 'reject' : 'hold' },
-        one(j.margin, '', { error: j.error, limit: 1 }), one(j.at, 's'), one(j.slid, 'm'), one(j.slid_total, 'm'), percent(j.overlap_left)]), [2, 3, 4, 5, 6]));
+      box.append(make('h3', {}, `${m.model}: ${A.outcomes[m.verdict] || m.verdict}`), make('p', {}, `${m.reason ? `${m.reason} ` : ''}${m.trust ? `Trust: ${m.trust} ` : ''}Probability of slip: ${A.chanceText(m.probability)}.`));
+      if (m.joints.length) box.append(table(['joint', 'slips', 'margin', 'at', 'slid', 'slid in all', 'overlap left'], m.joints.map((j) => [j.name, { text: j.came_apart ? 'comes apart' : j.slips ? 'slips' : 'holds', class: j.slips || j.came_apart ? 'reject' : 'hold' },
+        A.margin(j), one(j.at, 's'), A.slidText(j.slid), A.slidText(j.slid_total), percent(j.overlap_left)]), [2, 3, 4, 5, 6]));
       if (m.feet.length) box.append(table(['foot', 'lifts', 'from', 'height'], m.feet.map((f) => [f.name, f.lifts ? 'lifts' : 'stays', one(f.from, 's'), one(f.height, 'm')]), [2, 3]));
       if (m.reactions.length) box.append(table(['reaction', 'largest', 'allowed', 'share'], m.reactions.map((r) => [r.name, one(r.value, r.unit), one(r.allowed, r.unit), percent(r.share)]), [1, 2, 3]));
-      if (m.clearances.length) box.append(table(['clearance', 'left', 'asked'], m.clearances.map((c) => [c.name, one(c.left, c.unit || 'm'), one(c.allowed, c.unit || 'm')]), [1, 2]));
+      if (m.clearances.length) box.append(table(['clearance', 'left', 'limit'], m.clearances.map((c) => [c.name, one(c.left, c.unit || 'm'), one(c.allowed, c.unit || 'm')]), [1, 2]));
       if (m.findings.length) box.append(make('ul', {}, ...m.findings.map((f) => make('li', {}, f))));
     }
     return box;

@@ -23,9 +23,9 @@ steplap.statics = (() => {
     const limits = limitsOf(proof), values = [...limits.values()].flatMap((l) => l.map((p) => p[1])).filter(isKnown);
     const loads = A.list(proof.cases).map((c) => ({ ...c, at: A.list(c.load).length === 2 ? c.load : null })).filter((c) => c.at);
     if (!values.length) return null;
-    // What lies far outside would make the rest unreadable: shown up to four times the middle value, and all loads.
+    // What lies far outside would make the rest unreadable: shown up to two and a half times the middle value, and all loads.
     const sorted = [...values].sort((a, b) => a - b), middle = sorted[Math.floor(sorted.length / 2)];
-    const reach = 1.05 * Math.max(Math.min(sorted[sorted.length - 1], 4 * middle), ...loads.map((c) => Math.hypot(...c.at))), step = niceStep(reach);
+    const reach = 1.05 * Math.max(Math.min(sorted[sorted.length - 1], 2.5 * middle), ...loads.map((c) => Math.hypot(...c.at))), step = niceStep(reach);
     const w = 440, h = 400, cx = 220, cy = 200, R = 155, at = (angle, a) => [cx + (R * a * Math.cos((angle * Math.PI) / 180)) / reach, cy - (R * a * Math.sin((angle * Math.PI) / 180)) / reach];
     const svg = make('svg', { viewBox: `0 0 ${w} ${h}`, class: 'polar', role: 'img', 'aria-label': `Acceleration at which something gives way, by direction: ${proof.model}` });
     const text = (content, x, y, anchor = 'middle') => svg.append(make('text', { x, y, 'text-anchor': anchor }, content));
@@ -52,12 +52,13 @@ steplap.statics = (() => {
     return { svg, keys };
   }
   const limitText = (reaction) => `${reaction.name} ${percent(reaction.share)}`;
+  const squared = (text) => String(text || '').replace(/m\/s\^2/g, 'm/s²');
   function cases(proof) {
     const list = A.list(proof.cases);
     if (!list.length) return make('p', { class: 'note' }, 'No cases were computed.');
     const rows = list.map((c) => {
       const nearest = A.list(c.reactions).filter((r) => isKnown(r.share)).sort((a, b) => b.share - a.share)[0], lifted = A.list(c.feet).filter((f) => f.lifts).map((f) => f.name);
-      return [c.name, `${one(c.ax, 'm/s^2')}, ${one(c.ay, 'm/s^2')}`, { text: A.outcomes[c.verdict] || String(c.verdict), class: A.outcomes[c.verdict] ? c.verdict : 'open' }, { text: one(c.margin, ''), value: c.margin }, c.first || '–', lifted.join(', ') || '–', nearest ? limitText(nearest) : '–', [c.why, ...A.list(c.remarks)].filter((t) => t).join(' ') || ''];
+      return [c.name, `${one(c.ax, 'm/s^2')}, ${one(c.ay, 'm/s^2')}`, { text: A.outcomes[c.verdict] || String(c.verdict), class: A.outcomes[c.verdict] ? c.verdict : 'open' }, { text: A.margin(c), value: c.margin }, squared(c.first) || '–', lifted.join(', ') || '–', nearest ? limitText(nearest) : '–', squared([c.why, ...A.list(c.remarks)].filter((t) => t).join(' '))];
     });
     return table(['case', 'acceleration with gravity along x, y', 'verdict', 'margin of the joints', 'first to give way', 'feet lifted', 'highest load of allowed', 'why'], rows, [3]);
   }

@@ -108,13 +108,14 @@ class AssessmentPageTest(base.Page):
         self.run_js("document.querySelector('details.event[data-event=\"2\"]').open = true")
         self.until(lambda: self.all("details.event[data-event='2'] table"))
         text = self.find("details.event[data-event='2']").text.replace("\u00a0", " ")
-        for part in ("29.4 m/s² (3 g)", "300 mm/s", "bottom arresting", "300 kN", "rear foot", "1.2 mm", "core to tank", "The wooden block above the rear foot closes."):
+        for part in ("29.4 m/s² (3 g)", "300 mm/s", "bottom arresting", "300 kN", "rear foot", "1.2 mm", "core to tank", "12 mm", "The wooden block above the rear foot closes."):
             self.assertIn(part, text)
 
     def test_what_the_decision_hangs_on_its_source_and_what_is_unknown(self):
         self.show("plain")
         self.assertIn("at 0.24 instead of 0.2 the front joint holds", self.find("#hangs").text)
         rows = self.run_js("return [...document.querySelectorAll('#hangs tbody tr')].map(r => [...r.cells].map(c => c.textContent))")
+        self.assertEqual(self.all("#decision tbody th")[0].text, "joints hold")  # the gravest criterion first
         self.assertEqual([(r[0], r[6]) for r in rows], [("friction of the sheets", "assumed"), ("clamping pressure", "specified")])  # the largest share first
         self.assertIn("bending of sheets and yokes", self.find("#unknown").text)
         self.assertIn("Core insulation resistance", self.find("#tests").text)

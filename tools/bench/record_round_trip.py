@@ -42,11 +42,13 @@ class Impact:
     name: str
     peak: float      # m/s^2, of the vehicle
     duration: float  # s
+    is_rigid: bool = False # the tank: its upper part is welded to the lower one, which it else shears on
 
 
 # The paper's emergency stop, and one like it that is harder and as short as a coupling of wagons.
 STOP = Impact("stop", -5.886, 0.1)
 SHUNT = Impact("shunt", -19.62, 0.025)
+RIGID_STOP, RIGID_SHUNT = (dataclasses.replace(i, name=i.name + " with a rigid tank", is_rigid=True) for i in (STOP, SHUNT))
 # Where the recorder may sit: body, and the place in the settled pose. The vehicle's motion is that of the lower tank's centre of gravity.
 PLACES = {"frame": ("lower tank", (0.0, 0.79)), "floor": ("lower tank", (0.0, 0.0)), "far end": ("lower tank", (1.5, 0.79)),
           "wall": ("upper tank", (1.81, 1.95)), "lid": ("upper tank", (0.0, 4.0))}
@@ -65,7 +67,7 @@ class Recorder:
     frequency_class: int = 0 # of the low-pass when the file is read; 0: none
     rest: bool = True        # the offset is taken from the quiet stretch, else gravity alone is subtracted
     tilt: float = 0.0        # degrees by which the recorder is mounted askew
-    axes: str = "xy"         # that are driven
+    axes: str = "x"          # that are driven
     place: str = "frame"     # of PLACES
     drive: str = "place"     # what moves as recorded: the recorder's "place", or the "vehicle" so that the record comes out
 
@@ -73,6 +75,8 @@ class Recorder:
 def toml(base, impact, pressure, body):
     return (f'extends = "{base}"\ntitle = "round trip"\n[[core]]\nname = "core"\npressure = {pressure!r}\n'
             f'[[signal]]\nname = "braking"\npeak = {impact.peak!r}\nduration = {impact.duration!r}\n'
+            + ('[[element]]\nname = "tank joint"\nreplace = true\nkind = "weld"\na = "upper tank"\nb = "lower tank"\n'
+               '[[element]]\nname = "tank flexibility"\nremove = true\n' if impact.is_rigid else "")
             + "".join(f'[[marker]]\nname = "{name}"\nbody = "{on}"\nat = [{x!r}, {y!r}]\n' for name, (on, (x, y)) in PLACES.items()) + body)
 
 
@@ -173,7 +177,12 @@ def read_record(program, folder, path, recorder):
 
 
 def replay_text(impact, pressure, signal, recorder):
+    """The recorder's place moves as recorded; "held": in the stead of vehicle and springs, and its body does not turn, as steplap assess does it."""
     text = '[simulation]\nvelocity = [0.0, 0.0]\n' + f"end = {END!r}\n" + '[[element]]\nname = "vehicle"\nremove = true\n'
+    if recorder.drive == "held":
+        text += ('[[element]]\nname = "front suspension"\nremove = true\n[[element]]\nname = "rear suspension"\nremove = true\n'
+                 '[[signal]]\nname = "nothing"\nkind = "constant"\nvalue = 0.0\n[[element]]\nkind = "prescribed_motion"\nname = "recorder angle"\n'
+                 f'a = "{PLACES[recorder.place][0]}"\ncoordinate = "angle"\nsignal = "nothing"\n')
     for axis in recorder.axes:
         column = 2 + "xy".index(axis)
         text += (f'[[signal]]\nname = "recorded {axis}"\nkind = "record"\nfile = "{signal}"\ncolumn = "{column}"\nunit = "m/s^2"\n'
@@ -249,7 +258,7 @@ def roughness(corners):
 
 
 @functools.lru_cache(maxsize=None)
-def map_of(program, impact, place):
+def map_of(program, impact, place): # the tank belongs to the impact
     """Columns of the linear map, weights of the drive, factor of the normal equations."""
     corners, stride = round(END / GRID) + 1, round(GRID / ROW)
     with tempfile.TemporaryDirectory() as folder:
@@ -298,7 +307,7 @@ def truth_of(program, folder, impact):
         if name != "firm":
             needed = [truth.needed(j) for j in JOINTS]
             truth.pressures[name] = STRONG * max(needed) if name == "strong" else WEAK * min(needed)
-        truth.joints[name], truth.motion[name] = true_run(program, folder, impact, truth.pressures[name], f"{impact.name}_{name}")
+        truth.joints[name], truth.motion[name] = true_run(program, folder, impact, truth.pressures[name], name)
         if any(truth.joints[name][j]["slipped"] != (name == "weak") for j in JOINTS):
             raise RuntimeError(f"the joints do not do at the {name} pressure what they were to do")
     return truth
@@ -330,28 +339,34 @@ def compared(program, truth, recorder, seed):
     return {"pressure": worst(pressure), "time": worst(time), "distance": worst(distance), "wrong": wrong}
 
 
-# What is varied, one thing at a time: heading, and the recorders with their names. The first of all is the reference.
-def tables():
+# What is varied, one thing at a time: heading, and the recorders with their names. A recorder on the frame, at the height at which the
+# vehicle's force enters, driven along x, leaves nothing but the record to blame.
+def record_tables():
     base, fast = Recorder(), Recorder(rate=1000.0)
     vary = dataclasses.replace
     return [
         ("Rate", [(f"{rate:g} Hz", vary(base, rate=float(rate))) for rate in (50, 100, 200, 500, 1000)]),
-        ("The recorder's own low-pass, 1 kHz", [("none", vary(fast, low_pass=0.0)),
-                                                *[(f"{cut} Hz", vary(fast, low_pass=cut / 1000.0)) for cut in (400, 100, 50, 20, 10)]]),
-        ("Low-pass without phase shift when the file is read, 1 kHz", [(f"CFC {c}", vary(fast, frequency_class=c)) for c in (100, 60, 30, 10)]),
-        ("Bits at ±10 g", [(f"{bits} bits, {2e4 / 2 ** bits:.3g} mg", vary(base, bits=bits)) for bits in (8, 10, 12, 16)]),
-        ("Noise", [(f"{noise} mg", vary(base, noise=float(noise))) for noise in (0, 5, 20, 50, 100)]),
-        ("Noise, 1 kHz", [(f"{noise} mg", vary(fast, noise=float(noise))) for noise in (20, 100)]),
-        ("Offset that is left in the record", [(f"{offset} mg", vary(base, offset=float(offset), rest=False)) for offset in (0, 5, 20, 50)]),
-        ("Mounted askew, driven along x alone", [(f"{tilt}°", vary(base, tilt=float(tilt), axes="x")) for tilt in (1, 3, 5)]),
-        ("Clipped", [(f"±{reach} g", vary(base, reach=float(reach))) for reach in (1.2, 1.5, 2)]),
-        ("Driven along x alone, not along y", [("200 Hz", vary(base, axes="x")), ("1 kHz", vary(fast, axes="x")), ("200 Hz, noise 100 mg", vary(base, axes="x", noise=100.0)),
-                                               ("200 Hz, 20 mg left in the record", vary(base, axes="x", rest=False))]),
-        ("Place, which is driven as recorded, 1 kHz", [(place, vary(fast, place=place)) for place in PLACES]),
-        ("Place, along x alone, 1 kHz", [(place, vary(fast, place=place, axes="x")) for place in PLACES]),
-        ("Place, the vehicle's motion sought, 1 kHz", [(place, vary(fast, place=place, drive="vehicle")) for place in PLACES]),
-        ("The same, 200 Hz", [(place, vary(base, place=place, drive="vehicle")) for place in ("frame", "lid")]),
-        ("Best", [("1 kHz, 16 bits, no noise, no offset, no filter", Recorder(1000.0, 16, noise=0.0, offset=0.0, low_pass=0.0))]),
+        ("The recorder's own low-pass, 1 kHz", [("none", vary(fast, low_pass=0.0)), *[(f"{cut} Hz", vary(fast, low_pass=cut / 1000.0)) for cut in (100, 50, 20, 10)]]),
+        ("Low-pass without phase shift when the file is read, 1 kHz", [(f"CFC {c}", vary(fast, frequency_class=c)) for c in (60, 30, 10)]),
+        ("Bits at ±10 g", [(f"{bits} bits, {2e4 / 2 ** bits:.3g} mg", vary(base, bits=bits)) for bits in (8, 10, 16)]),
+        ("Noise", [(f"{noise} mg", vary(base, noise=float(noise))) for noise in (20, 50, 100)]),
+        ("Noise, 1 kHz", [("100 mg", vary(fast, noise=100.0))]),
+        ("Offset that is left in the record", [(f"{offset} mg", vary(base, offset=float(offset), rest=False)) for offset in (5, 20, 50)]),
+        ("Mounted askew", [(f"{tilt}°", vary(base, tilt=float(tilt))) for tilt in (1, 5)]),
+        ("Driven along y, too", [("200 Hz", vary(base, axes="xy")), ("1 kHz", vary(fast, axes="xy")), ("200 Hz, noise 20 mg", vary(base, axes="xy", noise=20.0))]),
+        ("No fault but 1 kHz and 16 bits", [("", Recorder(1000.0, 16, noise=0.0, offset=0.0, low_pass=0.0))]),
+    ]
+
+
+# Where the recorder sits, and what is done with its record.
+def way_tables():
+    fast = Recorder(rate=1000.0)
+    vary = dataclasses.replace
+    held = lambda place: (place, vary(fast, place=place, axes="xy", drive="held"))
+    return [
+        ("The place is driven along x, springs stay", [(place, vary(fast, place=place)) for place in ("frame", "far end", "floor", "lid")]),
+        ("The place is driven along x and y, its body does not turn, springs give way", [held("frame"), held("floor"), held("lid")]),
+        ("The vehicle's motion is sought that gives the record", [(place, vary(fast, place=place, drive="vehicle")) for place in ("frame", "lid")]),
     ]
 
 
@@ -377,28 +392,25 @@ def print_truth(truth):
         print(f"{place}: up to {peak[0]:.2f} g along x, {peak[1]:.2f} g along y")
 
 
-def print_tables(program, truths, seeds, workers):
-    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
-        for truth in truths:
-            print_truth(truth)
-            waiting = [(heading, [(name, [pool.submit(compared, program, truth, recorder, seed) for seed in range(seeds)])
-                                  for name, recorder in rows]) for heading, rows in tables()]
-            for heading, rows in waiting:
-                print(f"\n| {heading} | pressure | its spread | told wrongly | first slip | slid |\n|---|---|---|---|---|---|")
-                for name, futures in rows:
-                    print(f"| {name} | {row_of([f.result() for f in futures])} |", flush=True)
+def print_tables(program, truth, tables, seeds, pool):
+    print_truth(truth)
+    waiting = [(heading, [(name, [pool.submit(compared, program, truth, recorder, seed) for seed in range(seeds)]) for name, recorder in rows])
+               for heading, rows in tables]
+    for heading, rows in waiting:
+        print(f"\n| {heading} | pressure | its spread | told wrongly | first slip | slid |\n|---|---|---|---|---|---|")
+        for name, futures in rows:
+            print(f"| {name} | {row_of([f.result() for f in futures])} |", flush=True)
 
 
-# What a small part must keep: a good recorder on the frame tells slip times to 2 ms, distances to 0.1 mm, and the pressure to 2 %: twice what
-# the tables have. A noise of 100 mg and a drive of the lid must be told from that, or the comparison sees nothing.
+# What a small part must keep: a recorder on the frame tells whether joints slip, the pressure to 4 %, times to 8 ms and distances to 0.2 mm, twice
+# what the tables have. Noise of 100 mg along y and a drive of the lid must be told from that, or the comparison sees nothing.
 def check(program, truth):
-    good = compared(program, truth, Recorder(rate=1000.0), 0)
-    plain = compared(program, truth, Recorder(rate=200.0, axes="x"), 0)
-    noisy = compared(program, truth, Recorder(noise=100.0), 0)
-    lid = compared(program, truth, Recorder(rate=1000.0, place="lid", axes="x"), 0)
-    print(f"1 kHz: {good}\n200 Hz, x alone: {plain}\n100 mg: {noisy}\nlid: {lid}")
-    kept = [good["wrong"] == 0, abs(good["pressure"]) < 0.02, abs(good["time"]) < 2e-3, abs(good["distance"]) < 1e-4,
-            plain["wrong"] == 0, abs(plain["pressure"]) < 0.08, abs(plain["time"]) < 8e-3, abs(noisy["pressure"]) > 0.1, lid["pressure"] > 0.2]
+    good = compared(program, truth, Recorder(), 0)
+    noisy = compared(program, truth, Recorder(noise=100.0, axes="xy"), 0)
+    lid = compared(program, truth, Recorder(rate=1000.0, place="lid"), 0)
+    print(f"frame: {good}\n100 mg: {noisy}\nlid: {lid}")
+    kept = [good["wrong"] == 0, abs(good["pressure"]) < 0.04, abs(good["time"]) < 8e-3, abs(good["distance"]) < 2e-4,
+            abs(noisy["pressure"]) > 0.1, lid["pressure"] > 0.2, lid["distance"] > 1e-3]
     print("kept" if all(kept) else f"not kept: {kept}")
     return 0 if all(kept) else 1
 
@@ -407,15 +419,21 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("steplap")
     parser.add_argument("--check", action="store_true", help="a few records against bounds")
-    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--workers", type=int, default=1)
     options = parser.parse_args()
     program = os.path.abspath(options.steplap)
-    with tempfile.TemporaryDirectory() as folder:
-        truths = [truth_of(program, folder, impact) for impact in ((STOP,) if options.check else (STOP, SHUNT))]
+    truth = {}
+    for impact in (STOP,) if options.check else (STOP, SHUNT, RIGID_STOP, RIGID_SHUNT):
+        with tempfile.TemporaryDirectory() as folder:
+            truth[impact] = truth_of(program, folder, impact)
     if options.check:
-        return check(program, truths[0])
-    print_tables(program, truths, options.seeds, options.workers)
+        return check(program, truth[STOP])
+    with concurrent.futures.ThreadPoolExecutor(options.workers) as pool:
+        for impact in (STOP, SHUNT):
+            print_tables(program, truth[impact], record_tables(), options.seeds, pool)
+        for impact in truth:
+            print_tables(program, truth[impact], way_tables(), 1, pool)
     return 0
 
 
