@@ -21,14 +21,14 @@ steplap.sheet = (() => {
   function events(keep) {
     const rows = A.worst.slice(0, keep.events).flatMap((e) => (e.models.length ? e.models : [null]).slice(0, 2).map((m, k) => [String(e.number), k ? '' : short(A.timeText(e), keep.texts), k ? '' : peaks(e, keep.texts),
       m ? short(m.model, keep.texts) : '–', m ? { text: A.outcomes[m.verdict] || short(m.verdict, 20), class: m.verdict in A.outcomes ? m.verdict : 'open' } : 'not run', m ? short(m.joints.length ? A.slipText(m) : '–', keep.texts) : '–', m ? A.marginText(m) : '–', m ? A.slidText(m.slid) : '–', m ? A.chanceText(m.probability) : '–']));
-    const box = table(['no.', 'time', 'peaks, with bandwidth', 'model', 'verdict', 'joints', 'margin', 'slid', 'probability of slip'], rows, []);
+    const box = table(['no.', 'time', 'peaks, with bandwidth', 'model', 'verdict', 'joints', 'margin', 'slid', 'probability of slip'], rows, [6, 7]);
     box.firstChild.classList.add('worst-table');
     return part(A.events.length > keep.events ? `The worst of ${A.events.length} events` : 'Events, the worst first', ...(rows.length ? [box] : [make('p', {}, 'No event was recorded.')]), ...rest(A.events.length, keep.events, 'events'));
   }
   function totals(keep) {
     const sorted = [...A.totals].sort((a, b) => (b.slid_total || 0) - (a.slid_total || 0));
     const rows = sorted.slice(0, keep.joints).map((j) => [short(j.name, Math.min(40, keep.texts)), short(j.model || '', Math.min(40, keep.texts)), A.slidText(j.slid_total), String(j.slips ?? '–'), percent(j.overlap_left)]);
-    return part('Joints over the voyage', ...(rows.length ? [table(['joint', 'model', 'slid in all', 'slips', 'overlap left'], rows, [])] : [make('p', {}, 'No joints were judged.')]), ...rest(sorted.length, keep.joints, 'joints'),
+    return part('Joints over the voyage', ...(rows.length ? [table(['joint', 'model', 'slid in all', 'slips', 'overlap left'], rows, [2, 3, 4])] : [make('p', {}, 'No joints were judged.')]), ...rest(sorted.length, keep.joints, 'joints'),
       ...(A.voyage.damage_probability ? [make('p', {}, `Probability of damage in the voyage: ${A.chanceText(A.voyage.damage_probability)}.`)] : []));
   }
   const sourced = (r, limit) => `${r.criterion ? `${short(r.criterion, limit)}: ` : ''}${A.outcomes[r.outcome] || r.outcome || ''}. ${short(r.text || '', limit)}${r.source ? ` (${short(r.source, limit)})` : ''}`;
