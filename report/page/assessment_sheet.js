@@ -4,8 +4,8 @@ steplap.sheet = (() => {
   const make = steplap.make, { table } = steplap.tables, { percent } = steplap.numbers, A = steplap.assessment;
   const place = document.getElementById('sheet');
   // In the order in which room is made: [what, how much of it is kept].
-  const most = { texts: 2000, events: 14, joints: 10, reasons: 8, hangs: 6, tests: 10, assumptions: 14, unknown: 8, records: 6, cases: 12, polar: 1 };
-  const cuts = [['texts', 600], ['assumptions', 9], ['events', 10], ['joints', 7], ['texts', 300], ['records', 3], ['tests', 6], ['unknown', 5], ['events', 8], ['reasons', 5], ['hangs', 4], ['cases', 9], ['texts', 200], ['assumptions', 6],
+  const most = { size: 8, texts: 2000, events: 14, joints: 10, reasons: 8, hangs: 6, tests: 10, assumptions: 14, unknown: 8, records: 6, cases: 12, polar: 1 };
+  const cuts = [['texts', 600], ['size', 7.5], ['assumptions', 9], ['events', 10], ['joints', 7], ['texts', 300], ['records', 3], ['tests', 6], ['unknown', 5], ['events', 8], ['reasons', 5], ['hangs', 4], ['cases', 9], ['size', 7], ['texts', 200], ['assumptions', 6],
     ['joints', 5], ['events', 6], ['texts', 140], ['tests', 4], ['unknown', 3], ['hangs', 3], ['assumptions', 4], ['texts', 100], ['events', 5], ['records', 2], ['reasons', 3], ['joints', 3], ['polar', 0], ['cases', 6], ['texts', 70], ['events', 4],
     ['assumptions', 3], ['tests', 3], ['unknown', 2], ['hangs', 2], ['texts', 45], ['reasons', 2], ['joints', 2], ['events', 3], ['tests', 2], ['assumptions', 2], ['texts', 30], ['cases', 4]];
 
@@ -37,6 +37,14 @@ steplap.sheet = (() => {
     const named = c ? [make('p', {}, short([c.name, c.file, c.text, c.source ? `source: ${c.source}` : ''].filter((t) => t).join(' · '), 1.5 * keep.texts))] : [make('p', {}, 'No criteria are named.')];
     return part('Criteria and their sources', ...named, ...bullets(A.reasons.map((r) => sourced(r, keep.texts)), keep.reasons, 4 * keep.texts, 'reasons'));
   }
+  // What flows in two columns.
+  function notes(keep) {
+    const listed = (title, texts, kept, what, none) => part(title, ...(texts.length ? bullets(texts, kept, keep.texts, what) : [make('p', {}, none)]));
+    const assumed = listed('Assumptions', A.assumptions, keep.assumptions, 'assumptions', A.given ? 'None are stated.' : 'Loads act so slowly that nothing vibrates.');
+    if (!A.given) return [assumed];
+    return [totals(keep), listed('What the decision hangs on', A.hangs, keep.hangs, 'values', 'Not examined.'), assumed, listed('What would show the damage', A.tests, keep.tests, 'tests', 'No tests are named.'),
+      listed('What the planar models do not know', A.unknown.flatMap((u) => u.list), keep.unknown, 'things', 'Not stated.')];
+  }
   const signature = (who) => make('div', {}, make('p', { class: 'who' }, who), make('p', {}, 'Name'), make('p', {}, 'Date'), make('p', {}, 'Place'), make('p', { class: 'long' }, 'Signature'));
   function proofs(keep) {
     return A.statics.slice(0, 2).map((p) => {
@@ -49,13 +57,12 @@ steplap.sheet = (() => {
   function fill(keep) {
     const { given } = A, limit = keep.texts, decision = given ? given.decision : A.statics[0].verdict;
     const records = A.records.map((r) => `${short(r.file, limit)} (SHA-256 ${String(r.sha256 || 'unknown').slice(0, 16)}…)`), models = (A.models.length ? A.models : A.statics.map((p) => ({ name: `${p.model} (${p.file || 'file not named'}, SHA-256 ${String(p.sha256 || 'unknown').slice(0, 16)}…)` }))).map((m) => `${short(m.name, limit)}${m.recorder ? `, recorder at ${short(m.recorder.marker, limit)}` : ''}`);
+    place.style.fontSize = `${keep.size}pt`;
     place.replaceChildren(make('h1', {}, given ? 'Assessment of a transport' : 'Static proof'),
       make('p', {}, [records.length ? `Records: ${records.slice(0, keep.records).join('; ')}${records.length > keep.records ? ` and ${records.length - keep.records} more` : ''}.` : '', models.length ? ` Models: ${models.slice(0, 4).join('; ')}.` : '', ` Made by ${A.program}.`].join('')),
       make('div', { class: 'verdict-line' }, make('span', { class: `badge ${A.words[decision] ? decision : 'open'}` }, A.words[decision] || 'OPEN'), make('span', { class: 'reason' }, short((given ? given.reason : A.statics[0].reason) || '', Math.max(80, limit)))),
       ...A.contradictions().slice(0, 1).map((t) => make('p', {}, `Look at this: ${short(t, limit)}`)),
-      ...(given ? [events(keep), make('div', { class: 'two' }, totals(keep), part('What the decision hangs on', ...(A.hangs.length ? bullets(A.hangs, keep.hangs, limit, 'values') : [make('p', {}, 'Not examined.')])))] : []), ...proofs(keep),
-      make('div', { class: 'two' }, part('Assumptions', ...(A.assumptions.length ? bullets(A.assumptions, keep.assumptions, limit, 'assumptions') : [make('p', {}, given ? 'None are stated.' : 'Loads act so slowly that nothing vibrates.')])),
-        make('div', {}, ...(given ? [part('What would show the damage', ...(A.tests.length ? bullets(A.tests, keep.tests, limit, 'tests') : [make('p', {}, 'No tests are named.')])), part('What the planar models do not know', ...(A.unknown.length ? bullets(A.unknown.flatMap((u) => u.list), keep.unknown, limit, 'things') : [make('p', {}, 'Not stated.')]))] : []))),
+      ...(given ? [events(keep)] : []), ...proofs(keep), make('div', { class: 'flow' }, ...notes(keep)),
       ...(given ? [criteria(keep)] : []), make('div', { class: 'signatures' }, signature('For the receiver'), signature('For the carrier')));
     for (const t of place.querySelectorAll('table')) t.classList.remove('cards'); // paper is no telephone, also when printed from one
   }
