@@ -17,6 +17,7 @@
 #include <limits>
 #include <set>
 #include <string_view>
+#include <vector>
 
 namespace steplap {
 
@@ -43,6 +44,10 @@ std::string text_in(const Json& object, const char* key) {
   return object.is_object() && found != object.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
+Json list_in(const Json& object, const char* key) {
+  return object.contains(key) && object[key].is_array() ? object[key] : Json::array();
+}
+
 void check_probability(const fs::path& file, const Json& object, const char* key, const std::string& where) {
   if (!object.is_object() || !object.contains(key) || object[key].is_null()) return;
   const Json& p = object[key];
@@ -55,28 +60,48 @@ void check_probability(const fs::path& file, const Json& object, const char* key
     damaged(file, where + ": " + key + " does not lie within its interval, or that not between 0 and 1");
 }
 
-void check_lists(const fs::path& file, const Json& object, const std::vector<const char*>& keys, const std::string& where) {
-  for (const char* key : keys)
-    if (object.contains(key) && !object[key].is_array()) damaged(file, where + ": '" + key + "' is not a list");
+// What a name stands for wherever it stands, if it is there and not null.
+const std::set<std::string_view> k_numbers{"acceleration", "allowed", "angle_deg", "at", "ax", "ay", "bandwidth", "error", "from", "height", "high", "left",
+                                           "low", "margin", "nominal", "overlap_left", "runs", "share", "slid_total", "value", "velocity_change"};
+const std::set<std::string_view> k_texts{"axis", "criterion", "file", "first", "law", "marker", "model", "name", "outcome", "plane", "preset", "reason", "record",
+                                         "sha256", "source", "source_text", "trust", "unit", "verdict", "why"};
+const std::set<std::string_view> k_lists_of_objects{"cases", "clearances", "feet", "joints", "limits", "models", "peaks", "polar", "reactions", "reasons", "records", "static_proofs", "uncertain"};
+const std::set<std::string_view> k_lists_of_texts{"assumptions", "findings", "hangs_on", "knows_not", "remarks", "taken_for", "tests", "warnings"};
+
+// The page shows what it is given: a text in the place of a number would be shown as one.
+void check_types(const fs::path& file, const Json& json, const std::string& where) {
+  if (json.is_array())
+    for (std::size_t i = 0; i < json.size(); ++i)
+      if (json[i].is_structured()) check_types(file, json[i], where + "[" + std::to_string(i) + "]");
+  if (!json.is_object()) return;
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_null()) continue;
+    const std::string place = where.empty() ? key : where + "." + key;
+    if (k_numbers.contains(key) && !value.is_number()) damaged(file, "'" + place + "' is not a number");
+    if (k_texts.contains(key) && !value.is_string()) damaged(file, "'" + place + "' is not a text");
+    const bool holds_objects = k_lists_of_objects.contains(key), holds_texts = k_lists_of_texts.contains(key), holds_numbers = key == "load";
+    if ((holds_objects || holds_texts || holds_numbers) && !value.is_array()) damaged(file, "'" + place + "' is not a list");
+    for (std::size_t i = 0; value.is_array() && i < value.size(); ++i)
+      if ((holds_objects && !value[i].is_object()) || (holds_texts && !value[i].is_string()) || (holds_numbers && !value[i].is_number()))
+        damaged(file, "'" + place + "[" + std::to_string(i) + "]' is not " + (holds_objects ? "an object" : holds_texts ? "a text" : "a number"));
+    if (value.is_structured() && key != "figure") check_types(file, value, place);
+  }
 }
 
 void check_event(const fs::path& file, const Json& event, const std::string& where) {
   if (!event.is_object()) damaged(file, where + " is not an object");
-  check_lists(file, event, {"models", "peaks"}, where);
-  for (const Json& model : event.contains("models") ? event["models"] : Json::array()) {
-    if (!model.is_object()) damaged(file, where + ": a model is not an object");
-    check_lists(file, model, {"joints", "feet", "reactions", "clearances", "findings"}, where);
+  for (const Json& model : list_in(event, "models"))
     check_probability(file, model, "slip_probability", where);
-  }
 }
 
 void check_assessment(const fs::path& file, const Json& assessment) {
   if (!assessment.is_object()) damaged(file, "no object");
   const std::string decision = text_in(assessment, "decision");
   if (gravity_of(decision) < 0) damaged(file, "'decision' is '" + decision + "' instead of energise, inspect, return or open");
-  check_lists(file, assessment, {"reasons", "records", "models", "events", "hangs_on", "assumptions", "tests"}, "the file");
   if (!assessment.contains("events")) damaged(file, "there are no 'events'");
-  for (const Json& reason : assessment.contains("reasons") ? assessment["reasons"] : Json::array())
+  if (!assessment["events"].is_array()) damaged(file, "'events' is not a list");
+  check_types(file, assessment, "");
+  for (const Json& reason : list_in(assessment, "reasons"))
     if (gravity_of(text_in(reason, "outcome")) > gravity_of(decision))
       damaged(file, "the decision is '" + decision + "', but criterion '" + text_in(reason, "criterion") + "' asks for '" + text_in(reason, "outcome") + "'");
   std::size_t place = 0;
@@ -135,16 +160,13 @@ Json read_assessment(const fs::path& file) {
 Json read_static(const fs::path& file) {
   Json proofs = read_json(file);
   if (!proofs.is_object()) damaged(file, "no object");
-  check_lists(file, proofs, {"static_proofs"}, "the file");
-  Json single = Json::array({proofs});
-  const Json& list = proofs.contains("static_proofs") ? proofs["static_proofs"] : single;
+  check_types(file, proofs, "");
+  const Json list = proofs.contains("static_proofs") ? list_in(proofs, "static_proofs") : Json::array({proofs});
   if (list.empty()) damaged(file, "it holds no proof");
   for (const Json& proof : list) {
-    if (!proof.is_object()) damaged(file, "a proof is not an object");
     const std::string verdict = text_in(proof, "verdict");
     if (verdict != "hold" && verdict != "reject" && verdict != "open") damaged(file, "'verdict' is '" + verdict + "' instead of hold, reject or open");
-    check_lists(file, proof, {"cases", "polar", "assumptions"}, "a proof");
-    for (const Json& one : proof.contains("cases") ? proof["cases"] : Json::array())
+    for (const Json& one : list_in(proof, "cases"))
       if (verdict == "hold" && text_in(one, "verdict") != "hold")
         damaged(file, "the verdict is 'hold', but that of case '" + text_in(one, "name") + "' is '" + text_in(one, "verdict") + "'");
   }

@@ -8,6 +8,7 @@ The assessments are written by hand (assessment_sample.py), so that every value 
 import base64
 import json
 import os
+import random
 import re
 import subprocess
 import unittest
@@ -29,6 +30,13 @@ def write(name, assessment, static=None):
             with open(os.path.join(folder, file), "w", encoding="utf-8") as stream:
                 stream.write(content if isinstance(content, str) else json.dumps(content))
     return folder
+
+
+def places(value, at=()):
+    """Ways to everything that lists and objects hold."""
+    for key, inner in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+        yield at + (key,)
+        yield from places(inner, at + (key,))
 
 
 def report(*arguments):
@@ -235,6 +243,9 @@ class AssessmentPageTest(base.Page):
                 ("cut", '{"decision": "insp', None, "no JSON"), ("word", changed(lambda d: d.update(decision="send")), None, "'decision' is 'send'"),
                 ("none", changed(lambda d: d.pop("events")), None, "there are no 'events'"), ("milder", milder, None, "criterion 'joints hold' asks for 'inspect'"),
                 ("chance", chance, None, "event 3: slip_probability does not lie within its interval"), ("list", changed(lambda d: d.update(events=3)), None, "'events' is not a list"),
+                ("text", changed(lambda d: d["events"][1]["models"][0]["joints"][0].update(margin="0.97")), None, "'events[1].models[0].joints[0].margin' is not a number"),
+                ("unit", changed(lambda d: d["events"][0]["peaks"][1].update(unit=9.81)), None, "'events[0].peaks[1].unit' is not a text"),
+                ("peak", changed(lambda d: d["events"][0]["peaks"].append(3)), None, "'events[0].peaks[2]' is not an object"),
                 ("proof", None, proof, "that of case 'up' is 'open'")):
             with self.subTest(name=name):
                 folder = write("bad_" + name, assessment, static)
@@ -243,6 +254,30 @@ class AssessmentPageTest(base.Page):
                 self.assertIn(part, done.stderr)
                 self.assertIn(".json", done.stderr)
                 self.assertFalse(os.path.exists(os.path.join(folder, "report.html")))
+
+    def test_whatever_is_missing_or_of_another_kind_is_refused_or_shown(self):
+        dice, shown, refused = random.Random(28), 0, 0
+        for round_ in range(40):
+            data, proof = sample.assessment(), sample.static_proofs()
+            place = dice.choice([p for p in places(data if round_ % 2 else proof) if "figure" not in p])
+            holder = data if round_ % 2 else proof
+            for key in place[:-1]:
+                holder = holder[key]
+            value = dice.choice(["gone", None, "x", 3.5, [], {}, 1e300])
+            if value == "gone":
+                del holder[place[-1]]
+            else:
+                holder[place[-1]] = value
+            with self.subTest(place=place, value=value):
+                done = report(write("changed", data, proof), "-f", "-q")
+                self.assertIn(done.returncode, (0, 2), done.stderr)
+                refused += done.returncode == 2
+                if done.returncode == 0:
+                    shown += 1
+                    self.show("changed")
+                    self.assertEqual([m["message"] for m in self.browser.get_log("browser")], [])
+        self.assertGreater(shown, 5)
+        self.assertGreater(refused, 5)
 
     def test_an_assessment_is_not_set_beside_other_folders(self):
         done = report("plain", "static", "-o", "both.html")
