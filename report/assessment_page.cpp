@@ -63,7 +63,7 @@ void check_probability(const fs::path& file, const Json& object, const char* key
 // What a name stands for wherever it stands, if it is there and not null.
 const std::set<std::string_view> k_numbers{"acceleration", "allowed", "angle_deg", "at", "ax", "ay", "bandwidth", "error", "from", "height", "high", "left",
                                            "low", "margin", "nominal", "overlap_left", "runs", "share", "slid_total", "value", "velocity_change"};
-const std::set<std::string_view> k_texts{"axis", "criterion", "file", "first", "law", "marker", "model", "name", "outcome", "plane", "preset", "reason", "record",
+const std::set<std::string_view> k_texts{"axis", "criterion", "file", "first", "law", "marker", "model", "name", "outcome", "plane", "preset", "reason",
                                          "sha256", "source", "source_text", "trust", "unit", "verdict", "why"};
 const std::set<std::string_view> k_lists_of_objects{"cases", "clearances", "feet", "joints", "limits", "models", "peaks", "polar", "reactions", "reasons", "records", "static_proofs", "uncertain"};
 const std::set<std::string_view> k_lists_of_texts{"assumptions", "findings", "hangs_on", "knows_not", "remarks", "taken_for", "tests", "warnings"};
@@ -79,11 +79,11 @@ void check_types(const fs::path& file, const Json& json, const std::string& wher
     const std::string place = where.empty() ? key : where + "." + key;
     if (k_numbers.contains(key) && !value.is_number()) damaged(file, "'" + place + "' is not a number");
     if (k_texts.contains(key) && !value.is_string()) damaged(file, "'" + place + "' is not a text");
-    const bool holds_objects = k_lists_of_objects.contains(key), holds_texts = k_lists_of_texts.contains(key), holds_numbers = key == "load";
-    if ((holds_objects || holds_texts || holds_numbers) && !value.is_array()) damaged(file, "'" + place + "' is not a list");
+    const bool holds_objects = k_lists_of_objects.contains(key), holds_texts = k_lists_of_texts.contains(key);
+    if ((holds_objects || holds_texts) && !value.is_array()) damaged(file, "'" + place + "' is not a list");
     for (std::size_t i = 0; value.is_array() && i < value.size(); ++i)
-      if ((holds_objects && !value[i].is_object()) || (holds_texts && !value[i].is_string()) || (holds_numbers && !value[i].is_number()))
-        damaged(file, "'" + place + "[" + std::to_string(i) + "]' is not " + (holds_objects ? "an object" : holds_texts ? "a text" : "a number"));
+      if ((holds_objects && !value[i].is_object()) || (holds_texts && !value[i].is_string()))
+        damaged(file, "'" + place + "[" + std::to_string(i) + "]' is not " + (holds_objects ? "an object" : "a text"));
     if (value.is_structured() && key != "figure") check_types(file, value, place);
   }
 }

@@ -21,7 +21,7 @@ steplap.statics = (() => {
   }
   function polar(proof) {
     const limits = limitsOf(proof), values = [...limits.values()].flatMap((l) => l.map((p) => p[1])).filter(isKnown);
-    const loads = A.list(proof.cases).map((c) => ({ ...c, at: A.list(c.load).length === 2 ? c.load : null })).filter((c) => c.at);
+    const loads = A.list(proof.cases).map((c) => ({ ...c, at: A.list(c.load).length === 2 && c.load.every(Number.isFinite) ? c.load : null })).filter((c) => c.at);
     if (!values.length) return null;
     // What lies far outside would make the rest unreadable: shown up to two and a half times the middle value, and all loads.
     const sorted = [...values].sort((a, b) => a - b), middle = sorted[Math.floor(sorted.length / 2)];
