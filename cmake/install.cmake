@@ -46,7 +46,7 @@ install(TARGETS ${libraries} EXPORT steplap
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${CMAKE_INSTALL_INCLUDEDIR}/steplap)
 install(DIRECTORY mbd elements transformer run DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap
   FILES_MATCHING PATTERN "*.h"
-  PATTERN ordered_json.h EXCLUDE) # includes another maker's
+  PATTERN ordered_json.h EXCLUDE PATTERN summary.h EXCLUDE) # include another maker's
 configure_file(cmake/version.h.in version.h @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap)
 file(RELATIVE_PATH steplap_pc_up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /) # wherever it is installed or moved to

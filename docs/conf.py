@@ -29,10 +29,3 @@ html_copy_source = False
 html_extra_path = ["site/index.html"]  # leads from the top of the site to docs/index.html
 pygments_style = "tango"
 pygments_dark_style = "monokai"
-
-
-def setup(app):
-    """Diagrams in Mermaid, which GitHub draws, are shown as text."""
-    from pygments.lexers.special import TextLexer
-
-    app.add_lexer("mermaid", TextLexer)

@@ -1,7 +1,5 @@
 #include "run/prominence.h"
 
-#include <string>
-
 namespace steplap {
 
 namespace {
@@ -13,15 +11,19 @@ std::string last_part(const std::string& channel) {
 
 } // namespace
 
-bool is_reaction(const Channel& channel) {
-  const bool is_load = channel.unit == "N" || channel.unit == "N m" || channel.unit == "Pa";
-  return is_load && last_part(channel.name) != "capacity";
+bool is_reaction(const std::string& name, const std::string& unit) {
+  const bool is_load = unit == "N" || unit == "N m" || unit == "Pa";
+  return is_load && last_part(name) != "capacity";
 }
 
-bool is_slide(const Channel& channel) {
-  const std::string part = last_part(channel.name);
+bool is_reaction(const Channel& channel) { return is_reaction(channel.name, channel.unit); }
+
+bool is_slide(const std::string& name) {
+  const std::string part = last_part(name);
   return part == "slide" || part.rfind("slide_", 0) == 0;
 }
+
+bool is_slide(const Channel& channel) { return is_slide(channel.name); }
 
 bool is_main_event(const Event& event) {
   return is_main(event.kind);

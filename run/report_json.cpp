@@ -2,11 +2,14 @@
 #include "mbd/io/digest.h"
 #include "run/ordered_json.h"
 #include "run/overview.h"
+#include "run/prominence.h"
 #include "run/result_files.h"
+#include "run/summary.h"
 #include "run/version.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
@@ -51,6 +54,16 @@ Json settings_json(const Model& model) {
   return json;
 }
 
+const char* name_of(EstimateStatus status) {
+  switch (status) {
+  case EstimateStatus::known: return "known";
+  case EstimateStatus::left_out: return "left out";
+  case EstimateStatus::too_dear: return "too dear";
+  case EstimateStatus::failed: return "failed";
+  }
+  return "";
+}
+
 // Without the CPU time, which no two runs share.
 Json statistics_json(const RunStatistics& s) {
   return {{"steps", s.steps},
@@ -62,9 +75,25 @@ Json statistics_json(const RunStatistics& s) {
 // Numbers that do not exist (no such channel, an infinite margin, no extremes) are null.
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
+// JSON has no infinity: null stands for it, and "…_is" beside it tells which.
+void note_infinity(Json& json, const std::string& key, double value) {
+  if (std::isinf(value)) json[key + "_is"] = value > 0.0 ? "∞" : "-∞";
+}
+
+void add_number(Json& json, const std::string& key, double value) {
+  json[key] = number_json(value);
+  note_infinity(json, key, value);
+}
+
 // Of a number whose error is estimated; null: unknown.
 void add_error(Json& json, const char* key, std::optional<double> error) {
   if (error) json[key] = number_json(*error);
+}
+
+// What moves and what is exchanged is rounding: it has no range by which an error could be measured.
+bool rests(const Run& run) {
+  const RunStatistics& s = run.result.statistics;
+  return s.energy_exchanged <= s.energy_rounding && run.loaded->system->kinetic_energy(run.result.final_state) <= s.energy_rounding;
 }
 
 Json accuracy_json(const RunStatistics& s, const Report& report) {
@@ -74,14 +103,20 @@ Json accuracy_json(const RunStatistics& s, const Report& report) {
             {"dissipated", s.dissipated},
             {"work", s.work},
             {"max_position_residual", s.max_position_residual},
-            {"max_velocity_residual", s.max_velocity_residual}};
+            {"max_velocity_residual", s.max_velocity_residual},
+            {"rests", rests(report.run)}};
   add_error(json, "error_dissipated", report.dissipated_error());
   add_error(json, "error_work", report.work_error());
   return json;
 }
 
+Json method_json(const SimulationOptions& options) {
+  return {{"integrator", options.integrator}, {"step", options.settings.step}, {"tolerance", options.settings.tolerance}};
+}
+
 // Errors scaled as in mbd/analysis/run_comparison.h.
-Json global_error_json(const GlobalErrorEstimate& estimate) {
+Json global_error_json(const Report& report) {
+  const GlobalErrorEstimate& estimate = *report.estimate.errors;
   Json json;
   for (std::size_t k = 0; k < k_error_kinds; ++k) {
     const WorstError& worst = estimate.error.worst[k];
@@ -90,6 +125,9 @@ Json global_error_json(const GlobalErrorEstimate& estimate) {
   if (!estimate.unknown_because.empty()) json["unknown_because"] = estimate.unknown_because;
   json["unmatched_events"] = estimate.error.unmatched_events;
   json["evaluations_of_finer_runs"] = estimate.cost.evaluations;
+  json["run"] = method_json(options_of(report.run.loaded->model));
+  json["finer_runs"] = Json::array();
+  for (const SimulationOptions& options : estimate.finer) json["finer_runs"].push_back(method_json(options));
   return json;
 }
 
@@ -117,12 +155,15 @@ Json extremes_json(const Report& report, Meanings& meanings) {
   for (const ChannelRange& range : report.ranges()) {
     Json& entry = append(json, range.channel->name);
     entry = {{"unit", range.channel->unit},
-             {"meaning", meanings.place_of(*range.channel)},
-             {"min", number_json(range.low.value)},
-             {"t_min", time(range.low)},
-             {"max", number_json(range.high.value)},
-             {"t_max", time(range.high)},
-             {"final", number_json(range.final)}};
+             {"meaning", meanings.place_of(*range.channel)}};
+    add_number(entry, "min", range.low.value);
+    entry["t_min"] = time(range.low);
+    add_number(entry, "max", range.high.value);
+    entry["t_max"] = time(range.high);
+    add_number(entry, "final", range.final);
+    if (range.channel->is_on_request) entry["on_request"] = true;
+    if (range.is_low_singular) entry["min_singular"] = true; // met beside a singular pose, where reactions may diverge
+    if (range.is_high_singular) entry["max_singular"] = true;
     if (range.had_no_value && range.channel->is_on_request) entry["had_no_value"] = true; // a formula's division by zero
     const auto add = [&](const char* key, double ChannelError::*which) { add_error(entry, key, report.error_of(range, which)); };
     add("error_min", &ChannelError::low);
@@ -201,6 +242,7 @@ Json joints_json(const Report& report) {
                      {"most_slide_share", a.most_slide},
                      {"least_overlap_left", number_json(a.overlap_left.value)},
                      {"least_clearance_left", number_json(a.clearance_left.value)}};
+    note_infinity(entry, "largest_required_pressure", a.largest_required_pressure);
     add_edges(entry, a);
     add_shared(entry, a);
     if (report.estimate.errors)
@@ -212,12 +254,13 @@ Json joints_json(const Report& report) {
 Json judgement_json(const Judgement& judgement) {
   const auto optional = [](const std::optional<double>& value) { return value ? number_json(*value) : Json(); };
   Json criteria = Json::array();
-  for (const CriterionResult& c : judgement.criteria)
+  for (const CriterionResult& c : judgement.criteria) {
     criteria.push_back({{"name", c.name},
                         {"criterion", c.text},
                         {"reason", c.reason},
                         {"is_met", c.outcome == Verdict::open ? Json() : Json(c.outcome == Verdict::hold)},
                         {"consequence", name_of(c.consequence)},
+                        {"outcome", name_of(c.outcome)},
                         {"where", c.where},
                         {"value", optional(c.value)},
                         {"limit", optional(c.limit)},
@@ -226,6 +269,10 @@ Json judgement_json(const Judgement& judgement) {
                         {"error", optional(c.error)},
                         {"error_t", optional(c.t_error)},
                         {"doubt", c.doubt}});
+    if (c.value) note_infinity(criteria.back(), "value", *c.value);
+    if (c.error && !std::isfinite(*c.error)) criteria.back()["error_is"] = "unknown"; // null without it: not estimated
+    if (c.t_error && !std::isfinite(*c.t_error)) criteria.back()["error_t_is"] = "unknown";
+  }
   return {{"verdict", name_of(judgement.verdict)}, {"so_far", name_of(judgement.so_far)}, {"distrust", judgement.distrust}, {"capped_by", judgement.caps}, {"criteria", std::move(criteria)}};
 }
 
@@ -252,7 +299,7 @@ Json story_json(const std::vector<StoryEntry>& story) {
 }
 
 // What screen and page begin with (overview.h).
-Json overview_json(const Overview& overview) {
+Json overview_json(const Overview& overview, ShownDigits digits) {
   const auto optional = [](const std::optional<double>& value) { return value ? number_json(*value) : Json(); };
   Json utilisations = Json::array();
   for (const Utilisation& u : overview.utilisations)
@@ -263,6 +310,8 @@ Json overview_json(const Overview& overview) {
                             {"limit", optional(u.limit)},
                             {"unit", u.unit},
                             {"at", optional(u.at)},
+                            {"percent", shown_share(u.share, u.error, digits)},
+                            {"detail", u.detail},
                             {"text", u.text},
                             {"beyond", u.beyond},
                             {"error", optional(u.error)}});
@@ -298,27 +347,37 @@ Json state_json(const System& system, const State& state, const Report& report) 
 
 } // namespace
 
-std::string summary_json(const Report& report, const FileRecords& files) {
+OrderedJson summary_head(const Report& report, ShownDigits digits) {
   const Run& run = report.run;
   const LoadedModel& loaded = *run.loaded;
-  const RunStatistics& statistics = run.result.statistics;
   Json json;
   json["program"] = {{"name", "steplap"}, {"version", k_version}};
   json["model"] = {{"file", loaded.path},
+                   {"name", loaded.name},
                    {"title", loaded.model.header.title},
                    {"overrides", loaded.overrides},
                    {"inputs", inputs_json(loaded.inputs)}};
-  json["overview"] = overview_json(overview_of(report));
+  json["overview"] = overview_json(overview_of(report, digits), digits);
   json["completed"] = !run.failure;
   if (run.failure) json["failure"] = run.failure->text;
   json["findings"] = findings_json(report.findings);
+  json["error_estimate"] = name_of(report.estimate.status);
+  if (!report.estimate.errors) json["error_not_estimated"] = report.estimate.reason;
+  const auto main = std::count_if(run.result.events.begin(), run.result.events.end(), is_main_event);
+  json["events"] = {{"count", run.result.events.size()}, {"main", main}, {"by_kind", report.event_counts}};
+  return json;
+}
+
+OrderedJson summary_document(const Report& report, ShownDigits digits) {
+  const Run& run = report.run;
+  const LoadedModel& loaded = *run.loaded;
+  const RunStatistics& statistics = run.result.statistics;
+  Json json = summary_head(report, digits);
   json["integrator"] = loaded.model.simulation.integrator;
   json["settings"] = settings_json(loaded.model);
   json["statistics"] = statistics_json(statistics);
   json["accuracy"] = accuracy_json(statistics, report);
-  if (report.estimate.errors) json["global_error"] = global_error_json(*report.estimate.errors);
-  else json["error_not_estimated"] = report.estimate.reason;
-  json["events"] = {{"count", run.result.events.size()}, {"by_kind", report.event_counts}};
+  if (report.estimate.errors) json["global_error"] = global_error_json(report);
   if (Json joints = joints_json(report); !joints.empty()) json["joints"] = std::move(joints);
   // Without criteria there is nothing to say, unless the run itself is not to be trusted.
   if (report.judgement.has_criteria || !report.judgement.distrust.empty()) json["judgement"] = judgement_json(report.judgement);
@@ -327,6 +386,11 @@ std::string summary_json(const Report& report, const FileRecords& files) {
   json["extremes"] = extremes_json(report, meanings);
   json["meanings"] = meanings.list();
   json["final_state"] = state_json(*loaded.system, run.result.final_state, report);
+  return json;
+}
+
+std::string summary_json(const Report& report, const FileRecords& files) {
+  Json json = summary_document(report);
   json["files"] = files_json(files);
   // Names may hold bytes that are no UTF-8: replaced, not an exception at the end of a long run.
   std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);

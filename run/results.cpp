@@ -113,13 +113,35 @@ std::string date_of(const fs::path& file) {
   return std::string(text, std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &utc));
 }
 
+// What somebody may have taken for the folder of a run, and what to do with it; "" if it is none of these.
+std::string something_else(const fs::path& path) {
+  std::error_code ignored;
+  const std::string name = "'" + path.string() + "'";
+  if (fs::is_regular_file(path, ignored)) {
+    constexpr std::string_view k_sqlite = "SQLite format 3";
+    std::string head(k_sqlite.size(), ' ');
+    std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+    if (head == k_sqlite) return name + " is the file of a study, not the folder of a run: read it with steplap study report";
+    const fs::path parent = path.parent_path();
+    if (fs::exists(parent / "summary.json", ignored) || fs::exists(parent / "partial_summary.json", ignored))
+      return name + " is a file: name the folder of the run, '" + parent.string() + "'";
+    return "";
+  }
+  if (fs::exists(path / "record.json", ignored))
+    return name + " is the folder of a record, not of a run: what the record holds stands in record.json and events.csv there";
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, ignored))
+    if (fs::exists(entry.path() / "summary.json", ignored)) return name + " holds folders of runs: name one of them, as '" + entry.path().string() + "'";
+  return "";
+}
+
 // "" or "partial_": what the names of the files begin with.
 std::string prefix_in(const fs::path& folder) {
   std::error_code ignored;
-  if (!fs::is_directory(folder, ignored))
-    throw FileError(folder.string(), "'" + folder.string() + "' is not a folder: name the folder of a run, as in out/<model>");
   for (const std::string prefix : {"", "partial_"})
     if (fs::exists(folder / (prefix + "summary.json"), ignored)) return prefix;
+  if (const std::string other = something_else(folder); !other.empty()) throw FileError(folder.string(), other);
+  if (!fs::is_directory(folder, ignored))
+    throw FileError(folder.string(), "'" + folder.string() + "' is not a folder: name the folder of a run, as in out/<model>");
   throw FileError(folder.string(), "'" + folder.string() + "' holds no results (no summary.json): run steplap simulate first");
 }
 
@@ -162,7 +184,7 @@ std::string read_text(const std::string& file) {
   return std::move(text).str();
 }
 
-Results read_results(const std::string& folder) {
+Results read_results(const std::string& folder, Reading reading) {
   const fs::path path = folder;
   const std::string prefix = prefix_in(path);
   const auto file = [&](const char* name) {
@@ -178,7 +200,7 @@ Results read_results(const std::string& folder) {
   results.folder = folder;
   results.name = fs::absolute(path / "").lexically_normal().parent_path().filename().string();
   results.is_partial = !prefix.empty();
-  read_trajectory(file("trajectory.csv"), results);
+  if (reading == Reading::all) read_trajectory(file("trajectory.csv"), results);
   read_events(file("events.csv"), results);
   results.model = read_text(file("model.toml").string());
   results.drawing = read_text(file("drawing.json").string());

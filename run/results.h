@@ -36,9 +36,15 @@ struct Results {
   std::string model_date;              ///< of model.toml, "2026-01-31 13:05 UTC"
 };
 
-/// Reads the files that `steplap simulate` writes. Throws FileError for a folder that holds no results,
+/// How much of a folder is read.
+enum class Reading {
+  all,         ///< everything
+  without_rows ///< times and channels are left empty: of a long run nearly all there is
+};
+
+/// Reads the files that `steplap simulate` writes, all of which are held against the digests in the summary. Throws FileError for a folder that holds no results,
 /// or not all of them, and for files that are not as they were written; names the file and the line.
-[[nodiscard]] Results read_results(const std::string& folder);
+[[nodiscard]] Results read_results(const std::string& folder, Reading reading = Reading::all);
 
 /// The bytes of a file. Throws FileError if it cannot be read.
 [[nodiscard]] std::string read_text(const std::string& file);

@@ -1,5 +1,5 @@
 // How near each limit is: bars to one scale, the worst first, with the limit as a line through all of them. Of several
-// runs a bar each under the same name.
+// runs a bar each under the same name; what has another name in another run, but is of the same kind at the same place, too.
 steplap.bars = (() => {
   const make = steplap.make, { percent, one, full, isKnown } = steplap.numbers;
   const first = 8, firstOfSeveral = 6; // rows that are seen without asking for more
@@ -7,6 +7,45 @@ steplap.bars = (() => {
 
   const stateOf = (u) => (u.beyond || u.share > 1 ? 'bad' : u.share >= 0.7 ? 'warn' : 'good');
   const size = (u) => (isKnown(u.share) ? u.share : Infinity); // no number, but a limit: an infinite load or no capacity
+  // What a bar tells of, apart from its name: the kind of element, what is told of it, and where it is at rest; null if it is of none.
+  function subjectOf(u, run) {
+    const element = run.drawing.elements.filter((e) => (u.channel || '').startsWith(`${e.name}.`)).sort((a, b) => b.name.length - a.name.length)[0], place = element && placeOf(element, run);
+    if (!place) return null;
+    const body = run.drawing.bodies.find((b) => b.name === place.body), aspect = u.name.startsWith(element.name) ? u.name.slice(element.name.length) : '';
+    return { what: [element.kind, u.channel.slice(element.name.length), aspect].join('\n'), at: steplap.geometry.apply((body && body.pose) || [0, 0, 0], place.point) };
+  }
+  // A place of its own, that of its limb, or that of the first contact that it brakes; undefined if it has none.
+  function placeOf(element, run) {
+    if (element.at && element.at.length) return element.at[0];
+    if (element.limb) return { body: element.limb, point: [0, 0] };
+    const contact = run.drawing.elements.find((e) => (element.contacts || []).includes(e.name));
+    return contact && contact.at && contact.at[0];
+  }
+  const sizeOf = (run) => {
+    const box = run.drawing.bodies.reduce((b, body) => b.take((body.pose || [0, 0]).slice(0, 2)), new steplap.Box());
+    return Math.max(...box.span);
+  };
+  // Rows that stand in some runs only find their partner in the others by place, if there is exactly one.
+  function pairByPlace(rows, runs) {
+    const near = 0.01 * Math.max(...runs.map(sizeOf)), subjects = rows.map((row) => row.entries.map((u, k) => (u ? subjectOf(u, runs[k]) : null)));
+    const isSame = (i, j) => rows[i].entries.every((u, k) => !u || !rows[j].entries[k]) && subjects[i].some((a) => a && subjects[j].some((b) => b && a.what === b.what && steplap.geometry.length(steplap.geometry.minus(a.at, b.at)) <= near));
+    const gone = new Set();
+    rows.forEach((row, i) => {
+      if (gone.has(i) || row.entries.every(Boolean)) return;
+      const found = rows.map((_, j) => j).filter((j) => j !== i && !gone.has(j) && isSame(i, j));
+      const back = found.length === 1 ? rows.map((_, j) => j).filter((j) => j !== found[0] && !gone.has(j) && isSame(found[0], j)) : [];
+      if (back.length !== 1) return;
+      rows[found[0]].entries.forEach((u, k) => { if (u) row.entries[k] = u; });
+      gone.add(found[0]);
+    });
+    return rows.filter((_, i) => !gone.has(i));
+  }
+  // Over its bars: the name, both names where runs call it differently, and where it stands alone.
+  function headOf(row, runs) {
+    const names = [...new Set(row.entries.filter(Boolean).map((u) => u.name))], without = runs.filter((_, k) => !row.entries[k]);
+    const alone = without.length ? make('span', { class: 'alone-note' }, ` not in ${without.map((r) => r.name).join(', ')}`) : '';
+    return make('h4', {}, names.join(' / '), alone);
+  }
   // Rows { name, entries: [one a run, or undefined] }, the worst first.
   function rowsOf(runs) {
     const rows = new Map();
@@ -17,7 +56,7 @@ steplap.bars = (() => {
       }
     });
     const worst = (row) => Math.max(...row.entries.filter(Boolean).map(size));
-    return [...rows.values()].sort((a, b) => worst(b) - worst(a));
+    return pairByPlace([...rows.values()], runs).sort((a, b) => worst(b) - worst(a));
   }
   // "124 of 156 kN", or "1.1, asked 1.2" where more is better; nothing where the share says it all.
   function ofLimit(u) {
@@ -44,7 +83,7 @@ steplap.bars = (() => {
     if (!rows.length) return;
     const worst = Math.max(...rows.map((row) => Math.max(...row.entries.filter(Boolean).map(size))));
     const scale = Math.min(longest, Math.max(1.04, 1.02 * worst));
-    const list = (some) => make('ul', { class: 'bars' }, ...some.map((row) => make('li', {}, ...(isOne ? [] : [make('h4', {}, row.name)]),
+    const list = (some) => make('ul', { class: 'bars' }, ...some.map((row) => make('li', {}, ...(isOne ? [] : [headOf(row, runs)]),
       ...row.entries.map((u, k) => (u ? barOf(u, scale, runs[k], isOne, onChoose) : '')).filter(Boolean))));
     box.append(make('h2', {}, 'How near to the limits'), make('p', { class: 'note scale-note', style: `--limit:${(100 / scale).toFixed(3)}%` }, make('span', {}, 'limit')), list(rows.slice(0, seen)));
     if (rows.length > seen) box.append(make('details', {}, make('summary', {}, `${rows.length - seen} more`), list(rows.slice(seen))));

@@ -36,13 +36,16 @@ steplap.forms = (() => {
     }
     return best;
   }
+  function isWithin(ring, p) {
+    let is = false;
+    ring.forEach((a, i) => { const b = ring[(i + 1) % ring.length]; if (a[1] > p[1] !== b[1] > p[1] && p[0] < a[0] + ((b[0] - a[0]) * (p[1] - a[1])) / (b[1] - a[1])) is = !is; });
+    return is;
+  }
+  // Holes count as inside.
   function isInside(body, p) {
-    const within = (ring) => {
-      let is = false;
-      ring.forEach((a, i) => { const b = ring[(i + 1) % ring.length]; if (a[1] > p[1] !== b[1] > p[1] && p[0] < a[0] + ((b[0] - a[0]) * (p[1] - a[1])) / (b[1] - a[1])) is = !is; });
-      return is;
-    };
+    const within = (ring) => isWithin(ring, p);
     return (body.outline.length > 2 && within(body.outline)) || body.polygons.some(within) || body.circles.some(([x, y, r]) => length(minus(p, [x, y])) <= r * (1 + 1e-6));
   }
-  return { edgesOf, crossings, nearest, isInside };
+  const isSolidAt = (body, p) => isInside(body, p) && !(body.holes || []).some((hole) => isWithin(hole, p));
+  return { edgesOf, crossings, nearest, isInside, isSolidAt };
 })();

@@ -2,7 +2,8 @@
 // Symbols have sizes of the screen (this.u), whatever is looked at how closely; bodies have their own.
 steplap.Scene = (() => {
   const make = steplap.make, { add, minus, scaled, length, apply } = steplap.geometry, Box = steplap.Box;
-  const margin = 36; // for symbols
+  const margin = 36; // for symbols, pixels
+  const symbolSize = (width) => Math.min(11, Math.max(7, width / 70)); // pixels
 
   class Body {
     constructor(raw, run) {
@@ -85,12 +86,17 @@ steplap.Scene = (() => {
       this.trails = null;
       return box;
     }
+    // Room for symbols at the left and right, and above and below: a drive's arrow stands before all that it drives.
+    margins(width) {
+      const drives = this.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'arrow' && s.style !== 'load')), isAlong = (i) => drives.some((s) => Math.abs((s.direction || [1, 0])[i]) > 0.3);
+      return [0, 1].map((i) => (isAlong(i) ? Math.max(margin, 5.5 * symbolSize(width)) : margin));
+    }
     // Room for a box of `span` about `middle` on a picture of the given size in pixels.
-    fit(middle, span, width, tallest) {
+    fit(middle, span, width, tallest, margins = this.margins(width)) {
       this.width = width;
-      this.u = Math.min(11, Math.max(7, width / 70)); // of symbols, pixels
-      const foot = this.footHeight(), scale = Math.min((width - 2 * margin) / Math.max(span[0], 1e-9), (tallest - 2 * margin - foot) / Math.max(span[1], 1e-9));
-      this.height = Math.max(Math.min(200, tallest), span[1] * scale + 2 * margin + foot);
+      this.u = symbolSize(width);
+      const foot = this.footHeight(), scale = Math.min((width - 2 * margins[0]) / Math.max(span[0], 1e-9), (tallest - 2 * margins[1] - foot) / Math.max(span[1], 1e-9));
+      this.height = Math.max(Math.min(200, tallest), span[1] * scale + 2 * margins[1] + foot);
       this.middle = middle;
       this.fittedScale = scale;
       this.svg.setAttribute('viewBox', `0 0 ${width} ${this.height}`);
@@ -178,21 +184,14 @@ steplap.Scene = (() => {
       (isGround ? this.groundLayer : this.bodyLayer).append(group);
       // Where the body's geometry does not say where its mass is.
       const centre = !isGround && !body.fixed && !body.is_outline_given && !body.circles.length && !body.polygons.length ? this.centreMark(body) : null;
-      const mark = !isGround && this.bodies.size <= 40 ? make('g', {}, make('circle', { r: 9, class: 'number-mark' }), make('text', { class: 'number-text' }, number)) : null;
-      if (mark) {
-        this.textLayer.append(mark);
-        this.marks.set(body.name, { shift: [0, 0], now: [0, 0], element: mark });
-      }
+      if (!isGround && this.bodies.size <= 40) this.addNumber(body, number);
       const since = joint && this.run.events.find((e) => e[1] === joint.name && (e[4] === 'slip' || e[4] === 'apart'));
       this.updaters.push((t, pose) => {
         const [x, y, angle] = pose(body.name), c = this.scale * Math.cos(angle), s = this.scale * Math.sin(angle);
         const [sx, sy] = this.toScreen([x, y]);
         group.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${sx} ${sy})`);
         if (centre) centre.setAttribute('transform', `translate(${sx} ${sy}) scale(${0.5 * this.u})`);
-        if (mark) {
-          const [dx, dy] = this.marks.get(body.name).now;
-          mark.setAttribute('transform', `translate(${sx + dx} ${sy + dy})`);
-        }
+        this.showNumber(body, [sx, sy], pose);
         if (joint) group.classList.toggle('slipped', Boolean((since && t >= since[0]) || this.run.modeAt(joint.name, t) >= 2));
       });
     }
@@ -202,39 +201,9 @@ steplap.Scene = (() => {
       this.bodyLayer.append(mark);
       return mark;
     }
-    // Marks stand off each other and off symbols, on their body where it has room, else beside it.
-    spreadMarks() {
-      const taken = [], symbols = this.symbols.occupied();
-      for (const [name, mark] of [...this.marks].sort((a, b) => this.body(a[0]).reach - this.body(b[0]).reach)) {
-        const [x, y] = this.toScreen(this.reference(name)), body = this.body(name);
-        const clear = (list, [dx, dy], least) => list.every((p) => Math.hypot(p[0] - x - dx, p[1] - y - dy) > least);
-        const isSeen = ([dx, dy]) => x + dx > 11 && x + dx < this.width - 11 && y + dy > 11 && y + dy < this.height - 34;
-        const ring = (r) => [...Array(12).keys()].map((k) => [r * Math.sin((k * Math.PI) / 6), -r * Math.cos((k * Math.PI) / 6)]);
-        const extent = body.reach * this.fittedScale, first = extent > 22 ? [[0, 0]] : ring(extent + 14);
-        const places = [...first, ...[24, 36, 50, 66, 84, 104].flatMap(ring)].filter(isSeen);
-        const isOn = ([dx, dy]) => extent <= 30 || steplap.forms.isInside(body, steplap.geometry.seenIn(this.reference(name), this.toPlane(x + dx, y + dy)));
-        const isApart = ([dx, dy]) => taken.every((p) => Math.max(Math.abs(p[0] - x - dx), Math.abs(p[1] - y - dy)) > 20);
-        const isFree = (p) => isApart(p) && clear(symbols, p, 15);
-        mark.shift = places.find((p) => isFree(p) && isOn(p)) || places.find(isFree) || places.find(isApart) || [0, 0];
-        taken.push([x + mark.shift[0], y + mark.shift[1]]);
-      }
-    }
-
-    // Bodies pass each other: a mark that would lie on another goes aside for as long.
-    settleMarks(pose) {
-      const settled = [];
-      for (const [name, mark] of this.marks) {
-        const [x, y] = this.toScreen(pose(name)), isApart = ([dx, dy]) => settled.every((p) => Math.max(Math.abs(p[0] - x - dx), Math.abs(p[1] - y - dy)) > 19);
-        const aside = () => [24, 40, 60, 84].flatMap((r) => [...Array(8).keys()].map((k) => [mark.shift[0] + r * Math.sin((k * Math.PI) / 4), mark.shift[1] - r * Math.cos((k * Math.PI) / 4)]));
-        mark.now = isApart(mark.shift) ? mark.shift : aside().find(isApart) || mark.shift;
-        settled.push([x + mark.now[0], y + mark.now[1]]);
-      }
-    }
-    // Names of elements that slipped, opened or broke: they and their parts are drawn in colour from when it happens.
-    setMoved(names) { this.moved = new Set(names || []); }
     hasMoved(name, t) {
       if (!this.moved.has(name)) return false;
-      const since = this.run.events.find((e) => e[1] === name && ['slip', 'apart', 'open'].includes(e[4]));
+      const since = this.run.events.find((e) => e[1] === name && ['slip', 'apart', 'open', 'break'].includes(e[4]));
       return !since || t >= since[0];
     }
     // --- trails of centres of gravity -------------------------------------------------------------------
@@ -279,10 +248,10 @@ steplap.Scene = (() => {
     const whole = boxes.reduce((a, b) => a.joined(b));
     const span = [0, 1].map((i) => Math.max(...boxes.map((b) => b.span[i])));
     const isSamePlace = [0, 1].every((i) => whole.span[i] <= 1.4 * span[i] + 0.2 * Math.max(...span));
-    const width = Math.min(...widths), sizes = boxes.map((b) => Math.max(...b.span));
+    const width = Math.min(...widths), sizes = boxes.map((b) => Math.max(...b.span)), all = scenes.map((scene) => scene.margins(width)), margins = [0, 1].map((i) => Math.max(...all.map((m) => m[i])));
     const isAlike = Math.max(...sizes) < 5 * Math.min(...sizes);
     if (!isAlike) scenes.forEach((scene, k) => scene.fit(boxes[k].middle, boxes[k].span, width, tallest));
-    else scenes.forEach((scene, k) => scene.fit(isSamePlace ? whole.middle : boxes[k].middle, isSamePlace ? whole.span : span, width, tallest));
+    else scenes.forEach((scene, k) => scene.fit(isSamePlace ? whole.middle : boxes[k].middle, isSamePlace ? whole.span : span, width, tallest, margins));
   };
   return Scene;
 })();

@@ -25,8 +25,8 @@
   // --- drawing -------------------------------------------------------------------------------------
   function buildScenes() {
     for (const run of runs) {
-      const scene = new steplap.Scene(run), { moved } = steplap.overview.of(run);
-      if (scene.setMoved) scene.setMoved(moved); // drawn in colour
+      const scene = new steplap.Scene(run), { moved, story } = steplap.overview.of(run);
+      scene.setMoved(moved, story);
       scenes.push(scene);
     }
     const largestForce = Math.max(...scenes.map((scene) => scene.ownLargestForce()));
@@ -44,7 +44,7 @@
     if (undrawn) remarks.push(`${undrawn} more bodies, and all elements, are not drawn: the page would be too slow.`);
     if (scenes.some((scene) => [...scene.bodies.values()].some((body) => body.isUnrecorded))) remarks.push('Dashed bodies are drawn where they begin: their motion is not among the channels.');
     at('legend').textContent = remarks.join(' ');
-    const help = ['Wedges and dots are contacts, filled while they press. Arrows are forces, all to one scale. Hatched is what is solid.', 'Displacements are drawn against the reference pose, as seen from the body chosen.',
+    const help = ['Wedges and dots are contacts, filled while they press. Arrows are forces, all to one scale. Hatched is what is solid. What slipped, lifted or broke is orange, with the sign that it has in the timeline.', 'Displacements are drawn against the reference pose, as seen from the body chosen.',
       'Closer: Ctrl and wheel, two fingers, or + and - on the picture. 0 or a double click shows all. Drag to move.'];
     if (runs.some((run) => run.drawing.sheets.length)) help.splice(1, 0, 'Limbs turn orange once their joint has slipped.');
     at('picture-help').append(make('summary', {}, 'How to read the picture'), make('p', { class: 'note' }, help.join(' ')));

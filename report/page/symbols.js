@@ -12,6 +12,7 @@ steplap.Symbols = (() => {
     constructor(scene) {
       this.scene = scene;
       this.springs = []; // { element, shape } and where they are drawn
+      this.pieces = new Map(); // what is drawn of an element, by its name
       this.taken = []; // pixels along what is drawn, at rest
       this.pins = scene.elements.flatMap((e) => e.shapes.filter((s) => s.type === 'pin' && s.at.length > 1));
       this.planes = (scene.run.drawing.planes || []).map((plane) => ({ ...plane, feet: [] }));
@@ -41,7 +42,13 @@ steplap.Symbols = (() => {
     piece(element, attributes, layer = this.scene.elementLayer, name = 'path') {
       const node = make(name, { class: 'symbol', 'data-element': element.name, ...attributes }, make('title', {}, element.name));
       layer.append(node);
+      this.pieces.set(element.name, [...(this.pieces.get(element.name) || []), node]);
       return node;
+    }
+    // In colour from when the element lifted, opened or broke.
+    showMoved(t) {
+      for (const name of this.scene.moved)
+        for (const node of this.pieces.get(name) || []) if (!node.classList.contains('force')) node.classList.toggle('moved', this.scene.hasMoved(name, t));
     }
     // Of a channel what an arrow of it takes on the screen: all forces of all scenes to one scale.
     arrowLength(force) { return (8 * this.u * Math.abs(force)) / (this.scene.largestForce || 1); }
@@ -73,14 +80,31 @@ steplap.Symbols = (() => {
       this.put(text, [x, y], [width, 12], [[0, 0], [0, -14], [0, 14], [0.7 * width, 0], [-0.7 * width, 0], [0, -28], [0, 28], [0.7 * width, 14], [-0.7 * width, 14]]);
     }
     // Moves a text's middle by the first of the shifts that leaves it clear of marks and texts, and onto the picture.
-    put(text, [x, y], [width, height], shifts) {
-      const { scene } = this;
-      const isFree = ([dx, dy]) => scene.takenTexts.length > 300 || scene.takenTexts.every(([qx, qy, w, h]) => Math.abs(qy - y - dy) >= 0.5 * (h + height) || Math.abs(qx - x - dx) >= 0.5 * (w + width));
-      const [dx, dy] = shifts.find(isFree) || shifts[0], half = 0.5 * width + 2;
-      const place = [Math.min(Math.max(x + dx, half), Math.max(half, scene.width - half)), Math.min(Math.max(y + dy, 0.5 * height + 1), scene.height - 0.5 * height - 2)];
-      scene.takenTexts.push([...place, width, height]);
+    put(text, at, [width, height], shifts) {
+      const { at: place } = this.room(at, [width, height], shifts) || this.take(this.onPicture(add(at, shifts[0]), [width, height]), [width, height]);
       text.setAttribute('x', place[0].toFixed(1));
       text.setAttribute('y', (place[1] + 0.32 * height).toFixed(1));
+    }
+
+    isFree([x, y], [width, height]) {
+      const { takenTexts } = this.scene;
+      return takenTexts.length > 300 || takenTexts.every(([qx, qy, w, h]) => Math.abs(qy - y) >= 0.5 * (h + height) || Math.abs(qx - x) >= 0.5 * (w + width));
+    }
+    onPicture([x, y], [width, height]) {
+      const { scene } = this, half = 0.5 * width + 2;
+      return [Math.min(Math.max(x, half), Math.max(half, scene.width - half)), Math.min(Math.max(y, 0.5 * height + 1), scene.height - 0.5 * height - 2)];
+    }
+    take(at, size) {
+      this.scene.takenTexts.push([...at, ...size]);
+      return { at, size };
+    }
+    // Takes the first place on the picture, by the shifts, that is clear of marks and texts; null if there is none.
+    room(at, size, shifts) {
+      for (const shift of shifts) {
+        const place = this.onPicture(add(at, shift), size);
+        if (this.isFree(place, size)) return this.take(place, size);
+      }
+      return null;
     }
 
     // --- half-planes --------------------------------------------------------------------------------------
@@ -176,7 +200,6 @@ steplap.Symbols = (() => {
         const { a, n, foot } = places(pose), w = 0.75 * this.u;
         wedge.setAttribute('d', path([a, add(a, add(scaled(n, 1.1 * w), scaled(across(n), 0.6 * w))), add(a, add(scaled(n, 1.1 * w), scaled(across(n), -0.6 * w)))], true));
         wedge.classList.toggle('closed', Boolean(force) && force.at(t) > 0);
-        wedge.classList.toggle('moved', this.scene.hasMoved(element.name, t));
         if (!hasLine) tick.setAttribute('d', path([add(foot, scaled(across(n), 1.4 * w)), minus(foot, scaled(across(n), 1.4 * w))]));
       });
       this.force(element, shape, (t, pose, channel) => { const { a, n } = places(pose); return { at: add(a, scaled(n, 0.85 * this.u)), d: n, force: channel.at(t) }; }, true);
@@ -386,6 +409,7 @@ steplap.Symbols = (() => {
       // Room for texts: not on the marks of bodies, nor on texts that are there before.
       this.updaters.push((t, pose) => { this.takenTexts = [...this.marks].map(([name, mark]) => [...add(this.toScreen(pose(name)), mark.now), 20, 20]); });
       this.symbols = new Symbols(this);
+      this.updaters.push((t, pose) => { this.symbols.showMoved(t); this.showHappenings(t, pose); });
     },
     fitSymbols() { this.symbols.fit(); },
     // The largest force of those that are drawn as arrows.

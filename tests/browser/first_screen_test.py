@@ -238,6 +238,35 @@ class FirstScreenTest(base.Page):
         scales = self.run_js("return steplap.page.scenes.map((s) => s.scale)")
         self.assertEqual(scales[0], scales[1])
 
+    def test_bars_of_what_has_another_name_stand_together_and_what_is_alone_says_so(self):
+        # The same machine, in which one joint has another name and one criterion is not asked.
+        with open(os.path.join(WORK.name, "out/interference/model.toml"), encoding="utf-8") as file:
+            text = file.read()
+        self.assertGreater(text.count("front joint"), 1)
+        with open(os.path.join(WORK.name, "renamed.toml"), "w", encoding="utf-8") as file:
+            file.write(text.replace("front joint", "joint A").replace("slide on the floor", "slide of the tank"))
+        base.steplap("simulate", "renamed.toml", "-q", "--no-estimate", "-o", "out", "-f")
+        base.steplap("simulate", os.path.join(MODELS, "paper", "interference.toml"), "-q", "--no-estimate", "-o", "asked", "-f")
+        base.steplap("report", "asked/interference", "out/renamed", "-q", "-f", "-o", "renamed.html")
+        self.show("renamed.html", SIZES[0])
+        rows = self.run_js("return [...document.querySelectorAll('.bars li')].map((li) => [li.querySelector('h4').textContent, li.querySelectorAll('.utilisation').length])")
+        heads = [head for head, _ in rows]
+        self.assertIn("front joint: friction / joint A: friction", heads)
+        self.assertIn("slide on the floor / slide of the tank", heads)
+        for head, count in rows:
+            self.assertEqual(count, 1 if " not in " in head else 2, head)
+        # The margin is asked of all joints: of each run the worst is shown, which is another joint's.
+        self.assertEqual({head.split(" (")[0] for head in heads if " not in " in head} - {"joint margin"}, set())
+        # A machine with other parts: what only one of them has says so.
+        base.steplap("simulate", os.path.join(MODELS, "machines", "ladder.toml"), "-q", "--no-estimate", "-o", "out", "-f")
+        base.steplap("report", "out/interference", "out/ladder", "-q", "-f", "-o", "unlike.html")
+        self.show("unlike.html", SIZES[0])
+        rows = self.run_js("return [...document.querySelectorAll('.bars li')].map((li) => [li.querySelector('h4').textContent, li.querySelectorAll('.utilisation').length])")
+        self.assertGreater(len(rows), 5)
+        for head, count in rows:
+            self.assertEqual(count, 1, head)
+            self.assertRegex(head, " not in (ladder|interference)$")
+
     # --- looks -------------------------------------------------------------------------------------
 
     def test_nothing_is_cut_off_or_lies_on_another_at_three_widths_in_light_and_dark(self):

@@ -39,6 +39,18 @@ EXTENTS = """const s = steplap.page.scenes[0], k = s.svg.clientWidth / s.width; 
       return [b.name, Math.hypot(m.a, m.b) / (k * s.scale), d.x, d.y, d.x + d.width, d.y + d.height, Math.min(...x), Math.min(...y), Math.max(...x), Math.max(...y)]; })"""
 
 
+# Of each number of a scene: its body, and the bodies at its middle as they are painted, the first on top; what stands around its body is left out.
+NUMBERS = """const scene = steplap.page.scenes[arguments[0]]; scene.svg.scrollIntoView({ block: 'center' });
+    return [...scene.svg.querySelectorAll('[data-number-of]')].map((e) => { const r = e.querySelector('circle').getBoundingClientRect(), x = (r.left + r.right) / 2, y = (r.top + r.bottom) / 2;
+      const found = document.elementsFromPoint(x, y).map((p) => p.closest('.body')).filter(Boolean), reach = (name) => scene.body(name).reach, own = e.dataset.numberOf;
+      return [own, found.map((b) => b.dataset.body).filter((b, i) => b === own || !(found[i].classList.contains('around') && reach(b) > reach(own)))]; })"""
+# How far each arrow of a drive stays inside the picture, pixels.
+ARROWS = """const scene = steplap.page.scenes[arguments[0]], s = scene.svg.getBoundingClientRect();
+    return [...scene.svg.querySelectorAll('.drive:not(.arc)')].map((e) => e.getBoundingClientRect()).filter((r) => r.width + r.height > 0).map((r) => Math.min(r.left - s.left, r.top - s.top, s.right - r.right, s.bottom - r.bottom))"""
+# What the picture marks as having happened: element, sign, words.
+HAPPENED = """return [...document.querySelectorAll('.happening')].filter((e) => e.style.display !== 'none').map((e) => [e.dataset.happened, e.querySelector('[data-sign]').dataset.sign, e.querySelector('text').textContent])"""
+
+
 def stem(path):
     return os.path.splitext(os.path.basename(path))[0]
 
@@ -71,6 +83,13 @@ class GalleryTest(base.Page):
             for other, *b in found["texts"][:i]:
                 apart = a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3]
                 self.assertTrue(apart, (where, name, other, a, b))
+
+    def check_numbers_and_arrows(self, where):
+        for scene in range(len(self.all(".scene"))):
+            for name, found in self.run_js(NUMBERS, scene):
+                self.assertTrue(not found or found[0] == name, (where, scene, name, found))
+            for inside in self.run_js(ARROWS, scene):
+                self.assertGreater(inside, 3, (where, scene))  # a line and its air
 
     def check_springs(self):
         found = self.run_js(SPRINGS)
@@ -117,6 +136,52 @@ class GalleryTest(base.Page):
                 for part in (0, 0.35, 1):
                     self.run_js("steplap.page.show(arguments[0] * steplap.data.runs[0].end)", part)
                     self.check_texts(part)
+                    self.check_numbers_and_arrows(part)
+
+    def test_two_runs_beside_each_other_are_drawn_as_well_as_one(self):
+        base.steplap("simulate", os.path.join(MODELS, "paper", "interference.toml"), "-q", "--no-estimate", "-o", "gallery", "-f")
+        pairs = [("no_interference", "interference"), ("three_limb", "five_limb"), ("stacked_blocks", "cradle"), ("tank_with_lid", "crane_arm"), ("rail_wagon_humping", "forklift")]
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
+        for pair in pairs:
+            base.steplap("report", *["gallery/" + name for name in pair], "-q", "-f", "-o", "pair.html")
+            for width in (1300, 820, 390):
+                with self.subTest(pair=pair, width=width):
+                    self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
+                    self.open("pair.html")
+                    for part in (0, 0.35, 1):
+                        self.run_js("steplap.page.show(arguments[0] * Math.max(...steplap.data.runs.map((r) => r.end)))", part)
+                        self.check_numbers_and_arrows(part)
+
+    def test_what_lifted_is_marked_from_when_it_does(self):
+        self.open("gallery_no_interference.html")
+        events = self.run_js("return steplap.data.runs[0].events.filter((e) => e[1] === 'rear foot' && e[4]).map((e) => [e[0], e[4]])")
+        (opened, role), (closed, _) = events[:2]
+        self.assertEqual(role, "open")
+        at = lambda t: {name: (sign, words) for name, sign, words in (self.run_js("steplap.page.show(arguments[0])", t), self.run_js(HAPPENED))[1]}
+        self.assertNotIn("rear foot", at(0.999 * opened))
+        self.assertEqual(at(0.5 * (opened + closed))["rear foot"], ("open", "rear foot lifts"))
+        self.assertEqual(at(1.001 * closed)["rear foot"], ("open", "rear foot lifted"))
+        self.assertIn("moved", self.find(".contact[data-element='rear foot']").get_attribute("class").split())
+        self.assertNotIn("tank bottom", at(1.0))  # friction has its own words
+
+    def test_where_many_lift_colour_tells_it_alone(self):
+        self.open("gallery_pile.html")
+        self.run_js("steplap.page.show(steplap.data.runs[0].end)")
+        self.assertEqual(self.run_js(HAPPENED), [])
+        self.assertGreater(self.run_js("return steplap.page.scenes[0].moved.size"), 5)
+
+    def test_what_broke_is_marked(self):
+        data = os.path.join(os.path.dirname(MODELS), "tests", "data", "cores", "tie_that_breaks_first.toml")
+        base.steplap("simulate", data, "-q", "--no-estimate", "-o", "gallery")
+        base.steplap("report", "gallery/tie_that_breaks_first", "-q", "-o", "broken.html")
+        self.open("broken.html")
+        broken = self.run_js("return steplap.data.runs[0].events.filter((e) => e[4] === 'break').map((e) => [e[0], e[1]])")
+        self.assertGreater(len(broken), 0)
+        t, name = broken[0]
+        self.run_js("steplap.page.show(arguments[0])", 0.999 * t)
+        self.assertNotIn(name, [h[0] for h in self.run_js(HAPPENED)])
+        self.run_js("steplap.page.show(arguments[0])", 1.001 * t)
+        self.assertIn([name, "break"], [h[:2] for h in self.run_js(HAPPENED)])
 
     def test_the_true_scale_is_one_click_away(self):
         self.open("gallery_no_interference.html")

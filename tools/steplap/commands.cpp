@@ -13,6 +13,7 @@
 #include "tools/steplap/record.h"
 #include "tools/steplap/report.h"
 #include "tools/steplap/schema.h"
+#include "tools/steplap/show.h"
 #include "tools/steplap/simulate.h"
 #include "tools/steplap/study.h"
 
@@ -21,6 +22,7 @@ namespace steplap {
 std::vector<Command> all_commands() {
   std::vector<Command> commands;
   commands.push_back(simulate_command());
+  commands.push_back(show_command());
   commands.push_back(report_command());
   commands.push_back(plot_command());
   commands.push_back(record_command());

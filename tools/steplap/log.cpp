@@ -1,6 +1,7 @@
 #include "tools/steplap/log.h"
 
 #include "mbd/base/shown_text.h"
+#include "tools/steplap/colour.h"
 
 #include <spdlog/logger.h>
 #include <spdlog/sinks/ansicolor_sink.h>
@@ -19,7 +20,7 @@ spdlog::logger& logger() {
 
 void start_log(std::ostream& err, bool is_terminal) {
   spdlog::sink_ptr sink;
-  if (is_terminal)
+  if (is_terminal && !is_colour_refused())
     sink = std::make_shared<spdlog::sinks::ansicolor_stderr_sink_st>();
   else
     sink = std::make_shared<spdlog::sinks::ostream_sink_st>(err, true);

@@ -8,7 +8,7 @@
 
 namespace steplap {
 
-/// Sends the log to `err`, coloured on a terminal.
+/// Sends the log to `err`, coloured on a terminal that takes colour.
 void start_log(std::ostream& err, bool is_terminal);
 /// quiet: errors only; verbose: details too.
 void set_log_level(Verbosity verbosity);

@@ -1,16 +1,13 @@
 #include "tools/steplap/overview_screen.h"
 
 #include "mbd/base/shown_text.h"
-#include "run/prominence.h"
-#include "tools/steplap/text_table.h"
-
-#include <unistd.h>
+#include "run/finding.h"
+#include "tools/steplap/colour.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
-#include <iostream>
+#include <ostream>
 #include <vector>
 
 namespace steplap {
@@ -63,37 +60,38 @@ std::string coloured(const std::string& text, const char* colour, bool is_colour
   return is_coloured ? std::string("\x1b[") + colour + "m" + text + "\x1b[0m" : text;
 }
 
-const char* colour_of(Verdict verdict) {
-  switch (verdict) {
-  case Verdict::hold: return "1;32";
-  case Verdict::reject: return "1;31";
-  case Verdict::inspect: return "1;33";
-  default: return "1;35";
-  }
+const char* colour_of(const std::string& verdict) {
+  if (verdict == name_of(Verdict::hold)) return "1;32";
+  if (verdict == name_of(Verdict::reject)) return "1;31";
+  return verdict == name_of(Verdict::inspect) ? "1;33" : "1;35";
 }
 
-void print_head(std::ostream& out, const Report& report, const Overview& overview, bool is_coloured) {
-  std::string verdict = name_of(overview.verdict);
+std::string text_at(const OrderedJson& json, const char* key) { return json.at(key).get<std::string>(); }
+
+void print_head(std::ostream& out, const OrderedJson& summary, bool is_coloured) {
+  const OrderedJson& overview = summary.at("overview");
+  const std::string name = text_at(overview, "verdict");
+  std::string verdict = name;
   std::transform(verdict.begin(), verdict.end(), verdict.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-  const std::string text = wrapped(verdict + "  " + shown(overview.reason), verdict.size() + 2, 3);
-  out << coloured(verdict, colour_of(overview.verdict), is_coloured) << text.substr(verdict.size()) << "\n";
-  const LoadedModel& loaded = *report.run.loaded;
-  out << cut(shown(loaded.name + (loaded.model.header.title.empty() ? "" : ": " + loaded.model.header.title)), k_columns) << "\n";
+  const std::string text = wrapped(verdict + "  " + shown(text_at(overview, "reason")), verdict.size() + 2, 3);
+  out << coloured(verdict, colour_of(name), is_coloured) << text.substr(verdict.size()) << "\n";
+  const std::string title = text_at(summary.at("model"), "title");
+  out << cut(shown(text_at(summary.at("model"), "name") + (title.empty() ? "" : ": " + title)), k_columns) << "\n";
 }
 
-void print_story(std::ostream& out, const Report& report, const Overview& overview) {
-  const std::vector<Event>& events = report.run.result.events;
-  const auto main = static_cast<std::size_t>(std::count_if(events.begin(), events.end(), is_main_event));
-  out << "\nWhat happened: " << (events.empty() ? "no events" : main == 0 ? counted(events.size(), "minor event", "minor events") : counted(main, "event", "events"));
-  if (main > 0 && main < events.size()) out << " (" << events.size() << " with minor ones)";
+void print_story(std::ostream& out, const OrderedJson& summary) {
+  const auto count = summary.at("events").at("count").get<std::size_t>(), main = summary.at("events").at("main").get<std::size_t>();
+  out << "\nWhat happened: " << (count == 0 ? "no events" : main == 0 ? counted(count, "minor event", "minor events") : counted(main, "event", "events"));
+  if (main > 0 && main < count) out << " (" << count << " with minor ones)";
   out << "\n";
+  const OrderedJson& story = summary.at("overview").at("story");
   std::size_t lines = 0;
-  for (std::size_t i = 0; i < overview.story.size(); ++i) {
-    const std::string text = wrapped("  " + shown(overview.story[i].text), 4, 2);
+  for (std::size_t i = 0; i < story.size(); ++i) {
+    const std::string text = wrapped("  " + shown(text_at(story[i], "text")), 4, 2);
     const std::size_t needed = text.find('\n') == std::string::npos ? 1 : 2;
-    const bool is_last = i + 1 == overview.story.size();
+    const bool is_last = i + 1 == story.size();
     if (lines + needed > k_story_lines - (is_last ? 0 : 1)) {
-      out << "  … and " << overview.story.size() - i << " more, see events.csv\n";
+      out << "  … and " << story.size() - i << " more, see events.csv\n";
       return;
     }
     out << text << "\n";
@@ -106,50 +104,52 @@ std::string bar_of(double share) {
   return "[" + std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(k_bar - filled), '-') + "]";
 }
 
-void print_bars(std::ostream& out, const Overview& overview, ShownDigits digits) {
-  const auto is_idle = [](const Utilisation& u) { return u.share < k_least_share; };
-  const auto used = std::find_if(overview.utilisations.begin(), overview.utilisations.end(), is_idle) - overview.utilisations.begin();
-  const std::size_t count = std::min(k_most_bars, static_cast<std::size_t>(used));
+void print_bars(std::ostream& out, const OrderedJson& utilisations, bool has_all_digits) {
+  const auto share_of = [](const OrderedJson& u) { return u.at("share").get<double>(); };
+  std::size_t count = 0, widest = 0;
+  while (count < std::min(k_most_bars, utilisations.size()) && share_of(utilisations[count]) >= k_least_share)
+    widest = std::max(widest, width(shown(text_at(utilisations[count++], "name"))));
   if (count == 0) return;
   out << "\nNearest to their limits\n";
-  std::size_t widest = 0;
-  for (std::size_t i = 0; i < count; ++i) widest = std::max(widest, width(shown(overview.utilisations[i].name)));
   widest = std::min<std::size_t>(widest, 36);
   for (std::size_t i = 0; i < count; ++i) {
-    const Utilisation& u = overview.utilisations[i];
-    const std::string name = cut(shown(u.name), widest), share = shown_share(u.share, u.error, digits);
-    const std::string line = "  " + name + std::string(widest - width(name), ' ') + "  " + bar_of(u.share) + std::string(width(share) < 6 ? 6 - width(share) : 0, ' ') +
-                             " " + share + (u.detail.empty() ? "" : "   " + u.detail);
-    out << cut(line, digits.is_full ? k_all_columns : k_columns) << "\n";
+    const OrderedJson& u = utilisations[i];
+    const std::string name = cut(shown(text_at(u, "name")), widest), percent = text_at(u, "percent"), detail = text_at(u, "detail");
+    const std::string line = "  " + name + std::string(widest - width(name), ' ') + "  " + bar_of(share_of(u)) +
+                             std::string(width(percent) < 6 ? 6 - width(percent) : 0, ' ') + " " + percent + (detail.empty() ? "" : "   " + detail);
+    out << cut(line, has_all_digits ? k_all_columns : k_columns) << "\n";
   }
 }
 
-void print_warnings(std::ostream& out, const Report& report, bool is_coloured) {
-  std::vector<const Finding*> warnings;
-  for (const Finding& finding : report.findings)
-    if (finding.level == FindingLevel::warning) warnings.push_back(&finding);
+void print_warnings(std::ostream& out, const OrderedJson& findings, bool is_coloured) {
+  std::vector<std::string> warnings;
+  for (const OrderedJson& f : findings)
+    if (f.at("level") == "warning")
+      warnings.push_back(text_with_place({text_at(f, "code"), FindingLevel::warning, text_at(f, "text"), {text_at(f, "file"), f.at("line").get<int>()}}));
   const std::size_t count = warnings.size() > k_most_warnings ? k_most_warnings - 1 : warnings.size();
-  for (std::size_t i = 0; i < count; ++i) out << coloured("Warning", "1;33", is_coloured) << cut("Warning: " + shown(text_with_place(*warnings[i])), k_columns).substr(7) << "\n";
+  for (std::size_t i = 0; i < count; ++i) out << coloured("Warning", "1;33", is_coloured) << cut("Warning: " + shown(warnings[i]), k_columns).substr(7) << "\n";
   if (count < warnings.size()) out << "… and " << warnings.size() - count << " more warnings, see 'findings' in summary.json\n";
 }
 
 } // namespace
 
-void print_overview(std::ostream& out, const Report& report, const std::string& folder, bool is_coloured, ShownDigits digits) {
-  const Overview overview = overview_of(report, digits);
-  print_head(out, report, overview, is_coloured);
-  print_story(out, report, overview);
-  print_bars(out, overview, digits);
-  const char* const remedy = report.estimate.status == EstimateStatus::too_dear ? " (--estimate-error)" : "";
-  out << "\n" << wrapped(std::string("Trust: ") + name_of(overview.trust.level) + ". " + shown(overview.trust.text) + remedy, 7, 2) << "\n";
-  print_warnings(out, report, is_coloured);
-  out << "Results: " << shown(folder) << "\n";
-  out << "Page: steplap report RESULTS. Tables of all extremes: steplap simulate -v MODEL.\n";
+void print_overview(std::ostream& out, const ShownRun& run, bool is_coloured, bool has_all_digits) {
+  const OrderedJson &overview = run.summary.at("overview"), &trust = overview.at("trust");
+  print_head(out, run.summary, is_coloured);
+  print_story(out, run.summary);
+  print_bars(out, overview.at("utilisations"), has_all_digits);
+  const char* const remedy = run.summary.at("error_estimate") == "too dear" ? " (--estimate-error)" : "";
+  out << "\n" << wrapped("Trust: " + text_at(trust, "level") + ". " + shown(text_at(trust, "text")) + remedy, 7, 2) << "\n";
+  print_warnings(out, run.summary.at("findings"), is_coloured);
+  out << "Results: " << shown(run.folder) << "\n";
+  out << "Page: steplap report RESULTS. Tables of all extremes: steplap show -v RESULTS.\n";
 }
 
-bool takes_colour(const std::ostream& out) {
-  const char* const refused = std::getenv("NO_COLOR");
-  return &out == &std::cout && isatty(STDOUT_FILENO) == 1 && (refused == nullptr || *refused == '\0');
+void print_overviews(std::ostream& out, const std::vector<ShownRun>& runs, bool has_all_digits) {
+  for (const ShownRun& run : runs) {
+    if (&run != &runs.front()) out << "\n";
+    print_overview(out, run, takes_colour(out), has_all_digits);
+  }
 }
 
 } // namespace steplap

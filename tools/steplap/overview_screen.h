@@ -2,16 +2,15 @@
 // At most 30 lines of 100 columns.
 #pragma once
 
-#include "run/overview.h"
+#include "tools/steplap/shown_run.h"
 
 #include <iosfwd>
-#include <string>
 
 namespace steplap {
 
-/// `folder`: of its results. `is_coloured`: verdict and warnings, for a terminal. With all digits lines are as long as they need be.
-void print_overview(std::ostream& out, const Report& report, const std::string& folder, bool is_coloured, ShownDigits digits = {});
-/// Is `out` the standard output on a terminal, and does NO_COLOR not forbid colour?
-[[nodiscard]] bool takes_colour(const std::ostream& out);
+/// `is_coloured`: verdict and warnings, for a terminal. With all digits lines are as long as they need be.
+void print_overview(std::ostream& out, const ShownRun& run, bool is_coloured, bool has_all_digits = false);
+/// Of several, one below the other; in colour where `out` takes it.
+void print_overviews(std::ostream& out, const std::vector<ShownRun>& runs, bool has_all_digits = false);
 
 } // namespace steplap

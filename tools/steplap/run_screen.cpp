@@ -1,6 +1,6 @@
 #include "tools/steplap/run_screen.h"
 
-#include "elements/step_lap_assessment.h"
+#include "mbd/analysis/global_error.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/math/portable_math.h"
@@ -13,15 +13,87 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <limits>
 #include <ostream>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace steplap {
 
 namespace {
 
 using Align = TextTable::Align;
+using Json = OrderedJson;
 
 constexpr std::size_t k_most_events_shown = 30;
+
+// --- numbers of a summary
+
+std::string text_at(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
+
+// Not-a-number for null, unless "…_is" beside it calls it an infinity.
+double number_at(const Json& json, const std::string& key) {
+  if (const Json& value = json.at(key); value.is_number()) return value.get<double>();
+  const auto which = json.find(key + "_is");
+  if (which == json.end()) return std::numeric_limits<double>::quiet_NaN();
+  if (*which == "∞") return std::numeric_limits<double>::infinity();
+  return *which == "-∞" ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+}
+
+// Of what there may be none of: there is no such entry, or it is null.
+std::optional<double> optional_at(const Json& json, const std::string& key) {
+  if (!json.contains(key) || (json.at(key).is_null() && !json.contains(key + "_is"))) return {};
+  return number_at(json, key);
+}
+
+// None if errors were not estimated; not-a-number: unknown.
+std::optional<double> error_at(const Json& json, const std::string& key) {
+  return json.contains(key) ? std::optional(number_at(json, key)) : std::nullopt;
+}
+
+// An extreme of a channel.
+struct ShownExtreme {
+  double value = 0.0;
+  std::optional<double> t, error, t_error;
+  bool is_singular = false;
+};
+
+ShownExtreme extreme_at(const Json& entry, const std::string& which) {
+  return {number_at(entry, which), optional_at(entry, "t_" + which), error_at(entry, "error_" + which), error_at(entry, "error_t_" + which),
+          entry.contains(which + "_singular")};
+}
+
+struct ShownRange {
+  std::string name, unit;
+  ShownExtreme low, high;
+  bool is_on_request = false;
+
+  // Whichever is further from zero.
+  [[nodiscard]] const ShownExtreme& largest() const { return std::abs(low.value) > std::abs(high.value) ? low : high; }
+};
+
+// A run with what is looked up in it again and again.
+struct TabledRun {
+  explicit TabledRun(const ShownRun& shown) : run(shown), summary(shown.summary), name(text_at(summary.at("model"), "name")) {
+    for (const auto& [channel, entry] : summary.at("extremes").items()) {
+      places.emplace(channel, ranges.size());
+      ranges.push_back({channel, text_at(entry, "unit"), extreme_at(entry, "min"), extreme_at(entry, "max"), entry.contains("on_request")});
+    }
+  }
+
+  [[nodiscard]] const ShownRange* find(const std::string& channel) const {
+    const auto found = places.find(channel);
+    return found == places.end() ? nullptr : &ranges[found->second];
+  }
+  [[nodiscard]] bool has_errors() const { return summary.contains("global_error"); }
+
+  const ShownRun& run;
+  const Json& summary;
+  std::string name; ///< at the head of its column
+  std::vector<ShownRange> ranges;
+  std::unordered_map<std::string, std::size_t> places;
+};
 
 // "0.6", "12"
 std::string rough_text(double value) {
@@ -31,72 +103,60 @@ std::string rough_text(double value) {
 }
 
 // With the option that asks for what was too dear.
-std::string why_not_estimated(const Estimate& estimate) {
-  return estimate.reason + (estimate.status == EstimateStatus::too_dear ? " (--estimate-error)" : "");
+std::string why_not_estimated(const TabledRun& run) {
+  return text_at(run.summary, "error_not_estimated") + (run.summary.at("error_estimate") == "too dear" ? " (--estimate-error)" : "");
 }
 
-void print_no_estimate(std::ostream& out, const Report& report) {
-  if (report.estimate.errors) return;
+void print_no_estimate(std::ostream& out, const TabledRun& run) {
+  if (run.has_errors()) return;
   out << "  error not estimated: ";
-  if (!report.estimate.cost) out << why_not_estimated(report.estimate) << "\n";
-  else out << "would take about " << rough_text(*report.estimate.cost) << " s; ask with --estimate-error\n";
+  if (!run.run.making || !run.run.making->cost_of_estimate) out << why_not_estimated(run) << "\n";
+  else out << "would take about " << rough_text(*run.run.making->cost_of_estimate) << " s; ask with --estimate-error\n";
 }
 
-void print_heading(std::ostream& out, const FinishedRun& finished) {
-  const LoadedModel& loaded = *finished.report.run.loaded;
-  const SimulationSettings& s = loaded.model.simulation;
-  out << loaded.name;
-  if (!loaded.model.header.title.empty()) out << ": " << loaded.model.header.title;
-  out << "\n  " << s.integrator;
-  if (s.step && has_fixed_step(s.integrator)) out << ", step " << number_text(*s.step) << " s";
-  if (s.tolerance && !has_fixed_step(s.integrator)) out << ", tolerance " << number_text(*s.tolerance);
-  out << ", t = 0 to " << number_text(finished.report.run.result.final_state.t) << " s\n";
-  if (finished.report.run.failure)
-    out << "  STOPPED before the end: " << finished.report.run.failure->text << "\n";
-  print_no_estimate(out, finished.report);
+void print_heading(std::ostream& out, const TabledRun& run) {
+  const Json& settings = run.summary.at("settings");
+  const std::string title = text_at(run.summary.at("model"), "title"), integrator = text_at(run.summary, "integrator");
+  out << shown(run.name);
+  if (!title.empty()) out << ": " << shown(title);
+  out << "\n  " << integrator;
+  if (const auto step = optional_at(settings, "step"); step && has_fixed_step(integrator)) out << ", step " << number_text(*step) << " s";
+  if (const auto tolerance = optional_at(settings, "tolerance"); tolerance && !has_fixed_step(integrator)) out << ", tolerance " << number_text(*tolerance);
+  out << ", t = 0 to " << number_text(number_at(run.summary.at("final_state"), "t")) << " s\n";
+  if (run.summary.contains("failure")) out << "  STOPPED before the end: " << text_at(run.summary, "failure") << "\n";
+  print_no_estimate(out, run);
 }
 
-void print_events(std::ostream& out, const FinishedRun& finished) {
-  const std::vector<Event>& events = finished.report.run.result.events;
-  const auto main = std::count_if(events.begin(), events.end(), is_main_event);
-  out << "\nEvents: " << (events.empty() ? "none" : std::to_string(events.size()));
-  if (main < static_cast<long>(events.size()))
-    out << "; without changes of foot and kinks of a force " << main;
+void print_events(std::ostream& out, const std::vector<ResultEvent>& events) {
+  const auto main = static_cast<std::size_t>(std::count_if(events.begin(), events.end(), [](const ResultEvent& event) { return is_main(event.kind); }));
+  out << "\nEvents: " << (events.empty() ? "none" : main == 0 ? counted(events.size(), "minor one", "minor ones") : std::to_string(main));
+  if (main > 0 && main < events.size()) out << " (" << events.size() << " with minor ones)";
   out << "\n";
   TextTable table({Align::right, Align::left, Align::left});
   std::size_t shown = 0;
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    const Event& event = events[i];
-    if (!is_main_event(event)) continue;
-    if (shown++ < k_most_events_shown)
-      table.add_row({measured_time_text(event.t, finished.report.event_error(i)), event.element, event.words()});
-  }
+  for (const ResultEvent& event : events)
+    if (is_main(event.kind) && shown++ < k_most_events_shown) table.add_row({measured_time_text(event.t, event.error), event.element, event.words});
   out << table;
   if (shown > k_most_events_shown)
     out << "  … and " << shown - k_most_events_shown << " more: see events.csv\n";
 }
 
 // Channels that are told of: reactions that are not zero throughout.
-bool is_shown(const ChannelRange& range) {
-  return is_reaction(*range.channel) && !std::isnan(range.low.value) && range.largest().value != 0.0;
+bool is_shown(const ShownRange& range) {
+  return is_reaction(range.name, range.unit) && !std::isnan(range.low.value) && range.largest().value != 0.0;
 }
 
 // What is rounding beside the channel's largest value is zero; an error says so itself.
-std::string value_text(const Report& report, const ChannelRange& range, const Extreme& extreme) {
-  const std::string& unit = range.channel->unit;
-  const auto error = report.error_of(range, &extreme == &range.low ? &ChannelError::low : &ChannelError::high);
-  const bool is_singular = &extreme == &range.low ? range.is_low_singular : range.is_high_singular;
-  if (is_singular && error && std::isnan(*error)) return "diverges at a singular pose";
-  return error ? measured_text(extreme.value, error, unit) : quantity_text(extreme.value, unit, range.largest().value);
+std::string value_text(const ShownRange& range, const ShownExtreme& extreme) {
+  if (extreme.is_singular && extreme.error && std::isnan(*extreme.error)) return "diverges at a singular pose";
+  return extreme.error ? measured_text(extreme.value, extreme.error, range.unit) : quantity_text(extreme.value, range.unit, range.largest().value);
 }
 
 std::string extreme_time_text(double t, std::optional<double> error) {
   return error ? measured_time_text(t, error) : quantity_text(t, "s");
 }
 
-std::string time_of_text(const Report& report, const ChannelRange& range, const Extreme& extreme) {
-  return extreme_time_text(extreme.t, report.error_of(range, &extreme == &range.low ? &ChannelError::t_low : &ChannelError::t_high));
-}
+std::string time_of_text(const ShownExtreme& extreme) { return extreme_time_text(extreme.t.value_or(0.0), extreme.t_error); }
 
 // Of a joint that bears nothing but rounding, digits of its margin would say something that is not so.
 std::string small_margin_text(double margin, std::optional<double> error) {
@@ -109,275 +169,282 @@ std::string small_margin_text(double margin, std::optional<double> error) {
   return text;
 }
 
-void print_reactions(std::ostream& out, const Report& report) {
+// A row a channel: both its extremes and when.
+void add_extremes(TextTable& table, const ShownRange& range) {
+  table.add_row({range.name, value_text(range, range.low), time_of_text(range.low), value_text(range, range.high), time_of_text(range.high)});
+}
+
+TextTable table_of_extremes() {
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
   table.add_row({"", "lowest", "at", "highest", "at"});
+  return table;
+}
+
+void print_reactions(std::ostream& out, const TabledRun& run) {
+  TextTable table = table_of_extremes();
   bool is_any = false;
-  for (const ChannelRange& range : report.ranges()) {
+  for (const ShownRange& range : run.ranges) {
     if (!is_shown(range)) continue;
     is_any = true;
-    table.add_row({range.channel->name, value_text(report, range, range.low), time_of_text(report, range, range.low),
-                   value_text(report, range, range.high), time_of_text(report, range, range.high)});
+    add_extremes(table, range);
   }
   if (is_any) out << "\nReactions and required pressures, extremes of the whole run\n" << table;
 }
 
-bool is_requested(const ChannelRange& range) {
-  return range.channel->is_on_request && !is_shown(range) && !std::isnan(range.low.value);
-}
+bool is_requested(const ShownRange& range) { return range.is_on_request && !is_shown(range) && !std::isnan(range.low.value); }
 
 constexpr std::size_t k_most_requested = 24;
 
 // What the model asks for besides, in the order in which it is made: formulas come last, and are the last to be left out.
-void print_requested(std::ostream& out, const Report& report) {
-  std::vector<const ChannelRange*> asked;
-  for (const ChannelRange& range : report.ranges())
+void print_requested(std::ostream& out, const TabledRun& run) {
+  std::vector<const ShownRange*> asked;
+  for (const ShownRange& range : run.ranges)
     if (is_requested(range)) asked.push_back(&range);
-  const std::size_t left_out = asked.size() > k_most_requested ? asked.size() - k_most_requested : 0;
-  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
-  table.add_row({"", "lowest", "at", "highest", "at"});
-  for (std::size_t i = left_out; i < asked.size(); ++i) {
-    const ChannelRange& range = *asked[i];
-    table.add_row({range.channel->name, value_text(report, range, range.low), time_of_text(report, range, range.low),
-                   value_text(report, range, range.high), time_of_text(report, range, range.high)});
-  }
   if (asked.empty()) return;
+  const std::size_t left_out = asked.size() > k_most_requested ? asked.size() - k_most_requested : 0;
+  TextTable table = table_of_extremes();
+  for (std::size_t i = left_out; i < asked.size(); ++i) add_extremes(table, *asked[i]);
   out << "\nChannels on request, extremes of the whole run\n" << table;
   if (left_out > 0) out << "  and " << left_out << " more: see summary.json\n";
 }
 
-void print_slides(std::ostream& out, const Report& report) {
+void print_slides(std::ostream& out, const TabledRun& run) {
   TextTable table({Align::left, Align::right, Align::right});
-  for (const ChannelRange& range : report.ranges())
-    if (is_slide(*range.channel))
-      table.add_row({range.channel->name, value_text(report, range, range.largest()),
-                     "at " + time_of_text(report, range, range.largest())});
+  for (const ShownRange& range : run.ranges)
+    if (is_slide(range.name)) table.add_row({range.name, value_text(range, range.largest()), "at " + time_of_text(range.largest())});
   if (!table.is_empty()) out << "\nLargest slides\n" << table;
 }
 
 // Edges that bore, and what bears beside a joint.
-void print_beside(std::ostream& out, const JointAssessment& a, const std::optional<JointErrors>& e) {
-  if (a.has_edges && a.edge_load.value > 0.0) {
-    out << "  " << a.joint << ": sheet edges bore up to "
-        << measured_text(a.edge_load.value, e ? std::optional(e->edge_load) : std::nullopt, "N/m");
-    if (a.allowed_line_load) out << ", allowed are " << quantity_text(*a.allowed_line_load, "N/m");
+void print_beside(std::ostream& out, const std::string& joint, const Json& a) {
+  if (const auto load = optional_at(a, "largest_edge_load"); load && *load > 0.0) {
+    out << "  " << joint << ": sheet edges bore up to " << measured_text(*load, error_at(a, "error_largest_edge_load"), "N/m");
+    if (const auto allowed = optional_at(a, "allowed_line_load")) out << ", allowed are " << quantity_text(*allowed, "N/m");
     out << "\n";
   }
-  if (a.shared_with.empty()) return;
-  out << "  " << a.joint << ": margin of its own share; beside it";
-  for (const SharedLoad& shared : a.shared_with) {
-    out << (&shared == &a.shared_with.front() ? " '" : ", '") << shared.element << "'";
-    if (!std::isnan(shared.largest)) out << " with up to " << quantity_text(shared.largest, "N");
+  if (!a.contains("shared_with")) return;
+  out << "  " << joint << ": margin of its own share; beside it";
+  const char* before = " '";
+  for (const Json& shared : a.at("shared_with")) {
+    out << before << text_at(shared, "element") << "'";
+    if (const auto largest = optional_at(shared, "largest_force")) out << " with up to " << quantity_text(*largest, "N");
+    before = ", '";
   }
-  out << (a.is_elastic ? "\n" : " (the joint is rigid: they take no part before it slides)\n");
+  out << (a.at("shares_before_it_slides").get<bool>() ? "\n" : " (the joint is rigid: they take no part before it slides)\n");
 }
 
-void print_joints(std::ostream& out, const FinishedRun& finished) {
-  const auto& joints = finished.report.joints;
-  TextTable table({Align::left, Align::left, Align::right, Align::right, Align::right, Align::right,
-                   Align::right, Align::right});
+void add_joint(TextTable& table, const std::string& joint, const Json& a) {
+  const auto error = [&a](const std::string& figure) { return error_at(a, "error_" + figure); };
+  const auto first_slip = optional_at(a, "first_slip");
+  const double slid = portable::hypot(number_at(a, "slid_x"), number_at(a, "slid_y")), area_lost = number_at(a, "area_lost");
+  const auto x = error("slid_x"), y = error("slid_y");
+  table.add_row({joint, text_at(a, "verdict"), first_slip ? measured_time_text(*first_slip, error("first_slip")) : "–",
+                 measured_text(number_at(a, "largest_required_pressure"), error("largest_required_pressure"), "Pa"),
+                 extreme_time_text(number_at(a, "t_largest_required_pressure"), error("t_largest_required_pressure")),
+                 small_margin_text(number_at(a, "smallest_margin"), error("smallest_margin")),
+                 x && y ? measured_text(slid, portable::hypot(*x, *y), "m") : quantity_text(slid, "m", 1e-3),
+                 x ? measured_text(area_lost, error("area_lost"), "m^2") : quantity_text(area_lost, "m^2", 1.0)});
+}
+
+void print_joints(std::ostream& out, const TabledRun& run) {
+  if (!run.summary.contains("joints")) return;
+  TextTable table({Align::left, Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::right});
   table.add_row({"", "verdict", "first slip", "largest p_req", "at", "margin", "slid", "area lost"});
-  for (const JointAssessment& a : joints) {
-    std::optional<JointErrors> e;
-    if (const auto& estimate = finished.report.estimate.errors)
-      e = joint_errors(a, *finished.report.run.loaded->system, finished.report.run.result, *estimate);
-    const auto error = [&e](double JointErrors::*which) { return e ? std::optional((*e).*which) : std::nullopt; };
-    const double slid = portable::hypot(a.slid_x, a.slid_y);
-    const auto slid_error = e ? std::optional(portable::hypot(e->slid_x, e->slid_y)) : std::nullopt;
-    table.add_row({a.joint, words_of(a.verdict), a.first_slip ? measured_time_text(*a.first_slip, error(&JointErrors::first_slip)) : "–",
-                   measured_text(a.largest_required_pressure, error(&JointErrors::largest_required_pressure), "Pa"),
-                   extreme_time_text(a.time_of_largest, error(&JointErrors::time_of_largest)),
-                   small_margin_text(a.smallest_margin, error(&JointErrors::smallest_margin)),
-                   e ? measured_text(slid, slid_error, "m") : quantity_text(slid, "m", 1e-3),
-                   e ? measured_text(a.area_lost, e->area_lost, "m^2") : quantity_text(a.area_lost, "m^2", 1.0)});
-  }
-  if (!joints.empty()) out << "\nStep-lap joints\n" << table;
-  for (const JointAssessment& a : joints) {
-    std::optional<JointErrors> e;
-    if (const auto& estimate = finished.report.estimate.errors)
-      e = joint_errors(a, *finished.report.run.loaded->system, finished.report.run.result, *estimate);
-    print_beside(out, a, e);
-  }
+  for (const auto& [joint, a] : run.summary.at("joints").items()) add_joint(table, joint, a);
+  out << "\nStep-lap joints\n" << table;
+  for (const auto& [joint, a] : run.summary.at("joints").items()) print_beside(out, joint, a);
 }
 
-std::string value_beside_limit(const CriterionResult& c) {
-  if (!c.value || !c.limit) return "";
-  return measured_text(*c.value, c.error, c.unit) + " (limit " + quantity_text(*c.limit, c.unit) + ")";
+std::string value_beside_limit(const Json& criterion) {
+  const auto value = optional_at(criterion, "value"), limit = optional_at(criterion, "limit");
+  if (!value || !limit) return "";
+  const std::string unit = text_at(criterion, "unit");
+  return measured_text(*value, optional_at(criterion, "error"), unit) + " (limit " + quantity_text(*limit, unit) + ")";
 }
 
-void print_second_opinion(std::ostream& out, const SecondOpinion& opinion, double end) {
-  out << "  Second opinion, " << opinion.method << ": ";
-  if (!opinion.disagreement.empty()) out << "disagrees\n";
-  else if (!opinion.none_because.empty()) out << "none; " << opinion.none_because << "\n";
-  else if (opinion.known_until < end * (1.0 - 1e-6)) out << "agrees up to t = " << quantity_text(opinion.known_until, "s") << " and cannot tell from there on\n";
-  else out << "agrees; the worst difference is " << small_text(opinion.worst_ratio) << " of what both errors allow\n";
+void print_second_opinion(std::ostream& out, const Json& opinion, double end) {
+  const double known_until = number_at(opinion, "known_until");
+  out << "  Second opinion, " << text_at(opinion, "method") << ": ";
+  if (!text_at(opinion, "disagreement").empty()) out << "disagrees\n";
+  else if (!text_at(opinion, "none_because").empty()) out << "none; " << text_at(opinion, "none_because") << "\n";
+  else if (known_until < end * (1.0 - 1e-6)) out << "agrees up to t = " << quantity_text(known_until, "s") << " and cannot tell from there on\n";
+  else out << "agrees; the worst difference is " << small_text(number_at(opinion, "worst_ratio")) << " of what both errors allow\n";
 }
 
-void print_judgement(std::ostream& out, const FinishedRun& finished) {
-  const Judgement& judgement = finished.report.judgement;
-  if (!judgement.distrust.empty()) out << "\nNOT TO BE TRUSTED: " << judgement.distrust << "\n";
-  if (!judgement.has_criteria) return;
-  out << "\nVerdict by the criteria of the model: " << name_of(judgement.verdict);
-  if (finished.report.run.failure) out << "; the run broke off, until then: " << name_of(judgement.so_far);
+void print_judgement(std::ostream& out, const TabledRun& run) {
+  if (!run.summary.contains("judgement")) return;
+  const Json &judgement = run.summary.at("judgement"), &criteria = judgement.at("criteria");
+  if (const std::string why = text_at(judgement, "distrust"); !why.empty()) out << "\nNOT TO BE TRUSTED: " << why << "\n";
+  if (criteria.empty()) return;
+  out << "\nVerdict by the criteria of the model: " << text_at(judgement, "verdict");
+  if (run.summary.contains("failure")) out << "; the run broke off, until then: " << text_at(judgement, "so_far");
   out << "\n";
-  for (const std::string& why : judgement.caps) out << "  It cannot be \"hold\": " << why << "\n";
+  for (const Json& why : judgement.at("capped_by")) out << "  It cannot be \"hold\": " << why.get<std::string>() << "\n";
   TextTable table({Align::left, Align::left, Align::left, Align::right, Align::right});
-  for (const CriterionResult& c : judgement.criteria)
-    table.add_row({c.name, c.text, c.outcome == Verdict::hold ? "met" : name_of(c.outcome), value_beside_limit(c),
-                   c.t ? "at " + extreme_time_text(*c.t, c.t_error) : ""});
+  for (const Json& c : criteria) {
+    const auto t = optional_at(c, "t");
+    const std::string outcome = text_at(c, "outcome");
+    table.add_row({text_at(c, "name"), text_at(c, "criterion"), outcome == name_of(Verdict::hold) ? "met" : outcome, value_beside_limit(c),
+                   t ? "at " + extreme_time_text(*t, optional_at(c, "error_t")) : ""});
+  }
   out << table;
-  for (const CriterionResult& c : judgement.criteria)
-    if (!c.doubt.empty()) out << "  '" << c.name << "', " << c.text << ": " << c.doubt << "\n";
-  const bool is_in_doubt = std::any_of(judgement.criteria.begin(), judgement.criteria.end(),
-                                       [](const CriterionResult& c) { return !c.doubt.empty(); });
-  if (!finished.report.estimate.errors) out << "  judged without the errors of the numbers: " << why_not_estimated(finished.report.estimate) << "\n";
+  bool is_in_doubt = false;
+  for (const Json& c : criteria) {
+    if (text_at(c, "doubt").empty()) continue;
+    out << "  '" << text_at(c, "name") << "', " << text_at(c, "criterion") << ": " << text_at(c, "doubt") << "\n";
+    is_in_doubt = true;
+  }
+  if (!run.has_errors()) out << "  judged without the errors of the numbers: " << why_not_estimated(run) << "\n";
   if (is_in_doubt) out << "  A smaller tolerance or step decides.\n";
-  if (finished.report.second_opinion) print_second_opinion(out, *finished.report.second_opinion, finished.report.run.result.final_state.t);
+  if (run.summary.contains("second_opinion")) print_second_opinion(out, run.summary.at("second_opinion"), number_at(run.summary.at("final_state"), "t"));
 }
 
 // "rk4, step 5e-05 s and 2.5e-05 s"
-std::string finer_text(const std::vector<SimulationOptions>& finer, const SimulationOptions& asked) {
-  std::string text = finer.back().integrator, before = ", step ";
-  if (finer.back().settings.step == asked.settings.step) return text + ", tolerance " + rounded_text(finer.back().settings.tolerance);
-  for (const SimulationOptions& options : finer) {
-    text += before + number_text(options.settings.step) + " s";
+std::string finer_text(const Json& finer, double step_asked) {
+  std::string text = text_at(finer.back(), "integrator"), before = ", step ";
+  if (number_at(finer.back(), "step") == step_asked) return text + ", tolerance " + rounded_text(number_at(finer.back(), "tolerance"));
+  for (const Json& options : finer) {
+    text += before + number_text(number_at(options, "step")) + " s";
     before = " and ";
   }
   return text;
 }
 
-// What moves and what is exchanged is rounding: it has no range by which an error could be measured.
-bool rests(const FinishedRun& f) {
-  const RunStatistics& s = f.report.run.result.statistics;
-  return s.energy_exchanged <= s.energy_rounding && f.report.run.loaded->system->kinetic_energy(f.report.run.result.final_state) <= s.energy_rounding;
-}
+bool rests(const TabledRun& run) { return run.summary.at("accuracy").at("rests").get<bool>(); }
 
-void print_global_error(std::ostream& out, const FinishedRun& finished) {
-  if (!finished.report.estimate.errors) return;
-  const GlobalErrorEstimate& estimate = *finished.report.estimate.errors;
-  if (rests(finished)) {
+void print_global_error(std::ostream& out, const TabledRun& run) {
+  if (!run.has_errors()) return;
+  const Json &estimate = run.summary.at("global_error"), &finer = estimate.at("finer_runs");
+  if (rests(run)) {
     out << "\nThe machine rests: nothing moves but by rounding, so that errors have no range to be measured by\n";
     return;
   }
-  if (!estimate.unknown_because.empty()) {
-    out << "\nGlobal error: unknown; " << estimate.unknown_because << "\n";
+  if (estimate.contains("unknown_because")) {
+    out << "\nGlobal error: unknown; " << text_at(estimate, "unknown_because") << "\n";
     return;
   }
-  const SimulationOptions asked = options_of(finished.report.run.loaded->model);
-  out << "\nGlobal error, estimated from " << (estimate.finer.size() > 1 ? "finer runs (" : "a finer run (")
-      << finer_text(estimate.finer, asked) << "); of each channel's range\n";
+  const double step_asked = number_at(estimate.at("run"), "step");
+  out << "\nGlobal error, estimated from " << (finer.size() > 1 ? "finer runs (" : "a finer run (") << finer_text(finer, step_asked) << "); of each channel's range\n";
   TextTable table({Align::left, Align::right, Align::left});
+  double largest = 0.0;
   for (std::size_t k = 0; k < k_error_kinds; ++k) {
-    const WorstError& worst = estimate.error.worst[k];
-    table.add_row({name_of(static_cast<ErrorKind>(k)), std::isnan(worst.value) ? "unknown" : small_text(worst.value),
-                   worst.where.empty() ? "" : worst.where + " at " + quantity_text(worst.t, "s")});
+    const char* const kind = name_of(static_cast<ErrorKind>(k));
+    const Json& worst = estimate.at(kind);
+    const double error = number_at(worst, "error");
+    const std::string where = text_at(worst, "where");
+    table.add_row({kind, std::isnan(error) ? "unknown" : small_text(error), where.empty() ? "" : where + " at " + quantity_text(number_at(worst, "t"), "s")});
+    if (!(error <= largest)) largest = error;
   }
   out << table;
-  const double times_tolerance = estimate.error.largest() / asked.settings.tolerance;
-  if (estimate.finer.back().settings.step == asked.settings.step && times_tolerance > 1.0)
+  const double times_tolerance = largest / number_at(estimate.at("run"), "tolerance");
+  if (number_at(finer.back(), "step") == step_asked && times_tolerance > 1.0)
     out << "  the largest is " << small_text(times_tolerance) << " times the tolerance, which is meant for each step\n";
-  if (estimate.error.unmatched_events > 0)
-    out << "  " << counted(static_cast<std::size_t>(estimate.error.unmatched_events), "event is", "events are") << " in one of the runs only: the run is not converged there\n";
+  if (const auto unmatched = estimate.at("unmatched_events").get<std::size_t>(); unmatched > 0)
+    out << "  " << counted(unmatched, "event is", "events are") << " in one of the runs only: the run is not converged there\n";
 }
 
 // Rows of the last table: name and how a run's value reads.
 struct Figure {
   std::string name;
-  std::string (*text)(const FinishedRun&);
+  std::function<std::string(const TabledRun&)> text;
 };
 
-const RunStatistics& statistics(const FinishedRun& f) {
-  return f.report.run.result.statistics;
-}
-
 // Of kinetic energy, work or dissipation, the balance of which is known to the residual.
-std::optional<double> exchanged_error(const FinishedRun& f) {
-  if (!f.report.estimate.errors) return {};
-  return larger_error(larger_error(*f.report.dissipated_error(), *f.report.work_error()), statistics(f).energy_residual);
+std::optional<double> exchanged_error(const Json& accuracy) {
+  const auto dissipated = error_at(accuracy, "error_dissipated"), work = error_at(accuracy, "error_work");
+  if (!dissipated || !work) return {};
+  return larger_error(larger_error(*dissipated, *work), number_at(accuracy, "energy_residual"));
 }
 
-const std::vector<Figure>& accuracy_and_cost() {
-  static const std::vector<Figure> figures{
-      {"energy residual",
-       [](const FinishedRun& f) { return small_text(statistics(f).energy_residual) + " J"; }},
-      {"energy exchanged",
-       [](const FinishedRun& f) { return measured_text(statistics(f).energy_exchanged, exchanged_error(f), "J"); }},
-      {"energy dissipated",
-       [](const FinishedRun& f) { return measured_text(statistics(f).dissipated, f.report.dissipated_error(), "J"); }},
-      {"energy residual, relative",
-       [](const FinishedRun& f) { return rests(f) ? "nothing is exchanged" : small_text(f.report.relative_energy_residual); }},
-      {"constraint residual, m or rad",
-       [](const FinishedRun& f) { return small_text(statistics(f).max_position_residual); }},
-      {"constraint residual, per s",
-       [](const FinishedRun& f) { return small_text(statistics(f).max_velocity_residual); }},
-      {"steps", [](const FinishedRun& f) { return std::to_string(statistics(f).steps); }},
-      {"steps rejected", [](const FinishedRun& f) { return std::to_string(statistics(f).rejections); }},
-      {"evaluations", [](const FinishedRun& f) { return std::to_string(statistics(f).evaluations); }},
-      {"CPU time", [](const FinishedRun& f) {
-         return quantity_text(1e3 * statistics(f).cpu_seconds, "ms");
-       }}};
+Figure residual(const char* name, const char* key, const char* unit = "") {
+  return {name, [key, unit](const TabledRun& run) { return small_text(number_at(run.summary.at("accuracy"), key)) + unit; }};
+}
+
+Figure count(const char* name, const char* key) {
+  return {name, [key](const TabledRun& run) { return std::to_string(run.summary.at("statistics").at(key).get<long>()); }};
+}
+
+std::vector<Figure> accuracy_and_cost(bool has_making) {
+  std::vector<Figure> figures{
+      residual("energy residual", "energy_residual", " J"),
+      {"energy exchanged", [](const TabledRun& run) {
+         const Json& accuracy = run.summary.at("accuracy");
+         return measured_text(number_at(accuracy, "energy_exchanged"), exchanged_error(accuracy), "J");
+       }},
+      {"energy dissipated", [](const TabledRun& run) {
+         const Json& accuracy = run.summary.at("accuracy");
+         return measured_text(number_at(accuracy, "dissipated"), error_at(accuracy, "error_dissipated"), "J");
+       }},
+      {"energy residual, relative", [](const TabledRun& run) {
+         return rests(run) ? "nothing is exchanged" : small_text(number_at(run.summary.at("accuracy"), "relative_energy_residual"));
+       }},
+      residual("constraint residual, m or rad", "max_position_residual"),
+      residual("constraint residual, per s", "max_velocity_residual"),
+      count("steps", "steps"),
+      count("steps rejected", "rejections"),
+      count("evaluations", "evaluations")};
+  if (has_making) figures.push_back({"CPU time", [](const TabledRun& run) { return quantity_text(1e3 * run.run.making->cpu_seconds, "ms"); }});
   return figures;
 }
 
-void print_place(std::ostream& out, const FinishedRun& finished) {
-  const Trajectory& trajectory = *finished.report.run.result.trajectory;
-  if (finished.folder.empty()) return;
-  const char* const part = !finished.report.run.failure ? "" : "partial_";
-  out << "Written to " << finished.folder << ": " << part << "trajectory.csv (" << counted(trajectory.size(), "row", "rows") << ", "
-      << counted(trajectory.channels().size(), "channel", "channels") << ")";
+void print_place(std::ostream& out, const ShownRun& run) {
+  if (!run.making) {
+    out << "Results: " << shown(run.folder) << "\n";
+    return;
+  }
+  const char* const part = run.summary.contains("failure") ? "partial_" : "";
+  out << "Written to " << run.folder << ": " << part << "trajectory.csv (" << counted(run.making->rows, "row", "rows") << ", "
+      << counted(run.making->channels, "channel", "channels") << ")";
   for (const char* file : {"events.csv", "summary.json", "model.toml", "drawing.json"}) out << ", " << part << file;
   out << "\n";
 }
 
-std::vector<std::string> cells(std::string name, const std::vector<FinishedRun>& runs,
-                               const std::function<std::string(const FinishedRun&)>& text) {
+using Tabled = std::vector<TabledRun>;
+
+std::vector<std::string> cells(std::string name, const Tabled& runs, const std::function<std::string(const TabledRun&)>& text) {
   std::vector<std::string> row{std::move(name)};
-  for (const FinishedRun& run : runs)
-    row.push_back(text(run));
+  for (const TabledRun& run : runs) row.push_back(text(run));
   return row;
 }
 
 // Names of the channels that any run tells of, in the order in which they come.
-template <class Predicate>
-std::vector<std::string> channel_names(const std::vector<FinishedRun>& runs, Predicate is_wanted) {
+template <class Predicate> std::vector<std::string> channel_names(const Tabled& runs, Predicate is_wanted) {
   std::vector<std::string> names;
-  for (const FinishedRun& run : runs)
-    for (const ChannelRange& range : run.report.ranges())
-      if (is_wanted(range) &&
-          std::find(names.begin(), names.end(), range.channel->name) == names.end())
-        names.push_back(range.channel->name);
+  std::unordered_set<std::string> known;
+  for (const TabledRun& run : runs)
+    for (const ShownRange& range : run.ranges)
+      if (is_wanted(range) && known.insert(range.name).second) names.push_back(range.name);
   return names;
 }
 
-// "lowest" and "highest" of a channel for each run, or the one further from zero.
-void add_range_row(TextTable& table, const std::vector<FinishedRun>& runs, const std::string& name) {
+// "lowest" and "highest" of a channel for each run.
+void add_range_row(TextTable& table, const Tabled& runs, const std::string& name) {
   std::vector<std::string> row{name};
-  for (const FinishedRun& run : runs) {
-    const ChannelRange* range = run.report.find(name);
-    row.push_back(range ? value_text(run.report, *range, range->low) : "–");
-    row.push_back(range ? value_text(run.report, *range, range->high) : "–");
+  for (const TabledRun& run : runs) {
+    const ShownRange* range = run.find(name);
+    row.push_back(range ? value_text(*range, range->low) : "–");
+    row.push_back(range ? value_text(*range, range->high) : "–");
   }
   table.add_row(row);
 }
 
-void print_side_by_side(std::ostream& out, const std::vector<FinishedRun>& runs, const std::vector<std::string>& names, const char* title) {
+void print_side_by_side(std::ostream& out, const Tabled& runs, const std::vector<std::string>& names, const char* title) {
   if (names.empty()) return;
   std::vector<Align> columns(2 * runs.size() + 1, Align::right);
   columns.front() = Align::left;
   TextTable table(columns);
   std::vector<std::string> models{""}, heads{""};
-  for (const FinishedRun& run : runs) {
-    models.insert(models.end(), {run.report.run.loaded->name, ""});
+  for (const TabledRun& run : runs) {
+    models.insert(models.end(), {run.name, ""});
     heads.insert(heads.end(), {"lowest", "highest"});
   }
   table.add_row(models);
   table.add_row(heads);
-  for (const std::string& name : names)
-    add_range_row(table, runs, name);
+  for (const std::string& name : names) add_range_row(table, runs, name);
   out << title << ", extremes of the whole run (their times: summary.json)\n" << table;
 }
 
-void print_requested_side_by_side(std::ostream& out, const std::vector<FinishedRun>& runs) {
+void print_requested_side_by_side(std::ostream& out, const Tabled& runs) {
   std::vector<std::string> names = channel_names(runs, is_requested);
   const std::size_t left_out = names.size() > k_most_requested ? names.size() - k_most_requested : 0;
   names.erase(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(left_out));
@@ -385,28 +452,33 @@ void print_requested_side_by_side(std::ostream& out, const std::vector<FinishedR
   if (left_out > 0) out << "  and " << left_out << " more: see summary.json\n";
 }
 
-} // namespace
-
-void print_run(std::ostream& out, const FinishedRun& finished) {
-  print_heading(out, finished);
-  print_events(out, finished);
-  print_reactions(out, finished.report);
-  print_slides(out, finished.report);
-  print_requested(out, finished.report);
-  print_joints(out, finished);
-  print_judgement(out, finished);
-  print_global_error(out, finished);
+void print_run(std::ostream& out, const ShownRun& shown) {
+  const TabledRun run(shown);
+  print_heading(out, run);
+  print_events(out, shown.events);
+  print_reactions(out, run);
+  print_slides(out, run);
+  print_requested(out, run);
+  print_joints(out, run);
+  print_judgement(out, run);
+  print_global_error(out, run);
   TextTable table({Align::left, Align::right});
-  for (const Figure& figure : accuracy_and_cost())
-    table.add_row({figure.name, figure.text(finished)});
+  for (const Figure& figure : accuracy_and_cost(shown.making.has_value())) table.add_row({figure.name, figure.text(run)});
   out << "\nAccuracy and cost\n" << table << "\n";
-  print_place(out, finished);
+  print_place(out, shown);
 }
 
-void print_comparison(std::ostream& out, const std::vector<FinishedRun>& runs) {
-  for (const FinishedRun& run : runs) {
+void print_comparison(std::ostream& out, const std::vector<ShownRun>& shown) {
+  Tabled runs;
+  runs.reserve(shown.size());
+  for (const ShownRun& run : shown) runs.emplace_back(run);
+  std::unordered_map<std::string, int> times;
+  for (const TabledRun& run : runs) ++times[run.name];
+  for (TabledRun& run : runs)
+    if (times[run.name] > 1) run.name = run.run.folder; // runs of one model
+  for (const TabledRun& run : runs) {
     print_heading(out, run);
-    print_events(out, run);
+    print_events(out, run.run.events);
     print_joints(out, run);
     print_judgement(out, run);
     print_global_error(out, run);
@@ -415,21 +487,26 @@ void print_comparison(std::ostream& out, const std::vector<FinishedRun>& runs) {
   std::vector<Align> columns(runs.size() + 1, Align::right);
   columns.front() = Align::left;
   TextTable table(columns);
-  table.add_row(cells("", runs, [](const FinishedRun& run) { return run.report.run.loaded->name; }));
-  for (const std::string& name :
-       channel_names(runs, [](const ChannelRange& r) { return is_slide(*r.channel); }))
-    table.add_row(cells(name + ", largest", runs, [&](const FinishedRun& run) -> std::string {
-      const ChannelRange* range = run.report.find(name);
-      return range ? value_text(run.report, *range, range->largest()) : "–";
+  table.add_row(cells("", runs, [](const TabledRun& run) { return run.name; }));
+  for (const std::string& name : channel_names(runs, [](const ShownRange& r) { return is_slide(r.name); }))
+    table.add_row(cells(name + ", largest", runs, [&](const TabledRun& run) -> std::string {
+      const ShownRange* range = run.find(name);
+      return range ? value_text(*range, range->largest()) : "–";
     }));
-  for (const Figure& figure : accuracy_and_cost())
-    table.add_row(cells(figure.name, runs, figure.text));
+  const bool have_making = std::all_of(shown.begin(), shown.end(), [](const ShownRun& run) { return run.making.has_value(); });
+  for (const Figure& figure : accuracy_and_cost(have_making)) table.add_row(cells(figure.name, runs, figure.text));
   print_side_by_side(out, runs, channel_names(runs, is_shown), "Reactions and required pressures");
   print_requested_side_by_side(out, runs);
   out << "\nSide by side\n" << table;
   out << "\n";
-  for (const FinishedRun& run : runs)
-    print_place(out, run);
+  for (const ShownRun& run : shown) print_place(out, run);
+}
+
+} // namespace
+
+void print_tables(std::ostream& out, const std::vector<ShownRun>& runs) {
+  if (runs.size() == 1) print_run(out, runs.front());
+  else print_comparison(out, runs);
 }
 
 } // namespace steplap

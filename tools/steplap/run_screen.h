@@ -1,20 +1,13 @@
-// What a run, or several side by side, came to: one screen.
+// The tables of a run, or of several side by side: all events, extremes, joints, criteria, errors and residuals.
 #pragma once
 
-#include "run/report.h"
+#include "tools/steplap/shown_run.h"
 
 #include <iosfwd>
 
 namespace steplap {
 
-/// A run and where its files are.
-struct FinishedRun {
-  Report report;
-  std::string folder;
-};
-
-void print_run(std::ostream& out, const FinishedRun& finished);
-/// Two or more: events one below the other, everything else in one table with a column for each run.
-void print_comparison(std::ostream& out, const std::vector<FinishedRun>& runs);
+/// Of two or more events stand one below the other, everything else in one table with a column for each run.
+void print_tables(std::ostream& out, const std::vector<ShownRun>& runs);
 
 } // namespace steplap

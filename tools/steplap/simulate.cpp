@@ -13,6 +13,7 @@
 #include "tools/steplap/progress.h"
 #include "tools/steplap/report.h"
 #include "tools/steplap/run_screen.h"
+#include "tools/steplap/shown_run.h"
 
 #include <algorithm>
 #include <charconv>
@@ -76,6 +77,12 @@ struct SimulateOptions {
   [[nodiscard]] std::string folder_of(const LoadedModel& loaded) const {
     return (std::filesystem::path(output) / loaded.name).string();
   }
+};
+
+/// A run and where its files are.
+struct FinishedRun {
+  Report report;
+  std::string folder;
 };
 
 using Models = std::vector<std::shared_ptr<const LoadedModel>>;
@@ -156,6 +163,15 @@ void check_step(const SimulateOptions& options, const Models& models) {
   }
 }
 
+void show_runs(const SimulateOptions& options, const std::vector<FinishedRun>& runs, Console& console) {
+  const bool has_tables = console.verbosity == Verbosity::verbose;
+  std::vector<ShownRun> shown;
+  for (const FinishedRun& run : runs)
+    shown.push_back(has_tables ? shown_run(run.report, run.folder) : overview_of_run(run.report, run.folder, options.shown_digits()));
+  if (has_tables) print_tables(console.out, shown);
+  else print_overviews(console.out, shown, options.shown_digits().is_full);
+}
+
 ExitCode simulate(const SimulateOptions& options, Console& console) {
   if (options.is_error_estimated && options.is_estimate_left_out)
     throw UsageError("--estimate-error and --no-estimate exclude each other");
@@ -193,16 +209,7 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
     write_report(folders, page_of(options, models), options.is_overwriting);
   }
   if (console.verbosity == Verbosity::quiet) return code;
-  if (console.verbosity != Verbosity::verbose) {
-    for (const FinishedRun& run : runs) {
-      if (&run != &runs.front()) console.out << "\n";
-      print_overview(console.out, run.report, run.folder, takes_colour(console.out), options.shown_digits());
-    }
-  } else if (models.size() == 1) {
-    print_run(console.out, runs.front());
-  } else {
-    print_comparison(console.out, runs);
-  }
+  show_runs(options, runs, console);
   if (options.is_reported) console.out << "Report: " << page_of(options, models) << "\n";
   return code;
 }
@@ -220,7 +227,7 @@ Command simulate_command() {
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --set body.tank.mass="48 t"
 Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv,
 summary.json and model.toml. The screen tells the verdict, what happened and what came nearest to its limit; with -v it has
-tables of all events and extremes, of several models beside each other. In files and tables all numbers stand with their estimated error, where that takes about a second of computing
+tables of all events and extremes, of several models beside each other. steplap show tells the same later, from the folder. In files and tables all numbers stand with their estimated error, where that takes about a second of computing
 or a few; else it is said what it would take, or when it was given up. If the computation fails, or Ctrl-C (SIGINT, SIGTERM, SIGHUP) stops it, what there is is saved
 as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends it at once.
 )";

@@ -19,7 +19,8 @@ bool is_build_wanted(const fs::path& build) {
   if (isatty(STDIN_FILENO) != 1 || isatty(STDERR_FILENO) != 1 || !fs::exists(build / "CMakeCache.txt")) return false;
   std::cerr << "Studies need a second program, which is not built yet. Build it now? This takes some minutes. [y/N] " << std::flush;
   std::string answer;
-  return std::getline(std::cin, answer) && (answer == "y" || answer == "Y" || answer == "yes");
+  if (!std::getline(std::cin, answer)) std::cerr << "\n"; // the end of input ends no line
+  return answer == "y" || answer == "Y" || answer == "yes";
 }
 
 // Without a shell: the folder may be called anything. False if it could not be built, which CMake says.
@@ -29,6 +30,7 @@ bool build_study_program(const fs::path& build) {
   char* arguments[] = {words[0].data(), words[1].data(), words[2].data(), words[3].data(), words[4].data(), nullptr};
   const pid_t child = fork();
   if (child == 0) {
+    dup2(STDERR_FILENO, STDOUT_FILENO); // the standard output is for what the study says
     execvp(arguments[0], arguments);
     _exit(127); // there is no cmake
   }

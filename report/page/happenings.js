@@ -1,0 +1,76 @@
+// What lifted, broke, came apart or slipped, marked where it did, from when it happens: by the sign of the timeline and in words. Where
+// there are many, only what broke or came apart has its sign: the others are told by colour (symbols.js), or they would hide the machine.
+// Friction that slips has its own words (symbols.js).
+(() => {
+  const make = steplap.make, { add, scaled } = steplap.geometry;
+  const most = 30, mostInWords = 5; // elements
+  const size = 16; // pixels of a sign
+  const grave = ['break', 'apart', 'open', 'slip'];
+  const past = { lifts: 'lifted', opens: 'opened', breaks: 'broke', 'comes apart': 'came apart', slips: 'slipped', tips: 'tips', 'loses an interface': 'lost an interface' };
+  const onFirst = new Set(['contact', 'faces', 'touch', 'edge_touch']); // of which the first place is that of what lifts
+
+  Object.assign(steplap.Scene.prototype, {
+    // Names of elements that slipped, opened or broke, and bodies that tipped: they are drawn in colour from when it happens. `story`: of
+    // the summary, which has the word for what each did.
+    setMoved(names, story = []) {
+      this.moved = new Set(names || []);
+      for (const { group } of this.happenings || []) group.remove();
+      const wordOf = (name) => story.find((entry) => entry.what in past && (entry.who || []).includes(name));
+      const found = [...this.moved].map((name) => ({ name, told: wordOf(name), place: this.happeningPlace(name) })).filter((h) => h.place && steplap.signs);
+      const isFew = found.length <= mostInWords, isGrave = ({ name }) => this.run.events.some((e) => e[1] === name && ['break', 'apart'].includes(e[4]));
+      this.happenings = (isFew ? found : found.filter(isGrave)).slice(0, most).map((h) => ({ ...h, isInWords: isFew, ...this.happeningMark(h.name) }));
+    },
+    // Of an element its first place or the middle of its places, of a body that tips its centre of gravity.
+    happeningPlace(name) {
+      const element = this.byName.get(name), shapes = element ? this.elements.find((e) => e.name === name)?.shapes || [] : [];
+      if (!element) return this.bodies.has(name) ? (pose) => pose(name).slice(0, 2) : null;
+      if (shapes.some((shape) => shape.type === 'friction') && !this.run.events.some((e) => e[1] === name && ['break', 'apart', 'open'].includes(e[4]))) return null; // its words say it
+      const at = (shapes[0] && shapes[0].at.length ? shapes[0].at : element.at || []), places = shapes[0] && onFirst.has(shapes[0].type) ? at.slice(0, 1) : at;
+      return places.length ? (pose) => scaled(places.map((p) => this.placed(p, pose)).reduce(add), 1 / places.length) : null;
+    },
+    happeningMark(name) {
+      const text = make('text', { class: 'state-text slips' }), group = make('g', { class: 'happening', 'data-happened': name }, make('title', {}, name));
+      group.append(text);
+      this.textLayer.append(group);
+      return { group, text, sign: null };
+    },
+    // The gravest that happened to it up to t, and whether it is so at t; null before.
+    happenedTo({ name, told }, t) {
+      if (this.bodies.has(name) && !this.byName.has(name)) return told && t >= told.from ? { role: 'tip', word: 'tips' } : null;
+      const own = this.run.events.filter((e) => e[1] === name && e[0] <= t), role = grave.find((r) => own.some((e) => e[4] === r));
+      if (!role) return null;
+      const last = own.filter((e) => ['open', 'close', 'strike', 'slip', 'stick', 'free'].includes(e[4])).pop();
+      const what = { break: 'breaks', apart: 'comes apart', open: told && told.what === 'lifts' ? 'lifts' : 'opens', slip: 'slips' }[role];
+      const isNow = (role === 'open' && last[4] === 'open') || (role === 'slip' && this.run.modeAt(name, t) === 2);
+      return { role, word: isNow ? what : past[what] };
+    },
+    showHappenings(t, pose) {
+      for (const h of this.happenings || []) {
+        const now = this.happenedTo(h, t), { group, text } = h;
+        group.style.display = now ? '' : 'none';
+        text.textContent = now && h.isInWords ? `${h.name} ${now.word}` : '';
+        if (!now) continue;
+        if (h.role !== now.role) {
+          if (h.sign) h.sign.remove();
+          h.role = now.role;
+          h.sign = steplap.signs.mark(now.role, 0, 0, size);
+          group.append(h.sign);
+        }
+        const words = text.textContent ? 8.4 * text.textContent.length + 6 : 0, width = size + words, [x, y] = this.toScreen(h.place(pose));
+        const place = this.symbols.room([x, y], [width, size + 2], steps(width)) || this.symbols.room([x, y], [size, size + 2], steps(size));
+        const isFull = place && words > 0 && place.size[0] === width;
+        if (!isFull) text.textContent = '';
+        const at = place ? place.at : [x, y];
+        h.sign.setAttribute('transform', `translate(${(at[0] - (isFull ? 0.5 * words : 0)).toFixed(1)} ${at[1].toFixed(1)})`);
+        text.setAttribute('x', (at[0] - 0.5 * width + size + 4).toFixed(1));
+        text.setAttribute('y', (at[1] + 4.5).toFixed(1));
+      }
+    },
+  });
+  // Above, beside, below; further out where there is no room.
+  function steps(width) {
+    const ways = [];
+    for (const dy of [-18, 18, -36, 36, 0, -54, 54, -72, 72, -90, 90]) for (const dx of [0, 0.6, -0.6]) if (dx || dy) ways.push([dx * width, dy]);
+    return ways;
+  }
+})();
