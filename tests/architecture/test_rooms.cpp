@@ -51,7 +51,7 @@ std::vector<Source> all_sources() {
 }
 
 // What cmake/install.cmake leaves out.
-const std::vector<std::string> k_not_installed = {"record/", "tools/", "study/", "report/", "assess/", "run/ordered_json.h", "run/summary.h"};
+const std::vector<std::string> k_not_installed = {"record/", "tools/", "study/", "report/", "python/", "assess/", "run/ordered_json.h", "run/summary.h"};
 
 // The longest room that the path lies in; −1: none.
 int room_of(const std::string& path) {
