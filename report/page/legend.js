@@ -34,7 +34,9 @@
       this.put(this.motionText, motion, this.width - 10, y + 4, 'end');
       const from = this.seenFrom && this.seenFrom !== 'ground' ? `seen from ${this.seenFrom}` : '';
       const room = this.width - (left + width + 70) - 6.6 * motion.length - 40;
-      this.put(this.seenText, from && 6.6 * from.length < room ? from : '', left + width + 70 + 0.5 * Math.max(0, room), y + 4, 'middle');
+      const { shown, all } = this.symbols.shownValues, values = shown < all ? `${shown} of ${all} values; closer for more` : '';
+      const note = [values, from].find((text) => text && 6.6 * text.length < room) || '';
+      this.put(this.seenText, note, left + width + 70 + 0.5 * Math.max(0, room), y + 4, 'middle');
     },
     usualOf() {
       if (!this.usuals) this.usuals = new Map();

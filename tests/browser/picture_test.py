@@ -47,6 +47,9 @@ NUMBERS = """const scene = steplap.page.scenes[arguments[0]]; scene.svg.scrollIn
 # How far each arrow of a drive stays inside the picture, pixels.
 ARROWS = """const scene = steplap.page.scenes[arguments[0]], s = scene.svg.getBoundingClientRect();
     return [...scene.svg.querySelectorAll('.drive:not(.arc)')].map((e) => e.getBoundingClientRect()).filter((r) => r.width + r.height > 0).map((r) => Math.min(r.left - s.left, r.top - s.top, s.right - r.right, s.bottom - r.bottom))"""
+# Boxes of the values that are written beside forces, of the numbers of bodies and of what the picture marks as having happened.
+WRITTEN = """return [...steplap.page.scenes[0].svg.querySelectorAll('.value-text, .number-mark, .state-text')].map((e) => [e, e.getBoundingClientRect()])
+    .filter(([e, r]) => r.width > 0).map(([e, r]) => [e.dataset.valueOf || '', e.textContent, r.left, r.top, r.right, r.bottom])"""
 # What the picture marks as having happened: element, sign, words.
 HAPPENED = """return [...document.querySelectorAll('.happening')].filter((e) => e.style.display !== 'none').map((e) => [e.dataset.happened, e.querySelector('[data-sign]').dataset.sign, e.querySelector('text').textContent])"""
 
@@ -169,6 +172,28 @@ class GalleryTest(base.Page):
         self.run_js("steplap.page.show(steplap.data.runs[0].end)")
         self.assertEqual(self.run_js(HAPPENED), [])
         self.assertGreater(self.run_js("return steplap.page.scenes[0].moved.size"), 5)
+
+    def test_values_leave_each_other_room(self):
+        self.open("gallery_pile.html")
+        self.find("#values").click()
+        for part in (0.3, 0.5, 1):
+            self.run_js("steplap.page.show(arguments[0] * steplap.data.runs[0].end)", part)
+            found = self.run_js(WRITTEN)
+            values = [f[:2] for f in found if f[0]]
+            self.assertGreater(len(values), 8, part)
+            for i, (_, name, *a) in enumerate(found):
+                for _, other, *b in found[:i]:
+                    apart = a[0] >= b[2] - 0.5 or b[0] >= a[2] - 0.5 or a[1] >= b[3] - 2 or b[1] >= a[3] - 2  # digits are lower than their box
+                    self.assertTrue(apart, (part, name, other, a, b))
+            # The largest force has its value, and the picture says how many are left out.
+            t, largest = self.run_js("""const run = steplap.data.runs[0], t = steplap.page.time(), s = steplap.page.scenes[0];
+                const forces = [...s.svg.querySelectorAll('.force')].map((e) => run.channel(`${e.dataset.element}.normal`)).filter(Boolean).map((c) => [c.at(t), c.name]);
+                return [t, forces.sort((a, b) => b[0] - a[0])[0][1]]""")
+            self.assertIn(largest.rsplit(".", 1)[0], [v[0] for v in values], (part, t))
+            shown, all_ = self.run_js("return [steplap.page.scenes[0].symbols.shownValues.shown, steplap.page.scenes[0].symbols.shownValues.all]")
+            self.assertEqual(shown, len(values))
+            if shown < all_:
+                self.assertEqual(self.find(".seen-text").text, f"{shown} of {all_} values; closer for more")
 
     def test_what_broke_is_marked(self):
         data = os.path.join(os.path.dirname(MODELS), "tests", "data", "cores", "tie_that_breaks_first.toml")
