@@ -173,6 +173,34 @@ class GalleryTest(base.Page):
         self.assertEqual(self.run_js(HAPPENED), [])
         self.assertGreater(self.run_js("return steplap.page.scenes[0].moved.size"), 5)
 
+    def test_between_states_far_apart_the_picture_says_that_it_is_not_the_motion(self):
+        note = lambda t: (self.run_js("steplap.page.show(arguments[0])", t), self.find(".seen-text").text)[1]
+        self.open("gallery_pile.html")  # states each 10 s, all falls within three
+        self.assertEqual(self.run_js("return steplap.page.time()"), 0)
+        self.assertIn("not the motion", note(0.25))
+        self.assertEqual(note(10), "")
+        self.open("gallery_no_interference.html")
+        for t in (0.0503, 0.1218, 0.3):
+            self.assertEqual(note(t), "seen from lower tank")
+
+    def test_without_limits_the_page_opens_at_the_first_event_told_of(self):
+        found = 0
+        for model in self.models:
+            self.show_model(model)
+            worst, told, is_guessed, t = self.run_js("""const runs = steplap.data.runs, story = steplap.overview.of(runs[0]).story.map((e) => e.from), worst = steplap.overview.worstOf(runs);
+                const first = story.length ? Math.min(...story) : 0; return [worst, first, steplap.page.scenes[0].isGuessed(worst ?? first), steplap.page.time()]""")
+            if not is_guessed:
+                self.assertAlmostEqual(t, told if worst is None else worst, delta=1e-12, msg=model)
+            found += worst is None and told > 0
+        self.assertGreater(found, 0)
+
+    def test_the_bar_of_friction_that_slips_is_no_criterion(self):
+        self.open("gallery_no_interference.html")
+        found = {name: (text, style) for name, text, style in self.run_js("""return [...document.querySelectorAll('.utilisation')].map((u) =>
+            ['.who', '.of-limit', '.percent'].map((s, i) => i < 2 ? u.querySelector(s).textContent : u.querySelector(s).className))""")}
+        self.assertEqual(found["tank bottom: friction"], ("it slips", "percent slid"))
+        self.assertEqual({style for _, style in found.values()}, {"percent slid", "percent good"})  # the verdict is "hold"
+
     def test_values_leave_each_other_room(self):
         self.open("gallery_pile.html")
         self.find("#values").click()
