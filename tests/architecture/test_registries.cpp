@@ -83,7 +83,8 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
   // Names that are words of others, too, or that somebody asks for all the same.
   const std::map<std::string, Reasons> besides = {
       {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"study/needs.cpp", "what is made rigid is welded"}}},
-      {"limit", {{"run/report_json.cpp", "of a criterion"}, {"tools/steplap/run_screen.cpp", "of a criterion"}}},
+      {"limit", {{"run/report_json.cpp", "of a criterion"}, {"tools/steplap/run_screen.cpp", "of a criterion"}, {"assess/static_json.cpp", "of a criterion"}}},
+      {"load", {{"assess/static_json.cpp", "an acceleration of a proof"}}},
       {"rope", {{"run/story.cpp", "what a rope does is told in words of its own: it goes slack"}}},
       {"distance", {{"elements/motor.cpp", "a coordinate"}, {"elements/prescribed_motion.cpp", "a coordinate"},
                     {"elements/limit.cpp", "a coordinate"}, {"elements/joint_friction.cpp", "a coordinate"}}},
