@@ -215,7 +215,7 @@ class GalleryTest(base.Page):
                     self.assertTrue(apart, (part, name, other, a, b))
             # The largest force has its value, and the picture says how many are left out.
             t, largest = self.run_js("""const run = steplap.data.runs[0], t = steplap.page.time(), s = steplap.page.scenes[0];
-                const forces = [...s.svg.querySelectorAll('.force')].map((e) => run.channel(`${e.dataset.element}.normal`)).filter(Boolean).map((c) => [c.at(t), c.name]);
+                const forces = [...s.svg.querySelectorAll('.force')].map((e) => run.channel(`${e.dataset.element}.force`)).filter(Boolean).map((c) => [c.at(t), c.name]);
                 return [t, forces.sort((a, b) => b[0] - a[0])[0][1]]""")
             self.assertIn(largest.rsplit(".", 1)[0], [v[0] for v in values], (part, t))
             shown, all_ = self.run_js("return [steplap.page.scenes[0].symbols.shownValues.shown, steplap.page.scenes[0].symbols.shownValues.all]")
