@@ -11,7 +11,7 @@ namespace {
 
 // Onsets are followed down to k_onset_time or to this times the cube root of the tolerance, s: by the third power of that time
 // positions are off (docs/explanation/limit_surface.md, section 7).
-constexpr double k_onset_share = 2.5e-4;
+constexpr double k_onset_share = 2.5e-4, k_most_onset_time = 2.5e-6;
 constexpr double k_start_reach = 4.0; // |ν|/δ at which a slip no longer counts as starting
 // |ν|/δ from which on it moves: up to there, backward motion is an error of the first steps unless it is this share
 // of δ.
@@ -19,7 +19,7 @@ constexpr double k_moving = 0.2, k_backward = 0.2;
 constexpr double k_cone = 0.5;        // cosine of the cone about the direction last looked at
 // |ν| over grip acceleration from which on a slip ends, s: k_end_time, or this times the tolerance, at most the other. What that
 // misses is this time, times what the direction had still to turn by.
-constexpr double k_end_share = 1e-2, k_most_end_time = 1e-7;
+constexpr double k_end_share = 1e-2, k_most_end_time = 1e-8;
 constexpr double k_no_end = 2.0;      // times that |ν|: it has not come to rest after all
 // |ν| over speeds to which rounding leaves it a direction; that time over t at which steps are still far from rounding.
 constexpr double k_rounding = 2.5e-13, k_time_rounding = 2e-12;
@@ -39,7 +39,7 @@ bool is_ending(const FrictionState& state) { return !state.is_starting && state.
 } // namespace
 
 void StepLapFriction::Scratch::follow(double tolerance) {
-  onset_time = std::max(k_onset_time, k_onset_share * portable::pow(tolerance, 1.0 / 3.0));
+  onset_time = std::clamp(k_onset_share * portable::pow(tolerance, 1.0 / 3.0), k_onset_time, k_most_onset_time);
   end_time = std::clamp(k_end_share * tolerance, k_end_time, k_most_end_time);
 }
 
