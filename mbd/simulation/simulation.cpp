@@ -5,6 +5,7 @@
 #include "mbd/dynamics/parts.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
+#include "mbd/system/slip_scratch.h"
 #include "mbd/base/number_text.h"
 #include "mbd/integrators/explicit_pair.h"
 #include "mbd/model/method.h"
@@ -103,6 +104,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
     dynamics_.show_integrals(ledger_.get());
   }
   integrator_->expect_looks(extremes_ || ledger_ || options_.output_step > 0.0);
+  if (integrator_->is_adaptive()) tell_slip_laws(dynamics_.evaluation(), options_.settings.tolerance, system.frictions.size());
   restart();
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
   if (options_.output_step > 0.0) record_sample(state_.t);
