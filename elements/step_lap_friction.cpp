@@ -78,11 +78,18 @@ struct StepLapFriction::Fit {
     has_capacity = true;
   }
 
-  /// For whoever the bounds by the capacity do not satisfy: many a joint that holds never comes to that.
+  /// For whoever the bounds by the capacity do not satisfy: many a joint that holds never comes to that. A patch of its own: with a table
+  /// sums have another order, and what others get from `patch` must not hang on whether somebody has asked for the table.
   const Patch& tabulated() {
-    patch.prepare();
-    return patch;
+    if (has_table) return table;
+    table = patch;
+    table.prepare();
+    has_table = true;
+    return table;
   }
+
+  Patch table; ///< `patch` prepared
+  bool has_table = false;
 };
 
 struct StepLapFriction::Scratch final : FrictionScratch {
@@ -91,6 +98,7 @@ struct StepLapFriction::Scratch final : FrictionScratch {
   Fit fits[2];
   Vec3 asked = Vec3::Zero(); ///< wrench of the last usage(), at this pose
   Pose asked_at;
+  bool was_stuck = false; ///< then: the answer came from the table
   RequiredPressure answer;
   PressureState pressed; ///< at the last usage()
   OverlapLoss lost; ///< at this pose
@@ -237,11 +245,14 @@ StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, cons
   const bool is_same =
       f.is_valid && f.pose.x == pose.x && f.pose.y == pose.y && f.pose.theta == pose.theta && f.tilt == tilt;
   if (is_same) return f;
+  const bool is_reference = &f == &own.fits[0] && reference_ && reference_->tilt == tilt && reference_->pose.x == pose.x &&
+                            reference_->pose.y == pose.y && reference_->pose.theta == pose.theta;
+  if (is_reference) return f = *reference_; // as at the start, whatever has been looked at in between
   build(pose, law, tilt, own.workspace, own.region, f.patch);
   f.pose = pose;
   f.tilt = tilt;
   f.is_valid = true;
-  f.has_capacity = false;
+  f.has_capacity = f.has_table = false;
   return f;
 }
 
@@ -347,14 +358,15 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const Vec3 w = wrench(s);
   const Pose pose = present(s);
   const PressureState now = pressure_at(s.t);
+  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y &&
                        own.asked_at.theta == pose.theta && own.pressed.factor == now.factor &&
-                       own.pressed.tilt == now.tilt;
+                       own.pressed.tilt == now.tilt && own.was_stuck == is_stuck;
   if (is_same) return own.answer;
   Fit& f = fit(s.evaluation->scratch, pose, GripLaw::holding, now.tilt);
-  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
   own.answer = required(is_stuck ? f.tabulated() : f.patch, w / now.factor, s.t);
   own.pressed = now;
+  own.was_stuck = is_stuck;
   own.asked = w;
   own.asked_at = pose;
   return own.answer;

@@ -3,6 +3,7 @@
 #include "mbd/integrators/methods.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/simulation/channel_rates.h"
+#include "mbd/simulation/node_polynomial.h"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +20,7 @@ double shortest_period(const System& system, double t) {
   return 2.0 * std::numbers::pi / system.fastest_at(t);
 }
 
-constexpr int k_last = 8; // node at the stretch's end
+constexpr int k_last = NodePolynomial::k_last; // node at the stretch's end
 constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
 
 // What the second difference of three ends leaves out: a bend three times as strong is allowed for.
@@ -28,7 +29,7 @@ constexpr double k_surprise = 3.0;
 constexpr double k_remembered = 0.5;
 constexpr double k_looks_per_period = 8.0; // of the quickest load
 constexpr int k_most_sections = 40;
-constexpr double k_fine = 3e-4, k_about = 1e-3; // of a stretch, near the top of a polynomial
+constexpr double k_bit_of_slack = 0.1; // by which a polynomial's top is found
 constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
 constexpr double k_same_crossing = 1e-10; // of a stretch
 // So many channels are followed each for itself without asking whether what they do is rounding.
@@ -41,30 +42,6 @@ constexpr double k_golden = 0.3819660112501051;
 // Error of a straight line through two ends against the third, of a channel's range: below and above which the
 // stretches of a fixed-step method become longer and shorter.
 constexpr double k_well_resolved = 0.01, k_badly_resolved = 0.05;
-
-double node_theta(int node) {
-  return 0.5 * (1.0 - portable::cos(std::numbers::pi * node / k_last));
-}
-
-// Nodes of levels 1, 2, 3: every fourth, second, every one; barycentric weights of Chebyshev and Lobatto.
-constexpr int spacing(int level) { return 8 >> level; }
-
-// Made before main(): threads that run side by side find it made.
-const std::array<double, k_last + 1> k_thetas = [] {
-  std::array<double, k_last + 1> t{};
-  for (int i = 0; i <= k_last; ++i) t[i] = node_theta(i);
-  return t;
-}();
-
-// Vertex of the parabola through three points; the middle one if it has none.
-Extreme vertex(const Extreme& a, const Extreme& b, const Extreme& c) {
-  const double p = (b.value - a.value) / (b.t - a.t), q = (c.value - b.value) / (c.t - b.t);
-  const double bend = (q - p) / (c.t - a.t);
-  if (!(std::abs(bend) > 0.0)) return b;
-  const double slope = p + bend * (b.t - a.t); // at b
-  const double shift = std::clamp(-0.5 * slope / bend, a.t - b.t, c.t - b.t);
-  return {b.value + shift * (slope + bend * shift), b.t + shift};
-}
 
 } // namespace
 
@@ -336,31 +313,28 @@ bool ExtremeFinder::suspect(double h) {
 
 // --- inside a stretch ---------------------------------------------------------------------------------------------
 
-double ExtremeFinder::interpolate(std::size_t c, int level, double theta) const {
-  const int step = spacing(level);
-  double above = 0.0, below = 0.0, sign = 1.0;
-  for (int i = 0; i <= k_last; i += step) {
-    const double distance = theta - k_thetas[i];
-    if (distance == 0.0) return at(c, i);
-    const double weight = (i == 0 || i == k_last ? 0.5 : 1.0) * sign / distance;
-    above += weight * at(c, i);
-    below += weight;
-    sign = -sign;
-  }
-  return above / below;
+// Through the values of channel c at the nodes of a level; times `sign`.
+static NodePolynomial through_nodes(const std::vector<std::vector<double>>& nodes, std::size_t c, int level, double sign) {
+  NodePolynomial::Values values;
+  for (int i = 0, place = 0; place <= k_last; ++i, place += NodePolynomial::spacing(level)) values[i] = sign * nodes[place][c];
+  return {level, values};
 }
+
+double ExtremeFinder::interpolate(std::size_t c, int level, double theta) const { return through_nodes(node_, c, level, 1.0).at(theta); }
 
 // Is channel c done with after the nodes of `level`? If its polynomial is exact enough its extremes are noted.
 bool ExtremeFinder::settle(std::size_t c, int level) {
-  const int step = spacing(level);
+  const int step = NodePolynomial::spacing(level);
   const double slack = tolerance(c);
   const ChannelRange& r = ranges_[c];
   // What the polynomial of half the degree was off by at the new nodes; of a smooth curve twice as many nodes square
   // the share that is missed.
   double least = at(c, 0), most = at(c, 0);
+  bool is_finite = std::isfinite(at(c, 0));
   for (int i = step; i <= k_last; i += step) {
     least = std::min(least, at(c, i));
     most = std::max(most, at(c, i));
+    is_finite = is_finite && std::isfinite(at(c, i));
   }
   const double spread = most - least;
   const double error = level > 1 && spread > 0.0 ? curve_[c].error * std::min(1.0, curve_[c].error / spread) : curve_[c].error;
@@ -370,48 +344,25 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
     for (int i = step; i <= k_last; i += step)
       if (sign * at(c, i) > sign * at(c, best)) best = i;
     if (!std::isfinite(at(c, best))) continue;
-    const int middle = std::clamp(best, step, k_last - step), low = middle - step, high = middle + step;
-    const auto point = [&](int i) { return Extreme{at(c, i), k_thetas[i]}; };
-    const Extreme top = vertex(point(low), point(middle), point(high));
-    const double gain = std::max(0.0, sign * (top.value - at(c, best)));
-    // Beyond the nodes by more than anybody asks for?
-    if (sign * at(c, best) + 2.0 * gain + error <= record + slack) continue;
-    if (2.0 * gain + error <= slack) continue;
+    if (!is_finite) return false;
+    // In whichever gap between nodes: beyond the record by more than anybody asks for?
+    const double bit = k_bit_of_slack * slack;
+    const std::optional<NodePolynomial::Top> top = through_nodes(node_, c, level, sign).top_above(record + slack - bit - error, bit);
+    if (!top || top->value + bit + error <= record + slack) continue;
     if (error > slack) return false;
     // Beyond its pole's bound it is followed by its size, which the nodes have told: between them a polynomial of one over
     // rounding may have any sign.
     if (ranges_[c].channel->unit.empty() && std::abs(at(c, best)) > k_at_pole) continue;
-    double a = k_thetas[low], b = k_thetas[high];
-    double p = a + k_golden * (b - a), q = b - k_golden * (b - a);
-    double at_p = sign * interpolate(c, level, p), at_q = sign * interpolate(c, level, q);
-    while (b - a > k_fine) {
-      if (at_p > at_q) {
-        b = q;
-        q = p;
-        at_q = at_p;
-        at_p = sign * interpolate(c, level, p = a + k_golden * (b - a));
-      } else {
-        a = p;
-        p = q;
-        at_p = at_q;
-        at_q = sign * interpolate(c, level, q = b - k_golden * (b - a));
-      }
-    }
-    // The last digits by a parabola about it.
-    const double x = std::clamp(at_p > at_q ? p : q, k_about, 1.0 - k_about);
-    const auto about = [&](double theta) { return Extreme{sign * interpolate(c, level, theta), theta}; };
-    const Extreme last = vertex(about(x - k_about), about(x), about(x + k_about));
-    const Extreme found = last.value > std::max(at_p, at_q) ? last : at_p > at_q ? Extreme{at_p, p} : Extreme{at_q, q};
-    note(c, sign * found.value, t_ + found.t * (t1_ - t_));
+    note(c, sign * top->value, t_ + top->theta * (t1_ - t_));
   }
   return true;
 }
 
 void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics) {
-  const int step = spacing(level);
+  const int step = NodePolynomial::spacing(level);
   for (const std::size_t c : open_) curve_[c].error = level == 1 && h_last_ == 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
   for (int i = step; i < k_last; i += 2 * step) {
-    const double theta = k_thetas[i];
+    const double theta = NodePolynomial::theta(i);
     const Snapshot snapshot = look(theta, integrator, dynamics);
     for (const std::size_t c : open_) {
       take(c, t_ + theta * (t1_ - t_), snapshot, node_[i].data());
@@ -460,7 +411,7 @@ void ExtremeFinder::drop_jittery(Integrator& integrator, Dynamics& dynamics) {
   for (int probe = 0; probe < k_most_probes && open_.size() > k_few; ++probe) {
     for (std::size_t place = 0; place < k_places; ++place) {
       const int node = 2 * static_cast<int>(place) + 1;
-      const double theta = k_thetas[node] + (probe + 1) * k_hair;
+      const double theta = NodePolynomial::theta(node) + (probe + 1) * k_hair;
       const Snapshot snapshot = look(theta, integrator, dynamics);
       for (std::size_t k = 0; k < open_.size(); ++k) {
         take(open_[k], t_ + theta * (t1_ - t_), snapshot, scratch_.data());
@@ -490,35 +441,49 @@ bool ExtremeFinder::is_jitter(std::size_t c, double change) {
   return true;
 }
 
-// Golden section about the outermost node, on the motion itself.
+// Where golden sections look for a top: about every node that is higher than those beside it, the highest first.
+static int tops_of(const std::vector<std::vector<double>>& nodes, std::size_t c, double sign, std::array<int, k_last - 1>& middles) {
+  int count = 0;
+  for (int middle = 1; middle < k_last; ++middle) {
+    const auto is_below = [&](int i) { return !(sign * nodes[i][c] > sign * nodes[middle][c]); };
+    // Beside an end that is the highest the curve may go on rising.
+    const bool is_top = (is_below(middle - 1) || middle == 1) && (is_below(middle + 1) || middle == k_last - 1);
+    if (is_top) middles[count++] = middle;
+  }
+  std::sort(middles.begin(), middles.begin() + count, [&](int i, int j) { return sign * nodes[i][c] > sign * nodes[j][c]; });
+  return count;
+}
+
+// Golden sections, on the motion itself.
 void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dynamics) {
   double* const values = scratch_.data();
   for (const double sign : {1.0, -1.0}) {
-    int best = 0;
-    for (int i = 1; i <= k_last; ++i)
-      if (sign * at(c, i) > sign * at(c, best) || std::isnan(at(c, best))) best = i;
-    const int middle = std::clamp(best, 1, k_last - 1);
-    const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
-    const double spread = spread_about(c, middle);
-    if (!(sign * at(c, best) + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
-    double a = k_thetas[middle - 1], b = k_thetas[middle + 1];
-    const auto value = [&](double theta) {
-      take(c, t_ + theta * (t1_ - t_), look(theta, integrator, dynamics), values);
-      return sign * values[c];
-    };
-    double p = a + k_golden * (b - a), q = b - k_golden * (b - a), at_p = value(p), at_q = value(q);
-    for (int i = 0; i < k_most_sections && b - a > k_same_place; ++i) {
-      const bool is_left = at_p > at_q;
-      if (std::abs(at_p - at_q) <= 0.01 * tolerance(c) && b - a < 0.01) break;
-      (is_left ? b : a) = is_left ? q : p;
-      if (is_left) {
-        q = p;
-        at_q = at_p;
-        at_p = value(p = a + k_golden * (b - a));
-      } else {
-        p = q;
-        at_p = at_q;
-        at_q = value(q = b - k_golden * (b - a));
+    std::array<int, k_last - 1> middles;
+    const int count = tops_of(node_, c, sign, middles);
+    for (int top = 0; top < count; ++top) {
+      const int middle = middles[top];
+      const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
+      const double spread = spread_about(c, middle), highest = std::max({sign * at(c, middle - 1), sign * at(c, middle), sign * at(c, middle + 1)});
+      if (!(highest + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
+      double a = NodePolynomial::theta(middle - 1), b = NodePolynomial::theta(middle + 1);
+      const auto value = [&](double theta) {
+        take(c, t_ + theta * (t1_ - t_), look(theta, integrator, dynamics), values);
+        return sign * values[c];
+      };
+      double p = a + k_golden * (b - a), q = b - k_golden * (b - a), at_p = value(p), at_q = value(q);
+      for (int i = 0; i < k_most_sections && b - a > k_same_place; ++i) {
+        const bool is_left = at_p > at_q;
+        if (std::abs(at_p - at_q) <= 0.01 * tolerance(c) && b - a < 0.01) break;
+        (is_left ? b : a) = is_left ? q : p;
+        if (is_left) {
+          q = p;
+          at_q = at_p;
+          at_p = value(p = a + k_golden * (b - a));
+        } else {
+          p = q;
+          at_p = at_q;
+          at_q = value(q = b - k_golden * (b - a));
+        }
       }
     }
   }
