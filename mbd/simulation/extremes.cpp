@@ -1,7 +1,6 @@
 #include "mbd/simulation/extremes.h"
 
 #include "mbd/integrators/methods.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/simulation/channel_rates.h"
 #include "mbd/simulation/node_polynomial.h"
 
@@ -29,6 +28,7 @@ constexpr double k_surprise = 3.0;
 constexpr double k_remembered = 0.5;
 constexpr double k_looks_per_period = 8.0; // of the quickest load
 constexpr int k_most_sections = 40;
+constexpr double k_within_reach = 0.25; // of a channel's range: what lies further from both extremes is left where it may not bend so much
 constexpr double k_bit_of_slack = 0.1; // by which a polynomial's top is found
 constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
 constexpr double k_same_crossing = 1e-10; // of a stretch
@@ -320,40 +320,73 @@ static NodePolynomial through_nodes(const std::vector<std::vector<double>>& node
   return {level, values};
 }
 
-double ExtremeFinder::interpolate(std::size_t c, int level, double theta) const { return through_nodes(node_, c, level, 1.0).at(theta); }
+// As NodePolynomial::at(), without a copy of the values.
+double ExtremeFinder::interpolate(std::size_t c, int level, double theta) const {
+  const int step = NodePolynomial::spacing(level);
+  double above = 0.0, below = 0.0, sign = 1.0;
+  for (int i = 0; i <= k_last; i += step) {
+    const double distance = theta - NodePolynomial::theta(i);
+    if (distance == 0.0) return at(c, i);
+    const double weight = (i == 0 || i == k_last ? 0.5 : 1.0) * sign / distance;
+    above += weight * at(c, i);
+    below += weight;
+    sign = -sign;
+  }
+  return above / below;
+}
+
+// About how high the curve may be: what parabolas through three nodes in a row show beyond them counts twice. `best`: the highest of `v`.
+static double highest_about(const NodePolynomial::Values& v, int level, double sign, double best) {
+  double highest = best;
+  const int n = 1 << level, step = NodePolynomial::spacing(level);
+  for (int i = 1; i < n; ++i) {
+    const double p = sign * (v[i] - v[i - 1]), q = sign * (v[i] - v[i + 1]);
+    if ((p < 0.0 || q < 0.0) && i != 1 && i != n - 1) continue;
+    const double at = NodePolynomial::theta(i * step), before = at - NodePolynomial::theta((i - 1) * step), behind = NodePolynomial::theta((i + 1) * step) - at;
+    const double down = p * behind + q * before; // of the parabola: its bend times before · behind (before + behind) / 2
+    if (!(down > 0.0)) continue;
+    const double slope = (p * behind * behind - q * before * before) / (before * behind * (before + behind));
+    const double curve = down / (before * behind * (before + behind)), shift = std::clamp(0.5 * slope / curve, -before, behind);
+    const double top = sign * v[i] + shift * (slope - curve * shift), three = sign * v[i] + std::max({0.0, -p, -q});
+    highest = std::max(highest, three + 2.0 * std::max(0.0, top - three));
+  }
+  return highest;
+}
 
 // Is channel c done with after the nodes of `level`? If its polynomial is exact enough its extremes are noted.
 bool ExtremeFinder::settle(std::size_t c, int level) {
-  const int step = NodePolynomial::spacing(level);
+  const int n = 1 << level;
   const double slack = tolerance(c);
   const ChannelRange& r = ranges_[c];
   // What the polynomial of half the degree was off by at the new nodes; of a smooth curve twice as many nodes square
   // the share that is missed.
-  double least = at(c, 0), most = at(c, 0);
-  bool is_finite = std::isfinite(at(c, 0));
-  for (int i = step; i <= k_last; i += step) {
-    least = std::min(least, at(c, i));
-    most = std::max(most, at(c, i));
-    is_finite = is_finite && std::isfinite(at(c, i));
+  NodePolynomial::Values v;
+  double least = at(c, 0), most = at(c, 0), sum = 0.0;
+  for (int i = 0, node = 0; i <= n; ++i, node += NodePolynomial::spacing(level)) {
+    v[i] = at(c, node);
+    least = std::min(least, v[i]);
+    most = std::max(most, v[i]);
+    sum += v[i];
   }
   const double spread = most - least;
   const double error = level > 1 && spread > 0.0 ? curve_[c].error * std::min(1.0, curve_[c].error / spread) : curve_[c].error;
   for (const double sign : {1.0, -1.0}) {
     const double record = sign > 0.0 ? r.high.value : -r.low.value;
-    int best = 0;
-    for (int i = step; i <= k_last; i += step)
-      if (sign * at(c, i) > sign * at(c, best)) best = i;
-    if (!std::isfinite(at(c, best))) continue;
-    if (!is_finite) return false;
-    // In whichever gap between nodes: beyond the record by more than anybody asks for?
-    const double bit = k_bit_of_slack * slack;
-    const std::optional<NodePolynomial::Top> top = through_nodes(node_, c, level, sign).top_above(record + slack - bit - error, bit);
-    if (!top || top->value + bit + error <= record + slack) continue;
+    double best = sign * v[0];
+    for (int i = 1; i <= n; ++i)
+      if (sign * v[i] > best) best = sign * v[i];
+    if (!std::isfinite(best)) continue;
+    if (!std::isfinite(sum)) return false;
+    // Beyond the record by more than anybody asks for?
+    if (best + NodePolynomial::k_overshoot * spread + error <= record + slack) continue;
+    if (highest_about(v, level, sign, best) + error <= record + slack) continue;
     if (error > slack) return false;
     // Beyond its pole's bound it is followed by its size, which the nodes have told: between them a polynomial of one over
     // rounding may have any sign.
-    if (ranges_[c].channel->unit.empty() && std::abs(at(c, best)) > k_at_pole) continue;
-    note(c, sign * top->value, t_ + top->theta * (t1_ - t_));
+    if (ranges_[c].channel->unit.empty() && std::abs(best) > k_at_pole) continue;
+    const double bit = k_bit_of_slack * slack; // the top is looked for in all gaps between nodes
+    const auto top = through_nodes(node_, c, level, sign).top_above(record + slack - bit - error, bit);
+    if (top && top->value + bit + error > record + slack) note(c, sign * top->value, t_ + top->theta * (t1_ - t_));
   }
   return true;
 }
@@ -364,6 +397,34 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
   for (int i = step; i < k_last; i += 2 * step) {
     const double theta = NodePolynomial::theta(i);
     const Snapshot snapshot = look(theta, integrator, dynamics);
+    if (level == 1) { // what the ends did not show the middle may, for every channel: it has been evaluated
+      for (const std::size_t c : tracked_) {
+        Curve& curve = curve_[c];
+        if (curve.is_open || rate_of_[c] >= 0 || formulas_->is_formula(c)) continue; // rates tell whether places and velocities turn
+        const ChannelRange& r = ranges_[c];
+        const double a = at(c, 0), b = at(c, k_last), reach = k_within_reach * (r.high.value - r.low.value);
+        if (std::max(a, b) + reach < r.high.value && std::min(a, b) - reach > r.low.value) continue;
+        if (a == b && a == before_[c]) continue; // it rests
+        const double slack = tolerance(c);
+        const auto may_be_beyond = [&](double above, double below, double bend) {
+          const double gain = k_surprise * bend / 8.0;
+          return gain > slack && (above + gain > r.high.value + slack || below - gain < r.low.value - slack);
+        };
+        bool is_beyond = false;
+        if (is_ruled_out(c)) {
+          const ValueBounds &from = bounds_before_[screened_slot_[c]], m = r.channel->bounds(snapshot), &to = bounds_[screened_slot_[c]];
+          const double bend = std::max(std::abs(from.low - 2.0 * m.low + to.low), std::abs(from.high - 2.0 * m.high + to.high));
+          is_beyond = may_be_beyond(std::max({from.high, m.high, to.high}), std::min({from.low, m.low, to.low}), bend);
+        } else {
+          const double m = r.channel->value(snapshot), bend = std::abs(a - 2.0 * m + b);
+          take(c, t_ + theta * (t1_ - t_), m);
+          is_beyond = may_be_beyond(std::max({a, m, b}), std::min({a, m, b}), bend);
+        }
+        if (!is_beyond) continue;
+        curve = {true, h_last_ == 0.0 ? std::numeric_limits<double>::infinity() : 0.0};
+        open_.push_back(c);
+      }
+    }
     for (const std::size_t c : open_) {
       take(c, t_ + theta * (t1_ - t_), snapshot, node_[i].data());
       double guess = k_unknown;
@@ -380,15 +441,20 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
 }
 
 void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
-  const bool is_begun = std::none_of(open_.begin(), open_.end(), [this](std::size_t c) { return std::isnan(node_[0][c]); });
-  if (!is_begun) { // some were ruled out there
-    const Snapshot snapshot = look(0.0, integrator, dynamics);
+  // Of channels that were ruled out at an end of the stretch.
+  const auto look_at_end = [&](int node) {
+    const auto is_missing = [&](std::size_t c) { return screened_slot_[c] >= 0 && std::isnan(node_[node][c]); };
+    if (std::none_of(open_.begin(), open_.end(), is_missing)) return;
+    const Snapshot snapshot = look(NodePolynomial::theta(node), integrator, dynamics);
     for (const std::size_t c : open_)
-      if (std::isnan(node_[0][c])) take(c, t_, snapshot, node_[0].data());
-  }
+      if (is_missing(c)) take(c, t_ + NodePolynomial::theta(node) * (t1_ - t_), snapshot, node_[node].data());
+  };
+  look_at_end(0);
   const double wanted = (t1_ - t_) / shortest_period(system_, 0.5 * (t_ + t1_)) * k_looks_per_period;
   for (int level = 1; level <= 3 && !open_.empty(); ++level) {
     refine(level, integrator, dynamics);
+    if (level == 1)
+      for (const int node : {0, k_last}) look_at_end(node);
     if (wanted > 1 << level) continue; // what loads do between the nodes would not be seen
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
   }

@@ -15,6 +15,7 @@ constexpr long k_most_steps = 40'000;
 // method allows: their own error, not the extreme's.
 constexpr double k_resolutions = 3.0;
 constexpr double k_off_joints = 1e-7; // of the largest range of channels in the same unit
+constexpr double k_rounding = 1e-9;   // in SI, of scenes under gravity: what moves or bears less is at rest
 
 struct Ran {
   RunResult run;
@@ -84,7 +85,7 @@ Sampled sampled(const System& system, const State& start, SimulationOptions opti
       const ChannelRange& r = often.run.ranges[c];
       if (!r.channel->has_extremes || r.is_low_singular || r.is_high_singular) continue;
       const double value = rows.value(row, column), excess = std::max(value - r.high.value, r.low.value - value);
-      const double allowed = k_resolutions * r.resolution + k_off_joints * range[r.channel->unit];
+      const double allowed = k_resolutions * r.resolution + k_off_joints * range[r.channel->unit] + k_rounding;
       if (!(excess > allowed) || excess <= worst[c].excess) continue;
       worst[c] = {r.channel->name, rows.times()[row], excess, r.high.value - r.low.value, allowed};
     }
