@@ -1,6 +1,10 @@
 // Models changed at random (mutation.h), each run for 0.02 s, in a process that another one watches.
-//   mutated_models COUNT SEED [--first NUMBER] [--limit SECONDS] FILE_OR_FOLDER…   runs COUNT cases, prints those that crash or hang
-//   mutated_models --show NUMBER SEED FILE_OR_FOLDER…                              prints the text of one, for its model's folder
+//   mutated_models COUNT SEED [OPTION…] FILE_OR_FOLDER…              runs COUNT cases, prints those that crash or hang
+//   mutated_models --show NUMBER SEED FILE_OR_FOLDER…                prints the text of one, for its model's folder
+//   mutated_models --times 0 SEED FILE_OR_FOLDER…                    what each file costs as it is, in ms of a processor
+// Options: --first NUMBER of the cases; --limit SECONDS of a processor that one may take, 10; --evaluations COUNT, or so many events, after which a run is left
+// (0, as without it: none is); --whole NUMBER: one in so many cases is not left, and goes the whole way of `steplap simulate`: findings,
+// extremes, errors by finer runs, summary.json; --said FILE, to which the counts so far are written now and then.
 // An answer is a run, an error of the model or a numerical failure; everything else is a finding: signals, other exceptions, memory
 // beyond 4 GB, and more than 10 s of a processor. Exit code 1 if there was a crash; hangs are printed to be explained.
 #include "mbd/acceptance/judge.h"
@@ -10,9 +14,10 @@
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
+#include "run/findings.h"
+#include "run/report.h"
 #include "tests/fuzz/mutation.h"
 #include "tests/sanitized.h"
-#include "transformer/catalog.h"
 
 #include <algorithm>
 #include <atomic>
@@ -39,6 +44,18 @@ namespace {
 constexpr double k_run = 0.02;                       // s of simulated time
 constexpr std::uint64_t k_memory = 4'000'000'000ULL; // bytes
 
+struct Options {
+  std::uint64_t count = 0, seed = 1, first = 0;
+  unsigned limit = 10;           // s of a processor
+  long evaluations = 0;          // after which a run is left; 0: none is
+  std::uint64_t whole = 0;       // one in so many cases goes the whole way; 0: none
+  std::string said;              // file for the counts so far
+  bool shows = false, times = false;
+  std::vector<fs::path> files;
+
+  [[nodiscard]] bool is_whole(std::uint64_t number) const { return whole > 0 && number % whole == 0; }
+};
+
 struct Cases {
   std::vector<fs::path> files;
   std::vector<std::string> texts;
@@ -59,23 +76,47 @@ struct Cases {
 // What the watching process and the running one share.
 struct Progress {
   std::atomic<std::uint64_t> number{0};
-  std::atomic<std::uint64_t> refused{0}, failed{0}, run{0};
+  std::atomic<std::uint64_t> refused{0}, failed{0}, run{0}, left{0}, whole{0};
 };
 
-void run_one(const std::string& text, const fs::path& file, Progress& progress) {
+// To the end, or until it has taken as many evaluations as it is given.
+void run_a_little(const Model& model, const System& system, long evaluations, Progress& progress) {
+  State start = assembled_start(system, assemble(model, system));
+  if (model.simulation.initial == "equilibrium") start = find_equilibrium(system, start).state;
+  SimulationOptions options = options_of(model);
+  options.end = std::min(options.end, k_run);
+  options.output_step = 0.25 * options.end;
+  Simulation simulation(system, start, options);
+  bool goes_on = true;
+  const auto spent = [&] { return std::max(simulation.statistics().evaluations, simulation.statistics().events); };
+  while (goes_on && (evaluations == 0 || spent() < evaluations)) goes_on = simulation.advance();
+  const RunResult result = std::move(simulation).result();
+  (void)judge(model, system, result, "");
+  ++(goes_on ? progress.left : progress.run);
+}
+
+// As `steplap simulate` does it, but for the files.
+void run_whole(Model model, std::shared_ptr<const System> system, const std::string& path, Progress& progress) {
+  const auto loaded = load_completed(std::move(model), std::move(system), path);
+  for (const Finding& finding : findings_of(*loaded)) (void)text_with_place(finding);
+  RunOptions options;
+  options.output_step = 0.25 * *(options.end = std::min(loaded->model.simulation.end, k_run));
+  const Report report = judged_run(loaded, options);
+  (void)report.json();
+  ++(report.run.failure ? progress.failed : progress.run);
+  ++progress.whole;
+}
+
+void run_one(const std::string& text, const fs::path& file, bool is_whole, long evaluations, Progress& progress) {
   try {
-    Model model = parse_model(text, file.string(), transformer_catalog());
-    const auto system = compile(model);
+    Model model = parse_model(text, file.string(), program_catalogue());
+    std::shared_ptr<const System> system = compile(model);
     (void)check_presentation(model, *system);
-    State start = assembled_start(*system, assemble(model, *system));
-    if (model.simulation.initial == "equilibrium") start = find_equilibrium(*system, start).state;
-    SimulationOptions options = options_of(model);
-    options.end = std::min(options.end, k_run);
-    options.output_step = 0.25 * options.end;
-    const RunResult result = simulate(*system, start, options);
-    (void)judge(model, *system, result, "");
-    ++progress.run;
+    if (is_whole) run_whole(std::move(model), std::move(system), file.string(), progress);
+    else run_a_little(model, *system, evaluations, progress);
   } catch (const ModelError&) {
+    ++progress.refused;
+  } catch (const FileError&) { // a name that no folder can have
     ++progress.refused;
   } catch (const NumericalFailure&) {
     ++progress.failed;
@@ -85,17 +126,20 @@ void run_one(const std::string& text, const fs::path& file, Progress& progress) 
   }
 }
 
-[[noreturn]] void run_from(const Cases& cases, std::uint64_t first, std::uint64_t end, unsigned limit, Progress& progress) {
+[[noreturn]] void run_from(const Cases& cases, const Options& options, std::uint64_t first, Progress& progress) {
   const rlimit memory{k_memory, k_memory};
   if (!steplap::testing::k_is_sanitized) (void)setrlimit(RLIMIT_AS, &memory); // a sanitizer reserves terabytes of addresses
   const rlimit no_core{0, 0};
   (void)setrlimit(RLIMIT_CORE, &no_core);
-  for (std::uint64_t i = first; i < end; ++i) {
+  for (std::uint64_t i = first; i < options.first + options.count; ++i) {
     progress.number = i;
-    const itimerval of_processor{{0, 0}, {static_cast<time_t>(limit), 0}};
+    const itimerval of_processor{{0, 0}, {static_cast<time_t>(options.limit), 0}};
     setitimer(ITIMER_PROF, &of_processor, nullptr);
-    alarm(30 * limit); // whoever waits for a file takes no processor time
-    run_one(cases.text_of(i), cases.files[cases.file_of(i)], progress);
+    alarm(30 * options.limit); // whoever waits for a file takes no processor time
+    run_one(cases.text_of(i), cases.files[cases.file_of(i)], options.is_whole(i), options.evaluations, progress);
+    if (!options.said.empty() && i % 500 == 0)
+      std::ofstream(options.said) << i + 1 - options.first << " of " << options.count << " cases, " << progress.run << " run, " << progress.left << " left, "
+                                  << progress.refused << " refused, " << progress.failed << " could not be followed\n";
   }
   std::_Exit(0);
 }
@@ -108,56 +152,76 @@ void add_files(const fs::path& path, std::vector<fs::path>& files) {
   }
 }
 
-int storm(const Cases& cases, std::uint64_t first, std::uint64_t end, unsigned limit) {
+const char* ending_of(int status) {
+  if (!WIFSIGNALED(status)) return "it ended by itself";
+  return strsignal(WTERMSIG(status));
+}
+
+int storm(const Cases& cases, const Options& options) {
   void* const shared = mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED) return 2;
   auto& progress = *new (shared) Progress;
-  std::uint64_t crashes = 0, hangs = 0;
-  for (std::uint64_t next = first; next < end;) {
+  using Number = unsigned long long;
+  Number crashes = 0, hangs = 0;
+  for (std::uint64_t next = options.first; next < options.first + options.count;) {
     std::fflush(nullptr);
     const pid_t child = fork();
     if (child < 0) return 2;
-    if (child == 0) run_from(cases, next, end, limit, progress);
+    if (child == 0) run_from(cases, options, next, progress);
     int status = 0;
     waitpid(child, &status, 0);
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;
     const std::uint64_t at = progress.number;
     const bool is_hang = WIFSIGNALED(status) && (WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGPROF);
     ++(is_hang ? hangs : crashes);
-    std::printf("%s: seed %llu, case %llu, %s%s\n", is_hang ? "hang" : "crash", static_cast<unsigned long long>(cases.seed), static_cast<unsigned long long>(at),
-                cases.files[cases.file_of(at)].c_str(), is_hang ? "" : WIFSIGNALED(status) ? (std::string(", ") + strsignal(WTERMSIG(status))).c_str() : ", it ended by itself");
+    std::printf("%s: seed %llu, case %llu%s, %s, %s\n", is_hang ? "hang" : "crash", Number{cases.seed}, Number{at}, options.is_whole(at) ? " (whole)" : "",
+                cases.files[cases.file_of(at)].c_str(), ending_of(status));
     next = at + 1;
   }
-  std::printf("%llu cases of seed %llu: %llu run, %llu refused, %llu could not be followed, %llu crashes, %llu beyond %u s\n",
-              static_cast<unsigned long long>(end - first), static_cast<unsigned long long>(cases.seed), static_cast<unsigned long long>(progress.run),
-              static_cast<unsigned long long>(progress.refused), static_cast<unsigned long long>(progress.failed), static_cast<unsigned long long>(crashes),
-              static_cast<unsigned long long>(hangs), limit);
+  rusage used{};
+  getrusage(RUSAGE_CHILDREN, &used);
+  const double seconds = static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  std::printf("%llu cases of seed %llu from %llu: %llu run, %llu left after %ld evaluations, %llu refused, %llu could not be followed, %llu the whole way, "
+              "%llu crashes, %llu beyond %u s; %.0f a second of a processor\n",
+              Number{options.count}, Number{cases.seed}, Number{options.first}, Number{progress.run}, Number{progress.left}, options.evaluations, Number{progress.refused},
+              Number{progress.failed}, Number{progress.whole}, crashes, hangs, options.limit, static_cast<double>(options.count) / seconds);
   return crashes > 0 ? 1 : 0;
 }
 
-} // namespace
+void print_times(const Cases& cases, const Options& options) {
+  Progress progress;
+  for (std::size_t i = 0; i < cases.files.size(); ++i) {
+    const double before = thread_cpu_seconds();
+    run_one(cases.texts[i], cases.files[i], options.whole > 0, options.evaluations, progress);
+    std::printf("%.2f %s\n", 1e3 * (thread_cpu_seconds() - before), cases.files[i].c_str());
+  }
+}
 
-int main(int argc, char** argv) {
-  Cases cases;
-  std::uint64_t count = 0, first = 0;
-  unsigned limit = 10;
-  bool shows = false;
+Options options_of(int argc, char** argv) {
+  Options o;
   std::vector<std::uint64_t> numbers;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    if (word == "--show") shows = true;
-    else if (word == "--first" && i + 1 < argc) first = std::strtoull(argv[++i], nullptr, 10);
-    else if (word == "--limit" && i + 1 < argc) limit = static_cast<unsigned>(std::strtoul(argv[++i], nullptr, 10));
+    const auto next = [&] { return i + 1 < argc ? std::strtoull(argv[++i], nullptr, 10) : 0; };
+    if (word == "--show") o.shows = true;
+    else if (word == "--times") o.times = true;
+    else if (word == "--first") o.first = next();
+    else if (word == "--limit") o.limit = static_cast<unsigned>(next());
+    else if (word == "--evaluations") o.evaluations = static_cast<long>(next());
+    else if (word == "--whole") o.whole = next();
+    else if (word == "--said" && i + 1 < argc) o.said = argv[++i];
     else if (numbers.size() < 2) numbers.push_back(std::strtoull(argv[i], nullptr, 10));
-    else add_files(word, cases.files);
+    else add_files(word, o.files);
   }
-  if (numbers.size() < 2 || cases.files.empty()) {
-    std::fprintf(stderr, "usage: mutated_models COUNT SEED [--first NUMBER] [--limit SECONDS] FILE_OR_FOLDER...\n"
-                         "       mutated_models --show NUMBER SEED FILE_OR_FOLDER...\n");
-    return 2;
-  }
-  count = numbers[0];
-  cases.seed = numbers[1];
+  if (numbers.size() < 2) o.files.clear();
+  else o.count = numbers[0], o.seed = numbers[1];
+  return o;
+}
+
+Cases cases_of(const Options& options) {
+  Cases cases;
+  cases.seed = options.seed;
+  cases.files = options.files;
   const auto is_of_corpus = [](const fs::path& file) {
     const std::string folder = file.parent_path().string();
     return folder.find("corpus") != std::string::npos || folder.find("malformed") != std::string::npos || folder.find("studies") != std::string::npos;
@@ -172,8 +236,22 @@ int main(int argc, char** argv) {
     text << std::ifstream(file, std::ios::binary).rdbuf();
     cases.texts.push_back(text.str());
   }
-  if (!shows) return storm(cases, first, first + count, limit);
-  std::fprintf(stderr, "%s\n", cases.files[cases.file_of(count)].c_str());
-  std::fputs(cases.text_of(count).c_str(), stdout);
+  return cases;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  const Options options = options_of(argc, argv);
+  if (options.files.empty()) {
+    std::fprintf(stderr, "usage: mutated_models [--show | --times] COUNT_OR_NUMBER SEED [--first NUMBER] [--limit SECONDS] [--evaluations COUNT] [--whole NUMBER]\n"
+                         "                      [--said FILE] FILE_OR_FOLDER...\n");
+    return 2;
+  }
+  const Cases cases = cases_of(options);
+  if (options.times) return print_times(cases, options), 0;
+  if (!options.shows) return storm(cases, options);
+  std::fprintf(stderr, "%s\n", cases.files[cases.file_of(options.count)].c_str());
+  std::fputs(cases.text_of(options.count).c_str(), stdout);
   return 0;
 }
