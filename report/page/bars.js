@@ -48,13 +48,19 @@ steplap.bars = (() => {
     const alone = without.length ? make('span', { class: 'alone-note' }, ` not in ${without.map((r) => r.name).join(', ')}`) : '';
     return make('h4', {}, names.join(' / '), alone);
   }
+  // Of a criterion of many elements a run tells the worst, which may be another one in another run: "joint margin (back joint)".
+  function keyOf(u) {
+    const element = (u.channel || '').replace(/\.[^.]*$/, '');
+    return element && u.name.endsWith(` (${element})`) ? u.name.slice(0, -element.length - 3) : u.name;
+  }
   // Rows { name, entries: [one a run, or undefined] }, the worst first.
   function rowsOf(runs) {
     const rows = new Map();
     runs.forEach((run, k) => {
       for (const u of steplap.overview.of(run).utilisations) {
-        if (!rows.has(u.name)) rows.set(u.name, { name: u.name, entries: runs.map(() => undefined) });
-        rows.get(u.name).entries[k] = u;
+        const key = keyOf(u);
+        if (!rows.has(key)) rows.set(key, { name: key, entries: runs.map(() => undefined) });
+        rows.get(key).entries[k] = u;
       }
     });
     const worst = (row) => Math.max(...row.entries.filter(Boolean).map(size));
@@ -62,7 +68,7 @@ steplap.bars = (() => {
   }
   // "124 of 156 kN", or "1.1, asked 1.2" where more is better; nothing where the share says it all.
   function ofLimit(u) {
-    if (isSlip(u)) return u.detail || '';
+    if (isSlip(u) || u.limit === 0) return u.detail || ''; // of nothing there is no part
     if (!isKnown(u.value) || !isKnown(u.limit) || (!u.unit && u.limit === 1)) return '';
     const { texts, unit } = steplap.numbers.column([{ value: u.value }, { value: u.limit }], u.unit || '');
     const isLeast = Math.abs(u.value) > 0 && Math.abs(u.share - u.limit / u.value) < 1e-6 * Math.abs(u.share) && u.value !== u.limit;

@@ -154,6 +154,9 @@ class GalleryTest(base.Page):
                     for part in (0, 0.35, 1):
                         self.run_js("steplap.page.show(arguments[0] * Math.max(...steplap.data.runs.map((r) => r.end)))", part)
                         self.check_numbers_and_arrows(part)
+                    if pair[1] == "interference":  # a criterion of both joints, of which another one is the worst in each
+                        heads = self.run_js("return [...document.querySelectorAll('#limits h4')].map((h) => h.textContent)")
+                        self.assertIn("joint margin (back joint) / joint margin (front joint)", heads)
 
     def test_what_lifted_is_marked_from_when_it_does(self):
         self.open("gallery_no_interference.html")
