@@ -2,6 +2,7 @@
 
 #include "elements/patch/admissible_projection.h"
 #include "elements/step_lap_elastic.h"
+#include "elements/step_lap_fit.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/number_text.h"
 #include "mbd/math/portable_math.h"
@@ -11,6 +12,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace steplap {
 
@@ -20,30 +22,13 @@ namespace {
 constexpr double k_bound_slack = 1e-13;
 // Outside this band the certified bounds tell on which side of 1 a wrench is.
 constexpr double k_surely_holds = 0.9, k_surely_slips = 1.1;
-// Onsets are followed down to this time, s: what is missed is of the second order in that, against the time in which
-// the load grows by the grip (the slip law of step_lap_friction.h).
-constexpr double k_onset_time = 5e-8;
-constexpr double k_start_reach = 4.0; // |ν|/δ at which a slip no longer counts as starting
-// |ν|/δ from which on it moves: up to there, backward motion is an error of the first steps unless it is this share
-// of δ.
-constexpr double k_moving = 0.2, k_backward = 0.2;
-constexpr double k_cone = 0.5;        // cosine of the cone about the direction last looked at
-// |ν| over grip acceleration, s, from which on a slip ends: what that misses is this time, times what the direction
-// had still to turn by.
-constexpr double k_end_time = 1e-11;
-constexpr double k_no_end = 2.0;      // times that |ν|: it has not come to rest after all
-// |ν| over speeds to which rounding leaves it a direction; that time over t at which steps are still far from rounding.
-constexpr double k_rounding = 2.5e-13, k_time_rounding = 2e-12;
-
 // Share of its overlaps' capacity below which an elastic joint has come apart. The direction of flow follows the strain
 // within F/(K |ν|), which goes to zero with the overlap: to follow it to the end would take for ever.
 constexpr double k_last_grip = 1e-2;
+constexpr double k_surely_overlap = 0.25; // of the depth in the reference pose: above it a bound of the depth does
 constexpr double k_trial = 1.01;     // u beyond which a yielding joint is at a stage of a step, not at its end
 constexpr double k_tilt_step = 1e-3; // m/s²: of pressures that are linear in it
 constexpr double k_slid_step = 1e-6; // m at a corner 1 m from the centre, of differences of the overlap
-
-// FrictionState::stage, 0 at first: of a slip that starts, and of one that ends.
-constexpr std::uint8_t k_moving_stage = 1, k_ending_stage = 1;
 
 // What an iteration may leave, in shares of the capacity. u is then good to 1e-14, its square: what is decided by u is
 // not touched. The direction in which a slip begins is good to 1e-7, and forgotten as soon as it has begun. A wrench of
@@ -59,51 +44,22 @@ void insist(double residual, double bound, const std::string& name, double t, co
   throw NumericalFailure(message.str());
 }
 
-bool is_moving(const FrictionState& state) { return state.is_starting && state.stage == k_moving_stage; }
-bool is_ending(const FrictionState& state) { return !state.is_starting && state.stage == k_ending_stage; }
-
 } // namespace
-
-struct StepLapFriction::Fit {
-  Patch patch; ///< at a pressure factor of 1
-  Pose pose;
-  double tilt = 0.0;
-  Capacity capacity;
-  bool is_valid = false, has_capacity = false;
-
-  /// What a joint that stays at its pose is asked many times.
-  void prepare() {
-    if (has_capacity || patch.empty()) return;
-    capacity = steplap::capacity(patch);
-    has_capacity = true;
-  }
-
-  /// For whoever the bounds by the capacity do not satisfy: many a joint that holds never comes to that.
-  const Patch& tabulated() {
-    patch.prepare();
-    return patch;
-  }
-};
-
-struct StepLapFriction::Scratch final : FrictionScratch {
-  OverlapWorkspace workspace;
-  Region region;
-  Fit fits[2];
-  Vec3 asked = Vec3::Zero(); ///< wrench of the last usage(), at this pose
-  Pose asked_at;
-  RequiredPressure answer;
-  PressureState pressed; ///< at the last usage()
-  OverlapLoss lost; ///< at this pose
-  Pose lost_at;
-  bool is_lost_known = false;
-};
 
 StepLapFriction::StepLapFriction(std::string name, int index, int row, std::vector<SheetPair> sheets,
                                  bool is_monitor, bool stops_when_apart)
     : name_(std::move(name)), index_(index), row_(row), sheets_(std::move(sheets)), is_monitor_(is_monitor),
       stops_when_apart_(stops_when_apart) {
-  for (const SheetPair& s : sheets_)
+  constexpr double k_same_ratio = 4e-16; // quotients of the same coefficients, rounded
+  bool is_first = true;
+  for (const SheetPair& s : sheets_) {
     if (s.kinetic_traction != s.static_traction) is_one_law_ = false;
+    if (s.kinetic_traction == 0.0 && s.static_traction == 0.0) continue;
+    const double ratio = s.kinetic_traction / s.static_traction;
+    if (std::exchange(is_first, false)) slip_usage_ = ratio;
+    else if (!(std::abs(ratio - slip_usage_) <= k_same_ratio * slip_usage_)) slip_usage_ = std::numeric_limits<double>::quiet_NaN();
+  }
+  if (is_one_law_) slip_usage_ = 1.0;
 }
 
 std::unique_ptr<FrictionScratch> StepLapFriction::make_scratch() const {
@@ -124,6 +80,8 @@ void StepLapFriction::set_scales(const Pose& reference, Patch at_reference, cons
   if (!never_slips()) fit->prepare();
   reference_ = std::move(fit);
   overlaps_ = OverlapReference(sheets_, reference);
+  OverlapWorkspace workspace;
+  for (const SheetPair& s : sheets_) depth_.push_back(depth_bound(s.yoke, s.limb, reference, workspace));
   arm_ = patch.centroid() - patch.reference();
   gyration_ = patch.gyration();
   const auto mobility = [&](const BodyData& body, const Vec2& lever) {
@@ -171,18 +129,20 @@ void StepLapFriction::build(const Pose& pose, GripLaw law, double tilt, OverlapW
 
 void StepLapFriction::add_pressed(const SheetPair& s, const Region& region, GripLaw law, double tilt,
                                   Patch& patch) const {
-  const double pressed = s.transverse == 0.0 ? 1.0 : std::max(0.0, 1.0 + s.transverse * tilt);
-  const double traction = pressed * (law == GripLaw::holding ? s.static_traction : s.kinetic_traction);
+  const double traction = traction_of(s, law, tilt);
   if (s.gradient.isZero(0.0)) return patch.add(region, traction);
   for (const Polygon& piece : region) {
     const double at_centroid = 1.0 + s.gradient.dot(steplap::centroid(piece) - s.middle);
     try {
       patch.add(piece, Traction{traction * at_centroid, traction * s.gradient});
     } catch (const std::invalid_argument&) {
-      throw NumericalFailure("step_lap_joint '" + name_ +
-                             "': its linear pressure is negative somewhere in the overlap");
+      refuse_pressure();
     }
   }
+}
+
+void StepLapFriction::refuse_pressure() const {
+  throw NumericalFailure("step_lap_joint '" + name_ + "': its linear pressure is negative somewhere in the overlap");
 }
 
 void StepLapFriction::centre_pressures(const Pose& reference) {
@@ -237,11 +197,14 @@ StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, cons
   const bool is_same =
       f.is_valid && f.pose.x == pose.x && f.pose.y == pose.y && f.pose.theta == pose.theta && f.tilt == tilt;
   if (is_same) return f;
+  const bool is_reference = &f == &own.fits[0] && reference_ && reference_->tilt == tilt && reference_->pose.x == pose.x &&
+                            reference_->pose.y == pose.y && reference_->pose.theta == pose.theta;
+  if (is_reference) return f = *reference_; // as at the start, whatever has been looked at in between
   build(pose, law, tilt, own.workspace, own.region, f.patch);
   f.pose = pose;
   f.tilt = tilt;
   f.is_valid = true;
-  f.has_capacity = false;
+  f.has_capacity = f.has_table = false;
   return f;
 }
 
@@ -347,25 +310,34 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const Vec3 w = wrench(s);
   const Pose pose = present(s);
   const PressureState now = pressure_at(s.t);
+  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
+  const bool is_known = knows_usage(s, w);
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y &&
                        own.asked_at.theta == pose.theta && own.pressed.factor == now.factor &&
-                       own.pressed.tilt == now.tilt;
+                       own.pressed.tilt == now.tilt && own.was_stuck == is_stuck && own.was_known == is_known;
   if (is_same) return own.answer;
-  Fit& f = fit(s.evaluation->scratch, pose, GripLaw::holding, now.tilt);
-  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
-  own.answer = required(is_stuck ? f.tabulated() : f.patch, w / now.factor, s.t);
+  if (is_known) {
+    own.answer = usage_of_slip(s, pose);
+  } else {
+    Fit& f = fit(s.evaluation->scratch, pose, GripLaw::holding, now.tilt);
+    own.answer = required(is_stuck ? f.tabulated() : f.patch, w / now.factor, s.t);
+  }
   own.pressed = now;
+  own.was_stuck = is_stuck;
+  own.was_known = is_known;
   own.asked = w;
   own.asked_at = pose;
   return own.answer;
 }
 
 ValueBounds StepLapFriction::usage_between(const Snapshot& s) const {
+  const Vec3 w = wrench(s);
+  if (knows_usage(s, w)) return {slip_usage_, slip_usage_};
   const PressureState now = pressure_at(s.t);
   Fit& f = fit(s.evaluation->scratch, present(s), GripLaw::holding, now.tilt);
   f.prepare();
   if (!f.has_capacity) return {0.0, std::numeric_limits<double>::infinity()}; // no area left
-  const UsageBounds bounds = usage_bounds(f.capacity, wrench(s) / now.factor);
+  const UsageBounds bounds = usage_bounds(f.capacity, w / now.factor);
   return {bounds.lower, bounds.upper};
 }
 
@@ -403,155 +375,27 @@ FrictionBlock StepLapFriction::solve_block(const Evaluation& e, const FrictionSt
   return block;
 }
 
-// --- sliding ----------------------------------------------------------------------------------------------
-
-/// Velocity of the joint's centre, and ω as a velocity at the gyration radius.
-Vec3 StepLapFriction::scaled(const Vec3& nu) const {
-  return {nu[0] - nu[2] * arm_.y(), nu[1] + nu[2] * arm_.x(), gyration_ * nu[2]};
-}
-
-void StepLapFriction::set_direction(FrictionState& state, const Vec3& nu) const {
-  const double size = scaled(nu).norm();
-  Vec3::Map(state.direction) = size > 0.0 ? Vec3(nu / size) : nu;
-}
-
-double StepLapFriction::onset_speed() const { return k_onset_time * grip_acceleration_; }
-
-double StepLapFriction::end_speed(const Evaluation& e) const {
-  const Motion<double>&l = e.motion[hold[0].a], &p = e.motion[hold[0].b];
-  const double lever = gyration_ + arm_.norm();
-  const double speed = std::abs(l.vx) + std::abs(l.vy) + std::abs(p.vx) + std::abs(p.vy) +
-                       lever * (std::abs(l.omega) + std::abs(p.omega));
-  const double time = std::max(k_end_time, k_time_rounding * std::abs(e.t));
-  return std::max(time * grip_acceleration_, k_rounding * speed);
-}
-
-void StepLapFriction::begin_slip(const Evaluation& e, FrictionState& state, const double* wrench) const {
-  Fit& f = fit(e.scratch, anchor(e.memory), GripLaw::holding, pressure_at(e.t).tilt);
-  state.stage = 0;
-  set_direction(state, -required(f.tabulated(), Vec3(wrench[0], wrench[1], wrench[2]), e.t).direction);
-}
-
-void StepLapFriction::aim(FrictionState& state, const double* rate) const {
-  state.stage = 0;
-  set_direction(state, Vec3(rate[0], rate[1], rate[2]));
-}
-
-/// The twist whose wrench is the slip law's: ν but for the first and the last of a slip.
-Vec3 StepLapFriction::law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const {
-  const Vec3 n(state.direction[0], state.direction[1], state.direction[2]);
-  const Vec3 y = scaled(nu);
-  if (state.is_starting) {
-    const double delta = onset_speed(), reach = k_start_reach * delta;
-    const double left = 1.0 - y.squaredNorm() / (reach * reach);
-    if (left > 0.0) return nu + delta * left * left * left * n;
-  } else if (is_ending(state)) {
-    return nu + end_speed(e) * n;
-  } else if (nu.isZero(0.0)) {
-    return n;
-  } else if (y.dot(scaled(n)) < 0.0) {
-    return -nu;
-  }
-  return nu;
-}
-
-void StepLapFriction::slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate,
-                                  double* wrench) const {
-  const PressureState now = pressure_at(e.t);
-  const Fit& f = fit(e.scratch, pose_of(e.motion), GripLaw::sliding, now.tilt);
-  Vec3::Map(wrench) =
-      -now.factor * evaluate_gradient(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).gradient;
-}
-
-void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state, const double* rate,
-                                 double* watch) const {
-  const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
-  const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
-  const double speed = y.norm();
-  if (state.is_starting) {
-    const double delta = onset_speed();
-    watch[0] = (is_moving(state) ? k_start_reach : k_moving) * delta - speed;
-    watch[1] = along + (is_moving(state) ? end_speed(e) : k_backward * delta);
-  } else if (is_ending(state)) {
-    watch[0] = along;
-    watch[1] = k_no_end * end_speed(e) - speed;
-  } else {
-    watch[0] = speed - end_speed(e);
-    watch[1] = along - k_cone * speed;
-  }
-}
-
-// Where a small turn of ν turns the wrench by much (narrow sheets; a centre of rotation near a corner), ν has to be known so
-// much better. Measured by |ν| tr ∇²h in scaled twists, which is 1.5 F where a round overlap is translated: F across the
-// slip and F/2 from turning (∬ w x² dA is half of F gyration²). Beyond that, ν is asked for as much finer.
-SlipScale StepLapFriction::slip_scale(const Evaluation& e, const FrictionState& state, const double* rate) const {
-  constexpr double k_round = 1.5;
-  SlipScale scale;
-  scale.lever = portable::hypot(gyration_, arm_.norm());
-  const Vec3 nu = law_twist(e, state, Vec3(rate[0], rate[1], rate[2]));
-  const double speed = scaled(nu).norm();
-  const Patch& patch = fit(e.scratch, pose_of(e.motion), GripLaw::sliding, pressure_at(e.t).tilt).patch;
-  const Mat3 curvature = evaluate(patch, nu).hessian;
-  const Vec3 turn(arm_.y() / gyration_, -arm_.x() / gyration_, 1.0 / gyration_); // ν of a scaled turn
-  const double trace = curvature(0, 0) + curvature(1, 1) + turn.dot(curvature * turn);
-  const double sharpness = speed * trace / (k_round * patch.force());
-  // Below the speed of rest there is nothing left to be known.
-  scale.speed = std::max(speed / std::max(1.0, sharpness), end_speed(e));
-  return scale;
-}
-
-// The trace of A ∇²h is the sum of the rates, none of which is negative.
-double StepLapFriction::decay_rate(const Evaluation& e, const FrictionState& state, const double* rate) const {
-  const Pose pose = pose_of(e.motion);
-  const PressureState now = pressure_at(e.t);
-  const Fit& f = fit(e.scratch, pose, GripLaw::sliding, now.tilt);
-  const Mat3 curvature = now.factor * evaluate(f.patch, law_twist(e, state, Vec3(rate[0], rate[1], rate[2]))).hessian;
-  const Vec3 turned(pose.y, -pose.x, -1.0); // of ν as the active part turns
-  return (limb_mobility_[0] + part_mobility_[0]) * (curvature(0, 0) + curvature(1, 1)) +
-         limb_mobility_[1] * curvature(2, 2) + part_mobility_[1] * turned.dot(curvature * turned);
-}
-
-bool StepLapFriction::goes_on_slipping(const Evaluation& e, FrictionState& state, const double* rate,
-                                       int slot) const {
-  const Vec3 y = scaled(Vec3(rate[0], rate[1], rate[2]));
-  const double along = y.dot(scaled(Vec3(state.direction[0], state.direction[1], state.direction[2])));
-  const double speed = y.norm(), end = end_speed(e);
-  const auto goes_on = [&state](std::uint8_t stage) {
-    state.stage = stage;
-    return true;
-  };
-  const auto rests = [&state] {
-    state.stage = 0;
-    return false;
-  };
-  if (state.is_starting) {
-    if (slot == 1) return rests();
-    if (!is_moving(state)) return goes_on(k_moving_stage);
-  } else if (is_ending(state)) {
-    if (along <= 0.0) return rests();
-    if (speed <= k_no_end * end) return true;
-  } else if (slot == 0 || speed < end) {
-    if (slot == 0) aim(state, rate);
-    else if (along <= 0.0) return rests(); // through ν = 0 within a step, as along a line
-    return goes_on(k_ending_stage);
-  }
-  state.is_starting = false;
-  aim(state, rate);
-  return true;
-}
-
 // --- coming apart -------------------------------------------------------------------------------------------
 
 double StepLapFriction::watch_place(const Evaluation& e, const FrictionState& state) const {
   return state.phase == FrictionPhase::slip ? parting(e, pose_of(e.motion), state.foot) : 1.0;
 }
 
+// As long as a bound from the reference pose leaves a good part of the depth there, it stands for the depth: far from zero its
+// value decides nothing.
+double StepLapFriction::depth_of(std::size_t i, const Pose& pose, OverlapWorkspace& workspace) const {
+  const double at_least = depth_[i].at_least(pose);
+  if (at_least > k_surely_overlap * depth_[i].depth) return at_least;
+  return penetration(sheets_[i].yoke, sheets_[i].limb, pose, workspace);
+}
+
 double StepLapFriction::parting(const Evaluation& e, const Pose& pose, std::uint32_t parted) const {
   OverlapWorkspace& workspace = static_cast<Scratch&>(*e.scratch[index_]).workspace;
   double watch = 1.0, deepest = -1.0;
   for (std::size_t i = 0; i < sheets_.size(); ++i) {
-    const double depth = penetration(sheets_[i].yoke, sheets_[i].limb, pose, workspace);
-    if (i < k_tracked) watch = std::min(watch, (parted >> i & 1u) != 0 ? -depth : depth);
+    const bool is_parted = i < k_tracked && (parted >> i & 1u) != 0;
+    const double depth = is_parted ? penetration(sheets_[i].yoke, sheets_[i].limb, pose, workspace) : depth_of(i, pose, workspace);
+    if (i < k_tracked) watch = std::min(watch, is_parted ? -depth : depth);
     deepest = std::max(deepest, depth);
   }
   return sheets_.size() > k_tracked ? std::min(watch, deepest) : watch;

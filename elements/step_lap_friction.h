@@ -8,14 +8,14 @@
 //
 // At ν = 0 the law has no value, and near it a stiffness of (grip acceleration)/|ν|. After an onset
 // |ν| grows as the square of time only, so that it matters there. While a slip is *starting*,
-// |ν| below a few times δ = (grip acceleration) × (a time short against all else, 1e-7 s), the law is
+// |ν| below a few times δ = (grip acceleration) × (a time short against all else, after the tolerance: 2.5e-6 s at 1e-6), the law is
 //   W = −∇h(ν + δ (1 − |ν|²/(k δ)²)³ n),  n the normal of the bound at the onset,
 // which is bounded in stiffness, exact at both ends, dissipates what it does work on (no energy is lost
 // from the account), and whose influence is forgotten as the direction settles. Beyond, and for good, it
 // is −∇h(ν) alone.
 //
 // |ν| reaches zero with no sign change of anything but ν itself; on the way the direction turns as a power of
-// the time left and tends to a limit. A slip is *ending* below |ν| = ε = (grip acceleration) × 1e-11 s: the law is
+// the time left and tends to a limit. A slip is *ending* below |ν| = ε = (grip acceleration) × (1e-8 s at 1e-6, 1e-11 s from 1e-9 on): the law is
 // −∇h(ν + ε n), n the direction there, and the slip is at rest where ν·n passes zero. If |ν| grows again instead, the
 // slip goes on. So that a step may pass through ν = 0, the law is continued there with the wrench it
 // had, ν·n < 0, n being the direction as last looked at. An event is also where ν leaves the cone of 60°
@@ -160,9 +160,14 @@ private:
   void build(const Pose& pose, GripLaw law, double tilt, OverlapWorkspace& workspace, Region& region,
              Patch& patch) const;
   void add_pressed(const SheetPair& sheets, const Region& region, GripLaw law, double tilt, Patch& patch) const;
+  [[noreturn]] void refuse_pressure() const;
+  [[nodiscard]] Vec3 gradient_at(const Pose& pose, double tilt, const Vec3& nu, Scratch& own) const;
+  [[nodiscard]] bool knows_usage(const Snapshot& s, const Vec3& wrench) const;
+  [[nodiscard]] RequiredPressure usage_of_slip(const Snapshot& s, const Pose& pose) const;
+  [[nodiscard]] double depth_of(std::size_t i, const Pose& pose, OverlapWorkspace& workspace) const;
   [[nodiscard]] Vec3 scaled(const Vec3& nu) const;
   void set_direction(FrictionState& state, const Vec3& nu) const;
-  [[nodiscard]] double onset_speed() const;
+  [[nodiscard]] double onset_speed(const Evaluation& e) const;
   [[nodiscard]] Vec3 law_twist(const Evaluation& e, const FrictionState& state, const Vec3& nu) const;
   [[nodiscard]] double end_speed(const Evaluation& e) const;
 
@@ -185,6 +190,8 @@ private:
   double kept_ = 1.0;              ///< share of the pressures that relaxation leaves
   int inner_ = -1, unit_ = -1;     ///< of an elastic joint
   Mat3 stiffness_ = Mat3::Zero();
+  double slip_usage_ = 1.0;        ///< u of what slides: the ratio of its coefficients; not-a-number where interfaces differ in it
+  std::vector<DepthBound> depth_;  ///< by interface, from the reference pose
 };
 
 } // namespace steplap

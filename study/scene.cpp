@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <map>
 
 namespace steplap::study {
 
@@ -83,6 +83,34 @@ double value_of(const Response& r, const RunResult& result, const Judgement& jud
   return r.what.starts_with("time_of") && !std::isnan(e.value) ? e.t : e.value;
 }
 
+/// Which ends of a channel's range anybody asks for; `low_below`: only of what is less.
+struct Ends {
+  bool low = false, high = false;
+  double low_below = std::numeric_limits<double>::infinity();
+  void add(const Ends& more) {
+    low_below = !low ? more.low_below : more.low ? std::max(low_below, more.low_below) : low_below;
+    low = low || more.low;
+    high = high || more.high;
+  }
+};
+
+// Bounds of a value that costs much rule out the end that nobody asks for.
+void leave_out_others(Channel& channel, const Ends& ends) {
+  constexpr double k_never = 1e300; // no extreme is beyond it
+  if (!channel.bounds || (ends.high && ends.low && std::isinf(ends.low_below))) return;
+  channel.bounds = [bounds = std::move(channel.bounds), ends](const Snapshot& s) {
+    ValueBounds b = bounds(s);
+    if (!ends.high) b.high = -k_never;
+    if (!ends.low || b.low >= ends.low_below) b.low = k_never;
+    return b;
+  };
+}
+
+// A run is not trusted where a joint has less margin than it needs: beyond 1 its value tells nothing of that.
+Ends ends_of_trust(const std::string& channel) {
+  return channel.ends_with(".margin") ? Ends{true, false, 1.0} : Ends{true, true};
+}
+
 void worsen(Outcome& outcome, SampleStatus status, const std::string& reason) {
   if (outcome.status != SampleStatus::ok) return; // the first reason is told
   outcome.status = status;
@@ -121,7 +149,7 @@ struct Scene::Runner {
   const StudyModel& model;
   bool is_judged = false;             ///< a response is the verdict, for which criteria may look at any channel
   std::vector<std::string> channels;  ///< names
-  std::set<std::string> extremes;     ///< of these, those whose extremes are asked for
+  std::map<std::string, Ends> extremes; ///< of these, those whose extremes are asked for
   std::vector<std::string> sampled;   ///< patterns
   Sampling sampling;                  ///< for histories
   std::vector<Setting> settings;
@@ -145,7 +173,7 @@ struct Scene::Runner {
     }
     for (const std::string& name : channels_of_trust(completed(model.given))) {
       channels.push_back(name);
-      extremes.insert(name);
+      extremes[name].add(ends_of_trust(name));
     }
     numbers.resize(settings.size());
     variants = std::make_unique<Variants>(model.given, std::move(paths), wanted());
@@ -157,10 +185,11 @@ private:
   void ask(const Response& r) {
     is_judged = is_judged || r.what == "verdict";
     if (needs_samples(r)) sampled.push_back(r.channel);
-    const bool is_extreme = r.what.find("est") != std::string::npos;
+    const bool is_extreme = r.what.find("est") != std::string::npos, is_largest = r.what.ends_with("largest");
+    const Ends ends{is_largest || r.what.ends_with("lowest"), is_largest || r.what.ends_with("highest")};
     for (const Channel* c : channels_of(r, *model.system)) {
       channels.push_back(c->name);
-      if (is_extreme) extremes.insert(c->name);
+      if (is_extreme) extremes[c->name].add(ends);
     }
   }
 };
@@ -206,7 +235,11 @@ void Scene::look(const Runner& runner, const Judgement& judgement, const RunResu
 }
 
 void Scene::run_system(const Runner& runner, const Model& whole, System& system, Outcome& outcome) {
-  for (Channel& c : system.channels) c.has_extremes = c.has_extremes && runner.extremes.contains(c.name);
+  for (Channel& c : system.channels) {
+    const auto asked = runner.extremes.find(c.name);
+    c.has_extremes = c.has_extremes && asked != runner.extremes.end();
+    if (c.has_extremes) leave_out_others(c, asked->second);
+  }
   SimulationOptions options = options_of(whole);
   options.channels = runner.sampled;
   options.has_extremes = true;

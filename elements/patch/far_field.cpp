@@ -1,11 +1,9 @@
 #include "elements/patch/far_field.h"
 
-#include "mbd/math/portable_math.h"
+#include "elements/patch/gauss_rule.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <utility>
 
 namespace steplap {
 
@@ -22,27 +20,10 @@ constexpr auto k_inverse = [] {
   return inverse;
 }();
 
-struct GaussRule {
-  std::array<double, k_nodes> x{}, w{}; // on [0, 1]
+struct EdgeRule {
+  std::array<double, k_nodes> x{}, w{};
+  EdgeRule() { gauss_rule(k_nodes, x.data(), w.data()); }
 };
-
-/// Nodes by Newton on the Legendre polynomial.
-GaussRule gauss_rule() {
-  GaussRule rule;
-  for (int i = 0; i < k_nodes; ++i) {
-    double z = portable::cos(std::numbers::pi * (i + 0.75) / (k_nodes + 0.5)), slope = 1;
-    for (int pass = 0; pass < 8; ++pass) {
-      double p = 1, before = 0;
-      for (int n = 1; n <= k_nodes; ++n)
-        before = std::exchange(p, ((2 * n - 1) * z * p - (n - 1) * before) / n);
-      slope = k_nodes * (z * p - before) / (z * z - 1);
-      z -= p / slope;
-    }
-    rule.x[i] = 0.5 * (1 + z);
-    rule.w[i] = 1 / ((1 - z * z) * slope * slope);
-  }
-  return rule;
-}
 
 /// binomial(1/2, j)
 constexpr auto k_root = [] {
@@ -80,19 +61,18 @@ int FarField::needed_order(double x) {
   return std::min(2 + (4 * bits + k - 1) / k, k_order);
 }
 
-FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& traction,
-                   double radius, int order)
-    : FarField(radius, order) {
+FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius)
+    : FarField(radius) {
   add(edges, count, traction, Vec2::Zero());
   finish();
 }
 
-FarField::FarField(double radius, int order) : radius_(radius), order_(order) { a_.fill(Pair::Zero()); }
+FarField::FarField(double radius) : radius_(radius) { a_.fill(Pair::Zero()); }
 
 void FarField::add(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& shift) {
   const double at_centre = traction.at_centroid - traction.gradient.dot(shift);
   // Moments of degree n over the triangle (centre, edge): 2·area/(n+2) ∫₀¹ on the edge.
-  static const GaussRule rule = gauss_rule();
+  static const EdgeRule rule;
   for (std::size_t e = 0; e < count; ++e) {
     const PatchEdge& edge = edges[e];
     const Vec2 start = edge.start + shift;
@@ -106,8 +86,8 @@ void FarField::add(const PatchEdge* edges, std::size_t count, const Traction& tr
 }
 
 void FarField::finish() {
-  for (int l = 0; l <= order_; ++l)
-    for (int k = 0; l + 2 * k <= order_; ++k) {
+  for (int l = 0; l <= k_order; ++l)
+    for (int k = 0; l + 2 * k <= k_order; ++k) {
       Pair& a = a_[l * k_row + k];
       a *= (l > 0 ? 2 : 1) * k_root[k + l] * k_root[k];
       if (l % 4 >= 2) // iˡ
@@ -125,9 +105,9 @@ void FarField::add_node(const Vec2& z, double uniform, double linear) {
   for (int k = 1; k < k_row; ++k)
     square[k] = square[k - 1] * z.squaredNorm();
   Pair power(1, 0); // z^l
-  for (int l = 0; l <= order_; ++l) {
+  for (int l = 0; l <= k_order; ++l) {
     Pair* row = &a_[l * k_row];
-    for (int k = 0; l + 2 * k <= order_; ++k)
+    for (int k = 0; l + 2 * k <= k_order; ++k)
       row[k] += weight[l + 2 * k] * square[k] * power;
     power = Pair(power[0] * z.x() - power[1] * z.y(), power[0] * z.y() + power[1] * z.x());
   }
@@ -138,7 +118,7 @@ PieceDissipation FarField::evaluate(const Vec2& v, double omega) const {
   const double speed = std::sqrt(v.x() * v.x() + v.y() * v.y());
   const double cx = v.x() / speed, cy = v.y() / speed;
   const double kappa = omega * radius_ / speed;
-  const int order = std::min(order_, needed_order(std::abs(kappa)));
+  const int order = needed_order(std::abs(kappa));
 
   const Powers<WithCurvature> power(kappa, order);
 

@@ -32,12 +32,11 @@ class FarField {
 public:
   static constexpr int k_order = 18;
 
-  /// Takes about 7 µs for a quadrilateral at full order, less as the square of `order`.
-  FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius,
-           int order = k_order);
+  /// Takes about 7 µs for a quadrilateral.
+  FarField(const PatchEdge* edges, std::size_t count, const Traction& traction, double radius);
 
   /// Of several pieces together, about a centre of theirs: add() each, then finish().
-  explicit FarField(double radius, int order = k_order);
+  explicit FarField(double radius);
   /// Edges and traction are about the piece's centroid, which is at `shift` from the centre.
   void add(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& shift);
   void finish();
@@ -58,7 +57,6 @@ private:
   using Pair = Eigen::Array2d; // real and imaginary part
 
   double radius_ = 1;
-  int order_ = k_order;
   std::array<Pair, (k_order + 1) * k_row> a_; // row l: n = l, l+2, …
 };
 

@@ -1,5 +1,7 @@
 #include "elements/patch/limit_surface.h"
 
+#include "elements/patch/cubature.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -50,9 +52,7 @@ PieceDissipation evaluate_piece(const Patch& patch, std::size_t i, const Vec2& v
                       : evaluate_near<WithCurvature>(patch.edges(piece), piece, v, omega);
   if (const FarField* far = PatchAccess::far(patch, i))
     return far->evaluate<WithCurvature>(v, omega);
-  const int order = FarField::needed_order(std::abs(omega) * piece.radius / v.norm());
-  return FarField(patch.edges(piece), piece.edges, piece.traction, piece.radius, order)
-      .evaluate<WithCurvature>(v, omega);
+  return integrate_far<WithCurvature>(patch.edges(piece), piece.edges, piece.traction, piece.radius, v, omega);
 }
 
 /// Adds a piece whose centroid is at `arm` from the reference: v_piece = v + ω ẑ×arm.
@@ -267,6 +267,29 @@ Dissipation evaluate_about(const Patch& patch, const Vec2& point, const Vec3& nu
 }
 Dissipation evaluate_gradient_about(const Patch& patch, const Vec2& point, const Vec3& nu) {
   return evaluate_all<false>(patch, point, nu);
+}
+
+Vec3 gradient_about(const Polygon& polygon, const Traction& traction, const Vec2& origin, const Vec2& point, const Vec3& nu,
+                    Patch& spare) {
+  Vec2 centre = Vec2::Zero();
+  for (const Vec2& corner : polygon.outer) centre += corner;
+  centre /= static_cast<double>(polygon.outer.size());
+  double square = 0;
+  for (const Vec2& corner : polygon.outer) square = std::max(square, (corner - centre).squaredNorm());
+  const double radius = std::sqrt(square);
+  const Vec2 arm = centre - point;
+  const Vec2 v(nu[0] - nu[2] * arm.y(), nu[1] + nu[2] * arm.x());
+  const double reach = k_far_ratio * radius * nu[2];
+  if (v.squaredNorm() > reach * reach) {
+    const Traction here{traction.at_centroid + traction.gradient.dot(centre - origin), traction.gradient};
+    const PieceDissipation p = integrate_far(polygon, centre, here, radius, v, nu[2]);
+    return {p.fx, p.fy, p.m + cross(arm, Vec2(p.fx, p.fy))};
+  }
+  spare.clear(point);
+  const bool is_uniform = traction.gradient.isZero(0);
+  const double at_centroid = traction.at_centroid + (is_uniform ? 0.0 : traction.gradient.dot(centroid(polygon) - origin));
+  spare.add(polygon, Traction{at_centroid, traction.gradient});
+  return evaluate_gradient(spare, nu).gradient;
 }
 
 } // namespace steplap

@@ -9,7 +9,7 @@
 // the wrenches that friction can bear are {W : W·ν ≤ h(ν) for all ν}.
 //
 // One smooth function of ν: closed form for centres of rotation within k_far_ratio radii of a
-// piece (closed_form.h), expansion beyond and for translation (far_field.h), each good to about
+// piece (closed_form.h), expansion (far_field.h) or cubature (cubature.h) beyond and for translation, each good to about
 // 1e-13 of traction × area × size for pieces up to 100 times longer than wide; the loss grows in
 // proportion beyond that. Assumes a pressure that does not change while sliding; see
 // docs/explanation/limit_surface.md for derivation and limits.
@@ -50,7 +50,7 @@ public:
 
   /// Tabulates the expansions of all pieces (about 7 µs each), and those of pieces that lie over each other together
   /// (the overlaps of a stack at one corner), for patches evaluated many times.
-  /// Without it a far evaluation makes the part of the table that it needs and forgets it.
+  /// Without it far evaluations are integrated node by node (cubature.h), a tenth of a microsecond each.
   void prepare();
 
   [[nodiscard]] bool empty() const { return pieces_.empty(); }
@@ -111,5 +111,10 @@ struct Dissipation {
 [[nodiscard]] Dissipation evaluate_about(const Patch& patch, const Vec2& point, const Vec3& nu);
 [[nodiscard]] Dissipation evaluate_gradient_about(const Patch& patch, const Vec2& point,
                                                   const Vec3& nu);
+
+/// ∇h of one polygon with the traction w(r) = at_centroid + gradient·(r − origin), about `point`, for who asks once: where the
+/// centre of rotation is far, nothing is made of the polygon but what is asked for; where it is near, `spare` is made of it.
+[[nodiscard]] Vec3 gradient_about(const Polygon& polygon, const Traction& traction, const Vec2& origin, const Vec2& point,
+                                  const Vec3& nu, Patch& spare);
 
 } // namespace steplap

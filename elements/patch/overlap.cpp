@@ -215,4 +215,14 @@ double penetration(const Outline& a, const Outline& b, const Pose& pose, Overlap
   return depth_of_parts(a, b, w);
 }
 
+DepthBound depth_bound(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w) {
+  const double of_a = (a.centre - Vec2(pose.x, pose.y)).norm() + a.radius, of_b = b.centre.norm() + b.radius;
+  return {pose, penetration(a, b, pose, w), std::max(of_a, of_b)};
+}
+
+double DepthBound::at_least(const Pose& there) const {
+  const double shift = std::abs(there.x - pose.x) + std::abs(there.y - pose.y);
+  return depth - shift - (reach + shift) * std::abs(there.theta - pose.theta);
+}
+
 } // namespace steplap

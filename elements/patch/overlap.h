@@ -60,6 +60,17 @@ void intersect_exactly(const Outline& a, const Outline& b, const Pose& b_in_a,
 [[nodiscard]] double penetration(const Outline& a, const Outline& b, const Pose& b_in_a,
                                  OverlapWorkspace& workspace);
 
+/// penetration() at one pose, and what it leaves of it at others, for next to nothing.
+struct DepthBound {
+  Pose pose;
+  double depth = 0; ///< [m]
+  double reach = 0; ///< of both sheets' points from the origin of b's frame [m]
+
+  /// Not more than penetration() there: it changes by no more than a point of b moves seen from a, or of a seen from b.
+  [[nodiscard]] double at_least(const Pose& there) const;
+};
+[[nodiscard]] DepthBound depth_bound(const Outline& a, const Outline& b, const Pose& b_in_a, OverlapWorkspace& workspace);
+
 /// The point p of b's frame in a's frame.
 [[nodiscard]] Vec2 placed(const Vec2& p, const Pose& b_in_a);
 

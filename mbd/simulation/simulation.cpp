@@ -5,6 +5,7 @@
 #include "mbd/dynamics/parts.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
+#include "mbd/system/slip_scratch.h"
 #include "mbd/base/number_text.h"
 #include "mbd/integrators/explicit_pair.h"
 #include "mbd/model/method.h"
@@ -103,6 +104,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
     dynamics_.show_integrals(ledger_.get());
   }
   integrator_->expect_looks(extremes_ || ledger_ || options_.output_step > 0.0);
+  if (integrator_->is_adaptive()) tell_slip_laws(dynamics_.evaluation(), options_.settings.tolerance, system.frictions.size());
   restart();
   energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
   if (options_.output_step > 0.0) record_sample(state_.t);
@@ -317,6 +319,9 @@ static void guard_against_kinks(long kinks, long max_events, double t, const std
 void Simulation::pass_event(double t, const double* y, const std::vector<int>& fired) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
+  // Begun with factors of its own: those of the last evaluation may be a sample's, and what is left of the joints within the
+  // tolerance would hang on it.
+  (void)dynamics_.residual(t, y_.data());
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
   energy_.check_step(dynamics_, t, y_.data());
   dynamics_.unpack(t, y_.data(), state_);

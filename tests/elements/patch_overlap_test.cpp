@@ -286,3 +286,22 @@ TEST_CASE("overlap: what cannot be repaired is named") {
   CHECK(!is_convex(pentagram));
   contains(refusal({pentagram, {}}), "must not cross");
 }
+
+TEST_CASE("overlap: no depth is less than the bound from another pose") {
+  Draw draw(71);
+  OverlapWorkspace workspace;
+  double tightest = 1;
+  for (int i = 0; i < cases(4000); ++i) {
+    const auto sheet = [&] { return make_outline(draw.coin() ? convex_polygon(draw) : concave_polygon(draw)); };
+    const Outline a = sheet(), b = sheet();
+    const Pose from = pose(draw, 1);
+    const double size = draw.scale(1e-6, 1);
+    const Pose to{from.x + size * draw.within(-1, 1), from.y + size * draw.within(-1, 1), from.theta + size * draw.within(-1, 1)};
+    const DepthBound bound = depth_bound(a, b, from, workspace);
+    const double depth = penetration(a, b, to, workspace);
+    CHECK(bound.at_least(from) == bound.depth);
+    CHECK(depth >= bound.at_least(to) - 1e-14); // roundings of coordinates of a few metres
+    tightest = std::min(tightest, (depth - bound.at_least(to)) / size);
+  }
+  CHECK(tightest < 0.1); // it says something
+}

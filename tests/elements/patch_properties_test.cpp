@@ -146,6 +146,36 @@ TEST_CASE("patch: pieces that lie over each other, taken together or one by one"
   }
 }
 
+// Patches that are not prepared are integrated node by node where the centre of rotation is far, along each side with as many
+// nodes as it takes; prepared ones are expanded. Both leave rounding alone, which a fan with dents and holes sums a few times.
+TEST_CASE("patch: integrated node by node as by the expansion, at every distance") {
+  Draw draw(38);
+  for (int i = 0; i < cases(20000); ++i) {
+    const Polygon polygon = draw.coin() ? convex_polygon(draw) : concave_polygon(draw);
+    Patch once(centroid(polygon)), prepared(centroid(polygon));
+    const Traction traction{1, draw.coin() ? draw.point(0.3) : Vec2(0, 0)};
+    once.add(polygon, traction);
+    prepared.add(polygon, traction);
+    prepared.prepare();
+    const double size = once.pieces()[0].radius, angle = draw.within(0, 6.3);
+    const double ratio = i % 10 == 0 ? draw.scale(1, 1e18) : draw.scale(1 + 1e-9, 60);
+    const Vec3 nu(std::cos(angle), std::sin(angle), draw.sign() / (ratio * k_far_ratio * size));
+    const Dissipation a = evaluate(once, nu), b = evaluate(prepared, nu);
+    const double rounding = 1e-14 * once.force();
+    CHECK(std::abs(a.h - b.h) < rounding);
+    CHECK((a.gradient - b.gradient).head<2>().norm() < rounding);
+    CHECK(std::abs(a.gradient[2] - b.gradient[2]) < rounding * size);
+    CHECK((a.hessian - b.hessian).topLeftCorner<2, 2>().norm() < rounding);
+    CHECK((a.hessian - b.hessian).topRightCorner<2, 1>().norm() < rounding * size);
+    CHECK(std::abs(a.hessian(2, 2) - b.hessian(2, 2)) < rounding * size * size);
+    // about another centre, with a circle of its own, and without a patch
+    Patch spare;
+    const Vec3 g = gradient_about(polygon, traction, centroid(polygon), centroid(polygon), nu, spare);
+    CHECK((g - a.gradient).head<2>().norm() < k_rounding * once.force()); // its circle may be wider: the closed form's, then
+    CHECK(std::abs(g[2] - a.gradient[2]) < k_rounding * once.force() * size);
+  }
+}
+
 TEST_CASE("patch: moving and turning the scene, and the point of reference, change nothing") {
   Draw draw(35);
   for (int i = 0; i < cases(10000); ++i) {

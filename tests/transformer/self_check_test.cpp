@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <utility>
 
 using namespace steplap;
@@ -51,6 +52,11 @@ public:
     else real_->watch_stick(e, s, wrench, watch);
   }
   void begin_slip(const Evaluation& e, FrictionState& s, const double* wrench) const override { real_->begin_slip(e, s, wrench); }
+  // Where it begins to move the mode problem is asked how it goes on.
+  void watch_slip(const Evaluation&, const FrictionState&, const double* rate, double* watch) const override {
+    watch[0] = 1e-9 - std::abs(rate[0]);
+    watch[1] = 1.0;
+  }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState& s, const double* a, const double* b,
                                           bool is_kinetic) const override {
     FrictionBlock block = real_->solve_block(e, s, a, b, is_kinetic);

@@ -27,7 +27,7 @@ ExitCode assess_here(const AssessOptions& options, Console& console) {
 
 } // namespace
 
-bool is_assessment(const std::vector<std::string>& arguments) {
+bool asks_for_assessment(const std::vector<std::string>& arguments) {
   const auto command = std::find_if(arguments.begin(), arguments.end(), [](const std::string& word) { return !word.starts_with('-'); });
   if (command == arguments.end() || *command != "assess") return false;
   return std::none_of(arguments.begin(), arguments.end(), [](const std::string& word) { return word == "--static" || word.starts_with("--static=") || word == "--help" || word == "-h"; });

@@ -23,6 +23,6 @@ struct AssessOptions : ReadingOptions {
 /// That of `steplap`: --static, and help.
 [[nodiscard]] Command assess_command();
 /// Is it for the program of studies?
-[[nodiscard]] bool is_assessment(const std::vector<std::string>& arguments);
+[[nodiscard]] bool asks_for_assessment(const std::vector<std::string>& arguments);
 
 } // namespace steplap
