@@ -70,6 +70,9 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
   if (!order.empty()) a.assumptions.push_back(order);
   for (std::size_t r = 0; r < a.records.size(); ++r)
     for (std::size_t e = 0; e < a.records[r].events.size(); ++e) a.events.push_back({r, e, {}, {}});
+  for (const RecordEvents& record : a.records)
+    for (const DrivenModel& model : a.models)
+      if (const std::string unseen = check_gravity(record, model); !unseen.empty()) a.assumptions.push_back(unseen);
   for (const DrivenModel& model : a.models) {
     std::vector<DriveHistory>& histories = a.histories.emplace_back();
     for (const VoyageEvent& event : a.events)
@@ -129,8 +132,8 @@ void assume(Assessment& a) {
     for (const std::string& note : model.notes) a.assumptions.push_back(name + note);
     if (model.recorder.drift == "line") a.assumptions.push_back(name + "of each event a constant is taken away, so that velocity ends where it began.");
   }
-  a.assumptions.push_back("The voyage begins at rest, and each event where the one before left the machine. What did not reach the threshold of " +
-                          rounded_text(a.records.empty() ? 0.0 : a.records.front().rules.threshold / k_gravity, 3) + " g is not run.");
+  a.assumptions.push_back("The voyage begins at rest, and each event where the one before left the machine. What stays below the threshold of " +
+                          rounded_text(a.records.empty() ? 0.0 : a.records.front().rules.threshold / k_gravity, 3) + " g is not run, but for what is greatest of each axis.");
   for (const UncertainValue& value : a.uncertain->values())
     if (value.source == "assumed") a.assumptions.push_back("The " + value.name + " is assumed: " + value.source_text + ".");
   constexpr double k_unlikely = 0.01; // on either side
@@ -145,6 +148,15 @@ void assume(Assessment& a) {
     for (const RecordFault fault : record.faults)
       if (std::find(a.accepted.begin(), a.accepted.end(), fault) != a.accepted.end())
         a.assumptions.push_back("That '" + record.file + "' is not whole (" + name_of(fault) + ") was accepted by whoever asked.");
+  for (const RecordEvents& record : a.records) {
+    const ReadFacts& facts = record.recording.facts;
+    const std::string start = record.recording.layout.time.start;
+    constexpr double k_hours = 7200.0; // s: beyond, people count in hours
+    const double covered = facts.last - facts.first;
+    a.assumptions.push_back("'" + record.file + "' covers " + (covered > k_hours ? rounded_text(covered / 3600.0, 4) + " h" : rounded_text(covered, 4) + " s") + (start.empty() ? "" : "; it starts " + start) + ". What came before or after is in no record.");
+    if (facts.repeated.count > 0) a.assumptions.push_back("Of '" + record.file + "' " + counted(facts.repeated.count, "row", "rows") + " with the time of another are left out, as asked.");
+    if (facts.unended_line > 0) a.assumptions.push_back("The last line of '" + record.file + "' does not end with a line break: that the file is whole could not be seen.");
+  }
 }
 
 } // namespace

@@ -130,7 +130,7 @@ Json event(const Assessment& a, std::size_t number_) {
     clock = stamp;
   }
   return {{"number", number_ + 1}, {"record", record.file}, {"in_record", shock.number}, {"line", shock.line}, {"time", time}, {"begin", shock.begin}, {"end", shock.end}, {"clock", clock},
-          {"duration", shock.axes.empty() ? 0.0 : shock.axes[shock.worst].duration}, {"goes_on", shock.goes_on}, {"peaks", peaks}, {"figure", figure(record, recorded.window)}, {"models", passages}};
+          {"duration", shock.axes.empty() ? 0.0 : shock.axes[shock.worst].duration}, {"goes_on", shock.goes_on}, {"below_threshold", recorded.is_below}, {"peaks", peaks}, {"figure", figure(record, recorded.window)}, {"models", passages}};
 }
 
 // Each joint's sums after the last event that was run.

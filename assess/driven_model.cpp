@@ -1,11 +1,13 @@
 #include "assess/driven_model.h"
 
 #include "elements/prescribed_motion.h"
+#include "mbd/base/shown_text.h"
 #include "mbd/io/input_files.h"
 #include "mbd/io/reader.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_building.h"
+#include "record/fields.h"
 #include "run/catalogue.h"
 
 #include <algorithm>
@@ -142,6 +144,30 @@ DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& even
     history.y.push_back(s * a[i] + c * b[i]);
   }
   return history;
+}
+
+std::string check_gravity(const RecordEvents& record, const DrivenModel& model) {
+  constexpr double k_seen = 0.7, k_other = 0.5; // g: rests in the record at all; is somewhere else, whatever the first second shakes
+  const std::vector<AxisColumn>& axes = record.recording.layout.axes;
+  double size = 0.0;
+  for (std::size_t i = 0; i < axes.size(); ++i) size += record.recording.facts.axes[i].rest * record.recording.facts.axes[i].rest;
+  if (model.given.header.gravity.norm() < k_seen * k_gravity || record.recording.layout.is_peaks) return "";
+  if (std::sqrt(size) < k_seen * k_gravity)
+    return "'" + record.file + "' has no gravity in it: that its axes point as '" + model.name + "' says could not be seen.";
+  // What stands still feels the push of its support: against gravity.
+  const Vec2 up = -model.given.header.gravity / model.given.header.gravity.norm();
+  const double c = portable::cos(model.marker_angle), s = portable::sin(model.marker_angle);
+  const std::pair<std::string, double> felt[] = {{model.recorder.x, c * up.x() + s * up.y()}, {model.recorder.y, -s * up.x() + c * up.y()}};
+  for (const auto& [axis, share] : felt) {
+    const auto index = axis == "none" ? std::nullopt : record.axis(axis.back());
+    if (!index) continue;
+    const double sign = axis.starts_with('-') ? -1.0 : 1.0, rest = record.recording.facts.axes[*index].rest / k_gravity;
+    if (std::abs(sign * rest - share) < k_other) continue;
+    throw FileError(record.file, "axis " + axis.substr(axis.size() - 1) + " of '" + record.file + "' reads " + rounded_text(rest, 3) + " g in its first second, and would read " +
+                                     rounded_text(sign * share, 3) + " g at rest if it sat as '" + model.name + "' says (x = \"" + model.recorder.x + "\", y = \"" + model.recorder.y +
+                                     "\" of [[recorder]]): correct the axes there, or choose columns and signs of the record");
+  }
+  return "";
 }
 
 DrivenModel driven_model(Model given, const std::string& name) {

@@ -29,6 +29,11 @@ struct DriveHistory {
 /// if the record lacks an axis that the model wants.
 [[nodiscard]] DriveHistory drive_history(const RecordEvents& record, const RecordedEvent& event, const Recorder& recorder, double angle);
 
+struct DrivenModel;
+/// Throws FileError if the record reads gravity at rest along another axis, or with another sign, than a recorder does that sits as the
+/// model says: its axes are not where the model has them. "" or a sentence: what could not be seen.
+[[nodiscard]] std::string check_gravity(const RecordEvents& record, const DrivenModel& model);
+
 /// A model made ready to be driven.
 struct DrivenModel {
   std::string file, name, sha256;

@@ -71,10 +71,13 @@ void Traveller::look(const Report& report, Passage& passage) {
   slid_x_.resize(report.joints.size(), 0.0), slid_y_.resize(report.joints.size(), 0.0), slid_total_.resize(report.joints.size(), 0.0);
   for (std::size_t i = 0; i < report.joints.size(); ++i) {
     const JointAssessment& joint = report.joints[i];
-    if (joint.verdict == JointVerdict::not_assessed) continue;
+    if (joint.verdict == JointVerdict::not_assessed) {
+      passage.unjudged.push_back(joint.joint);
+      continue;
+    }
     JointPassage p;
     p.name = joint.joint;
-    p.slips = joint.has_slipped;
+    p.slips = would_slip(joint);
     p.came_apart = joint.has_come_apart;
     p.margin = joint.smallest_margin;
     p.at = joint.time_of_smallest;

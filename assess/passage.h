@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assess/driven_model.h"
+#include "elements/step_lap_assessment.h"
 #include "run/overview.h"
 
 #include <memory>
@@ -10,6 +11,9 @@
 #include <vector>
 
 namespace steplap::assess {
+
+/// Did it slide, or, of a joint that is watched and held, would it have?
+[[nodiscard]] inline bool would_slip(const JointAssessment& joint) { return joint.has_slipped || (joint.is_monitored && joint.smallest_margin < 1.0); }
 
 /// What an event did to a step-lap joint.
 struct JointPassage {
@@ -46,6 +50,7 @@ struct Passage {
   TrustLevel trust_level = TrustLevel::none;
   bool is_trusted = false;             ///< nothing forbids to believe it
   std::vector<JointPassage> joints;
+  std::vector<std::string> unjudged;   ///< joints of which nothing can be said
   std::vector<FootPassage> feet;
   std::vector<LimitPassage> reactions, clearances, others;
   std::vector<std::string> findings;

@@ -1,5 +1,8 @@
 #include "assess/record_events.h"
 
+#include "assess/quiet_watch.h"
+#include "assess/record_faults.h"
+
 #include "mbd/base/shown_text.h"
 #include "mbd/io/digest.h"
 #include "mbd/io/read_input.h"
@@ -77,21 +80,71 @@ public:
     }
     if (conditioning_.rate && *conditioning_.rate < layout.time.rate * (1.0 - 1e-9))
       throw FileError(layout.file, "'" + layout.file + "' has " + rounded_text(layout.time.rate) + " Hz: fewer samples would fold high frequencies into low ones");
+    axes_ = layout.axes.size();
     conditioner_.emplace(conditioning_, sink_);
     conditioner_->begin(layout);
   }
-  void begin_segment(std::size_t line) override { conditioner_->begin_segment(line); }
-  void put(double t, const double* a) override { conditioner_->put(t, a); }
+  void begin_segment(std::size_t line) override {
+    conditioner_->begin_segment(line);
+    fall_.begin_segment();
+  }
+  void put(double t, const double* a) override {
+    conditioner_->put(t, a);
+    fall_.put(t, a, axes_);
+  }
   void end_segment() override { conditioner_->end_segment(); }
   [[nodiscard]] const Conditioner& conditioner() const { return *conditioner_; }
   [[nodiscard]] const Conditioning& conditioning() const { return conditioning_; }
+  [[nodiscard]] const FallWatch& fall() const { return fall_; }
 
 private:
   Conditioning conditioning_;
   const EventReading& reading_;
   SignalSink& sink_;
   std::optional<Conditioner> conditioner_;
+  FallWatch fall_;
+  std::size_t axes_ = 0;
 };
+
+// Both see the conditioned signal.
+class EventsAndQuiet : public SignalSink {
+public:
+  EventsAndQuiet(const EventRules& rules, ShockFinder::Found found) : quiet(rules), events_(rules, std::move(found)) {}
+  void begin(const RecordLayout& layout, double rate) override {
+    events_.begin(layout, rate);
+    quiet.begin(layout, rate);
+  }
+  void begin_segment(std::size_t line) override {
+    events_.begin_segment(line);
+    quiet.begin_segment(line);
+  }
+  void put(double t, const double* plain, const double* filtered) override {
+    events_.put(t, plain, filtered);
+    quiet.put(t, plain, filtered);
+  }
+  void end_segment() override {
+    events_.end_segment();
+    quiet.end_segment();
+  }
+  QuietWatch quiet;
+
+private:
+  ShockFinder events_;
+};
+
+constexpr double k_noticed = 0.1; // of the threshold: what is smaller shakes nothing loose that the road had left
+
+// What stays below the threshold is run where it is greatest: of a record without an event that is all there is.
+void add_quiet(const QuietWatch& quiet, RecordEvents& record) {
+  const double least = record.events.empty() ? 0.0 : k_noticed * record.rules.threshold;
+  for (const QuietWatch::Stretch& stretch : quiet.greatest(least)) {
+    RecordedEvent event{describe_event(stretch.window, record.recording.layout.axes.size()), stretch.window, true};
+    event.event.segment = stretch.segment, event.event.line = stretch.line;
+    record.events.push_back(std::move(event));
+  }
+  const auto is_before = [](const RecordedEvent& a, const RecordedEvent& b) { return a.event.segment != b.event.segment ? a.event.segment < b.event.segment : a.event.begin < b.event.begin; };
+  std::stable_sort(record.events.begin(), record.events.end(), is_before);
+}
 
 void refuse_gravity_as_shock(const RecordEvents& record) {
   const RecordLayout& layout = record.recording.layout;
@@ -115,37 +168,12 @@ std::optional<std::int64_t> clock_of(const RecordLayout& layout) {
   return stamp->ns;
 }
 
-void find_faults(RecordEvents& record) {
-  const ReadFacts& facts = record.recording.facts;
-  if (record.recording.layout.is_peaks) record.faults.push_back(RecordFault::peaks_only);
-  // What stays where it rests is quiet, not clipped, as where a signal without noise begins at once.
-  const auto is_flat = [&](const AxisFacts& axis) { return axis.flat_longest >= 3 && std::abs(axis.flat_value - axis.rest) > k_felt * record.rules.threshold; };
-  const auto is_clipped = [&](const AxisFacts& axis) { return axis.beyond_range.count > 0 || (is_flat(axis) && !record.recording.layout.holds); };
-  if (std::any_of(facts.axes.begin(), facts.axes.end(), is_clipped)) record.faults.push_back(RecordFault::clipped);
-  if (facts.gaps.count > 0 || facts.missing.count > 0 || facts.backward.count > 0) record.faults.push_back(RecordFault::gaps);
-}
-
 } // namespace
-
-const char* name_of(RecordFault fault) {
-  static constexpr const char* k_names[] = {"clipped", "gaps", "peaks"};
-  return k_names[static_cast<int>(fault)];
-}
 
 std::optional<std::size_t> RecordEvents::axis(char letter) const {
   for (std::size_t i = 0; i < recording.layout.axes.size(); ++i)
     if (recording.layout.axes[i].axis == letter) return i;
   return {};
-}
-
-std::vector<std::string> RecordEvents::warnings() const {
-  std::vector<std::string> texts;
-  for (const RecordFault fault : faults) {
-    if (fault == RecordFault::clipped) texts.push_back("The record is clipped: its peaks were higher than what the models are driven by.");
-    if (fault == RecordFault::gaps) texts.push_back("The record has gaps: what happened in them is not known.");
-    if (fault == RecordFault::peaks_only) texts.push_back("The record holds peaks and no waveform: no model can be driven by it.");
-  }
-  return texts;
 }
 
 RecordEvents read_events(const std::string& file, const EventReading& reading) {
@@ -157,18 +185,21 @@ RecordEvents read_events(const std::string& file, const EventReading& reading) {
   conditioning.frequency_class = reading.frequency_class;
   conditioning.rate = reading.rate;
   if (reading.rest) conditioning.offset = rest_of(file, reading);
-  ShockFinder finder(reading.rules, [&](const ShockEvent& event, const Window& window) { record.events.push_back({event, window}); });
+  EventsAndQuiet finder(reading.rules, [&](const ShockEvent& event, const Window& window) { record.events.push_back({event, window, false}); });
   WithoutGravity first(conditioning, reading, finder);
   LineSource source(file);
   record.recording = read_record(source, reading.read, first);
   record.sha256 = sha256_of(file);
   record.clock_ns = clock_of(record.recording.layout);
+  record.fall = first.fall();
   find_faults(record);
   if (record.recording.layout.is_peaks) return record;
   record.offset = first.conditioning().offset;
   record.rate = first.conditioner().rate();
   record.bandwidth = first.conditioner().bandwidth();
+  record.is_filtered = reading.frequency_class.has_value();
   if (!reading.gravity || *reading.gravity != "none") refuse_gravity_as_shock(record);
+  add_quiet(finder.quiet, record);
   return record;
 }
 

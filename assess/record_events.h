@@ -1,6 +1,7 @@
 // Shocks of a recorder's file, ready to drive a model: conditioned windows with gravity taken away once, and what the record cannot say.
 #pragma once
 
+#include "assess/fall_watch.h"
 #include "record/events.h"
 #include "record/read_options.h"
 #include "record/reader.h"
@@ -27,11 +28,20 @@ struct EventReading {
 struct RecordedEvent {
   ShockEvent event;
   Window window;
+  bool is_below = false; ///< the greatest of an axis that is no event: it stays below the threshold
 };
 
 /// What a record lacks for a decision that rests on it.
-enum class RecordFault { clipped, gaps, peaks_only };
-/// "clipped", "gaps" or "peaks"
+enum class RecordFault {
+  clipped,    ///< peaks were higher
+  gaps,       ///< what happened in them is not known
+  peaks_only, ///< no waveform
+  cut,        ///< it ends before the recorder was stopped
+  fall,       ///< the recorder read nothing for a time, gravity included
+  dead,       ///< an axis reads the same from first to last
+  slow        ///< sampled too seldom for what a joint needs (docs/evidence/recorders.md)
+};
+/// "clipped", "gaps", "peaks", "cut", "fall", "dead" or "slow"
 [[nodiscard]] const char* name_of(RecordFault fault);
 
 /// A file, read.
@@ -41,6 +51,8 @@ struct RecordEvents {
   EventRules rules;
   std::array<double, 3> offset{};        ///< m/s², subtracted from the axes
   double rate = 0.0, bandwidth = 0.0;    ///< Hz, of the conditioned signal
+  bool is_filtered = false;
+  FallWatch fall;
   std::vector<RecordedEvent> events;     ///< in order of time
   std::vector<RecordFault> faults;       ///< each once
   std::optional<std::int64_t> clock_ns;  ///< since 1970, of the time 0 of the record; none: it does not tell

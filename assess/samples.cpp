@@ -115,8 +115,8 @@ Probability slip_probability(const std::vector<VoyageSample>& samples, std::size
 Probability damage_probability(const std::vector<VoyageSample>& samples) {
   long damaged = 0, unknown = 0;
   for (const VoyageSample& sample : samples) {
-    if (!sample.summary.unknown.empty()) ++unknown;
-    else if (is_damaged(sample.summary)) ++damaged;
+    if (is_damaged(sample.summary)) ++damaged; // whatever came after
+    else if (!sample.summary.unknown.empty() || sample.summary.acceptance == Verdict::open) ++unknown;
   }
   return probability(damaged, unknown, static_cast<long>(samples.size()));
 }

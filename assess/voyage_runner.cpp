@@ -1,5 +1,6 @@
 #include "assess/voyage_runner.h"
 
+#include "assess/passage.h"
 #include "elements/step_lap_assessment.h"
 #include "elements/step_lap_joint.h"
 #include "mbd/acceptance/judge.h"
@@ -92,7 +93,8 @@ static void look(const Model& whole, const System& system, const RunResult& resu
     for (const ChannelRange& range : result.ranges)
       if (range.channel->name == joint.joint + ".overlap_left") now.overlap_left = std::min(now.overlap_left, range.final);
     now.comes_apart |= joint.has_come_apart;
-    if (!joint.has_slipped) continue;
+    if (std::isnan(joint.smallest_margin) && now.unknown.empty()) now.unknown = "the margin of '" + joint.joint + "' is not known";
+    if (!would_slip(joint)) continue;
     now.slips = true;
     outcome.slips[event] = 1;
     if (now.first_slip.empty()) now.first_slip = "'" + joint.joint + "' slips in event " + std::to_string(event + 1);
@@ -119,7 +121,9 @@ void VoyageRunner::pass_events(Course& course) {
     state = result.final_state;
     state.t = begins_[i + 1]; // to the last bit
     state.dissipated = state.work = 0.0;
-    if (!result.stop_reason.empty()) return;
+    if (result.stop_reason.empty()) continue;
+    if (course.outcome.summary.unknown.empty()) course.outcome.summary.unknown = result.stop_reason;
+    return;
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -113,7 +114,8 @@ std::string record_csv(double rate, double duration, const std::function<double(
   for (long i = 0; i < count; ++i) {
     const double t = static_cast<double>(i) / rate;
     char row[80];
-    std::snprintf(row, sizeof row, "%.6f,%.6f,0,1\n", t, x(t) / k_gravity);
+    const double noise = 1e-4 * std::sin(1e5 * t); // an axis that never moves is no axis
+    std::snprintf(row, sizeof row, "%.6f,%.6f,%.6f,%.6f\n", t, x(t) / k_gravity, noise, 1.0 - noise);
     text += row;
   }
   return text;

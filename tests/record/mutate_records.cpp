@@ -1,5 +1,5 @@
 // Damages recorders' files by random and reads them: mutate_records COUNT [SEED]. Exit code 1 if one of them is read to something that
-// it does not say. docs/explanation/verification.md says what it is for.
+// it does not say.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include "damage.h"
 

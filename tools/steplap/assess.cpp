@@ -57,7 +57,7 @@ Of a static proof (docs/how-to/prove_statically.md): 0 the machine is proven to 
       {"--samples", &o->samples, "N", "voyages with other values of what is uncertain (default: 200); 0: none, and no probability"},
       {"--seed", &o->seed, "N", "of the samples (default: 1)"},
       {"--threads", &o->threads, "N", "of the samples (default: all processors); results are the same for any number"},
-      {"--accept", &o->accepted, "FAULT", "decide although the record is clipped, has gaps, or holds peaks only: clipped, gaps or peaks; may be repeated"},
+      {"--accept", &o->accepted, "FAULT", "decide although a record is clipped, has gaps, holds peaks only, is cut, shows a fall, has a dead axis, or is sampled below 100 Hz: clipped, gaps, peaks, cut, fall, dead or slow; may be repeated"},
       {"--no-estimate", &o->is_estimate_left_out, "", "do not estimate errors of the runs"},
       {"--static", &o->static_preset, "PRESET", "constant loads instead of records: iec-1g, road, sea, or a file of your own (.toml)"},
       {"--plane", &o->plane, "PLANE", "with --static: lengthwise (default where it makes no difference) or transverse, the section that the models show"},

@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 using namespace assess;
 using Align = TextTable::Align;
 
-constexpr OptionWords<RecordFault, 3> k_faults{{{"clipped", RecordFault::clipped}, {"gaps", RecordFault::gaps}, {"peaks", RecordFault::peaks_only}}};
+constexpr OptionWords<RecordFault, 7> k_faults{{{"clipped", RecordFault::clipped}, {"gaps", RecordFault::gaps}, {"peaks", RecordFault::peaks_only}, {"cut", RecordFault::cut},
+                                                {"fall", RecordFault::fall}, {"dead", RecordFault::dead}, {"slow", RecordFault::slow}}};
 constexpr std::size_t k_shown_events = 8, k_shown_reasons = 6, k_shown_sentences = 2; // the screen has thirty lines
 
 fs::path output_folder(const AssessOptions& o) { return o.output.value_or("out/assessment"); }

@@ -1,0 +1,32 @@
+// Does a record show a fall? A recorder that falls reads nothing on any axis, gravity included.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace steplap::assess {
+
+/// Takes samples as they were read, m/s², and keeps the longest stretch in which all axes together read less than 0.3 g.
+class FallWatch {
+public:
+  static constexpr double k_weightless = 0.3 * 9.80665; ///< m/s²: a jolt of the road leaves more for longer than k_least
+  static constexpr double k_least = 0.1;                ///< s: a fall of 5 cm
+
+  void begin_segment() { is_inside_ = false; }
+  void put(double t, const double* a, std::size_t axes) {
+    double size = 0.0;
+    for (std::size_t i = 0; i < axes; ++i) size += a[i] * a[i];
+    if (size >= k_weightless * k_weightless) is_inside_ = false;
+    else if (!is_inside_) is_inside_ = true, from_ = t;
+    else if (t - from_ > longest_) longest_ = t - from_, at_ = from_;
+  }
+  [[nodiscard]] double longest() const { return longest_; } ///< s
+  [[nodiscard]] double at() const { return at_; }           ///< s, where it begins
+
+private:
+  bool is_inside_ = false;
+  double from_ = 0.0, longest_ = 0.0, at_ = 0.0;
+};
+
+} // namespace steplap::assess

@@ -1,0 +1,176 @@
+// What a record does not show, or a user leaves out, never becomes "energise".
+#include "driven_scene.h"
+
+#include "record/fields.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace steplap;
+using namespace steplap::assess;
+using namespace assess_test;
+
+namespace {
+
+const std::string k_only_models = "name = \"models\"\n[[criterion]]\nname = \"what the models ask\"\nquantity = \"acceptance\"\noutcome = \"inspect\"\n";
+const std::string k_peak = "name = \"peaks\"\n[[criterion]]\nname = \"3 g\"\nquantity = \"peak\"\nat_most = \"3 gravity\"\noutcome = \"inspect\"\n";
+const std::string k_slip = "name = \"slip\"\n[[criterion]]\nname = \"slip\"\nquantity = \"slip\"\noutcome = \"inspect\"\n";
+
+double half_sine(double t, double start, double duration, double peak) {
+  return t < start || t > start + duration ? 0.0 : peak * std::sin(std::numbers::pi * (t - start) / duration);
+}
+double shock(double t) { return half_sine(t, 0.5, 0.1, 1.2 * k_gravity); }
+
+/// A record, a block that holds whatever comes, and criteria.
+struct Case {
+  explicit Case(const std::string& criteria = k_only_models, const std::string& record_text = record_csv(1000.0, 2.0, shock)) {
+    options.reading.gravity = "z";
+    options.sampling.samples = 0;
+    options.estimating = Estimating::never;
+    options.criteria = folder.file("criteria.toml");
+    assess_test::write(options.criteria, criteria);
+    assess_test::write(record, record_text);
+    block(block_text(0.5, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"1 m\"\n"));
+  }
+  void block(const std::string& text) const { assess_test::write(model, text); }
+  [[nodiscard]] Assessment made() const { return assess::assess({record}, {model}, options); }
+  [[nodiscard]] Decision decision() const { return made().decision; }
+  /// Open, and energise once the fault is accepted.
+  void check_fault(RecordFault fault) {
+    CAPTURE(name_of(fault));
+    const Assessment a = made();
+    CHECK(a.records.at(0).faults == std::vector<RecordFault>{fault});
+    CHECK(a.decision == Decision::open);
+    options.accepted = {fault};
+    CHECK(decision() == Decision::energise);
+  }
+
+  Folder folder;
+  std::string record = folder.file("shock.csv"), model = folder.file("block.toml");
+  AssessmentOptions options;
+};
+
+// Rows of which `row` makes what it likes.
+template <class Row> std::string rows(double rate, double duration, Row row, const std::string& head = "time [s],x [g],y [g],z [g]\n") {
+  std::string text = head;
+  for (long i = 0; i < std::lround(duration * rate); ++i) text += row(static_cast<double>(i) / rate);
+  return text;
+}
+std::string row_of(double t, double x, double y, double z) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%.6f,%.6f,%.6f,%.6f\n", t, x, y, z);
+  return text;
+}
+double noise(double t) { return 1e-4 * std::sin(1e5 * t); }
+
+} // namespace
+
+TEST_CASE("a record that is whole and a machine that holds: energise") { CHECK(Case().decision() == Decision::energise); }
+
+TEST_CASE("a record that is cut, or that ends because a battery was empty, leaves the decision open") {
+  const std::string whole = record_csv(1000.0, 2.0, shock);
+  Case(k_only_models, whole.substr(0, whole.size() - 12)).check_fault(RecordFault::cut);
+  for (const char* end : {";stopped, low battery\n", "# memory full\n", "; Vbat below limit\n"}) Case(k_only_models, whole + end).check_fault(RecordFault::cut);
+  CHECK(Case(k_only_models, whole + ";stopped, by button\n").decision() == Decision::energise);
+}
+
+TEST_CASE("a fall leaves the decision open, though no sample is beyond the threshold") {
+  const auto falling = [](double from, double to) {
+    return rows(1000.0, 2.0, [=](double t) { return t >= from && t < to ? row_of(t, noise(t), noise(t), noise(t)) : row_of(t, noise(t), noise(t), 1.0 - noise(t)); });
+  };
+  Case(k_only_models, falling(1.2, 1.4)).check_fault(RecordFault::fall);
+  CHECK(Case(k_only_models, falling(1.2, 1.25)).made().records.at(0).faults.empty()); // 1.2 cm
+}
+
+TEST_CASE("an axis that did not measure leaves the decision open") {
+  Case(k_only_models, rows(1000.0, 2.0, [](double t) { return row_of(t, shock(t) / k_gravity, 0.0, 1.0 - noise(t)); })).check_fault(RecordFault::dead);
+}
+
+TEST_CASE("a record of 50 Hz leaves the decision open, one of 100 Hz does not") {
+  Case(k_only_models, record_csv(50.0, 2.0, shock)).check_fault(RecordFault::slow);
+  CHECK(Case(k_only_models, record_csv(100.0, 2.0, shock)).decision() == Decision::energise);
+}
+
+TEST_CASE("a limit on every axis is open where an axis is not in the record") {
+  Case some(k_peak);
+  CHECK(some.decision() == Decision::energise);
+  some.options.reading.read.x = "2", some.options.reading.read.z = "4";
+  CHECK(some.decision() == Decision::open);
+}
+
+TEST_CASE("neither a filter nor a threshold hides a peak from a limit in g") {
+  // 1.2 g with 8 g at 150 Hz on it.
+  const auto ringing = [](double t) { return shock(t) + half_sine(t, 0.5, 0.1, 8.0 * k_gravity) * std::sin(2.0 * std::numbers::pi * 150.0 * (t - 0.5)); };
+  Case wide(k_peak, record_csv(4000.0, 2.0, ringing));
+  CHECK(wide.decision() == Decision::inspect);
+  wide.options.reading.frequency_class = 10.0;
+  CHECK(wide.decision() == Decision::inspect);
+  wide.options.reading.rules.threshold = 50.0 * k_gravity;
+  CHECK(wide.decision() == Decision::inspect);
+  wide.options.reading.frequency_class = 60.0; // the greatest below the threshold is an event as well
+  CHECK(wide.decision() == Decision::inspect);
+}
+
+TEST_CASE("what stays below the threshold is run where it is greatest") {
+  // 0.6 g for 0.1 s, which moves a block with a friction of 0.2 by 9.8 mm and more; the threshold is 1 g.
+  Case quiet(k_only_models, record_csv(1000.0, 3.0, [](double t) { return half_sine(t, 1.5, 0.1, 0.6 * k_gravity); }));
+  quiet.block(block_text(0.2, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"1 mm\"\n"));
+  const Assessment a = quiet.made();
+  REQUIRE(a.events.size() >= 1);
+  CHECK(a.records[0].events[a.events[0].event].is_below);
+  CHECK(a.decision == Decision::inspect);
+  // A record in which nothing happens is run as well, and the machine holds.
+  CHECK(Case(k_only_models, record_csv(1000.0, 3.0, [](double t) { return 1e-3 * std::sin(1e5 * t); })).decision() == Decision::energise);
+}
+
+TEST_CASE("windows below the threshold meet neither events nor each other, in one long record and in many short parts") {
+  for (const double threshold : {0.4, 1.0}) {
+    Case many(k_only_models, record_csv(200.0, 400.0, [](double t) { return (0.3 + 0.25 * std::sin(0.37 * t) + (std::fmod(t, 40.0) < 0.05 ? 0.9 : 0.0)) * k_gravity * std::sin(40.0 * t); }));
+    EventReading reading = many.options.reading;
+    reading.rules.threshold = threshold * k_gravity;
+    const RecordEvents record = read_events(many.record, reading);
+    std::size_t below = 0;
+    for (std::size_t i = 0; i < record.events.size(); ++i) {
+      below += record.events[i].is_below;
+      if (i > 0) CHECK(record.events[i].event.begin > record.events[i - 1].event.end);
+      for (std::size_t k = 0; record.events[i].is_below && k < record.events[i].window.filtered[0].size(); ++k) CHECK(std::abs(record.events[i].window.filtered[0][k]) <= reading.rules.threshold);
+    }
+    CHECK(record.events.size() > below);
+    if (threshold > 0.5) CHECK(below == 1);
+  }
+}
+
+TEST_CASE("a recorder that sat otherwise than the model says is refused by the gravity that it reads") {
+  const auto upside_down = [](double t) { return row_of(t, shock(t) / k_gravity, noise(t), -1.0 - noise(t)); };
+  Case turned(k_only_models, rows(1000.0, 2.0, upside_down));
+  turned.options.reading.gravity = "-z";
+  CHECK_THROWS_WITH_AS(static_cast<void>(turned.made()), doctest::Contains("would read 1 g at rest if it sat as"), FileError);
+  std::string model = block_text(0.5, "[[acceptance]]\nname = \"slide\"\nchannel = \"floor.slide\"\nwithin = \"1 m\"\n");
+  model.replace(model.find("y = \"z\""), 7, "y = \"-z\"");
+  turned.block(model);
+  CHECK(turned.decision() == Decision::energise);
+  // On its side: x reads gravity, and the model has x along the track.
+  Case aside(k_only_models, rows(1000.0, 2.0, [](double t) { return row_of(t, 1.0 + noise(t), noise(t), noise(t)); }));
+  aside.options.reading.gravity = "x";
+  CHECK_THROWS_WITH_AS(static_cast<void>(aside.made()), doctest::Contains("correct the axes there"), FileError);
+  // Gravity that the recorder took away itself shows nothing, which is said.
+  Case without(k_only_models, rows(1000.0, 2.0, [](double t) { return row_of(t, shock(t) / k_gravity, noise(t), noise(t)); }));
+  without.options.reading.gravity = "none";
+  const Assessment a = without.made();
+  CHECK(a.assumptions.front().find("could not be seen") != std::string::npos);
+}
+
+TEST_CASE("a model without a joint does not say that no joint slips") { CHECK(Case(k_slip).decision() == Decision::open); }
+
+TEST_CASE("peaks without a waveform decide nothing about a machine, accepted or not") {
+  const std::string list = "Timestamp;X Peak [g];Y Peak [g];Z Peak [g];Duration [ms]\n2016-01-04 10:25:17;1.20;0.10;1.02;50\n2016-01-04 10:25:20;1.60;0.16;1.01;120\n";
+  for (const std::string& criteria : {k_only_models, k_slip}) {
+    Case peaks(criteria, list);
+    peaks.options.reading.gravity.reset();
+    CHECK(peaks.decision() == Decision::open);
+    peaks.options.accepted = {RecordFault::peaks_only};
+    CHECK(peaks.decision() == Decision::open);
+  }
+}
