@@ -55,7 +55,7 @@ void judge_shares(const JointAssessment& joint, std::vector<CriterionResult>& cr
   judge_least(joint, joint.least_pressure, ".least_pressure", "every interface is pressed: pressure > 0 Pa", 0.0, Verdict::reject, criteria);
   if (!std::isnan(joint.least_pressure.value)) criteria.back().unit = "Pa";
   judge_least(joint, joint.corner_margin, ".corner_margin", "each corner holds its share of the limb's weight: margin >= 1", 1.0, Verdict::inspect, criteria);
-  judge_least(joint, joint.part_margin, ".part_margin", "each packet of sheets holds its own weight: margin >= 1", 1.0,
+  judge_least(joint, joint.part_margin, ".part_margin", "each packet of sheets holds its share of the load: margin >= 1", 1.0,
               Verdict::inspect, criteria);
 }
 

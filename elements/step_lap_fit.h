@@ -31,11 +31,18 @@ struct StepLapFriction::Fit {
     has_capacity = true;
   }
 
-  /// For whoever the bounds by the capacity do not satisfy: many a joint that holds never comes to that.
+  /// For whoever the bounds by the capacity do not satisfy: many a joint that holds never comes to that. A patch of its own: with a table
+  /// sums have another order, and what others get from `patch` must not hang on whether somebody has asked for the table.
   const Patch& tabulated() {
-    patch.prepare();
-    return patch;
+    if (has_table) return table;
+    table = patch;
+    table.prepare();
+    has_table = true;
+    return table;
   }
+
+  Patch table; ///< `patch` prepared
+  bool has_table = false;
 };
 
 struct StepLapFriction::Scratch final : SlipScratch {
@@ -45,6 +52,8 @@ struct StepLapFriction::Scratch final : SlipScratch {
   Patch spare;
   Vec3 asked = Vec3::Zero(); ///< wrench of the last usage(), at this pose
   Pose asked_at;
+  bool was_stuck = false; ///< then: the answer came from the table
+  bool was_known = false; ///< then: it came from the law of a slip
   RequiredPressure answer;
   PressureState pressed; ///< at the last usage()
   double onset_time = k_onset_time, end_time = k_end_time; ///< s, of the slip law's beginning and end

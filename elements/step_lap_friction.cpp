@@ -197,11 +197,14 @@ StepLapFriction::Fit& StepLapFriction::fit(FrictionScratch* const* scratch, cons
   const bool is_same =
       f.is_valid && f.pose.x == pose.x && f.pose.y == pose.y && f.pose.theta == pose.theta && f.tilt == tilt;
   if (is_same) return f;
+  const bool is_reference = &f == &own.fits[0] && reference_ && reference_->tilt == tilt && reference_->pose.x == pose.x &&
+                            reference_->pose.y == pose.y && reference_->pose.theta == pose.theta;
+  if (is_reference) return f = *reference_; // as at the start, whatever has been looked at in between
   build(pose, law, tilt, own.workspace, own.region, f.patch);
   f.pose = pose;
   f.tilt = tilt;
   f.is_valid = true;
-  f.has_capacity = false;
+  f.has_capacity = f.has_table = false;
   return f;
 }
 
@@ -307,18 +310,21 @@ const RequiredPressure& StepLapFriction::usage(const Snapshot& s) const {
   const Vec3 w = wrench(s);
   const Pose pose = present(s);
   const PressureState now = pressure_at(s.t);
+  const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
+  const bool is_known = knows_usage(s, w);
   const bool is_same = own.asked == w && own.asked_at.x == pose.x && own.asked_at.y == pose.y &&
                        own.asked_at.theta == pose.theta && own.pressed.factor == now.factor &&
-                       own.pressed.tilt == now.tilt;
+                       own.pressed.tilt == now.tilt && own.was_stuck == is_stuck && own.was_known == is_known;
   if (is_same) return own.answer;
-  if (knows_usage(s, w)) {
+  if (is_known) {
     own.answer = usage_of_slip(s, pose);
   } else {
     Fit& f = fit(s.evaluation->scratch, pose, GripLaw::holding, now.tilt);
-    const bool is_stuck = s.evaluation->friction[index_].phase == FrictionPhase::stick; // it stays there: worth a table
     own.answer = required(is_stuck ? f.tabulated() : f.patch, w / now.factor, s.t);
   }
   own.pressed = now;
+  own.was_stuck = is_stuck;
+  own.was_known = is_known;
   own.asked = w;
   own.asked_at = pose;
   return own.answer;

@@ -59,12 +59,12 @@ double GripShares::least_pressure(const PressureState& now) const {
   return std::max(0.0, least * now.factor);
 }
 
-double GripShares::least_margin(const std::vector<Group>& groups, const PressureState& now) const {
+double GripShares::least_margin(const std::vector<Group>& groups, const PressureState& now, double load) const {
   double least = std::numeric_limits<double>::infinity();
   for (const Group& group : groups) {
     const double capacity = group.capacity_at(now);
     if (!(capacity > 0.0)) return 0.0;
-    if (weight_ > 0.0) least = std::min(least, capacity / (group.share * weight_));
+    if (load > 0.0) least = std::min(least, capacity / (group.share * load));
   }
   return least;
 }
@@ -75,17 +75,18 @@ void add_share_channels(SystemBuilder& builder, const StepLapFriction& friction,
   const auto* self = &friction;
   builder.add_channel("least_pressure", "Pa", "the least clamping pressure that any of its interfaces has anywhere in its overlap",
                       [self, shares](const Snapshot& s) { return shares->least_pressure(self->pressure_at(s.t)); });
+  const auto demand = [self](const Snapshot& s) { return self->wrench(s).head<2>().norm(); };
   if (shares->corner_count() > 1)
     builder.add_channel("corner_margin", "",
-                        "of the corner that holds least by itself: capacity over its share of the limb's weight, one corner like the "
-                        "other; infinite without gravity",
-                        [self, shares](const Snapshot& s) { return shares->corner_margin(self->pressure_at(s.t)); });
+                        "of the corner that holds least by itself: capacity over its share of the limb's weight (without gravity: of the force on "
+                        "it), one corner like the other; infinite without a load",
+                        [self, shares, demand](const Snapshot& s) { return shares->corner_margin(self->pressure_at(s.t), demand(s)); });
   if (shares->has_parts())
     builder.add_channel("part_margin", "",
-                        "of the packet of sheets that holds itself least: capacity over its weight; infinite without gravity",
-                        [self, shares](const Snapshot& s) { return shares->part_margin(self->pressure_at(s.t)); });
-  builder.add_channel("demand", "N", {"size of the force on the limb", "never negative"},
-                      [self](const Snapshot& s) { return self->wrench(s).head<2>().norm(); });
+                        "of the packet of sheets that holds itself least: capacity over its share of the limb's weight or of the force on the limb, "
+                        "whichever is larger; infinite without a load",
+                        [self, shares, demand](const Snapshot& s) { return shares->part_margin(self->pressure_at(s.t), demand(s)); });
+  builder.add_channel("demand", "N", {"size of the force on the limb", "never negative"}, demand);
 }
 
 } // namespace steplap

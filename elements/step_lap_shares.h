@@ -1,14 +1,17 @@
 // What each corner and each packet of a step-lap joint could hold by itself.
 //
 // The limit surface is one of the whole joint: a corner that is not clamped, or a packet of sheets that nothing presses, is made
-// up for by the others in a sum, while its own sheets rest on nothing. So each has to hold its own share of the limb's weight as
-// well: of n corners 1/n, a packet the share that its sheets have (StepLapInterface::part_share). Its capacity is that in translation,
-// Σ n μ p A over its interfaces in the reference pose, μ static, which no wrench exceeds. What the motion asks beyond the weight
-// is judged of the whole joint. A corner without overlap and interfaces without pressure have no capacity: their margin is zero.
+// up for by the others in a sum, while its own sheets rest on nothing. So each has to hold its own share as well: a packet, of the
+// limb's weight and of the force on the limb, whichever is larger, the share that its sheets have of its mass
+// (StepLapInterface::part_share), since it moves as the limb does and nothing but its own friction moves it. Of n corners each has to hold
+// 1/n of the weight: how stiff sheets share what the motion asks beyond it is no matter of statics, and is judged of the whole joint; where there is
+// no gravity, 1/n of the force. The capacity is that in translation, Σ n μ p A over the interfaces in the reference pose, μ static, which no wrench
+// exceeds. A corner without overlap and interfaces without pressure have no capacity: their margin is zero.
 #pragma once
 
 #include "elements/step_lap_friction.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace steplap {
@@ -20,10 +23,11 @@ public:
 
   /// Pa: the least that any interface has anywhere in its overlap; zero where tilting has lifted it off.
   [[nodiscard]] double least_pressure(const PressureState& now) const;
-  /// Capacity over share of the weight of the corner that has least; infinite without weight.
-  [[nodiscard]] double corner_margin(const PressureState& now) const { return least_margin(corners_, now); }
+  /// Capacity over what it has to hold, of the corner that has least; infinite where there is nothing to hold. `demand`: N, size of the
+  /// force on the limb.
+  [[nodiscard]] double corner_margin(const PressureState& now, double demand) const { return least_margin(corners_, now, weight_ > 0.0 ? weight_ : demand); }
   /// The same of packets; only where has_parts().
-  [[nodiscard]] double part_margin(const PressureState& now) const { return least_margin(parts_, now); }
+  [[nodiscard]] double part_margin(const PressureState& now, double demand) const { return least_margin(parts_, now, std::max(weight_, demand)); }
   [[nodiscard]] std::size_t corner_count() const { return corners_.size(); }
   [[nodiscard]] bool has_parts() const { return !parts_.empty(); }
 
@@ -41,7 +45,7 @@ private:
     void add(const Sheet& sheet);
     [[nodiscard]] double capacity_at(const PressureState& now) const;
   };
-  [[nodiscard]] double least_margin(const std::vector<Group>& groups, const PressureState& now) const;
+  [[nodiscard]] double least_margin(const std::vector<Group>& groups, const PressureState& now, double load) const;
 
   double weight_;
   std::vector<Sheet> sheets_;

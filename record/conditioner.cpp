@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace steplap {
 
@@ -26,10 +27,24 @@ void Conditioner::begin(const RecordLayout& layout) {
     filter_.emplace(*conditioning_.frequency_class, rate_);
     margin_ = static_cast<std::size_t>(filter_->settling());
   }
+  if (conditioning_.high_pass) set_high_pass(layout);
   sink_.begin(layout, rate_);
 }
 
+void Conditioner::set_high_pass(const RecordLayout& layout) {
+  // Gain 1/√2 where r⁴ = 1/(√2 − 1), and the low-pass is told by its class: f0 = 2.0775 CFC.
+  const double half = *conditioning_.high_pass / std::sqrt(std::sqrt(1.0 / (std::numbers::sqrt2 - 1.0))), frequency_class = half / ChannelFilter::k_ratio;
+  constexpr double k_slowest = 1e-5; // of the rate: what the filter keeps in memory grows as its inverse
+  if (!(*conditioning_.high_pass >= k_slowest * rate_))
+    throw RecordError(layout.file, 0, 0, "A high-pass of " + rounded_text(*conditioning_.high_pass) + " Hz is too low for a record of " + rounded_text(rate_) + " Hz. Give " + rounded_text(k_slowest * rate_) + " Hz or more.");
+  if (!ChannelFilter::is_possible(frequency_class, rate_))
+    throw RecordError(layout.file, 0, 0, "A high-pass of " + rounded_text(*conditioning_.high_pass) + " Hz would leave nothing of a record of " + rounded_text(rate_) + " Hz. Give less.");
+  low_.emplace(frequency_class, rate_);
+  margin_ += static_cast<std::size_t>(low_->settling());
+}
+
 void Conditioner::begin_segment(std::size_t line) {
+  ++segment_;
   rows_.clear();
   times_.clear();
   for (auto* columns : {&plain_, &filtered_})
@@ -43,6 +58,8 @@ void Conditioner::begin_segment(std::size_t line) {
 void Conditioner::put(double t, const double* a) {
   Row row{t, {}};
   for (std::size_t i = 0; i < axes_; ++i) row.a[i] = a[i] - conditioning_.offset[i];
+  if (segment_ <= conditioning_.segment_offsets.size())
+    for (std::size_t i = 0; i < axes_; ++i) row.a[i] -= conditioning_.segment_offsets[segment_ - 1][i];
   if (rows_.empty() && next_ == 0) start_ = t;
   rows_.push_back(row);
   if (rows_.size() == 4) fill(false);
@@ -90,20 +107,27 @@ void Conditioner::fill(bool is_end) {
 void Conditioner::add(double t, const std::array<double, 3>& a) {
   times_.push_back(t);
   for (std::size_t i = 0; i < axes_; ++i) plain_[i].push_back(a[i]);
-  if (times_.size() >= lead_ + k_block + margin_) flush(false);
+  if (times_.size() >= lead_ + std::max(k_block, margin_) + margin_) flush(false);
 }
 
 // Hands on all that the filter has settled for; keeps as much before and after as it needs.
 void Conditioner::flush(bool is_end) {
   const std::size_t size = times_.size(), end = is_end ? size : size - margin_;
+  std::array<std::vector<double>, 3> without_drift;
+  for (std::size_t i = 0; i < axes_ && low_; ++i) {
+    without_drift[i] = plain_[i];
+    low_->apply(without_drift[i]);
+    for (std::size_t k = 0; k < size; ++k) without_drift[i][k] = plain_[i][k] - without_drift[i][k];
+  }
+  const auto& before = low_ ? without_drift : plain_;
   for (std::size_t i = 0; i < axes_ && filter_; ++i) {
-    filtered_[i] = plain_[i];
+    filtered_[i] = before[i];
     filter_->apply(filtered_[i]);
   }
   std::array<double, 3> plain{}, filtered{};
   for (std::size_t k = lead_; k < end; ++k) {
     for (std::size_t i = 0; i < axes_; ++i) {
-      plain[i] = plain_[i][k];
+      plain[i] = before[i][k];
       filtered[i] = filter_ ? filtered_[i][k] : plain[i];
     }
     integrate(times_[k], filtered.data());
@@ -132,6 +156,8 @@ void Conditioner::end_segment() {
   fill(true);
   flush(true);
   if (now_.duration >= drift_.duration) drift_ = now_;
+  means_.emplace_back();
+  for (std::size_t i = 0; i < axes_ && now_.duration > 0.0; ++i) means_.back()[i] = now_.velocity[i] / now_.duration;
   sink_.end_segment();
 }
 

@@ -70,7 +70,9 @@ void add_irregularities(const ReadFacts& facts, const RecordLayout& layout, std:
   add(facts.midnights, "midnight", "midnights", " passed.");
   add(facts.held, "place", "places", " where samples were left out: the value before is held (" + layout.hold_reason + ").");
   if (facts.cut_line > 0) lines.push_back("The last line (" + std::to_string(facts.cut_line) + ") is cut: it was left out.");
-  if (facts.unended_line > 0) lines.push_back("The last line (" + std::to_string(facts.unended_line) + ") does not end with a line break. It has all fields and was kept; if the file was cut there, its last number may lack digits.");
+  if (facts.unended_line > 0)
+    lines.push_back("The last line (" + std::to_string(facts.unended_line) + ") does not end with a line break. " +
+                    (facts.is_unended_left_out ? "Its last number may lack digits: the line was left out." : "It has all fields, and its last number as many decimals as those before: it was kept."));
 }
 
 std::string delimiter_text(char delimiter) { return delimiter == '\t' ? "tab" : delimiter == ' ' ? "blanks" : std::string("'") + delimiter + "'"; }

@@ -13,7 +13,6 @@ namespace steplap {
 
 ChannelFilter::ChannelFilter(double frequency_class, double rate) {
   if (!is_possible(frequency_class, rate)) throw std::invalid_argument("a channel frequency class needs ten times its frequency as rate");
-  constexpr double k_ratio = 2.0775; // f0 / CFC, SAE J211-1 appendix C
   const portable::SinCos half = portable::sin_cos(std::numbers::pi * k_ratio * frequency_class / rate);
   const double w = half.sin / half.cos, sum = 1.0 + std::numbers::sqrt2 * w + w * w;
   a0_ = w * w / sum;

@@ -11,6 +11,8 @@ namespace steplap {
 
 class ChannelFilter {
 public:
+  static constexpr double k_ratio = 2.0775; ///< f0 / CFC, SAE J211-1 appendix C: where the gain is 1/2
+
   /// `frequency_class` in Hz, as in "CFC 60"; needs a rate of ten times that at least (ISO 6487). Throws std::invalid_argument.
   ChannelFilter(double frequency_class, double rate);
 

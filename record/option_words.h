@@ -20,7 +20,8 @@ inline constexpr OptionWords<unsigned, 3> k_dates{
     {{"day-first", k_day_first}, {"month-first", k_month_first}, {"year-first", k_year_first}}};
 inline constexpr OptionWords<IfMissing, 3> k_missing{
     {{"refuse", IfMissing::refuse}, {"skip", IfMissing::skip}, {"hold", IfMissing::hold}}};
-inline constexpr OptionWords<IfRepeated, 2> k_repeated{{{"refuse", IfRepeated::refuse}, {"first", IfRepeated::first}}};
+inline constexpr OptionWords<IfRepeated, 3> k_repeated{
+    {{"refuse", IfRepeated::refuse}, {"first", IfRepeated::first}, {"last", IfRepeated::last}}};
 inline constexpr OptionWords<IfBackward, 3> k_backward{
     {{"refuse", IfBackward::refuse}, {"split", IfBackward::split}, {"drop", IfBackward::drop}}};
 

@@ -197,6 +197,8 @@ std::string record_json(const RecordResult& result) {
     json["rate"] = layout.time.rate;
     json["conditioned"] = {{"rate", result.rate}, {"bandwidth", result.bandwidth}, {"interpolated_samples", result.interpolated}};
     if (result.conditioning.frequency_class) json["conditioned"]["cfc"] = *result.conditioning.frequency_class;
+    if (result.conditioning.high_pass) json["conditioned"]["high_pass"] = *result.conditioning.high_pass;
+    if (!result.conditioning.segment_offsets.empty()) json["conditioned"]["drift"] = "line";
     for (std::size_t i = 0; i < layout.axes.size(); ++i) json["axes"].push_back(axis_json(result, i));
     json["threshold"] = result.rules.threshold;
     json["events"] = nlohmann::ordered_json::array();

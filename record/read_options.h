@@ -7,7 +7,7 @@
 namespace steplap {
 
 enum class IfMissing { refuse, skip, hold };    ///< a field of an axis that is empty or NaN
-enum class IfRepeated { refuse, first };        ///< a time that is that of the row before
+enum class IfRepeated { refuse, first, last };  ///< a time that is that of the row before: which of the rows is kept
 enum class IfBackward { refuse, split, drop };  ///< a time before that of the row before
 
 struct ReadOptions {

@@ -136,8 +136,11 @@ private:
     if (is_text_line()) return is_terminated_ ? take_text_line() : cut();
     if (!is_terminated_ && !is_whole()) return cut();
     if (!is_terminated_) facts.unended_line = line_;
-    row_fields_ = fields_.size();
-    row_decimals_ = decimals(fields_.back());
+    if (!is_terminated_ && may_lack_digits()) {
+      facts.is_unended_left_out = true;
+      return;
+    }
+    note_decimals();
     if (fields_.size() > layout_->shape.width)
       fail(fields_[layout_->shape.width], "This row has " + counted(fields_.size(), "field", "fields") + ", " + std::to_string(layout_->shape.width) + " were expected. If two rows ran together, part them.");
     facts.last_comment.clear();
@@ -152,13 +155,30 @@ private:
     return sign == std::string_view::npos ? 0 : field.size() - sign - 1;
   }
 
-  // Of a last line that no line break ends. It is whole if it has the fields of the header or of the row before, and the last of them as
-  // many decimals as there. A whole number may still have lost digits: it is kept and said.
+  // Of the last field that is read.
+  void note_decimals() {
+    const std::string_view last = fields_.size() >= needed_ && needed_ > 0 ? fields_[needed_ - 1] : std::string_view();
+    const bool is_first = row_fields_ == 0;
+    row_fields_ = fields_.size();
+    if (last.empty() || last.back() < '0' || last.back() > '9') return; // a value is missing
+    const std::size_t now = decimals(last);
+    is_fixed_ &= is_first || now == row_decimals_;
+    row_decimals_ = now;
+  }
+
+  // Of a last line that no line break ends: has it the fields of the header or of the row before, and a number as the last of them?
   bool is_whole() const {
     if (fields_.size() > needed_) return true; // a delimiter follows all that is read
     if (fields_.size() < std::min(layout_->shape.width, std::max(row_fields_, needed_))) return false;
     const std::string_view last = fields_.back();
     return !last.empty() && last.back() >= '0' && last.back() <= '9' && decimals(last) >= row_decimals_;
+  }
+
+  // A whole number, or one of a file whose numbers have now more, now fewer decimals, may have lost digits, and nothing shows it.
+  bool may_lack_digits() const {
+    if (fields_.size() > needed_) return false;
+    const std::size_t digits = decimals(fields_.back());
+    return digits == 0 || !is_fixed_ || row_fields_ == 0 || digits != row_decimals_;
   }
 
   // A title, names or units of another block of the file.
@@ -179,6 +199,7 @@ private:
     if (is_of_full_width && !is_as(shape.names) && !is_as(shape.units))
       fail(fields_.front(), "This line names other columns than line " + std::to_string(shape.names_line) + ". Split the file before it, and read the parts one by one.");
     recording_.facts.blocks.note(line_);
+    recording_.facts.last_comment = shown(text_.substr(0, 80)); // of the file, if no row follows
     is_new_block_ = true;
   }
 
@@ -326,30 +347,44 @@ private:
       ++facts.segments;
       is_in_segment_ = true;
     }
-    if (facts.rows == 0) facts.first = t;
+    if (!has_previous_) facts.first = t;
     put(t);
   }
 
   void put(double t) {
-    ReadFacts& facts = recording_.facts;
-    for (std::size_t i = 0; i < layout_->axes.size(); ++i) {
-      watches_[i].take(values_[i], line_);
-      if (layout_->range && std::abs(values_[i]) >= 0.999 * *layout_->range) facts.axes[i].beyond_range.note(line_);
-      if (t - facts.first <= 1.0 && t >= facts.first) sums_[i] += values_[i];
-      previous_[i] = values_[i];
-    }
-    if (t - facts.first <= 1.0 && t >= facts.first) ++summed_;
+    t_ = t;
+    previous_ = values_;
     has_previous_ = true;
+    if (options_.repeated != IfRepeated::last) return hand_on(t, values_, line_);
+    hand_on_waiting(); // another row of this time may follow
+    waiting_ = {t, values_, line_};
+  }
+
+  void hand_on_waiting() {
+    if (waiting_) hand_on(waiting_->t, waiting_->a, waiting_->line);
+    waiting_.reset();
+  }
+
+  void hand_on(double t, const std::array<double, 3>& a, std::size_t line) {
+    ReadFacts& facts = recording_.facts;
+    const bool is_at_begin = t - facts.first <= 1.0 && t >= facts.first;
+    for (std::size_t i = 0; i < layout_->axes.size(); ++i) {
+      watches_[i].take(a[i], line);
+      if (layout_->range && std::abs(a[i]) >= 0.999 * *layout_->range) facts.axes[i].beyond_range.note(line);
+      if (is_at_begin) sums_[i] += a[i];
+    }
+    summed_ += is_at_begin;
     ++facts.rows;
-    facts.last = t_ = t;
-    sink_.put(t, values_.data());
+    facts.last = t;
+    sink_.put(t, a.data());
   }
 
   // True: the row replaces nothing and goes on.
   bool take_repeated(std::string_view place) {
     if (options_.repeated == IfRepeated::refuse)
-      fail(place, "The time '" + shown(place.substr(0, 40)) + "' is that of the row before. Give --repeated first to keep the first row of each time; if the clock is too coarse for the rate, give --time none and --rate HZ.");
+      fail(place, "The time '" + shown(place.substr(0, 40)) + "' is that of the row before. Give --repeated first or last to keep one row of each time; if the clock is too coarse for the rate, give --time none and --rate HZ.");
     recording_.facts.repeated.note(line_);
+    if (waiting_) waiting_->a = previous_ = values_, waiting_->line = line_;
     return false;
   }
 
@@ -367,6 +402,7 @@ private:
     if (layout_->holds && (!uses_index_ || index_step_ > 1.0)) {
       facts.held.note(line_);
       if (passed > 1.5 * step_) {
+        hand_on_waiting();
         const std::array<double, 3> before = previous_;
         sink_.put(t - step_, before.data());
       }
@@ -378,6 +414,7 @@ private:
   }
 
   void end_segment() {
+    hand_on_waiting();
     if (is_in_segment_) sink_.end_segment();
     is_in_segment_ = false;
   }
@@ -411,7 +448,7 @@ private:
     ReadFacts& facts = recording_.facts;
     facts.lines = source_.number();
     if (facts.rows == 0)
-      throw RecordError(layout_->file, facts.lines, 1, facts.cut_line > 0 ? "The only row is cut: no row is left. Copy the file again from the recorder." : "No row of the table holds an acceleration. Choose columns with --x, --y, --z.");
+      throw RecordError(layout_->file, facts.lines, 1, facts.cut_line > 0 || facts.is_unended_left_out ? "The only row is cut: no row is left. Copy the file again from the recorder." : "No row of the table holds an acceleration. Choose columns with --x, --y, --z.");
     for (std::size_t i = 0; i < layout_->axes.size(); ++i) {
       facts.axes[i].rest = summed_ > 0 ? sums_[i] / static_cast<double>(summed_) : 0.0;
       watches_[i].finish(facts.axes[i]);
@@ -429,7 +466,14 @@ private:
   std::vector<std::string_view> fields_;
   std::size_t line_ = 0, needed_ = 0, rows_in_block_ = 0, summed_ = 0;
   std::size_t row_fields_ = 0, row_decimals_ = 0; ///< of the row before: fields, and digits behind the decimal sign of the last
+  bool is_fixed_ = true;                          ///< the last numbers of all rows have as many decimals
   double step_ = 0.0; ///< s
+  struct Row {
+    double t = 0.0;
+    std::array<double, 3> a{};
+    std::size_t line = 0;
+  };
+  std::optional<Row> waiting_; ///< of several rows of one time the last is kept
   std::array<double, 3> values_{}, previous_{}, sums_{};
   std::array<bool, 3> is_missing_{};
   std::array<FlatWatch, 3> watches_;

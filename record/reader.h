@@ -61,8 +61,9 @@ struct ReadFacts {
   double longest_gap = 0.0;                      ///< s
   Counted gaps, blocks, comments, short_rows, other_rows, missing, repeated, backward, held, midnights;
   std::size_t cut_line = 0;                      ///< the last line, left out because it is cut; 0: it is not
-  std::size_t unended_line = 0;                  ///< the last line, kept though no line break ends it; 0: one does
-  std::string last_comment;                      ///< after the last row
+  std::size_t unended_line = 0;                  ///< the last line, if no line break ends it; 0: one does
+  bool is_unended_left_out = false;              ///< it was left out, as its last number may lack digits
+  std::string last_comment;                      ///< after the last row: a comment, or a line of text
   std::array<AxisFacts, 3> axes;
 };
 

@@ -233,7 +233,7 @@ Signal read_signal(const Recorder& r) {
   EventRules rules;
   rules.threshold = r.threshold;
   ShockFinder finder(rules, [&events](const ShockEvent&, const Window& window) { events.push_back(window); });
-  Conditioning conditioning{offset_of(r, recording, samples, direction), r.cfc, r.resample};
+  Conditioning conditioning{offset_of(r, recording, samples, direction), r.cfc, r.resample, {}, {}};
   if (r.resample && *r.resample < recording.layout.time.rate * (1.0 - 1e-9))
     fail(r, "'resample' is below the record's " + rounded_text(recording.layout.time.rate) +
                 " Hz, which would fold high frequencies into low ones: keep the rate and filter by 'cfc'");

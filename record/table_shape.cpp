@@ -105,7 +105,8 @@ bool may_be_pairs(const std::vector<HeaderLine>& head, const TableShape& shape) 
 
 void settle_decimal(const std::vector<HeaderLine>& head, const std::string& file, const ReadOptions& options, TableShape& shape) {
   const std::size_t line = head[shape.first_data].number;
-  if (shape.delimiter == ',') {
+  const DecimalSigns signs = decimal_signs(head, shape);
+  if (shape.delimiter == ',' && signs.commas == 0) { // else they stand in quotes
     const bool may_join = may_be_pairs(head, shape);
     const bool is_as_named = !shape.names.empty() && shape.names.size() == shape.width;
     if (options.decimal == ',') {
@@ -119,7 +120,6 @@ void settle_decimal(const std::vector<HeaderLine>& head, const std::string& file
     }
     return;
   }
-  const DecimalSigns signs = decimal_signs(head, shape);
   shape.has_decimals = signs.points + signs.commas > 0;
   if (options.decimal) {
     shape.decimal = *options.decimal;

@@ -112,6 +112,17 @@ void warn_of_idle_elements(const Model& model, Findings& findings) {
   }
 }
 
+// A parameter that nothing follows from: its value is without effect, and a name is perhaps misspelt where it should stand.
+void warn_of_unused_parameters(const Parameters& parameters, Findings& findings) {
+  for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
+    const Parameter& parameter = parameters.entries[i];
+    const auto needs_it = [&](const ParameterFormula& formula) { return std::find(formula.of.begin(), formula.of.end(), i) != formula.of.end(); };
+    const bool is_used = std::any_of(parameters.uses.begin(), parameters.uses.end(), [&](const ParameterUse& use) { return needs_it(use.formula); }) ||
+                         std::any_of(parameters.entries.begin(), parameters.entries.end(), [&](const Parameter& p) { return p.formula && needs_it(*p.formula); });
+    if (!is_used) warn(findings, "unused_parameter", "nothing follows from parameter '" + parameter.name + "'", parameter.where);
+  }
+}
+
 // Loads that constraints can share in more than one way.
 void warn_of_shared_reactions(const System& system, Findings& findings) {
   const Freedom freedom = count_freedom(system);
@@ -315,6 +326,7 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
   if (s.step && !s.tolerance && !has_fixed_step(s.integrator))
     warn(findings, "unused_step",
          "'step' of [simulation] is not used: '" + s.integrator + "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"", s.where);
+  warn_of_unused_parameters(model.parameters, findings);
   warn_of_idle_elements(model, findings);
   append(findings, far_joints(loaded));
   append(findings, stepped_feet(loaded));

@@ -2,6 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/io/record_signal.h"
 #include "mbd/model/load_signals.h"
 #include "mbd/model/signal_network.h"
 #include "run/loaded_model.h"
@@ -10,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 
 namespace steplap {
@@ -70,6 +72,43 @@ void find_growing(const Model& model, SignalNetwork& network, std::vector<Findin
   }
 }
 
+// Of a record whose rows come evenly, and few of which are missing, where the first of them are: s, from and to. A step is missing where it is half as
+// long again as the others; these may differ by a tenth, since times are written with few digits. Where the value is the same on both sides a recorder
+// may have left out what repeats.
+std::optional<std::pair<double, double>> missing_rows(const Signal& signal) {
+  constexpr double k_alike = 0.1, k_missing = 1.5, k_few = 0.1;
+  constexpr std::size_t k_least = 8; // steps: fewer are no custom
+  const std::vector<double>& t = signal.breakpoints();
+  if (t.size() < k_least + 1) return {};
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  std::optional<std::pair<double, double>> first;
+  std::size_t missing = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (std::abs(steps[i] - *middle) <= k_alike * *middle) continue;
+    if (steps[i] < k_missing * *middle) return {};
+    if (i + 2 == t.size() || signal.value(t[i]) == signal.value(t[i + 1])) continue; // behind the last row the signal may be another
+    ++missing;
+    if (!first) first = {t[i], t[i + 1]};
+  }
+  return static_cast<double>(missing) <= k_few * static_cast<double>(steps.size()) ? first : std::nullopt;
+}
+
+void find_gaps(const Model& model, SignalNetwork& network, std::vector<Finding>& findings) {
+  for (const SignalEntry& entry : model.signals) {
+    const std::string& name = entry.definition->name;
+    if (entry.kind != &record_signal_kind() || (!is_used(model, name) && !is_part(model, name))) continue;
+    const Signal* const signal = network.build(name);
+    if (const auto gap = signal ? missing_rows(*signal) : std::nullopt)
+      findings.push_back(warning("rows_missing", "the rows of record '" + name + "' come evenly but for a gap between t = " + rounded_text(gap->first) + " s and " +
+                                                     rounded_text(gap->second) + " s: are rows missing?",
+                                 entry.definition->where));
+  }
+}
+
 // The two bodies that move whose values differ most, as smaller and larger.
 template <class Value> std::pair<const Body*, const Body*> extremes_of(const Model& model, const Value& value) {
   const Body *least = nullptr, *most = nullptr;
@@ -89,10 +128,18 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
   std::vector<Finding> findings;
   SignalNetwork network(model);
   find_growing(model, network, findings);
+  find_gaps(model, network, findings);
+  bool has_load = false;
+  const SignalEntry* silent = nullptr;
   for (const SignalEntry& entry : model.signals) {
     const std::string& name = entry.definition->name;
     const Signal* const signal = is_used(model, name) ? network.build(name) : nullptr;
-    if (!signal || signal->is_constant() || !is_zero(*signal, end)) continue; // a constant of zero is meant to be none
+    if (!signal || signal->is_constant()) continue; // a constant of zero is meant to be none
+    if (!is_zero(*signal, end)) {
+      has_load = true;
+      continue;
+    }
+    if (!silent) silent = &entry;
     const std::vector<double>& breaks = signal->breakpoints();
     const auto next = std::upper_bound(breaks.begin(), breaks.end(), 0.0);
     if (next != breaks.end() && *next >= end)
@@ -103,6 +150,10 @@ std::vector<Finding> implausible_loads(const LoadedModel& loaded) {
       findings.push_back(warning("load_is_zero", "signal '" + name + "' is zero throughout the run: what it drives is not loaded",
                                  entry.definition->where));
   }
+  const bool is_at_rest = std::all_of(model.bodies.begin(), model.bodies.end(), [](const Body& body) { return body.velocity.isZero(0.0) && body.angular_velocity == 0.0; });
+  if (silent && !has_load && is_at_rest)
+    findings.push_back(warning("no_load", "every signal that varies is zero throughout the run: nothing loads the machine but what is constant, and what it bears is not shown",
+                               silent->definition->where));
   return findings;
 }
 

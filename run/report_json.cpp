@@ -1,4 +1,5 @@
 #include "elements/step_lap_assessment.h"
+#include "mbd/formula/unit_dimension.h"
 #include "mbd/io/digest.h"
 #include "run/ordered_json.h"
 #include "run/overview.h"
@@ -26,6 +27,16 @@ Json inputs_json(const std::vector<InputFile>& inputs) {
   Json json = Json::array();
   for (const InputFile& input : inputs)
     json.push_back({{"file", input.path}, {"path", absolute_path(input)}, {"bytes", input.bytes}, {"sha256", input.sha256}});
+  return json;
+}
+
+// What the model was made with; "given" as the file says it.
+Json parameters_json(const Parameters& parameters) {
+  Json json = Json::array();
+  for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
+    const Parameter& p = parameters.entries[i];
+    json.push_back({{"name", p.name}, {"given", p.text}, {"value", parameters.values[i]}, {"unit", unit_text(p.powers)}, {"meaning", p.meaning}});
+  }
   return json;
 }
 
@@ -357,6 +368,7 @@ OrderedJson summary_head(const Report& report, ShownDigits digits) {
                    {"title", loaded.model.header.title},
                    {"overrides", loaded.overrides},
                    {"inputs", inputs_json(loaded.inputs)}};
+  if (!loaded.model.parameters.entries.empty()) json["model"]["parameters"] = parameters_json(loaded.model.parameters);
   json["overview"] = overview_json(overview_of(report, digits), digits);
   json["completed"] = !run.failure;
   if (run.failure) json["failure"] = run.failure->text;

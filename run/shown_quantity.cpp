@@ -82,6 +82,8 @@ std::string shown_quantity(double value, const std::string& unit, const ShownCon
 
 std::string shown_share(double share, std::optional<double> error, ShownDigits digits) {
   if (!std::isfinite(share)) return "–";
+  constexpr double k_countless = 10.0; // of the limit: a load of nothing that holds; how many times it is too much tells nothing
+  if (share > k_countless && !digits.is_full) return "> 1000 %";
   ShownContext context;
   if (error) context.error = 100.0 * *error;
   context.limit = 100.0;

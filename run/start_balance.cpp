@@ -2,6 +2,7 @@
 
 #include "mbd/algebra/decompositions.h"
 #include "mbd/system/gap_source.h"
+#include "mbd/system/row_gradient.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,12 +82,10 @@ VecX StartBalance::gap_gradient(int contact) const {
 }
 
 VecX StartBalance::gradient(const RowSpec& row) const {
-  const MeasureValue<double> m = evaluate_row<false>(row, statics_.motion().data());
-  const double by[6] = {m.direction.x,  m.direction.y,  cross(m.lever_a, m.direction) + m.couple,
-                        -m.direction.x, -m.direction.y, -(cross(m.lever_b, m.direction) + m.couple)};
+  const RowGradient<double> by = gradient_of(evaluate_row<false>(row, statics_.motion().data()));
   VecX gradient = VecX::Zero(statics_.coordinates());
   for (int i = 0; i < 6; ++i)
-    if (const int body = i < 3 ? row.a : row.b; body != k_ground) gradient[3 * body - 3 + i % 3] = by[i];
+    if (const int body = i < 3 ? row.a : row.b; body != k_ground) gradient[3 * body - 3 + i % 3] = by.j[i];
   return gradient;
 }
 

@@ -1,6 +1,7 @@
 #include "run/story.h"
 
 #include "elements/polygon_contact.h"
+#include "elements/round_contacts.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/math/portable_math.h"
@@ -112,11 +113,21 @@ private:
   bool is_upright(const std::string& element) const {
     const ElementEntry* entry = entry_of(element);
     const Model& model = report_.run.loaded->model;
-    const auto* const found = entry ? dynamic_cast<const UnilateralContact*>(entry->element.get()) : nullptr;
-    if (!found) return false;
-    const UnilateralContact& contact = *found;
-    const Place b = place_of(model, contact.b);
-    const Vec2 normal = rotated(contact.normal, b.angle + (b.body ? b.body->angle : 0.0));
+    if (!entry) return false;
+    Vec2 normal = Vec2::Zero(); // from b to a, in the axes of the model
+    const auto angle_of = [](const Place& b) { return b.angle + (b.body ? b.body->angle : 0.0); };
+    const auto in_ground = [](const Place& place, const Vec2& point) {
+      const Vec3 pose = place.body ? place.body->reference_pose() : Vec3::Zero();
+      return Vec2(Vec2(pose.x(), pose.y()) + rotated(Vec2(place.point + rotated(point, place.angle)), pose.z()));
+    };
+    if (const auto* const flat = dynamic_cast<const UnilateralContact*>(entry->element.get())) {
+      normal = rotated(flat->normal, angle_of(place_of(model, flat->b)));
+    } else if (const auto* const round = dynamic_cast<const SegmentContact*>(entry->element.get())) {
+      const Place a = place_of(model, round->a), b = place_of(model, round->b);
+      const Vec2 along = rotated(Vec2(round->to - round->from), angle_of(b));
+      normal = Vec2(-along.y(), along.x());
+      if (normal.dot(in_ground(a, Vec2::Zero()) - in_ground(b, round->from)) < 0.0) normal = -normal; // a is on this side
+    }
     constexpr double k_upright = 0.7; // of the cosine: less than 45° off
     const double size = normal.norm() * model.header.gravity.norm();
     return size > 0.0 && -normal.dot(model.header.gravity) > k_upright * size;

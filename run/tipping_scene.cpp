@@ -2,6 +2,7 @@
 
 #include "mbd/algebra/decompositions.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/system/row_gradient.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,11 +88,7 @@ void TippingScene::find_components() {
 }
 
 Eigen::Matrix<double, 6, 1> TippingScene::gradient(const RowSpec& row) const {
-  const MeasureValue<double> m = evaluate_row<false>(row, statics_.motion().data());
-  Eigen::Matrix<double, 6, 1> j;
-  j << m.direction.x, m.direction.y, cross(m.lever_a, m.direction) + m.couple, -m.direction.x, -m.direction.y,
-      -(cross(m.lever_b, m.direction) + m.couple);
-  return j;
+  return Eigen::Map<const Eigen::Matrix<double, 6, 1>>(gradient_of(evaluate_row<false>(row, statics_.motion().data())).j);
 }
 
 // Joints between its bodies leave it no motion but those of a rigid body.

@@ -20,11 +20,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace steplap::study {
 
@@ -540,10 +538,9 @@ private:
 } // namespace
 
 LoadedStudy read_study(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw ModelError(Location{path, 0, 0}, "the study file cannot be read");
-  std::ostringstream text;
-  text << stream.rdbuf();
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    throw ModelError(Location{path, 0, 0}, "cannot read the study: it is no file. Studies are read more than once, so pipes cannot be taken");
   const InputFiles inputs;
   LoadedStudy loaded = Reader(load_document(path), path).read();
   loaded.study.text = model_source_text(path);

@@ -162,7 +162,7 @@ private:
       anchor_friction(system_, state_, f);
     }
     for (const Slip& slip : slips_) result_.slid.push_back(slip.friction);
-    result_.hangs_on_way = result_.is_settled && !result_.margins.empty();
+    result_.hangs_on_way = (result_.is_settled || !result_.slid.empty()) && !result_.margins.empty();
     note_drives();
     result_.state = state_;
     result_.state.v = start_.v;
@@ -506,9 +506,11 @@ std::string part_text(const System& system, const MotionPart& part) {
 
 std::vector<std::string> remarks_on(const System& system, const Equilibrium& found) {
   std::vector<std::string> remarks;
-  if (found.hangs_on_way)
+  if (found.hangs_on_way && found.is_settled)
     remarks.push_back("friction holds it where it came to when it was let go from the pose given, strongly damped: this rest is one of many, "
                       "and which one hangs on the way to it");
+  else if (found.hangs_on_way)
+    remarks.push_back("friction holds it where it slid to: this rest is one of many, and which one hangs on the way to it");
   for (const MotionPart& nudge : found.left)
     remarks.push_back(unstable_text(system, nudge) + ", and so did the search");
   for (std::string& text : indifference_texts(system, found.indifferent)) remarks.push_back(std::move(text));

@@ -1,6 +1,7 @@
 #include "mbd/analysis/freedom.h"
 
 #include "mbd/dynamics/schur.h"
+#include "mbd/system/row_gradient.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,10 +41,8 @@ public:
   }
 
   [[nodiscard]] SchurRow sides_of(const RowSpec& spec) const {
-    const MeasureValue<double> m = evaluate_row<false>(spec, motion_[spec.a], motion_[spec.b]);
-    const Pair<double>& d = m.direction;
+    const RowGradient<double> gradient = row_gradient(spec, motion_[spec.a], motion_[spec.b]);
     SchurRow row;
-    const double gradient[2][3] = {{d.x, d.y, cross(m.lever_a, d) + m.couple}, {-d.x, -d.y, -cross(m.lever_b, d) - m.couple}};
     const int body[2] = {spec.a, spec.b};
     for (int side = 0; side < 2; ++side) {
       if (body[side] == k_ground || body[0] == body[1]) continue;
@@ -51,8 +50,8 @@ public:
       row.body[side] = body[side] - 1;
       for (int c = 0; c < 3; ++c) {
         row.w[side][c] = 1.0 / (c < 2 ? of.mass : of.inertia);
-        row.j[side][c] = gradient[side][c];
-        row.wj[side][c] = row.w[side][c] * gradient[side][c];
+        row.j[side][c] = gradient.side(side)[c];
+        row.wj[side][c] = row.w[side][c] * row.j[side][c];
       }
     }
     return row;

@@ -3,6 +3,7 @@
 #include "mbd/math/dual.h"
 #include "mbd/system/law_group.h"
 #include "mbd/system/one_sided_row.h"
+#include "mbd/system/row_gradient.h"
 
 #include <algorithm>
 
@@ -15,34 +16,6 @@ using D12 = Dual<12>;
 // What friction that slides is short of its bound when it comes to rest, as a share: it is to hold then.
 constexpr double k_short_of_bound = 1e-6;
 
-template <class S> MeasureValue<S> measured(const RowSpec& row, const Motion<S>& a, const Motion<S>& b) {
-  switch (row.kind) {
-  case MeasureKind::axis:
-    return AxisMeasure{row.point_a, row.point_b, row.direction}.at<false>(a, b);
-  case MeasureKind::distance:
-    return DistanceMeasure{row.point_a, row.point_b}.at<false>(a, b);
-  case MeasureKind::angle:
-    return AngleMeasure{}.at<false>(a, b);
-  case MeasureKind::roll_line:
-    return RollLineMeasure{row.point_a, row.point_b, row.direction, row.radius_a}.at<false>(a, b);
-  case MeasureKind::roll_round:
-    return RollRoundMeasure{row.point_a, row.point_b, row.direction, row.radius_a, row.radius_b}.at<false>(a, b);
-  case MeasureKind::slide:
-    break;
-  }
-  return SlideMeasure{row.point_a, row.point_b, row.direction, row.contact_axis, row.is_axis_in_a}.at<false>(a, b);
-}
-
-// Gradient by the poses of a and b, six numbers.
-template <class S> void put_gradient(const MeasureValue<S>& m, S* j) {
-  j[0] = m.direction.x;
-  j[1] = m.direction.y;
-  j[2] = cross(m.lever_a, m.direction) + m.couple;
-  j[3] = -m.direction.x;
-  j[4] = -m.direction.y;
-  j[5] = -(cross(m.lever_b, m.direction) + m.couple);
-}
-
 // Where coordinate k of the pair (a, b) stands among those of all bodies; −1: of the ground.
 int place_of(const RowSpec& row, int k) {
   const int body = k < 3 ? row.a : row.b;
@@ -51,11 +24,10 @@ int place_of(const RowSpec& row, int k) {
 
 // k += w ∂²(measure)/∂q², of one part.
 void add_curvature(const RowSpec& row, const std::vector<Motion<double>>& motion, double w, std::vector<Statics::Entry>& k) {
-  D12 j[6];
-  put_gradient(measured(row, seeded(motion[row.a], 0), seeded(motion[row.b], 3)), j);
+  const RowGradient<D12> g = row_gradient(row, seeded(motion[row.a], 0), seeded(motion[row.b], 3));
   for (int i = 0; i < 6; ++i)
     for (int l = 0; l < 6; ++l)
-      if (const int r = place_of(row, i), c = place_of(row, l); r >= 0 && c >= 0) k.emplace_back(r, c, w * j[i].d[l]);
+      if (const int r = place_of(row, i), c = place_of(row, l); r >= 0 && c >= 0) k.emplace_back(r, c, w * g.j[i].d[l]);
 }
 
 void add_pair(int a, int b, const Eigen::Matrix<double, 6, 6>& part, std::vector<Statics::Entry>& whole) {
@@ -158,11 +130,11 @@ void Statics::add_sliding_forces() {
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     if (state_->friction[f].phase != FrictionPhase::slip) continue;
     const RowSpec& row = *system_.frictions[f].friction->rows(state_->friction[f]);
-    double wrench[3], j[6];
+    double wrench[3];
     slip_wrench(f, wrench);
-    put_gradient(measured(row, motion_[row.a], motion_[row.b]), j);
+    const RowGradient<double> g = row_gradient(row, motion_[row.a], motion_[row.b]);
     for (int k = 0; k < 6; ++k)
-      if (const int at = place_of(row, k); at >= 0) force_[at] += wrench[0] * j[k];
+      if (const int at = place_of(row, k); at >= 0) force_[at] += wrench[0] * g.j[k];
   }
 }
 
@@ -187,10 +159,9 @@ MatX Statics::gradient() const {
 void Statics::gradient(std::vector<Entry>& entries) const {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     for (const RowSpec* part = rows_[r].spec; part; part = part->next) {
-      double j[6];
-      put_gradient(measured(*part, motion_[part->a], motion_[part->b]), j);
+      const RowGradient<double> g = row_gradient(*part, motion_[part->a], motion_[part->b]);
       for (int k = 0; k < 6; ++k)
-        if (const int at = place_of(*part, k); at >= 0) entries.emplace_back(static_cast<int>(r), at, j[k]);
+        if (const int at = place_of(*part, k); at >= 0) entries.emplace_back(static_cast<int>(r), at, g.j[k]);
     }
   }
 }
@@ -200,9 +171,9 @@ VecX Statics::off() const {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const RowSpec& row = *rows_[r].spec;
     double& own = off[static_cast<Eigen::Index>(r)];
-    own = off_target(row, measured(row, motion_[row.a], motion_[row.b]).value, static_target(row, *state_));
+    own = off_target(row, evaluate_row<false>(row, motion_[row.a], motion_[row.b]).value, static_target(row, *state_));
     for (const RowSpec* part = row.next; part; part = part->next)
-      own += measured(*part, motion_[part->a], motion_[part->b]).value;
+      own += evaluate_row<false>(*part, motion_[part->a], motion_[part->b]).value;
   }
   return off;
 }
@@ -240,11 +211,11 @@ void Statics::damping(std::vector<Entry>& d) const {
 void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& parts, bool with_sliding,
                                     std::vector<Entry>& k) const {
   const RowSpec& row = *system_.frictions[f].friction->rows(state_->friction[f]);
-  double wrench[3], more[3], j[6];
+  double wrench[3], more[3];
   slip_wrench(f, wrench);
   add_curvature(row, motion_, wrench[0], k);
   if (!with_sliding) return;
-  put_gradient(measured(row, motion_[row.a], motion_[row.b]), j);
+  const RowGradient<double> g = row_gradient(row, motion_[row.a], motion_[row.b]);
   for (const PairJacobian& part : parts) {
     if (part.contact < 0) continue;
     double& normal = contact_force_[part.contact];
@@ -257,7 +228,7 @@ void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& part
     for (int i = 0; i < 6; ++i)
       for (int l = 0; l < 6; ++l) {
         const int r = place_of(row, i), body = l < 3 ? part.a : part.b;
-        if (r >= 0 && body != k_ground) k.emplace_back(r, 3 * body - 3 + l % 3, slope * j[i] * part.normal[l]);
+        if (r >= 0 && body != k_ground) k.emplace_back(r, 3 * body - 3 + l % 3, slope * g.j[i] * part.normal[l]);
       }
   }
 }

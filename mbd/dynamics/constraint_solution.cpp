@@ -10,17 +10,6 @@
 
 namespace steplap {
 
-namespace {
-
-// From b's axes into the ground's.
-MeasureValue<double> turned(MeasureValue<double> m, const Motion<double>& b) {
-  for (Pair<double>* p : {&m.direction, &m.lever_a, &m.lever_b})
-    *p = {b.c * p->x - b.s * p->y, b.s * p->x + b.c * p->y};
-  return m;
-}
-
-} // namespace
-
 ConstraintSolution::ConstraintSolution(const Kinematics& kinematics, Team& team) : team_(team), motion_(kinematics.motion().data()) {}
 
 void ConstraintSolution::use(Layout& layout, const State& state) {
@@ -36,98 +25,22 @@ void ConstraintSolution::use(Layout& layout, const State& state) {
 
 // --- rows ---------------------------------------------------------------------------------------------
 
-void ConstraintSolution::to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const {
-  const int body[2] = {spec.a, spec.b};
-  for (int side = 0; side < 2; ++side) {
-    if (row.body[side] < 0) continue;
-    const Placement& place = layout_->placements[body[side]];
-    const Cluster& cluster = layout_->clusters[row.body[side]];
-    Pair<double> lever = side == 0 ? m.lever_a : m.lever_b;
-    if (!place.is_trivial) {
-      const Motion<double>& k = motion_[cluster.motion];
-      lever = lever + Pair<double>{motion_[body[side]].x - k.x, motion_[body[side]].y - k.y};
-    }
-    const double sign = side == 0 ? 1.0 : -1.0;
-    double* j = row.j[side];
-    j[0] = sign * m.direction.x;
-    j[1] = sign * m.direction.y;
-    j[2] = sign * (cross(lever, m.direction) + m.couple);
-    for (int c = 0; c < 3; ++c) row.wj[side][c] = row.w[side][c] * j[c];
-  }
-}
-
-// The second rate at zero accelerations of the clusters: a body off its cluster's centre has −ω² lever.
-double ConstraintSolution::cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const {
-  double bias = m.bias;
-  const int body[2] = {spec.a, spec.b};
-  for (int side = 0; side < 2; ++side) {
-    const Placement& place = layout_->placements[body[side]];
-    if (place.cluster < 0 || place.is_trivial) continue;
-    const Motion<double>& k = motion_[layout_->clusters[place.cluster].motion];
-    const Pair<double> lever{motion_[body[side]].x - k.x, motion_[body[side]].y - k.y};
-    const double term = k.omega * k.omega * dot(m.direction, lever);
-    bias += side == 0 ? -term : term;
-  }
-  return bias;
-}
-
 MeasureValue<double> ConstraintSolution::load(const RowSpec& spec, SchurRow& row) const {
-  auto m = evaluate_row<true>(spec, motion_[spec.a], motion_[spec.b]);
+  MeasureValue<double> m = evaluate_row<true>(spec, motion_[spec.a], motion_[spec.b]);
   row.body[0] = layout_->placements[spec.a].cluster;
   row.body[1] = layout_->placements[spec.b].cluster;
   for (int side = 0; side < 2; ++side)
     if (row.body[side] >= 0) std::copy_n(layout_->clusters[row.body[side]].w, 3, row.w[side]);
-  to_clusters(spec, m, row);
+  put_in_clusters<true>(*layout_, spec, motion_, m, row);
   if (layout_->carriages) layout_->carriages->weigh_row(row);
-  m.bias = cluster_bias(spec, m);
-  return m;
-}
-
-// Row r at the placed motion: J and W J in the clusters' coordinates. Most rows are between bodies that
-// are clusters of their own: no lever to add.
-template <bool WithBias> STEPLAP_INLINE MeasureValue<double> ConstraintSolution::load_active(std::size_t r) {
-  const ActiveRow& active = layout_->active[r];
-  SchurRow& row = layout_->schur_rows[r];
-  const Motion<double>& link = motion_[active.link];
-  if (row.is_constant) { // an angle: make_layout has filled in its gradient
-    MeasureValue<double> m;
-    m.value = link.theta;
-    m.rate = link.omega;
-    return m;
-  }
-  const Motion<double>& b = motion_[active.spec->b];
-  MeasureValue<double> m = evaluate_row<WithBias>(*active.spec, link, Origin{});
-  if constexpr (WithBias) m.bias += dot(m.direction, frame_acceleration(link, b.omega));
-  if (!active.is_simple) {
-    m = turned(m, b);
-    to_clusters(*active.spec, m, row);
-    if constexpr (WithBias) m.bias = cluster_bias(*active.spec, m);
-    return m;
-  }
-  const double dx = b.c * m.direction.x - b.s * m.direction.y, dy = b.s * m.direction.x + b.c * m.direction.y;
-  const auto fill = [&row](int side, double fx, double fy, double couple) {
-    if (row.body[side] < 0) return;
-    const double wx = row.w[side][0] * fx, wy = row.w[side][1] * fy, wm = row.w[side][2] * couple;
-    row.j[side][0] = fx;
-    row.j[side][1] = fy;
-    row.j[side][2] = couple;
-    row.wj[side][0] = wx;
-    row.wj[side][1] = wy;
-    row.wj[side][2] = wm;
-  };
-  fill(0, dx, dy, cross(m.lever_a, m.direction) + m.couple);
-  fill(1, -dx, -dy, -(cross(m.lever_b, m.direction) + m.couple));
   return m;
 }
 
 // --- an evaluation ------------------------------------------------------------------------------------
 
-// Row r at the placed motion, as load_active does it; returns γ.
+// Row r at the placed motion; returns γ.
 STEPLAP_INLINE double ConstraintSolution::pull(std::size_t r) {
-  const ActiveRow& active = layout_->active[r];
-  if (active.pull == RowPullKind::angle) return 0.0;
-  if (active.pull == RowPullKind::other) return -load_active<true>(r).bias;
-  return pull_simple_row(active, layout_->schur_rows[r], motion_);
+  return pull_row(*layout_, layout_->active[r], motion_, layout_->schur_rows[r]);
 }
 
 void ConstraintSolution::prepare() {
@@ -266,7 +179,7 @@ double ConstraintSolution::power_of_drives() const {
 
 STEPLAP_INLINE void ConstraintSolution::compare_row(std::size_t r, double t) {
   const SignalJet target = row_target(*layout_->active[r].spec, state_->memory.data(), t);
-  const MeasureValue<double> m = load_active<false>(r);
+  const MeasureValue<double> m = load_row<false>(*layout_, layout_->active[r], motion_, layout_->schur_rows[r]);
   off_[r] = off_target(*layout_->active[r].spec, m.value, target.value);
   rate_off_[r] = m.rate - target.rate;
 }

@@ -1,9 +1,10 @@
 #include "mbd/dynamics/linearization.h"
 
 #include "mbd/algebra/decompositions.h"
+#include "mbd/dynamics/kinematics.h"
+#include "mbd/dynamics/row_pull.h"
 #include "mbd/math/dual.h"
 #include "mbd/system/law_group.h"
-
 
 #include <algorithm>
 #include <cmath>
@@ -23,36 +24,8 @@ constexpr double k_least_rate = 1e-9; // m/s, rad/s
 Motion<D12> placed(const Motion<D12>& k, const Placement& place) {
   if (place.is_trivial) return k;
   Motion<D12> m;
-  const Pair<D12> lever = to_ground(k, place.offset);
-  m.x = k.x + lever.x;
-  m.y = k.y + lever.y;
-  m.theta = k.theta + D12(place.angle);
-  m.c = k.c * D12(place.c) - k.s * D12(place.s);
-  m.s = k.s * D12(place.c) + k.c * D12(place.s);
-  m.vx = k.vx - k.omega * lever.y;
-  m.vy = k.vy + k.omega * lever.x;
-  m.omega = k.omega;
+  place_in_cluster(place, k, m);
   return m;
-}
-
-template <bool WithBias>
-MeasureValue<D12> measured(const RowSpec& row, const Motion<D12>& a, const Motion<D12>& b) {
-  switch (row.kind) {
-  case MeasureKind::axis:
-    return AxisMeasure{row.point_a, row.point_b, row.direction}.at<WithBias>(a, b);
-  case MeasureKind::distance:
-    return DistanceMeasure{row.point_a, row.point_b}.at<WithBias>(a, b);
-  case MeasureKind::angle:
-    return AngleMeasure{}.at<WithBias>(a, b);
-  case MeasureKind::roll_line:
-    return RollLineMeasure{row.point_a, row.point_b, row.direction, row.radius_a}.at<WithBias>(a, b);
-  case MeasureKind::roll_round:
-    return RollRoundMeasure{row.point_a, row.point_b, row.direction, row.radius_a, row.radius_b}.at<WithBias>(a, b);
-  case MeasureKind::slide:
-    break;
-  }
-  return SlideMeasure{row.point_a, row.point_b, row.direction, row.contact_axis, row.is_axis_in_a}
-      .at<WithBias>(a, b);
 }
 
 // A row as a function of the poses (indices 0–5) and velocities (6–11) of the clusters on either side.
@@ -74,18 +47,14 @@ DualRow differentiate(const RowSpec& spec, const Layout& layout, const std::vect
     cluster[side] = seeded(motion[layout.clusters[place.cluster].motion], 3 * side);
     member[side] = placed(cluster[side], place);
   }
-  const MeasureValue<D12> m = measured<WithBias>(spec, member[0], member[1]);
+  const MeasureValue<D12> m = evaluate_row<WithBias>(spec, member[0], member[1]);
   row.rate = m.rate;
   row.bias = m.bias;
   for (int side = 0; side < 2; ++side) {
     if (row.cluster[side] < 0) continue;
-    const D12 sign(side == 0 ? 1.0 : -1.0);
     const Pair<D12> off{member[side].x - cluster[side].x, member[side].y - cluster[side].y};
-    row.j[3 * side] = sign * m.direction.x;
-    row.j[3 * side + 1] = sign * m.direction.y;
-    row.j[3 * side + 2] = sign * (cross((side == 0 ? m.lever_a : m.lever_b) + off, m.direction) + m.couple);
-    if constexpr (WithBias) // a body off its cluster's centre has −ω² lever
-      row.bias -= sign * (cluster[side].omega * cluster[side].omega * dot(m.direction, off));
+    put_gradient(m, side, (side == 0 ? m.lever_a : m.lever_b) + off, &row.j[3 * side]);
+    if constexpr (WithBias) add_centripetal(side, m.direction, cluster[side].omega, off, row.bias);
   }
   return row;
 }

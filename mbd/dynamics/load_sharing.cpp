@@ -3,6 +3,7 @@
 #include "mbd/algebra/decompositions.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
+#include "mbd/system/row_gradient.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,27 +30,12 @@ constexpr double k_no_part = 1e-11;
 // Dense algebra: joints of larger parts than this without friction keep what the solver of the equations gives them.
 constexpr int k_most_bodies = 200;
 
-// Gradient of a row in the coordinates of its two bodies.
-struct RowGradient {
-  double side[2][3];
-};
-
-RowGradient gradient_at(const MeasureValue<double>& m) {
-  const Pair<double>& d = m.direction;
-  return {{{d.x, d.y, cross(m.lever_a, d) + m.couple}, {-d.x, -d.y, -cross(m.lever_b, d) - m.couple}}};
-}
-
-// Of a part, which most rows are one of.
-RowGradient gradient_of(const RowSpec& part, const std::vector<Motion<double>>& motion) {
-  return gradient_at(evaluate_row<false>(part, motion[part.a], motion[part.b]));
-}
-
 // f(body, 3 numbers) for either side of every part of a row that is not the ground's.
 template <class F> void for_sides(const RowSpec& row, const std::vector<Motion<double>>& motion, const F& f) {
   for (const RowSpec* part = &row; part; part = part->next) {
-    const RowGradient g = gradient_of(*part, motion);
+    const RowGradient<double> g = row_gradient(*part, motion[part->a], motion[part->b]);
     for (const int side : {0, 1})
-      if (const int body = side == 0 ? part->a : part->b; body != k_ground) f(body, g.side[side]);
+      if (const int body = side == 0 ? part->a : part->b; body != k_ground) f(body, g.side(side));
   }
 }
 
@@ -326,13 +312,13 @@ void add_row(const System& system, const RowSpec& spec, double n, bool is_led, c
   double along = m.bias - target.acceleration, terms = std::abs(m.bias) + std::abs(target.acceleration);
   double rate_terms = std::abs(m.rate) + std::abs(target.rate), moved = 0.0;
   for (const RowSpec* piece = &spec; piece; piece = piece->next) {
-    const RowGradient gradient = gradient_at(spec.next ? evaluate_row<true>(*piece, e.motion[piece->a], e.motion[piece->b]) : m);
+    const RowGradient<double> gradient = gradient_of(spec.next ? evaluate_row<true>(*piece, e.motion[piece->a], e.motion[piece->b]) : m);
     for (const int side : {0, 1}) {
       const int body = side == 0 ? piece->a : piece->b;
       if (body == k_ground) continue;
       const Motion<double>& motion = e.motion[body];
       const Vec3& start = system.bodies[body].pose;
-      const double* const j = gradient.side[side];
+      const double* const j = gradient.side(side);
       const double way[3] = {motion.x - start[0], motion.y - start[1], motion.theta - start[2]};
       const double v[3] = {motion.vx, motion.vy, motion.omega};
       for (int c = 0; c < 3; ++c) along += j[c] * acceleration[3 * body + c];

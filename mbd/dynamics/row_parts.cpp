@@ -12,8 +12,7 @@ namespace steplap {
 template <bool WithBias> MeasureValue<double> ConstraintSolution::load_part(std::size_t i) {
   const RowSpec& part = *layout_->part_specs[i];
   MeasureValue<double> m = evaluate_row<WithBias>(part, motion_[part.a], motion_[part.b]);
-  to_clusters(part, m, layout_->schur_rows[layout_->parts[i].row]);
-  if constexpr (WithBias) m.bias = cluster_bias(part, m);
+  put_in_clusters<WithBias>(*layout_, part, motion_, m, layout_->schur_rows[layout_->parts[i].row]);
   return m;
 }
 

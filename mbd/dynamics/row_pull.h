@@ -1,9 +1,12 @@
-// What a constraint row does to accelerations: its gradient and bias, seen from b and not from the ground. The same
-// as evaluate_row gives, without the value and the rate, which no acceleration needs.
+// What a constraint row does to accelerations: its gradient and bias in the coordinates of the clusters that its bodies belong to.
+//
+// load_row() does it for every measure by the functions of row_gradient.h. The most frequent rows, along an axis and along a slide,
+// between bodies that are clusters of their own, have a shorter way: pull_along_axis() and pull_along_slide() see a from b and leave
+// out the value and the rate, which no acceleration needs. tests/mbd/test_row_gradient.cpp holds both ways against each other.
 #pragma once
 
 #include "mbd/dynamics/layout.h"
-#include "mbd/system/row.h"
+#include "mbd/system/row_gradient.h"
 
 namespace steplap {
 
@@ -75,6 +78,76 @@ template <class S> STEPLAP_INLINE S pull_simple_row(const ActiveRow& active, Sch
   set_gradient(row, 0, x, y, p.couple_a);
   if (row.body[1] >= 0) set_gradient<S>(row, 1, -x, -y, -p.couple_b);
   return -(p.bias + dot(p.direction, frame_acceleration(link, b.omega)));
+}
+
+// --- rows of any measure, between any clusters --------------------------------------------------------
+
+/// A body `off` from its cluster's centre has the acceleration −ω² off where its cluster has none: what is due to that in the second
+/// rate of a row.
+template <class S>
+STEPLAP_INLINE void add_centripetal(int side, const Pair<S>& direction, const S& omega, const Pair<S>& off, S& bias) {
+  const S term = omega * omega * dot(direction, off);
+  if (side == 0) bias -= term;
+  else bias += term;
+}
+
+/// From b's axes into the ground's.
+template <class S> [[nodiscard]] STEPLAP_INLINE MeasureValue<S> turned(MeasureValue<S> m, const Motion<S>& b) {
+  for (Pair<S>* p : {&m.direction, &m.lever_a, &m.lever_b}) *p = {b.c * p->x - b.s * p->y, b.s * p->x + b.c * p->y};
+  return m;
+}
+
+/// J and W J of a row, or of a part of one, whose measure is m in ground axes. With `WithBias` the bias becomes that of the clusters.
+template <bool WithBias, class S>
+STEPLAP_INLINE void put_in_clusters(const Layout& layout, const RowSpec& spec, const Motion<S>* motion, MeasureValue<S>& m,
+                                    SchurRowOf<S>& row) {
+  const int body[2] = {spec.a, spec.b};
+  for (int side = 0; side < 2; ++side) {
+    const Placement& place = layout.placements[body[side]];
+    if (place.cluster < 0) continue;
+    Pair<S> lever = side == 0 ? m.lever_a : m.lever_b;
+    if (!place.is_trivial) {
+      const Motion<S>& k = motion[layout.clusters[place.cluster].motion];
+      const Pair<S> off{motion[body[side]].x - k.x, motion[body[side]].y - k.y};
+      lever = lever + off;
+      if constexpr (WithBias) add_centripetal(side, m.direction, k.omega, off, m.bias);
+    }
+    S* const j = row.j[side];
+    put_gradient(m, side, lever, j);
+    for (int c = 0; c < 3; ++c) row.wj[side][c] = row.w[side][c] * j[c];
+  }
+}
+
+/// Fills in an active row at the motion placed, whatever it measures; `row.body` and `row.w` are known.
+template <bool WithBias, class S>
+STEPLAP_INLINE MeasureValue<S> load_row(const Layout& layout, const ActiveRow& active, const Motion<S>* motion, SchurRowOf<S>& row) {
+  const Motion<S>& link = motion[active.link];
+  if (row.is_constant) { // an angle: make_layout has filled in its gradient
+    MeasureValue<S> m;
+    m.value = link.theta;
+    m.rate = link.omega;
+    return m;
+  }
+  const Motion<S>& b = motion[active.spec->b];
+  MeasureValue<S> m = evaluate_row<WithBias>(*active.spec, link, Origin{});
+  if constexpr (WithBias) m.bias += dot(m.direction, frame_acceleration(link, b.omega));
+  if (!active.is_simple) {
+    m = turned(m, b);
+    put_in_clusters<WithBias>(layout, *active.spec, motion, m, row);
+    return m;
+  }
+  const S x = b.c * m.direction.x - b.s * m.direction.y, y = b.s * m.direction.x + b.c * m.direction.y;
+  if (row.body[0] >= 0) set_gradient<S>(row, 0, x, y, cross(m.lever_a, m.direction) + m.couple);
+  if (row.body[1] >= 0) set_gradient<S>(row, 1, -x, -y, -(cross(m.lever_b, m.direction) + m.couple));
+  return m;
+}
+
+/// Fills in an active row for an evaluation of accelerations; returns γ.
+template <class S>
+STEPLAP_INLINE S pull_row(const Layout& layout, const ActiveRow& active, const Motion<S>* motion, SchurRowOf<S>& row) {
+  if (active.pull == RowPullKind::angle) return S(0.0);
+  if (active.pull == RowPullKind::other) return -load_row<true>(layout, active, motion, row).bias;
+  return pull_simple_row(active, row, motion);
 }
 
 /// a += W Jᵀ λ: a constant row is zero but for θ.

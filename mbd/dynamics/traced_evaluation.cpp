@@ -21,8 +21,8 @@ constexpr int k_most_coordinates = 100;
 bool is_plain(const System& system, const Layout& layout) {
   return layout.coordinate_count <= k_most_coordinates && !layout.carriages && !layout.has_long_rows() && system.inner_count() == 0 &&
          layout.schur.is_small() && !layout.is_singular() && !layout.sharing &&
-         std::all_of(layout.active.begin(), layout.active.end(),
-                     [](const ActiveRow& row) { return row.pull != RowPullKind::other; });
+         std::none_of(layout.active.begin(), layout.active.end(), // an angle of centre against centre is no operation of a tape
+                      [](const ActiveRow& row) { return row.spec->kind == MeasureKind::roll_round; });
 }
 
 /// What a trace works on, kept from one to the next: taking memory would take a tenth of its time.
@@ -133,8 +133,7 @@ private:
           row.wj[side][c] = known.wj[side][c];
         }
       }
-      const ActiveRow& active = layout_.active[r];
-      multiplier_.push_back(active.pull == RowPullKind::angle ? Traced(0.0) : pull_simple_row(active, row, motion_.data()));
+      multiplier_.push_back(pull_row(layout_, layout_.active[r], motion_.data(), row));
     }
   }
 

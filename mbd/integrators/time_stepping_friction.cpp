@@ -2,6 +2,7 @@
 // bear.
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/system/row_gradient.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -101,11 +102,7 @@ void TimeStepping::load_row(Dynamics& dynamics, const RowSpec& spec,
     if (place.cluster < 0) continue;
     const Motion<double>& k = motion[layout.clusters[place.cluster].motion];
     const Pair<double> off{motion[body[side]].x - k.x, motion[body[side]].y - k.y};
-    const double sign = side == 0 ? 1.0 : -1.0;
-    double* const g = row.g[side];
-    g[0] = sign * m.direction.x;
-    g[1] = sign * m.direction.y;
-    g[2] = sign * (cross((side == 0 ? m.lever_a : m.lever_b) + off, m.direction) + m.couple);
+    put_gradient(m, side, (side == 0 ? m.lever_a : m.lever_b) + off, row.g[side]);
   }
   if (row.cluster[0] < 0 || row.cluster[0] != row.cluster[1]) return;
   for (int c = 0; c < 3; ++c)

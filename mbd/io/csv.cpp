@@ -71,6 +71,35 @@ bool begins_like_number(std::string_view field) {
   return !field.empty() && field.front() >= '0' && field.front() <= '9';
 }
 
+// What a field of the first row is taken for.
+enum class FirstField { name, number, nothing };
+
+// Bytes of `text` that a damaged number may have and a name has not: dashes, blanks and digits beyond ASCII.
+std::size_t strange_bytes_of_number(std::string_view text) {
+  for (const std::string_view such : {"\xE2\x88\x92", "\xE2\x80", "\xEF\xBC", "\xC2\xA0", "\xD9"}) // −, dashes and thin blanks, full-width, blank, Arabic
+    if (text.starts_with(such)) return such == "\xE2\x80" || such == "\xEF\xBC" ? 3 : such == "\xD9" ? 2 : such.size();
+  return 0;
+}
+
+// A name has a letter. An exponent is none, and where digits are as many as letters and a point stands among them ("O.25", "x0.1"),
+// a mistyped number is as likely: `is_doubtful`.
+FirstField first_field(std::string_view field, bool& is_doubtful) {
+  std::size_t letters = 0, digits = 0, points = 0, strange = 0;
+  bool has_exponent = false;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const auto c = static_cast<unsigned char>(field[i]);
+    const bool is_behind_digit = i > 0 && field[i - 1] >= '0' && field[i - 1] <= '9';
+    if (const std::size_t count = strange_bytes_of_number(field.substr(i)); count > 0) ++strange, i += count - 1;
+    else if (c >= '0' && c <= '9') ++digits;
+    else if (c == '.' || c == ',') ++points;
+    else if ((c == 'e' || c == 'E') && is_behind_digit && !has_exponent) has_exponent = true;
+    else if (c >= 0x80 || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_') ++letters;
+  }
+  is_doubtful = letters <= 2 && digits >= letters && points > 0 && digits > 0;
+  if (letters > 0) return FirstField::name;
+  return digits + strange > 0 ? FirstField::number : FirstField::nothing;
+}
+
 // "time [s]" → "time"
 std::string column_name(std::string_view field) {
   const auto bracket = field.find('[');
@@ -109,30 +138,50 @@ private:
     table_.lines.push_back(line_);
   }
 
-  // The first row: true if it holds names. A row whose first field begins like a number is data, so that a mistyped number in
-  // it is refused by its column instead of being taken for the name of one, and the row lost.
+  // The first row: true if it holds names. A row whose first field begins like a number, or that has no name, is data, so that a
+  // mistyped number in it is refused by its column instead of being taken for the name of one, and the row lost.
   bool read_header() {
     table_.columns.resize(fields_.size());
     if (begins_like_number(fields_.front())) return false;
-    const bool has_decimal_comma = delimiter_ != ',';
-    const auto number = std::find_if(fields_.begin(), fields_.end(),
-                                     [&](std::string_view field) { return number_of(field, has_decimal_comma).has_value(); });
-    if (number != fields_.end())
-      fail("the first row holds both words and numbers: '" + std::string(fields_.front()) + "' in column 1, '" + std::string(*number) +
-           "' in column " + std::to_string(number - fields_.begin() + 1) +
+    const std::string_view *name = nullptr, *number = nullptr;
+    bool is_certain = false; // that one of them is a name
+    for (const std::string_view& field : fields_) {
+      bool is_doubtful = false;
+      const FirstField kind = first_field(field, is_doubtful);
+      const bool is_number = kind == FirstField::number || number_of(field, delimiter_ != ',').has_value(); // "inf", too
+      if (is_number && !number) number = &field;
+      if (!is_number && kind == FirstField::name && !name) name = &field;
+      is_certain = is_certain || (!is_number && kind == FirstField::name && !is_doubtful);
+    }
+    if (!is_certain && (!name || !number)) return false;
+    if (number)
+      fail("the first row holds both words and numbers: '" + std::string(*name) + "' in column " + std::to_string(name - &fields_.front() + 1) + ", '" +
+           std::string(*number) + "' in column " + std::to_string(number - &fields_.front() + 1) +
            ". If it is data, correct the word; if it names the columns, take names that are not numbers");
-    for (const std::string_view name : fields_) table_.names.push_back(column_name(name));
+    for (const std::string_view field : fields_) table_.names.push_back(column_name(field));
     return true;
   }
 
-  double value(std::size_t column) const {
+  double value(std::size_t column) {
     const std::string_view field = fields_[column];
     const std::optional<double> number = number_of(field, delimiter_ != ',');
     const std::string place = " in column " + std::to_string(column + 1);
     if (field.empty()) fail("no value" + place);
     if (!number) fail("'" + std::string(field) + "'" + place + " is not a number");
     if (!std::isfinite(*number)) fail("'" + std::string(field) + "'" + place + " is not finite");
+    note_decimals(field, place);
     return *number;
+  }
+
+  // "1,000" beside "0.5" may be a thousand.
+  void note_decimals(std::string_view field, const std::string& place) {
+    if (delimiter_ == ',') return;
+    const char mark = field.find(',') != std::string_view::npos ? ',' : field.find('.') != std::string_view::npos ? '.' : '\0';
+    if (mark == '\0' || mark == decimal_) return;
+    if (decimal_ != '\0')
+      fail("'" + std::string(field) + "'" + place + " has a decimal " + (mark == ',' ? "comma" : "point") + ", and numbers before it have a " +
+           (mark == ',' ? "point" : "comma") + ": write all of them alike");
+    decimal_ = mark;
   }
 
   [[noreturn]] void fail(const std::string& message) const {
@@ -141,7 +190,7 @@ private:
 
   CsvTable table_;
   std::vector<std::string_view> fields_;
-  char delimiter_ = 0;
+  char delimiter_ = 0, decimal_ = '\0';
   int line_ = 0;
 };
 
@@ -149,6 +198,8 @@ private:
 
 std::size_t CsvTable::column(const std::string& name_or_number, const Location& where) const {
   const auto found = std::find(names.begin(), names.end(), name_or_number);
+  if (found != names.end() && std::find(found + 1, names.end(), name_or_number) != names.end())
+    throw ModelError(where, "the record '" + file + "' has several columns '" + name_or_number + "': name one by its number, from \"1\"");
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   std::size_t number = 0;
   const char* end = name_or_number.data() + name_or_number.size();

@@ -69,6 +69,18 @@ private:
       base.children.push_back(std::move(child));
   }
 
+  // A parameter that gets another value keeps its range and meaning.
+  static void replace_parameter(Node& base, Node& child) {
+    Node* const inherited = base.find(child.key);
+    if (!inherited || !inherited->is_table() || !inherited->find("value")) return replace(base, child);
+    if (child.is_table()) {
+      for (Node& key : child.children) replace(*inherited, key);
+    } else {
+      child.key = "value";
+      replace(*inherited, child);
+    }
+  }
+
   void merge_table(Node& base, Node& over, const std::string& subject) {
     if (take_flag(over, "replace")) {
       if (base.children.empty()) problems_.push_back({over.where(), subject + " inherits nothing to replace"});
@@ -78,8 +90,9 @@ private:
       unset_keys(base, *unset, subject);
       over.erase("unset");
     }
+    const bool has_parameters = base.key == "parameters";
     for (Node& child : over.children)
-      replace(base, child);
+      has_parameters ? replace_parameter(base, child) : replace(base, child);
     base.file = over.file;
     base.line = over.line;
     base.column = over.column;

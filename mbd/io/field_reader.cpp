@@ -1,5 +1,6 @@
 #include "mbd/io/field_reader.h"
 
+#include "mbd/io/parameters_reader.h"
 #include "mbd/io/standalone_text.h"
 #include "mbd/io/units.h"
 #include "mbd/base/number_text.h"
@@ -31,7 +32,7 @@ std::string list_of(const std::vector<std::string>& names) {
   return text;
 }
 
-// What is wrong with a value; thrown and caught within this file only.
+// What is wrong with a value, "" if that has been told elsewhere; thrown and caught within this file only.
 struct BadValue {
   const Node* node;
   std::string message;
@@ -82,15 +83,25 @@ private:
     if (node.type == Node::Type::integer) return static_cast<double>(std::get<long>(node.scalar));
     if (node.type == Node::Type::number) return std::get<double>(node.scalar);
     if (node.type != Node::Type::text) unexpected(node);
+    if (is_formula(node)) return formula(node, unit);
     const Quantity quantity = parse_quantity(node.text(), unit);
     if (!quantity.problem.empty()) throw BadValue{&node, quantity.problem};
     return quantity.value;
   }
 
+  double formula(const Node& node, const std::string& unit) const {
+    if (!reading_.parameters) throw BadValue{&node, "formulas of [parameters] are for models; got '" + node.text() + "'"};
+    const Quantity quantity = reading_.parameters->value(node, unit);
+    if (!quantity.problem.empty() || reading_.parameters->is_excused()) throw BadValue{&node, quantity.problem};
+    return quantity.value;
+  }
+
   long integer(const Node& node) const {
     if (node.type == Node::Type::integer) return std::get<long>(node.scalar);
-    if (node.type != Node::Type::number) unexpected(node);
-    const double value = std::get<double>(node.scalar); // 1e5 is an integer too
+    const bool is_given = is_formula(node);
+    if (node.type != Node::Type::number && !is_given) unexpected(node);
+    const double value = is_given ? formula(node, "") : std::get<double>(node.scalar); // 1e5 is an integer too
+    if (is_given && std::nearbyint(value) != value) throw BadValue{&node, "the formula gives " + number_text(value) + ", but an integer is needed"};
     if (std::nearbyint(value) != value || std::abs(value) > 9e15) unexpected(node);
     return static_cast<long>(value);
   }
@@ -107,6 +118,7 @@ private:
 
   std::string quantity(const Node& node) const {
     const double value = number(node, "*"); // what is no quantity in any unit is an error here and now
+    if (is_formula(node)) return reading_.parameters->text_of(node);
     return node.type == Node::Type::text ? node.text() : number_text(value);
   }
 
@@ -184,7 +196,7 @@ GivenField read_field(const Node& child, const FieldTable& fields, const Field& 
   try {
     field.set(object, read_value(child, fields, field, object, reading));
   } catch (const BadValue& bad) {
-    problems.push_back(
+    if (!bad.message.empty()) problems.push_back(
         {bad.node->where(), "'" + field.name + "' of " + reading.subject + ": " + bad.message});
     return {&field, &child, false};
   }

@@ -9,6 +9,8 @@
 
 namespace steplap {
 
+class ParametersReader;
+
 /// A field as a file gives it; without a node it is required, but missing.
 struct GivenField {
   const Field* field = nullptr;
@@ -23,6 +25,7 @@ struct TableReading {
       is_excused; ///< required fields that may be missing all the same
   /// Makes a marker of an inline table { body, point | at, angle } and returns its name.
   std::function<std::string(const Node& table, const Field& field)> add_marker;
+  ParametersReader* parameters = nullptr; ///< gives formulas their values; null where there are none
 };
 
 /// Sets the members of `object` that `table` gives; returns what it found. Problems are appended.

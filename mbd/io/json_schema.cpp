@@ -18,8 +18,8 @@ Json quantity(const Field& field, const std::string& unit) {
   if (std::isfinite(field.minimum))
     number[field.is_minimum_excluded ? "exclusiveMinimum" : "minimum"] = field.minimum;
   if (std::isfinite(field.maximum)) number["maximum"] = field.maximum;
-  if (unit.empty()) return number;
-  return {{"anyOf", {number, {{"type", "string"}, {"pattern", "^\\s*[-+]?[0-9.]"}}}}};
+  const char* const pattern = unit.empty() ? "^\\s*=" : "^\\s*([-+]?[0-9.]|=)"; // a formula of parameters, a number with its unit
+  return {{"anyOf", {number, {{"type", "string"}, {"pattern", pattern}}}}};
 }
 
 Json list_of(Json items) {
@@ -46,7 +46,7 @@ Json value_schema(const Field& field) {
     return quantity(field, "*");
   case FieldType::integer: {
     Json schema = quantity(field, "");
-    schema["type"] = "integer";
+    schema["anyOf"][0]["type"] = "integer";
     return schema;
   }
   case FieldType::boolean:
@@ -127,6 +127,16 @@ Json inline_marker_schema(const Described& marker) {
   return schema;
 }
 
+Json parameters_schema() {
+  const Json value{{"anyOf", {{{"type", "number"}}, {{"type", "string"}, {"pattern", "^\\s*([-+]?[0-9.]|=)"}}}}};
+  const Json full{{"type", "object"},
+                  {"properties", {{"value", value}, {"range", {{"type", "array"}, {"items", value}, {"minItems", 2}, {"maxItems", 2}}}, {"meaning", text()}}},
+                  {"additionalProperties", false}};
+  return {{"type", "object"},
+          {"description", "numbers with a name, for formulas in fields: \"= 2*wall + bore\""},
+          {"additionalProperties", {{"anyOf", {value["anyOf"][0], value["anyOf"][1], full}}}}};
+}
+
 } // namespace
 
 std::string json_schema(const Catalogue& catalogue) {
@@ -136,6 +146,7 @@ std::string json_schema(const Catalogue& catalogue) {
   Json kinds{{"signal", Json::array()}, {"element", Json::array()}};
   properties["extends"] = {{"type", "string"},
                            {"description", "model file that this one is laid over"}};
+  properties["parameters"] = parameters_schema();
   for (const Described& kind : describe(catalogue)) {
     if (kind.role == "model") {
       for (const Field& f : kind.fields->fields())

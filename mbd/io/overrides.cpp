@@ -73,7 +73,23 @@ private:
     return node;
   }
 
+  // A parameter that the model has: a new one would be used by nothing.
+  void set_parameter() {
+    Node* const table = document_.root.find("parameters");
+    Node* const parameter = table ? table->find(path_) : nullptr;
+    if (parameter && parameter->is_table()) {
+      path_.clear();
+      return set_below(*parameter, "value");
+    }
+    if (parameter) return set_below(*table, take_segment(path_));
+    std::vector<std::string> known;
+    if (table)
+      for (const Node& child : table->children) known.push_back(child.key);
+    complain("the model has no parameter '" + path_ + "'" + did_you_mean(path_, known));
+  }
+
   void set_in_table(const std::string& name) {
+    if (name == "parameters") return set_parameter();
     Node* table = document_.root.find(name);
     if (!table) {
       Node& added = document_.root.children.emplace_back();

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <string_view>
 
@@ -56,6 +57,7 @@ std::string read_input(const std::string& path, const Location& where, const std
   // Opened without waiting, for named pipes; what is read is waited for.
   if (!is_standard_input(path)) ::fcntl(file.number(), F_SETFL, ::fcntl(file.number(), F_GETFL) & ~O_NONBLOCK);
   std::string content;
+  if (S_ISREG(status.st_mode) && static_cast<std::uintmax_t>(status.st_size) > k_most_bytes) fail("it is larger than 4 GB");
   if (S_ISREG(status.st_mode)) content.reserve(static_cast<std::size_t>(status.st_size) + 1);
   for (char buffer[1 << 16];;) {
     const ::ssize_t count = ::read(file.number(), buffer, sizeof buffer);

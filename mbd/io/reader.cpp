@@ -3,6 +3,7 @@
 #include "mbd/io/standalone_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/field_reader.h"
+#include "mbd/io/parameters_reader.h"
 #include "mbd/io/signal_units.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/field_units.h"
@@ -21,7 +22,7 @@ namespace {
 TopLevelNames top_level_names(const Catalogue& catalogue) {
   TopLevelNames names;
   names.keys = ModelHeader::fields().names();
-  names.tables = {"simulation", "output"};
+  names.tables = {"simulation", "output", "parameters"};
   names.arrays = {"body", "marker", "signal", "element"};
   for (const TableKind* kind : catalogue.tables)
     names.arrays.push_back(kind->name);
@@ -61,6 +62,7 @@ public:
     if (text) *text = standalone_text(document_, catalogue_);
     refuse_control_characters(document_);
     problems_ = std::move(document_.problems);
+    parameters_.emplace(document_.root, problems_);
     read_header();
     read_settings("simulation", Section::simulation, SimulationSettings::fields(),
                   model_.simulation);
@@ -71,6 +73,7 @@ public:
     read_elements();
     read_tables();
     check_signal_units();
+    model_.parameters = parameters_->parameters(document_.root, model_);
     Model as_given = model_;
     complete_model();
     finish();
@@ -116,6 +119,7 @@ private:
   TopLevelNames names_;
   Model model_;
   std::vector<Diagnostic> problems_;
+  std::optional<ParametersReader> parameters_;
   std::vector<std::vector<GivenField>> given_[7]; // by section and index
   std::vector<TableSource> tables_; // of model_.tables
   // Entries of unknown kind: said once, references to them are not errors of their own.
@@ -125,6 +129,7 @@ private:
 TableReading Reader::reading(std::string subject, std::string owner) {
   TableReading result;
   result.subject = std::move(subject);
+  result.parameters = &*parameters_;
   result.add_marker = [this, owner = std::move(owner)](const Node& table, const Field& field) {
     return add_inline_marker(table, field, owner);
   };

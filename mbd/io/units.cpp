@@ -122,6 +122,8 @@ public:
     return c;
   }
 
+  std::optional<std::array<double, 3>> powers(const std::string& given) const;
+
 private:
   Conversion make_conversion(const std::string& given, const std::string& wanted) const;
   std::string unknown_unit(const std::string& given, const std::string& wanted) const;
@@ -176,6 +178,20 @@ std::string UnitSystem::unknown_unit(const std::string& given, const std::string
   return text;
 }
 
+// Powers of kg, m and s; nothing for a unit that is unknown or has other base units.
+std::optional<std::array<double, 3>> UnitSystem::powers(const std::string& given) const {
+  const UnitPtr unit = parse(given);
+  BaseForm form;
+  if (!unit || ut_accept_visitor(unit.get(), &k_visitor, &form) != UT_SUCCESS) return std::nullopt;
+  std::array<double, 3> powers{};
+  for (const auto& [name, power] : form.powers) {
+    const std::size_t k = name == "kilogram" ? 0 : name == "meter" ? 1 : name == "second" ? 2 : 3;
+    if (k == 3) return std::nullopt;
+    powers[k] = power;
+  }
+  return powers;
+}
+
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) return "";
@@ -217,6 +233,33 @@ Quantity without_unit(double value, const std::string& text, const std::string& 
 
 } // namespace
 
+namespace {
+
+// UDUNITS' database; not for several threads at once.
+UnitSystem& unit_system() {
+  static UnitSystem system;
+  return system;
+}
+std::mutex& unit_system_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+} // namespace
+
+std::optional<std::array<double, 3>> powers_in(const std::string& original) {
+  const std::string text = trimmed(original);
+  const char* begin = text.c_str() + (text.rfind('+', 0) == 0 ? 1 : 0);
+  const char* end = text.c_str() + text.size();
+  double number = 0.0;
+  const auto [rest, status] = std::from_chars(begin, end, number);
+  if (status != std::errc()) return std::nullopt;
+  const std::string given = trimmed(std::string(rest, end));
+  if (given.empty()) return std::array<double, 3>{};
+  const std::lock_guard lock(unit_system_mutex());
+  return unit_system().powers(given);
+}
+
 std::vector<std::pair<std::string, std::string>> usual_units() {
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const UsualUnit& usual : k_usual_units) pairs.emplace_back(usual.given, usual.wanted);
@@ -241,10 +284,8 @@ Quantity parse_quantity(const std::string& original, const std::string& unit, Un
     const double value = usual->factor * number;
     return std::isfinite(value) ? Quantity{value, ""} : Quantity{0.0, "'" + text + "' is not finite"};
   }
-  static std::mutex mutex;
-  const std::lock_guard lock(mutex);
-  static UnitSystem system;
-  const Conversion& conversion = system.conversion(given, unit);
+  const std::lock_guard lock(unit_system_mutex());
+  const Conversion& conversion = unit_system().conversion(given, unit);
   if (!conversion.problem.empty()) return {0.0, "'" + text + "' " + conversion.problem};
   const double value = conversion.factor * cv_convert_double(conversion.converter.get(), number);
   if (!std::isfinite(value)) return {0.0, "'" + text + "' is not finite"};

@@ -4,6 +4,8 @@
 // "gravity", 9.80665 m/s².
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +27,10 @@ enum class UnitSource { usual_first, database };
 /// angular velocity is refused. Throws ModelError if the unit database is missing. Thread-safe.
 [[nodiscard]] Quantity parse_quantity(const std::string& text, const std::string& unit,
                                       UnitSource source = UnitSource::usual_first);
+
+/// Powers of kg, m and s in the unit of "number unit"; nothing where the text is no such quantity, or has a unit with other base
+/// units in it. Throws ModelError if the unit database is missing. Thread-safe.
+[[nodiscard]] std::optional<std::array<double, 3>> powers_in(const std::string& text);
 
 /// The pairs (unit as written, unit of the field) that need no database.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> usual_units();

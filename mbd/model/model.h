@@ -7,6 +7,7 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/base/types.h"
 #include "mbd/model/fields.h"
+#include "mbd/model/parameters.h"
 #include "mbd/model/signal.h"
 
 #include <map>
@@ -253,6 +254,7 @@ struct Model {
   std::vector<Plot> plots;              ///< [[plot]]
   std::vector<Criterion> criteria;      ///< [[acceptance]]
   std::vector<TableEntry> tables;       ///< of other rooms, as given: complete() adds what they stand for
+  Parameters parameters;                ///< [parameters], and the fields that follow from them
   bool is_completed = false;            ///< by complete(): until then what its tables stand for is missing
 
   /// Nullptr if there is none of that name.

@@ -1,11 +1,14 @@
 #include "mbd/model/model_path.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/formula/unit_dimension.h"
 #include "mbd/model/field_units.h"
 #include "mbd/model/validate.h"
 
 #include <charconv>
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 namespace steplap {
 
@@ -156,9 +159,53 @@ std::size_t index_of(FieldType type) {
   }
 }
 
+constexpr std::string_view k_parameters = "parameters.";
+
+// The parameter that the path names, nothing if it names no parameters at all.
+std::optional<std::size_t> parameter_at(const Model& model, const std::string& path) {
+  if (!path.starts_with(k_parameters)) return std::nullopt;
+  const std::string name = path.substr(k_parameters.size());
+  const std::optional<std::size_t> found = model.parameters.find(name);
+  if (found) return found;
+  std::vector<std::string> known;
+  for (const Parameter& parameter : model.parameters.entries) known.push_back(parameter.name);
+  complain(path, "there is no parameter '" + name + "'" + did_you_mean(name, known));
+}
+
+// What the formula gives now, as its field holds it: limits of criteria are texts with a unit.
+FieldValue value_for_field(const Model& model, const ParameterUse& use) {
+  const double value = use.formula.value(model.parameters.values);
+  if (!std::isfinite(value)) complain(use.path, "'" + use.text + "' has no finite value");
+  if (!std::holds_alternative<std::string>(value_of(model, use.path))) return value;
+  return number_text(value) + (use.unit.empty() ? "" : " " + use.unit);
+}
+
+void set_parameter(Model& model, std::size_t index, const std::string& path, const FieldValue& value) {
+  Parameters& parameters = model.parameters;
+  const Parameter& parameter = parameters.entries[index];
+  if (parameter.formula)
+    complain(path, "the parameter follows from others, '" + parameter.text + "': set those");
+  const double* const number = std::get_if<double>(&value);
+  const long* const whole = std::get_if<long>(&value);
+  if (!number && !whole) complain(path, std::string("a parameter is a number, not ") + text_of(value));
+  const double wanted = number ? *number : static_cast<double>(*whole);
+  const std::string problem = problem_with(parameter, wanted);
+  if (!problem.empty()) complain(path, problem);
+  parameters.values[index] = wanted;
+  parameters.evaluate();
+  for (const std::size_t k : parameters.order)
+    if (const std::string follows = problem_with(parameters.entries[k], parameters.values[k]); !follows.empty()) complain(path, follows);
+  for (const ParameterUse& use : parameters.uses) {
+    if (!parameters.needs(use.formula, index)) continue;
+    if (!use.can_be_set) complain(path, "the parameter is needed by '" + use.path + "', which can be varied in the model's file only");
+    set_value(model, use.path, value_for_field(model, use));
+  }
+}
+
 } // namespace
 
 void set_value(Model& model, const std::string& path, const FieldValue& value) {
+  if (const std::optional<std::size_t> parameter = parameter_at(model, path)) return set_parameter(model, *parameter, path, value);
   const Target target = Resolver(model, path).resolve();
   FieldValue wanted = fitted(path, target, value);
   if (!target.items.empty()) {
@@ -179,6 +226,7 @@ void set_value(Model& model, const std::string& path, const FieldValue& value) {
 }
 
 FieldValue value_of(const Model& model, const std::string& path) {
+  if (const std::optional<std::size_t> parameter = parameter_at(model, path)) return model.parameters.values[*parameter];
   const Target target = Resolver(model, path).resolve();
   FieldValue value = target.field->get(target.object);
   if (target.items.empty()) return value;
@@ -196,6 +244,7 @@ double number_of(const Model& model, const std::string& path) {
 
 std::string unit_of(const Model& model, const std::string& path) {
   (void)number_of(model, path);
+  if (const std::optional<std::size_t> parameter = parameter_at(model, path)) return unit_text(model.parameters.entries[*parameter].powers);
   const Target target = Resolver(model, path).resolve();
   const bool is_second = target.field->type == FieldType::points && target.items.back() == 1;
   return is_second && !target.field->unit2.empty() ? target.field->unit2 : unit_in(*target.fields, *target.field, target.object);

@@ -1,8 +1,8 @@
 #include "mbd/simulation/extremes.h"
 
 #include "mbd/integrators/methods.h"
-#include "mbd/math/portable_math.h"
 #include "mbd/simulation/channel_rates.h"
+#include "mbd/simulation/node_polynomial.h"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@ double shortest_period(const System& system, double t) {
   return 2.0 * std::numbers::pi / system.fastest_at(t);
 }
 
-constexpr int k_last = 8; // node at the stretch's end
+constexpr int k_last = NodePolynomial::k_last; // node at the stretch's end
 constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
 
 // What the second difference of three ends leaves out: a bend three times as strong is allowed for.
@@ -28,7 +28,8 @@ constexpr double k_surprise = 3.0;
 constexpr double k_remembered = 0.5;
 constexpr double k_looks_per_period = 8.0; // of the quickest load
 constexpr int k_most_sections = 40;
-constexpr double k_fine = 3e-4, k_about = 1e-3; // of a stretch, near the top of a polynomial
+constexpr double k_within_reach = 0.25; // of a channel's range: what lies further from both extremes is left where it may not bend so much
+constexpr double k_bit_of_slack = 0.1; // by which a polynomial's top is found
 constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
 constexpr double k_same_crossing = 1e-10; // of a stretch
 // So many channels are followed each for itself without asking whether what they do is rounding.
@@ -41,30 +42,6 @@ constexpr double k_golden = 0.3819660112501051;
 // Error of a straight line through two ends against the third, of a channel's range: below and above which the
 // stretches of a fixed-step method become longer and shorter.
 constexpr double k_well_resolved = 0.01, k_badly_resolved = 0.05;
-
-double node_theta(int node) {
-  return 0.5 * (1.0 - portable::cos(std::numbers::pi * node / k_last));
-}
-
-// Nodes of levels 1, 2, 3: every fourth, second, every one; barycentric weights of Chebyshev and Lobatto.
-constexpr int spacing(int level) { return 8 >> level; }
-
-// Made before main(): threads that run side by side find it made.
-const std::array<double, k_last + 1> k_thetas = [] {
-  std::array<double, k_last + 1> t{};
-  for (int i = 0; i <= k_last; ++i) t[i] = node_theta(i);
-  return t;
-}();
-
-// Vertex of the parabola through three points; the middle one if it has none.
-Extreme vertex(const Extreme& a, const Extreme& b, const Extreme& c) {
-  const double p = (b.value - a.value) / (b.t - a.t), q = (c.value - b.value) / (c.t - b.t);
-  const double bend = (q - p) / (c.t - a.t);
-  if (!(std::abs(bend) > 0.0)) return b;
-  const double slope = p + bend * (b.t - a.t); // at b
-  const double shift = std::clamp(-0.5 * slope / bend, a.t - b.t, c.t - b.t);
-  return {b.value + shift * (slope + bend * shift), b.t + shift};
-}
 
 } // namespace
 
@@ -336,11 +313,19 @@ bool ExtremeFinder::suspect(double h) {
 
 // --- inside a stretch ---------------------------------------------------------------------------------------------
 
+// Through the values of channel c at the nodes of a level; times `sign`.
+static NodePolynomial through_nodes(const std::vector<std::vector<double>>& nodes, std::size_t c, int level, double sign) {
+  NodePolynomial::Values values;
+  for (int i = 0, place = 0; place <= k_last; ++i, place += NodePolynomial::spacing(level)) values[i] = sign * nodes[place][c];
+  return {level, values};
+}
+
+// As NodePolynomial::at(), without a copy of the values.
 double ExtremeFinder::interpolate(std::size_t c, int level, double theta) const {
-  const int step = spacing(level);
+  const int step = NodePolynomial::spacing(level);
   double above = 0.0, below = 0.0, sign = 1.0;
   for (int i = 0; i <= k_last; i += step) {
-    const double distance = theta - k_thetas[i];
+    const double distance = theta - NodePolynomial::theta(i);
     if (distance == 0.0) return at(c, i);
     const double weight = (i == 0 || i == k_last ? 0.5 : 1.0) * sign / distance;
     above += weight * at(c, i);
@@ -350,69 +335,96 @@ double ExtremeFinder::interpolate(std::size_t c, int level, double theta) const 
   return above / below;
 }
 
+// About how high the curve may be: what parabolas through three nodes in a row show beyond them counts twice. `best`: the highest of `v`.
+static double highest_about(const NodePolynomial::Values& v, int level, double sign, double best) {
+  double highest = best;
+  const int n = 1 << level, step = NodePolynomial::spacing(level);
+  for (int i = 1; i < n; ++i) {
+    const double p = sign * (v[i] - v[i - 1]), q = sign * (v[i] - v[i + 1]);
+    if ((p < 0.0 || q < 0.0) && i != 1 && i != n - 1) continue;
+    const double at = NodePolynomial::theta(i * step), before = at - NodePolynomial::theta((i - 1) * step), behind = NodePolynomial::theta((i + 1) * step) - at;
+    const double down = p * behind + q * before; // of the parabola: its bend times before · behind (before + behind) / 2
+    if (!(down > 0.0)) continue;
+    const double slope = (p * behind * behind - q * before * before) / (before * behind * (before + behind));
+    const double curve = down / (before * behind * (before + behind)), shift = std::clamp(0.5 * slope / curve, -before, behind);
+    const double top = sign * v[i] + shift * (slope - curve * shift), three = sign * v[i] + std::max({0.0, -p, -q});
+    highest = std::max(highest, three + 2.0 * std::max(0.0, top - three));
+  }
+  return highest;
+}
+
 // Is channel c done with after the nodes of `level`? If its polynomial is exact enough its extremes are noted.
 bool ExtremeFinder::settle(std::size_t c, int level) {
-  const int step = spacing(level);
+  const int n = 1 << level;
   const double slack = tolerance(c);
   const ChannelRange& r = ranges_[c];
   // What the polynomial of half the degree was off by at the new nodes; of a smooth curve twice as many nodes square
   // the share that is missed.
-  double least = at(c, 0), most = at(c, 0);
-  for (int i = step; i <= k_last; i += step) {
-    least = std::min(least, at(c, i));
-    most = std::max(most, at(c, i));
+  NodePolynomial::Values v;
+  double least = at(c, 0), most = at(c, 0), sum = 0.0;
+  for (int i = 0, node = 0; i <= n; ++i, node += NodePolynomial::spacing(level)) {
+    v[i] = at(c, node);
+    least = std::min(least, v[i]);
+    most = std::max(most, v[i]);
+    sum += v[i];
   }
   const double spread = most - least;
   const double error = level > 1 && spread > 0.0 ? curve_[c].error * std::min(1.0, curve_[c].error / spread) : curve_[c].error;
   for (const double sign : {1.0, -1.0}) {
     const double record = sign > 0.0 ? r.high.value : -r.low.value;
-    int best = 0;
-    for (int i = step; i <= k_last; i += step)
-      if (sign * at(c, i) > sign * at(c, best)) best = i;
-    if (!std::isfinite(at(c, best))) continue;
-    const int middle = std::clamp(best, step, k_last - step), low = middle - step, high = middle + step;
-    const auto point = [&](int i) { return Extreme{at(c, i), k_thetas[i]}; };
-    const Extreme top = vertex(point(low), point(middle), point(high));
-    const double gain = std::max(0.0, sign * (top.value - at(c, best)));
-    // Beyond the nodes by more than anybody asks for?
-    if (sign * at(c, best) + 2.0 * gain + error <= record + slack) continue;
-    if (2.0 * gain + error <= slack) continue;
+    double best = sign * v[0];
+    for (int i = 1; i <= n; ++i)
+      if (sign * v[i] > best) best = sign * v[i];
+    if (!std::isfinite(best)) continue;
+    if (!std::isfinite(sum)) return false;
+    // Beyond the record by more than anybody asks for?
+    if (best + NodePolynomial::k_overshoot * spread + error <= record + slack) continue;
+    if (highest_about(v, level, sign, best) + error <= record + slack) continue;
     if (error > slack) return false;
     // Beyond its pole's bound it is followed by its size, which the nodes have told: between them a polynomial of one over
     // rounding may have any sign.
-    if (ranges_[c].channel->unit.empty() && std::abs(at(c, best)) > k_at_pole) continue;
-    double a = k_thetas[low], b = k_thetas[high];
-    double p = a + k_golden * (b - a), q = b - k_golden * (b - a);
-    double at_p = sign * interpolate(c, level, p), at_q = sign * interpolate(c, level, q);
-    while (b - a > k_fine) {
-      if (at_p > at_q) {
-        b = q;
-        q = p;
-        at_q = at_p;
-        at_p = sign * interpolate(c, level, p = a + k_golden * (b - a));
-      } else {
-        a = p;
-        p = q;
-        at_p = at_q;
-        at_q = sign * interpolate(c, level, q = b - k_golden * (b - a));
-      }
-    }
-    // The last digits by a parabola about it.
-    const double x = std::clamp(at_p > at_q ? p : q, k_about, 1.0 - k_about);
-    const auto about = [&](double theta) { return Extreme{sign * interpolate(c, level, theta), theta}; };
-    const Extreme last = vertex(about(x - k_about), about(x), about(x + k_about));
-    const Extreme found = last.value > std::max(at_p, at_q) ? last : at_p > at_q ? Extreme{at_p, p} : Extreme{at_q, q};
-    note(c, sign * found.value, t_ + found.t * (t1_ - t_));
+    if (ranges_[c].channel->unit.empty() && std::abs(best) > k_at_pole) continue;
+    const double bit = k_bit_of_slack * slack; // the top is looked for in all gaps between nodes
+    const auto top = through_nodes(node_, c, level, sign).top_above(record + slack - bit - error, bit);
+    if (top && top->value + bit + error > record + slack) note(c, sign * top->value, t_ + top->theta * (t1_ - t_));
   }
   return true;
 }
 
 void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics) {
-  const int step = spacing(level);
+  const int step = NodePolynomial::spacing(level);
   for (const std::size_t c : open_) curve_[c].error = level == 1 && h_last_ == 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
   for (int i = step; i < k_last; i += 2 * step) {
-    const double theta = k_thetas[i];
+    const double theta = NodePolynomial::theta(i);
     const Snapshot snapshot = look(theta, integrator, dynamics);
+    if (level == 1) { // what the ends did not show the middle may, for every channel: it has been evaluated
+      for (const std::size_t c : tracked_) {
+        Curve& curve = curve_[c];
+        if (curve.is_open || rate_of_[c] >= 0 || formulas_->is_formula(c)) continue; // rates tell whether places and velocities turn
+        const ChannelRange& r = ranges_[c];
+        const double a = at(c, 0), b = at(c, k_last), reach = k_within_reach * (r.high.value - r.low.value);
+        if (std::max(a, b) + reach < r.high.value && std::min(a, b) - reach > r.low.value) continue;
+        if (a == b && a == before_[c]) continue; // it rests
+        const double slack = tolerance(c);
+        const auto may_be_beyond = [&](double above, double below, double bend) {
+          const double gain = k_surprise * bend / 8.0;
+          return gain > slack && (above + gain > r.high.value + slack || below - gain < r.low.value - slack);
+        };
+        bool is_beyond = false;
+        if (is_ruled_out(c)) {
+          const ValueBounds &from = bounds_before_[screened_slot_[c]], m = r.channel->bounds(snapshot), &to = bounds_[screened_slot_[c]];
+          const double bend = std::max(std::abs(from.low - 2.0 * m.low + to.low), std::abs(from.high - 2.0 * m.high + to.high));
+          is_beyond = may_be_beyond(std::max({from.high, m.high, to.high}), std::min({from.low, m.low, to.low}), bend);
+        } else {
+          const double m = r.channel->value(snapshot), bend = std::abs(a - 2.0 * m + b);
+          take(c, t_ + theta * (t1_ - t_), m);
+          is_beyond = may_be_beyond(std::max({a, m, b}), std::min({a, m, b}), bend);
+        }
+        if (!is_beyond) continue;
+        curve = {true, h_last_ == 0.0 ? std::numeric_limits<double>::infinity() : 0.0};
+        open_.push_back(c);
+      }
+    }
     for (const std::size_t c : open_) {
       take(c, t_ + theta * (t1_ - t_), snapshot, node_[i].data());
       double guess = k_unknown;
@@ -429,15 +441,20 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
 }
 
 void ExtremeFinder::search(Integrator& integrator, Dynamics& dynamics) {
-  const bool is_begun = std::none_of(open_.begin(), open_.end(), [this](std::size_t c) { return std::isnan(node_[0][c]); });
-  if (!is_begun) { // some were ruled out there
-    const Snapshot snapshot = look(0.0, integrator, dynamics);
+  // Of channels that were ruled out at an end of the stretch.
+  const auto look_at_end = [&](int node) {
+    const auto is_missing = [&](std::size_t c) { return screened_slot_[c] >= 0 && std::isnan(node_[node][c]); };
+    if (std::none_of(open_.begin(), open_.end(), is_missing)) return;
+    const Snapshot snapshot = look(NodePolynomial::theta(node), integrator, dynamics);
     for (const std::size_t c : open_)
-      if (std::isnan(node_[0][c])) take(c, t_, snapshot, node_[0].data());
-  }
+      if (is_missing(c)) take(c, t_ + NodePolynomial::theta(node) * (t1_ - t_), snapshot, node_[node].data());
+  };
+  look_at_end(0);
   const double wanted = (t1_ - t_) / shortest_period(system_, 0.5 * (t_ + t1_)) * k_looks_per_period;
   for (int level = 1; level <= 3 && !open_.empty(); ++level) {
     refine(level, integrator, dynamics);
+    if (level == 1)
+      for (const int node : {0, k_last}) look_at_end(node);
     if (wanted > 1 << level) continue; // what loads do between the nodes would not be seen
     std::erase_if(open_, [&](std::size_t c) { return settle(c, level); });
   }
@@ -460,7 +477,7 @@ void ExtremeFinder::drop_jittery(Integrator& integrator, Dynamics& dynamics) {
   for (int probe = 0; probe < k_most_probes && open_.size() > k_few; ++probe) {
     for (std::size_t place = 0; place < k_places; ++place) {
       const int node = 2 * static_cast<int>(place) + 1;
-      const double theta = k_thetas[node] + (probe + 1) * k_hair;
+      const double theta = NodePolynomial::theta(node) + (probe + 1) * k_hair;
       const Snapshot snapshot = look(theta, integrator, dynamics);
       for (std::size_t k = 0; k < open_.size(); ++k) {
         take(open_[k], t_ + theta * (t1_ - t_), snapshot, scratch_.data());
@@ -490,35 +507,49 @@ bool ExtremeFinder::is_jitter(std::size_t c, double change) {
   return true;
 }
 
-// Golden section about the outermost node, on the motion itself.
+// Where golden sections look for a top: about every node that is higher than those beside it, the highest first.
+static int tops_of(const std::vector<std::vector<double>>& nodes, std::size_t c, double sign, std::array<int, k_last - 1>& middles) {
+  int count = 0;
+  for (int middle = 1; middle < k_last; ++middle) {
+    const auto is_below = [&](int i) { return !(sign * nodes[i][c] > sign * nodes[middle][c]); };
+    // Beside an end that is the highest the curve may go on rising.
+    const bool is_top = (is_below(middle - 1) || middle == 1) && (is_below(middle + 1) || middle == k_last - 1);
+    if (is_top) middles[count++] = middle;
+  }
+  std::sort(middles.begin(), middles.begin() + count, [&](int i, int j) { return sign * nodes[i][c] > sign * nodes[j][c]; });
+  return count;
+}
+
+// Golden sections, on the motion itself.
 void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dynamics) {
   double* const values = scratch_.data();
   for (const double sign : {1.0, -1.0}) {
-    int best = 0;
-    for (int i = 1; i <= k_last; ++i)
-      if (sign * at(c, i) > sign * at(c, best) || std::isnan(at(c, best))) best = i;
-    const int middle = std::clamp(best, 1, k_last - 1);
-    const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
-    const double spread = spread_about(c, middle);
-    if (!(sign * at(c, best) + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
-    double a = k_thetas[middle - 1], b = k_thetas[middle + 1];
-    const auto value = [&](double theta) {
-      take(c, t_ + theta * (t1_ - t_), look(theta, integrator, dynamics), values);
-      return sign * values[c];
-    };
-    double p = a + k_golden * (b - a), q = b - k_golden * (b - a), at_p = value(p), at_q = value(q);
-    for (int i = 0; i < k_most_sections && b - a > k_same_place; ++i) {
-      const bool is_left = at_p > at_q;
-      if (std::abs(at_p - at_q) <= 0.01 * tolerance(c) && b - a < 0.01) break;
-      (is_left ? b : a) = is_left ? q : p;
-      if (is_left) {
-        q = p;
-        at_q = at_p;
-        at_p = value(p = a + k_golden * (b - a));
-      } else {
-        p = q;
-        at_p = at_q;
-        at_q = value(q = b - k_golden * (b - a));
+    std::array<int, k_last - 1> middles;
+    const int count = tops_of(node_, c, sign, middles);
+    for (int top = 0; top < count; ++top) {
+      const int middle = middles[top];
+      const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
+      const double spread = spread_about(c, middle), highest = std::max({sign * at(c, middle - 1), sign * at(c, middle), sign * at(c, middle + 1)});
+      if (!(highest + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
+      double a = NodePolynomial::theta(middle - 1), b = NodePolynomial::theta(middle + 1);
+      const auto value = [&](double theta) {
+        take(c, t_ + theta * (t1_ - t_), look(theta, integrator, dynamics), values);
+        return sign * values[c];
+      };
+      double p = a + k_golden * (b - a), q = b - k_golden * (b - a), at_p = value(p), at_q = value(q);
+      for (int i = 0; i < k_most_sections && b - a > k_same_place; ++i) {
+        const bool is_left = at_p > at_q;
+        if (std::abs(at_p - at_q) <= 0.01 * tolerance(c) && b - a < 0.01) break;
+        (is_left ? b : a) = is_left ? q : p;
+        if (is_left) {
+          q = p;
+          at_q = at_p;
+          at_p = value(p = a + k_golden * (b - a));
+        } else {
+          p = q;
+          at_p = at_q;
+          at_q = value(q = b - k_golden * (b - a));
+        }
       }
     }
   }

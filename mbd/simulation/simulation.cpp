@@ -319,6 +319,9 @@ static void guard_against_kinks(long kinks, long max_events, double t, const std
 void Simulation::pass_event(double t, const double* y, const std::vector<int>& fired) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
+  // Begun with factors of its own: those of the last evaluation may be a sample's, and what is left of the joints within the
+  // tolerance would hang on it.
+  (void)dynamics_.residual(t, y_.data());
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
   energy_.check_step(dynamics_, t, y_.data());
   dynamics_.unpack(t, y_.data(), state_);

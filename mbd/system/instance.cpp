@@ -27,6 +27,12 @@ bool is_read_by_completion(const Model& given, const std::string& path) {
     return std::any_of(given.tables.begin(), given.tables.end(), [&](const TableEntry& e) { return e.kind->*reads; });
   };
   if (starts_with_any(path, {"signal.", "gravity."})) return false;
+  if (path.starts_with("parameters.")) {
+    const std::optional<std::size_t> parameter = given.parameters.find(path.substr(std::string("parameters.").size()));
+    return std::any_of(given.parameters.uses.begin(), given.parameters.uses.end(), [&](const ParameterUse& use) {
+      return parameter && given.parameters.needs(use.formula, *parameter) && is_read_by_completion(given, use.path);
+    });
+  }
   if (path.starts_with("element.")) {
     const bool is_placing = std::any_of(given.elements.begin(), given.elements.end(), [&](const ElementEntry& e) {
       return may_place(e) && path.starts_with("element." + e.element->name + ".");

@@ -5,7 +5,9 @@ steplap.bars = (() => {
   const first = 8, firstOfSeveral = 6; // rows that are seen without asking for more
   const longest = 1.6; // of the limit: what is beyond it is cut off, with an arrow that says so
 
-  const stateOf = (u) => (u.beyond || u.share > 1 ? 'bad' : u.share >= 0.7 ? 'warn' : 'good');
+  // Friction that slips passes no limit of the verdict: it has the colour of what slips, and its words in place of two equal numbers.
+  const isSlip = (u) => u.beyond && !isKnown(u.value) && u.share === 1;
+  const stateOf = (u) => (isSlip(u) ? 'slid' : u.beyond || u.share > 1 ? 'bad' : u.share >= 0.7 ? 'warn' : 'good');
   const size = (u) => (isKnown(u.share) ? u.share : Infinity); // no number, but a limit: an infinite load or no capacity
   // What a bar tells of, apart from its name: the kind of element, what is told of it, and where it is at rest; null if it is of none.
   function subjectOf(u, run) {
@@ -60,6 +62,7 @@ steplap.bars = (() => {
   }
   // "124 of 156 kN", or "1.1, asked 1.2" where more is better; nothing where the share says it all.
   function ofLimit(u) {
+    if (isSlip(u)) return u.detail || '';
     if (!isKnown(u.value) || !isKnown(u.limit) || (!u.unit && u.limit === 1)) return '';
     const { texts, unit } = steplap.numbers.column([{ value: u.value }, { value: u.limit }], u.unit || '');
     const isLeast = Math.abs(u.value) > 0 && Math.abs(u.share - u.limit / u.value) < 1e-6 * Math.abs(u.share) && u.value !== u.limit;

@@ -74,6 +74,11 @@ steplap.data = (() => {
       const entry = this.summary.extremes[name], list = this.summary.meanings;
       return entry && list && list[entry.meaning] ? `${name} [${entry.unit || '–'}]: ${list[entry.meaning]}` : '';
     }
+    // The written instant next to t.
+    nearestTime(t) {
+      const i = Math.max(0, indexBefore(this.times, t)), next = Math.min(i + 1, this.times.length - 1);
+      return this.times[next] - t < t - this.times[i] ? this.times[next] : this.times[i];
+    }
     get end() { return this.times[this.times.length - 1]; }
     // Names that match patterns with * and ?.
     matching(patterns) {

@@ -23,7 +23,7 @@
       choice.value = String(this.magnification !== 1 ? 1 : this.usualMagnification(this.seenFrom));
       choice.dispatchEvent(new Event('change'));
     },
-    showLegend() {
+    showLegend(t = 0) {
       const wanted = Math.min(130, 0.25 * this.width) / this.scale, power = 10 ** Math.floor(Math.log10(wanted));
       const size = power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1), width = size * this.scale, y = this.height - 9, left = 10;
       this.scaleBar.setAttribute('d', `M${left} ${y - 4}V${y + 4}M${left} ${y}H${(left + width).toFixed(1)}M${(left + width).toFixed(1)} ${y - 4}V${y + 4}`);
@@ -34,7 +34,10 @@
       this.put(this.motionText, motion, this.width - 10, y + 4, 'end');
       const from = this.seenFrom && this.seenFrom !== 'ground' ? `seen from ${this.seenFrom}` : '';
       const room = this.width - (left + width + 70) - 6.6 * motion.length - 40;
-      this.put(this.seenText, from && 6.6 * from.length < room ? from : '', left + width + 70 + 0.5 * Math.max(0, room), y + 4, 'middle');
+      const { shown, all } = this.symbols.shownValues, values = shown < all ? `${shown} of ${all} values; closer for more` : '';
+      const guess = this.isGuessed(t) ? 'between instants that are written: not the motion' : '';
+      const note = [guess, values, from].find((text) => text && 6.6 * text.length < room) || '';
+      this.put(this.seenText, note, left + width + 70 + 0.5 * Math.max(0, room), y + 4, 'middle');
     },
     usualOf() {
       if (!this.usuals) this.usuals = new Map();

@@ -48,7 +48,23 @@ steplap.listings = (() => {
     box.append(part);
   }
 
+  // What the models were made with: a row a parameter, a column a run.
+  function parameters(box, runs) {
+    const of = (run) => run.summary.model.parameters || [];
+    const names = steplap.data.unique(runs.map((run) => of(run).map((p) => p.name)));
+    if (!names.length) return;
+    const found = (run, name) => of(run).find((p) => p.name === name);
+    const meaning = (name) => (runs.map((run) => found(run, name)).find(Boolean) || {}).meaning || '';
+    const value = (run, name) => {
+      const p = found(run, name);
+      return p ? `${Number(p.value.toPrecision(4))} ${p.unit}`.trim() + (p.given.startsWith('=') ? ` (${p.given})` : '') : '–';
+    };
+    const rows = names.map((name) => [name, meaning(name), ...runs.map((run) => value(run, name))]);
+    box.append(fold('Parameters', false, table(['parameter', 'meaning', ...runs.map((run) => run.name)], rows)));
+  }
+
   function models(box, runs) {
+    parameters(box, runs);
     // Each core once, however many runs share it; as an image, so that its style stays its own.
     const cores = new Map(runs.flatMap((run) => (run.drawing.cores || []).map((core) => [core.svg, core.name])));
     if (cores.size) {

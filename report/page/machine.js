@@ -23,6 +23,15 @@ steplap.Scene = (() => {
       if (this.run.poseOf) return this.run.poseOf(this.name, t) || this.pose;
       return this.channels ? this.channels.map((c) => c.at(t)) : this.pose;
     }
+    // How far from a straight way at the speeds that are written, m: what is drawn between two rows far apart is no motion.
+    guessAt(t) {
+      const [x, y] = this.channels || [], speeds = ['vx', 'vy'].map((c) => this.run.channel(`${this.name}.${c}`));
+      if (!x || !speeds.every(Boolean)) return 0;
+      const i = steplap.data.indexBefore(x.times, t), dt = x.times[i + 1] - x.times[i];
+      if (i < 0 || i + 1 >= x.times.length || t - x.times[i] < 1e-6 * dt || x.times[i + 1] - t < 1e-6 * dt) return 0;
+      const off = [x, y].map((place, k) => { const [v0, v1] = [i, i + 1].map((row) => speeds[k].at(x.times[row])); return Math.abs(place.rest[i + 1] - place.rest[i] - 0.5 * dt * (v0 + v1)) + 0.125 * dt * Math.abs(v1 - v0); });
+      return length(off);
+    }
     extend(box, pose) {
       for (const p of this.points) box.take(apply(pose, p));
       for (const c of this.circles) box.take(apply(pose, c), c[2]);
@@ -67,6 +76,9 @@ steplap.Scene = (() => {
       for (const end of [own.low, own.high]) box.take(end.map((v, i) => Math.min(Math.max(v, low[i] - reach), high[i] + reach)));
       return box;
     }
+
+    // Is what would be drawn at t between rows, and further from them than one sees through?
+    isGuessed(t) { return [...this.bodies.values()].some((body) => body.guessAt(t) > 0.05 * this.size); }
 
     // --- where it is seen from ------------------------------------------------------------------------
     // Poses at some times of the run, for whatever depends on where things come.
@@ -238,7 +250,7 @@ steplap.Scene = (() => {
       this.settleMarks(pose);
       for (const update of this.updaters) update(t, pose);
       if (this.trailsOf.size) this.showTrails(t, pose);
-      this.showLegend();
+      this.showLegend(t);
     }
   }
 

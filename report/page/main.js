@@ -107,7 +107,7 @@
   const decimals = Math.max(0, 4 - Math.ceil(Math.log10(end) - 1e-9));
   function show(time) {
     t = Math.min(Math.max(time, 0), end);
-    at('now').textContent = `t = ${t.toFixed(decimals)} s`;
+    at('now').textContent = `t = ${t.toFixed(t > 0 ? Math.max(decimals, Math.min(6, 2 - Math.floor(Math.log10(t)))) : decimals)} s`; // three digits, however long the run
     for (const scene of scenes) scene.show(t);
     for (const inset of insets) inset.show(t);
     timeline.show(t);
@@ -209,6 +209,14 @@
     document.body.setAttribute('data-ready', 'true');
   }
 
+  // The worst instant; without limits that of the first event that is told of. Where the motion about it is not written (machine.js), the
+  // nearest instant that is.
+  function opening() {
+    const told = runs.flatMap((run) => steplap.overview.of(run).story.map((entry) => entry.from)), wanted = worst ?? (told.length ? Math.min(...told) : 0);
+    const guessed = scenes.find((scene) => scene.isGuessed(wanted));
+    return guessed ? guessed.run.nearestTime(wanted) : wanted;
+  }
+
   showTitles();
   steplap.verdict.build(runs);
   buildScenes();
@@ -226,7 +234,7 @@
   at('near').hidden = at('limits').hidden && at('story').hidden;
   at('overview').classList.toggle('alone', at('near').hidden);
   fit();
-  show(worst ?? 0);
+  show(opening());
   steplap.page = { scenes, view, show: go, time: () => t, timeline, shown: performance.now() };
   // After the browser has painted: a frame to paint in, and what comes after it.
   requestAnimationFrame(() => setTimeout(buildRest));

@@ -104,6 +104,7 @@ steplap.numbers = (() => {
   function percent(share, error) {
     if (!isKnown(share)) return '–';
     if (!isFinite(share)) return '∞';
+    if (share > 10) return `>${space}1000${space}%`; // how many times it is too much tells nothing
     const isAtLimit = Math.abs(share - 1) < 1e-9; // friction that slips, but for rounding
     const value = isAtLimit ? 100 : 100 * share;
     let decimals = value < 9.95 ? 1 : 0;

@@ -11,6 +11,8 @@ steplap.Symbols = (() => {
   class Symbols {
     constructor(scene) {
       this.scene = scene;
+      this.wanted = []; // values that want room
+      this.shownValues = { shown: 0, all: 0 };
       this.springs = []; // { element, shape } and where they are drawn
       this.pieces = new Map(); // what is drawn of an element, by its name
       this.taken = []; // pixels along what is drawn, at rest
@@ -63,7 +65,7 @@ steplap.Symbols = (() => {
         const { at, d, force } = where(t, pose, channel);
         const size = this.arrowLength(force), tip = isPulling ? add(at, scaled(d, size)) : at, tail = isPulling ? at : minus(at, scaled(d, size));
         arrow.setAttribute('d', size > 0.5 ? path([tail, tip]) + arrowHead(tip, d, Math.min(0.7 * this.u, size)) : 'M0 0');
-        this.showValue(text, Math.abs(force) > 1e-6 * this.scene.largestForce ? steplap.data.quantity(Math.abs(force), channel.unit, 4) : '', isPulling ? tip : tail, isPulling ? d : scaled(d, -1));
+        this.showValue(text, Math.abs(force) > 1e-6 * this.scene.largestForce ? steplap.data.quantity(Math.abs(force), channel.unit, 4) : '', isPulling ? tip : tail, isPulling ? d : scaled(d, -1), Math.abs(force));
       });
     }
     value(element) {
@@ -71,24 +73,38 @@ steplap.Symbols = (() => {
       this.scene.textLayer.append(text);
       return text;
     }
-    // At the tip of an arrow along d, or as near as there is room.
-    showValue(text, content, at, d) {
-      text.textContent = this.scene.withValues ? content : '';
-      if (!text.textContent) return;
-      const width = 6.9 * content.length, side = Math.abs(d[0]) < 0.5 ? 0 : Math.sign(d[0]);
-      const x = at[0] + side * (0.6 * this.u + 0.5 * width), y = at[1] + (side ? 0 : d[1] > 0 ? 10 : -9);
-      this.put(text, [x, y], [width, 12], [[0, 0], [0, -14], [0, 14], [0.7 * width, 0], [-0.7 * width, 0], [0, -28], [0, 28], [0.7 * width, 14], [-0.7 * width, 14]]);
+    // At the tip of an arrow along d, or as near as there is room: placed when all that wants room is known.
+    showValue(text, content, at, d, weight = Infinity) {
+      text.textContent = '';
+      if (this.scene.withValues && content) this.wanted.push({ text, content, at, d, weight });
+    }
+    // The largest first. One that has no room near its place is left out, and the picture says how many are (legend.js).
+    placeValues() {
+      const all = this.wanted.sort((a, b) => b.weight - a.weight);
+      let shown = 0;
+      for (const { text, content, at, d } of all) {
+        const width = 6.9 * content.length, side = Math.abs(d[0]) < 0.5 ? 0 : Math.sign(d[0]);
+        const x = at[0] + side * (0.6 * this.u + 0.5 * width), y = at[1] + (side ? 0 : d[1] > 0 ? 10 : -9);
+        const place = this.room([x, y], [width, 12], [[0, 0], [0, -14], [0, 14], [0.7 * width, 0], [-0.7 * width, 0], [0, -28], [0, 28], [0.7 * width, 14], [-0.7 * width, 14]]);
+        if (!place) continue;
+        ++shown;
+        text.textContent = content;
+        this.write(text, place);
+      }
+      this.shownValues = { shown, all: all.length };
+      this.wanted = [];
+    }
+    write(text, { at: [x, y], size: [, height] }) {
+      text.setAttribute('x', x.toFixed(1));
+      text.setAttribute('y', (y + 0.32 * height).toFixed(1));
     }
     // Moves a text's middle by the first of the shifts that leaves it clear of marks and texts, and onto the picture.
     put(text, at, [width, height], shifts) {
-      const { at: place } = this.room(at, [width, height], shifts) || this.take(this.onPicture(add(at, shifts[0]), [width, height]), [width, height]);
-      text.setAttribute('x', place[0].toFixed(1));
-      text.setAttribute('y', (place[1] + 0.32 * height).toFixed(1));
+      this.write(text, this.room(at, [width, height], shifts) || this.take(this.onPicture(add(at, shifts[0]), [width, height]), [width, height]));
     }
 
     isFree([x, y], [width, height]) {
-      const { takenTexts } = this.scene;
-      return takenTexts.length > 300 || takenTexts.every(([qx, qy, w, h]) => Math.abs(qy - y) >= 0.5 * (h + height) || Math.abs(qx - x) >= 0.5 * (w + width));
+      return this.scene.takenTexts.every(([qx, qy, w, h]) => Math.abs(qy - y) >= 0.5 * (h + height) || Math.abs(qx - x) >= 0.5 * (w + width));
     }
     onPicture([x, y], [width, height]) {
       const { scene } = this, half = 0.5 * width + 2;
@@ -409,7 +425,7 @@ steplap.Symbols = (() => {
       // Room for texts: not on the marks of bodies, nor on texts that are there before.
       this.updaters.push((t, pose) => { this.takenTexts = [...this.marks].map(([name, mark]) => [...add(this.toScreen(pose(name)), mark.now), 20, 20]); });
       this.symbols = new Symbols(this);
-      this.updaters.push((t, pose) => { this.symbols.showMoved(t); this.showHappenings(t, pose); });
+      this.updaters.push((t, pose) => { this.symbols.showMoved(t); this.showHappenings(t, pose); this.symbols.placeValues(); });
     },
     fitSymbols() { this.symbols.fit(); },
     // The largest force of those that are drawn as arrows.

@@ -83,7 +83,8 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
   // Names that are words of others, too, or that somebody asks for all the same.
   const std::map<std::string, Reasons> besides = {
       {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"study/needs.cpp", "what is made rigid is welded"}}},
-      {"limit", {{"run/report_json.cpp", "of a criterion"}, {"tools/steplap/run_screen.cpp", "of a criterion"}}},
+      {"limit", {{"run/report_json.cpp", "of a criterion"}, {"tools/steplap/run_screen.cpp", "of a criterion"}, {"assess/static_json.cpp", "of a criterion"}}},
+      {"load", {{"assess/static_json.cpp", "an acceleration of a proof"}}},
       {"rope", {{"run/story.cpp", "what a rope does is told in words of its own: it goes slack"}}},
       {"distance", {{"elements/motor.cpp", "a coordinate"}, {"elements/prescribed_motion.cpp", "a coordinate"},
                     {"elements/limit.cpp", "a coordinate"}, {"elements/joint_friction.cpp", "a coordinate"}}},
@@ -149,12 +150,19 @@ TEST_CASE("a sub-command is a file pair and a line in commands.cpp") {
   }
 }
 
+TEST_CASE("one switch over measures") {
+  // Values, tapes, derivatives and rest take it from there (mbd/system/row_gradient.h).
+  std::vector<std::string> switches;
+  for (const auto& [path, text] : product_sources())
+    if (text.find("case MeasureKind::") != std::string::npos) switches.push_back(path);
+  CHECK(switches == std::vector<std::string>{"mbd/system/row.h"});
+}
+
 TEST_CASE("where kinds of rows are told apart") {
   // A kind of row is a MeasureKind, what it measures with its derivatives, and an element that makes rows of it.
   const Reasons by_right = {
       {"mbd/system/row.h", "what each measures"},
-      {"mbd/dynamics/linearization.cpp", "second derivatives"},
-      {"mbd/analysis/statics.cpp", "second derivatives"},
+      {"mbd/dynamics/traced_evaluation.cpp", "which no tape is made of"},
       {"mbd/dynamics/layout.cpp", "which have a shorter way, angles a constant gradient"},
       {"mbd/dynamics/carriage_layout.cpp", "which joints are guides"},
       {"mbd/dynamics/mechanism_layout.cpp", "which joints a member of a mechanism may hang by"},

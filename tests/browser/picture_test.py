@@ -47,6 +47,9 @@ NUMBERS = """const scene = steplap.page.scenes[arguments[0]]; scene.svg.scrollIn
 # How far each arrow of a drive stays inside the picture, pixels.
 ARROWS = """const scene = steplap.page.scenes[arguments[0]], s = scene.svg.getBoundingClientRect();
     return [...scene.svg.querySelectorAll('.drive:not(.arc)')].map((e) => e.getBoundingClientRect()).filter((r) => r.width + r.height > 0).map((r) => Math.min(r.left - s.left, r.top - s.top, s.right - r.right, s.bottom - r.bottom))"""
+# Boxes of the values that are written beside forces, of the numbers of bodies and of what the picture marks as having happened.
+WRITTEN = """return [...steplap.page.scenes[0].svg.querySelectorAll('.value-text, .number-mark, .state-text')].map((e) => [e, e.getBoundingClientRect()])
+    .filter(([e, r]) => r.width > 0).map(([e, r]) => [e.dataset.valueOf || '', e.textContent, r.left, r.top, r.right, r.bottom])"""
 # What the picture marks as having happened: element, sign, words.
 HAPPENED = """return [...document.querySelectorAll('.happening')].filter((e) => e.style.display !== 'none').map((e) => [e.dataset.happened, e.querySelector('[data-sign]').dataset.sign, e.querySelector('text').textContent])"""
 
@@ -169,6 +172,56 @@ class GalleryTest(base.Page):
         self.run_js("steplap.page.show(steplap.data.runs[0].end)")
         self.assertEqual(self.run_js(HAPPENED), [])
         self.assertGreater(self.run_js("return steplap.page.scenes[0].moved.size"), 5)
+
+    def test_between_states_far_apart_the_picture_says_that_it_is_not_the_motion(self):
+        note = lambda t: (self.run_js("steplap.page.show(arguments[0])", t), self.find(".seen-text").text)[1]
+        self.open("gallery_pile.html")  # states each 10 s, all falls within three
+        self.assertEqual(self.run_js("return steplap.page.time()"), 0)
+        self.assertIn("not the motion", note(0.25))
+        self.assertEqual(note(10), "")
+        self.open("gallery_no_interference.html")
+        for t in (0.0503, 0.1218, 0.3):
+            self.assertEqual(note(t), "seen from lower tank")
+
+    def test_without_limits_the_page_opens_at_the_first_event_told_of(self):
+        found = 0
+        for model in self.models:
+            self.show_model(model)
+            worst, told, is_guessed, t = self.run_js("""const runs = steplap.data.runs, story = steplap.overview.of(runs[0]).story.map((e) => e.from), worst = steplap.overview.worstOf(runs);
+                const first = story.length ? Math.min(...story) : 0; return [worst, first, steplap.page.scenes[0].isGuessed(worst ?? first), steplap.page.time()]""")
+            if not is_guessed:
+                self.assertAlmostEqual(t, told if worst is None else worst, delta=1e-12, msg=model)
+            found += worst is None and told > 0
+        self.assertGreater(found, 0)
+
+    def test_the_bar_of_friction_that_slips_is_no_criterion(self):
+        self.open("gallery_no_interference.html")
+        found = {name: (text, style) for name, text, style in self.run_js("""return [...document.querySelectorAll('.utilisation')].map((u) =>
+            ['.who', '.of-limit', '.percent'].map((s, i) => i < 2 ? u.querySelector(s).textContent : u.querySelector(s).className))""")}
+        self.assertEqual(found["tank bottom: friction"], ("it slips", "percent slid"))
+        self.assertEqual({style for _, style in found.values()}, {"percent slid", "percent good"})  # the verdict is "hold"
+
+    def test_values_leave_each_other_room(self):
+        self.open("gallery_pile.html")
+        self.find("#values").click()
+        for part in (0.3, 0.5, 1):
+            self.run_js("steplap.page.show(arguments[0] * steplap.data.runs[0].end)", part)
+            found = self.run_js(WRITTEN)
+            values = [f[:2] for f in found if f[0]]
+            self.assertGreater(len(values), 8, part)
+            for i, (_, name, *a) in enumerate(found):
+                for _, other, *b in found[:i]:
+                    apart = a[0] >= b[2] - 0.5 or b[0] >= a[2] - 0.5 or a[1] >= b[3] - 2 or b[1] >= a[3] - 2  # digits are lower than their box
+                    self.assertTrue(apart, (part, name, other, a, b))
+            # The largest force has its value, and the picture says how many are left out.
+            t, largest = self.run_js("""const run = steplap.data.runs[0], t = steplap.page.time(), s = steplap.page.scenes[0];
+                const forces = [...s.svg.querySelectorAll('.force')].map((e) => run.channel(`${e.dataset.element}.force`)).filter(Boolean).map((c) => [c.at(t), c.name]);
+                return [t, forces.sort((a, b) => b[0] - a[0])[0][1]]""")
+            self.assertIn(largest.rsplit(".", 1)[0], [v[0] for v in values], (part, t))
+            shown, all_ = self.run_js("return [steplap.page.scenes[0].symbols.shownValues.shown, steplap.page.scenes[0].symbols.shownValues.all]")
+            self.assertEqual(shown, len(values))
+            if shown < all_:
+                self.assertEqual(self.find(".seen-text").text, f"{shown} of {all_} values; closer for more")
 
     def test_what_broke_is_marked(self):
         data = os.path.join(os.path.dirname(MODELS), "tests", "data", "cores", "tie_that_breaks_first.toml")

@@ -58,7 +58,8 @@ TEST_CASE("delimiters, comments, headers, decimal commas") {
                        "m.toml:4:1: error: the record 'a.csv' has no column '3'; it has 2 columns",
                        ModelError);
   CHECK(parse_csv("0,5;1\n1,5;2", "b.csv").columns[0] == std::vector<double>{0.5, 1.5});
-  CHECK(parse_csv("0,5\t1\n1.5\t2", "c.csv").columns[0] == std::vector<double>{0.5, 1.5});
+  CHECK(parse_csv("0,5\t1\n1,5\t2", "c.csv").columns[0] == std::vector<double>{0.5, 1.5});
+  CHECK(parse_csv("0.5\t1\n1.5\t2", "c.csv").columns[0] == std::vector<double>{0.5, 1.5});
   CHECK(parse_csv("\xEF\xBB\xBF"
                   "1,2\n",
                   "d.csv")

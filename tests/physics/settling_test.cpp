@@ -87,6 +87,7 @@ TEST_CASE("blocks dropped on blocks and on planks lie on them") {
 // Rods between nodes on a drum, the same pull at both ends: rods let no node press but together with its neighbours.
 TEST_CASE("chains over drums of any count and size rest") {
   random::RandomNumber random(26);
+  int slid = 0;
   for (int n = 4; n < 13; ++n) {
     const double s = std::pow(10.0, random.between(-3.0, 3.0)), radius = 0.2 * s, first = random.between(0.05, 0.4), pull = random.between(20.0, 200.0);
     const double k = 1e4 * pull / radius, friction = random.between(0.1, 0.5);
@@ -108,7 +109,8 @@ TEST_CASE("chains over drums of any count and size rest") {
     // What the drum gives way to: the largest pull over the stiffness, a few times where nodes share it.
     CHECK(found.rest.residual < 1e-6 * pull / 0.02);
     for (const FrictionMargin& margin : found.rest.margins) CHECK(margin.used <= 1.0 + 1e-9);
-    if (found.rest.is_settled) CHECK(found.rest.hangs_on_way);
+    if (found.rest.is_settled || !found.rest.slid.empty()) CHECK(found.rest.hangs_on_way);
+    if (!found.rest.slid.empty()) ++slid;
   }
 }
 

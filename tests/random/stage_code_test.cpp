@@ -5,6 +5,7 @@
 // reads behind a stage shows in the last bits, which steps and events then amplify.
 #include "mbd/analysis/assembly.h"
 #include "mbd/io/reader.h"
+#include "mbd/simulation/simulation.h"
 #include "mbd/tape/machine_code.h"
 #include "tests/random/random_scene.h"
 #include "tests/sanitized.h"
@@ -174,6 +175,21 @@ TEST_CASE("stages at which merged joints are looked at are made by machine code 
   const RunStatistics run = simulate(*system, system->initial_state(), options).statistics;
   CHECK(run.steps > 100);
   CHECK(run.evaluations - run.coded_stages < 2 * run.steps);
+}
+
+// Their joints merge bodies on both sides of drives, stops and sticking feet: rows on clusters of several bodies. What is evaluated without
+// code is ends of steps, events, and the first stages in each set of modes.
+TEST_CASE("transformers on vehicles run by machine code, whose rows are on merged clusters") {
+  if (!MachineCode::is_available()) return;
+  for (const char* const file : {"/layouts/three_limb_bump.toml", "/layouts/five_limb_bump.toml"}) {
+    CAPTURE(file);
+    const Model model = read_model(STEPLAP_MODELS + std::string(file), transformer_catalog());
+    const auto system = compile(model);
+    const State start = assembled_start(*system, assemble(model, *system));
+    const Outcome coded = outcome(*system, start, options_for(model, "dop853", model.simulation.end), StageCode::at_once);
+    CHECK(coded.evaluations > 5000);
+    CHECK(coded.coded > coded.evaluations * 2 / 3);
+  }
 }
 
 // Tapes that runs before have written are not written once more: of another sample of the scene constants alone are gathered.

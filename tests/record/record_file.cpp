@@ -190,14 +190,22 @@ private:
     line(text);
   }
 
+  void leave_last_row_out() {
+    rows_.pop_back();
+    made_.values.resize(made_.values.size() - (manner_.clock == Clock::none ? 3 : 4));
+  }
+
   void finish() {
     made_.last_line = lines_;
-    if (manner_.ending == Ending::no_line_break) made_.text.resize(made_.text.size() - manner_.line_end.size());
+    if (manner_.ending == Ending::no_line_break) {
+      made_.text.resize(made_.text.size() - manner_.line_end.size());
+      const bool has_more = manner_.is_ragged && (k_rows - 1) % 7 == 2; // a field that is not read: the last axis is whole
+      if (is_counts(manner_.scale) && !has_more) leave_last_row_out(); // its number may lack digits
+    }
     if (manner_.ending == Ending::cut_row) { // in the middle of the axis before the last
       const auto place = made_.text.rfind(manner_.delimiter);
       made_.text.resize(place - 2);
-      rows_.pop_back();
-      made_.values.resize(made_.values.size() - (manner_.clock == Clock::none ? 3 : 4));
+      leave_last_row_out();
     }
     if (manner_.ending == Ending::comment) line("# stopped by button");
     if (manner_.encoding == Encoding::marked_utf8) made_.text.insert(0, "\xEF\xBB\xBF");

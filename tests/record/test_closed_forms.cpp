@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -93,6 +94,70 @@ TEST_CASE("the filter leaves a constant and the mirror symmetry of a pulse as th
   pulse[1000] = 1.0;
   filter.apply(pulse);
   for (std::size_t i = 1; i <= 200; ++i) CHECK(std::abs(pulse[1000 - i] - pulse[1000 + i]) < 1e-12);
+}
+
+namespace {
+
+// Keeps one axis of what a Conditioner makes.
+struct OneAxis : SignalSink {
+  std::vector<double> plain, filtered;
+  void begin(const RecordLayout&, double) override {}
+  void begin_segment(std::size_t) override {}
+  void put(double, const double* a, const double* b) override {
+    plain.push_back(*a);
+    filtered.push_back(*b);
+  }
+  void end_segment() override {}
+};
+
+OneAxis conditioned(const std::vector<double>& samples, double rate, const Conditioning& conditioning, std::vector<std::array<double, 3>>* means = nullptr) {
+  RecordLayout layout;
+  layout.axes.resize(1);
+  layout.time.rate = rate;
+  OneAxis sink;
+  Conditioner conditioner(conditioning, sink);
+  conditioner.begin(layout);
+  conditioner.begin_segment(1);
+  for (std::size_t i = 0; i < samples.size(); ++i) conditioner.put(static_cast<double>(i) / rate, &samples[i]);
+  conditioner.end_segment();
+  if (means) *means = conditioner.segment_means();
+  return sink;
+}
+
+} // namespace
+
+TEST_CASE("the high-pass has the gain of a Butterworth filter run twice, no phase, and nothing of a constant; across its blocks, too") {
+  const double rate = 200.0, edge = 0.5;
+  Conditioning conditioning;
+  conditioning.high_pass = edge;
+  const std::size_t count = 150'000; // two blocks and more
+  for (const double frequency : {0.1, 0.5, 2.0, 20.0}) {
+    std::vector<double> samples(count);
+    for (std::size_t i = 0; i < count; ++i) samples[i] = 9.81 + std::sin(2.0 * pi * frequency * static_cast<double>(i) / rate);
+    const OneAxis out = conditioned(samples, rate, conditioning);
+    REQUIRE(out.filtered.size() == count);
+    // r: of the tangents to that of the frequency where the gain is 1/2; at `edge` the gain is 1/√2.
+    const double half = edge / std::pow(1.0 / (std::sqrt(2.0) - 1.0), 0.25), r = std::tan(pi * frequency / rate) / std::tan(pi * half / rate), gain = std::pow(r, 4) / (1.0 + std::pow(r, 4));
+    double worst = 0.0;
+    for (std::size_t i = 20'000; i < count - 20'000; ++i) worst = std::max(worst, std::abs(out.filtered[i] - gain * std::sin(2.0 * pi * frequency * static_cast<double>(i) / rate)));
+    CAPTURE(frequency);
+    CHECK(worst < 1e-9); // rounding of 1e5 steps of the filter, and its ends, which have died away to 1e-12
+    if (frequency == edge) CHECK(gain == doctest::Approx(std::sqrt(0.5)).epsilon(1e-4)); // the tangents bend
+  }
+}
+
+TEST_CASE("a segment less its mean ends with the velocity with which it began") {
+  const double rate = 200.0;
+  std::vector<double> samples = half_sine(0.1, rate, 20.0, 1.0, 3.0);
+  for (double& value : samples) value += 0.02;
+  std::vector<std::array<double, 3>> means;
+  static_cast<void>(conditioned(samples, rate, {}, &means));
+  REQUIRE(means.size() == 1);
+  CHECK(means[0][0] > 0.02);
+  Conditioning conditioning;
+  conditioning.segment_offsets = means;
+  static_cast<void>(conditioned(samples, rate, conditioning, &means));
+  CHECK(std::abs(means[0][0]) < 1e-15);
 }
 
 namespace {

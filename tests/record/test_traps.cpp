@@ -89,13 +89,45 @@ TEST_CASE("a last line without line break is kept if it has all fields, and said
   };
   const ReadResult kept = read_text(k_names + k_rows + "0.03,0.4,0.5,1.3");
   CHECK(kept.segments.at(0).size() == 4);
-  CHECK(lines(kept).find("The last line (5) does not end with a line break. It has all fields and was kept") != std::string::npos);
+  CHECK(lines(kept).find("The last line (5) does not end with a line break. It has all fields, and its last number as many decimals as those before: it was kept.") != std::string::npos);
   for (const char* cut : {"0.03,0.4,0.5,1.", "0.03,0.4,0.5,1", "0.03,0.4,0.5,-", "0.03,0.4,0.5,", "0.03,0.4,0.5", "0.03,0.", "0"}) {
     CAPTURE(cut);
     const ReadResult left_out = read_text(k_names + k_rows + cut);
     CHECK(left_out.segments.at(0).size() == 3);
     CHECK(lines(left_out).find("The last line (5) is cut: it was left out.") != std::string::npos);
   }
+}
+
+TEST_CASE("a last number without line break that may lack digits is left out, and said") {
+  const std::string counts = "Time[s],Ax[counts],Ay[counts],Az[counts]\n0.00,1,2,2048\n0.01,3,4,2050\n0.02,5,6,2049";
+  ReadOptions options;
+  options.counts_per_g = 2048.0;
+  for (std::size_t less = 0; less < 4; ++less) CHECK(read_text(counts.substr(0, counts.size() - less), options).segments.at(0).size() == 2);
+  CHECK(read_text(counts + "\n", options).segments.at(0).size() == 3);
+  const std::string uneven = k_names + "0.00,0.1,0.2,1.0\n0.01,0.2,0.3,1.25\n0.02,0.3,0.4,1.12"; // "%g": it may have been 1.125
+  CHECK(read_text(uneven).segments.at(0).size() == 2);
+}
+
+TEST_CASE("of rows of one time the first or the last is kept, as asked") {
+  const std::string text = k_names + "0.00,0.1,0.2,1.0\n0.01,0.2,0.3,1.1\n0.01,0.3,0.3,1.1\n0.01,0.4,0.3,1.1\n0.02,0.5,0.4,1.2\n0.03,0.6,0.4,1.2\n0.03,0.7,0.4,1.2\n";
+  for (const bool is_last : {false, true}) {
+    ReadOptions options;
+    options.repeated = is_last ? IfRepeated::last : IfRepeated::first;
+    const ReadResult read = read_text(text, options);
+    REQUIRE(read.segments.at(0).size() == 4);
+    const double expected[] = {0.1, is_last ? 0.4 : 0.2, 0.5, is_last ? 0.7 : 0.6};
+    for (std::size_t i = 0; i < 4; ++i) CHECK(read.segments[0][i].a[0] == doctest::Approx(expected[i] * 9.80665).epsilon(1e-12));
+    CHECK(read.recording.facts.rows == 4);
+    CHECK(read.recording.facts.repeated.count == 3);
+  }
+}
+
+TEST_CASE("quoted numbers with a decimal comma are read where a comma parts them") {
+  const ReadResult read = read_text("\"Time [s]\",\"X [g]\",\"Y [g]\",\"Z [g]\"\n\"0,00\",\"0,1250\",\"-0,2\",\"1,0\"\n\"0,01\",\"0,2500\",\"0,3\",\"1,1\"\n\"0,02\",\"0,5000\",\"0,4\",\"1,2\"\n");
+  REQUIRE(read.segments.at(0).size() == 3);
+  CHECK(read.segments[0][1].t == doctest::Approx(0.01).epsilon(1e-12));
+  CHECK(read.segments[0][2].a[0] == doctest::Approx(0.5 * 9.80665).epsilon(1e-12));
+  CHECK(read.segments[0][0].a[1] == doctest::Approx(-0.2 * 9.80665).epsilon(1e-12));
 }
 
 TEST_CASE("a last entry of a list of peaks that is cut is left out") {

@@ -41,6 +41,12 @@ TEST_CASE("a joint that slips is the reason, the first one, and the story tells 
   CHECK(entry_of(overview, "rear foot", "lifts") != nullptr);
 }
 
+TEST_CASE("a wheel leaves its track as a foot its floor: it lifts") {
+  const Overview overview = overview_of(judged_run(load_model(std::string(STEPLAP_TEST_DATA) + "/defects/wheelie.toml", {})));
+  CHECK(entry_of(overview, "front tyre", "lifts") != nullptr);
+  CHECK(entry_of(overview, "front tyre", "opens") == nullptr);
+}
+
 TEST_CASE("utilisations are sorted, and those beyond their limits are the criteria that are not met") {
   for (const char* const model : {"paper/weak_clamping", "paper/no_interference", "layouts/three_limb_humping"}) {
     CAPTURE(model);

@@ -73,6 +73,9 @@ TEST_CASE("a share says whether the limit is passed") {
   CHECK(shown_share(0.9984) == "99.8 %");
   CHECK(shown_share(1.0003) == "100.03 %");
   CHECK(shown_share(1.0) == "100 %");
+  CHECK(shown_share(9.9) == "990 %");
+  CHECK(shown_share(1000.0) == "> 1000 %"); // a margin of 0
+  CHECK(shown_share(1000.0, 0.5) == "> 1000 %");
   CHECK(shown_share(0.99, 0.02) == "99 % ± 2 %");
 }
 

@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 using namespace steplap;
 using namespace steplap::testing;
 
@@ -142,4 +145,23 @@ TEST_CASE("the schema knows the tables, keys and kinds") {
   CHECK(std::find(kinds.begin(), kinds.end(), "reliability") != kinds.end());
   CHECK(schema["properties"]["variable"]["items"]["properties"].contains("distribution"));
   CHECK(schema["additionalProperties"] == false);
+}
+
+TEST_CASE("a study that is no file is refused, and not waited for") {
+  const StudyBench bench;
+  const std::string fifo = bench.at("fifo"), store = bench.at("other.sqlite");
+  REQUIRE(mkfifo(fifo.c_str(), 0600) == 0);
+  int ends[2];
+  REQUIRE(pipe(ends) == 0);
+  for (const std::string& path : {std::string("/dev/zero"), fifo, bench.at(""), "/dev/fd/" + std::to_string(ends[0])}) {
+    CAPTURE(path);
+    const Outcome outcome = study_does({"run", path, "-o", store});
+    CHECK(outcome.code == 3);
+    CHECK(has(outcome.err, "cannot read the study: it is no file"));
+    CHECK(study_does({"show", path, "-o", store}).code == 2);
+    CHECK(study_does({"show", path}).code == 2); // of what it is called a store
+  }
+  for (const int end : ends) close(end);
+  CHECK(study_does({"run", bench.at("none.toml"), "-o", store}).code == 3);
+  CHECK_FALSE(fs::exists(store));
 }

@@ -85,6 +85,88 @@ TEST_CASE("a first row that begins with a number is data: what is wrong in it is
   CHECK(refusal(",a\n1,2\n").empty());
 }
 
+// A whole row may be damaged in one way: by a program that writes other dashes, digits, blanks or quotes.
+TEST_CASE("a first row of which every cell is damaged is not taken for names") {
+  const std::vector<std::pair<const char*, const char*>> around = {{"−", ""}, {"'", "'"}, {"(", ")"}, {"~", ""}, {"$", ""}, {"\xC2\xA0", ""}, {"‐", ""},
+                                                                   {"*", "*"}, {"=", ""}, {"O.", ""}, {"l,", ""}, {"x0.", ""}, {"－", ""}, {"--", ""}, {"\"'", "\""}};
+  std::mt19937 random(6);
+  for (const auto& [before, after] : around)
+    for (int trial = 0; trial < 20; ++trial) {
+      const bool has_commas = random() % 2 == 0 && std::string(before) != "l,";
+      std::string text;
+      for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 2; ++column) {
+          const std::string value = std::to_string(row) + (random() % 2 == 0 ? "." + std::to_string(random() % 1000) : "");
+          text += (row == 0 ? before + value + after : value) + (column == 1 ? "\n" : has_commas ? "," : ";");
+        }
+      CAPTURE(text);
+      CHECK(refusal(text).starts_with("r.csv:1:1: error: "));
+    }
+  for (const char* const row : {"-,-", "--,--", "?,?", "*,*", "1e5x,", "nan,nan", "inf,inf", "-inf,-inf", ",", "\"\",\"\"", "٣,٤", "１,２", "x,1e400", "x,1 000", ",1e400", ".,."}) {
+    CAPTURE(row);
+    CHECK(refusal(std::string(row) + "\n1,2\n").starts_with("r.csv:1:1: error: "));
+  }
+  for (const char* const row : {"t,a", "t1,a2", "Zeit,µ", "φ1,φ2", "time [s],force [kN]", ",a", "t (s),x.1", "acc_x,acc_y", "Δ,E", "\"time, s\",\"a\"", "T,A1.5 g"}) {
+    CAPTURE(row);
+    CHECK(refusal(std::string(row) + "\n1,2\n").empty());
+  }
+}
+
+TEST_CASE("decimals of two kinds, and columns of one name, are refused") {
+  CHECK(has(refusal("t;a\n0.5;1\n1;1,000\n"), "r.csv:3:1: error: '1,000' in column 2 has a decimal comma, and numbers before it have a point"));
+  CHECK(has(refusal("0,5\t1\n1.5\t2"), "has a decimal point"));
+  CHECK(refusal("t;a\n0,5;1\n1;1,000\n").empty());
+  CHECK(refusal("t;a\n0.5;1\n1;1.000\n").empty());
+  const CsvTable table = parse_csv("t,a,a\n0,1,2\n", "r.csv");
+  CHECK_THROWS_WITH_AS(static_cast<void>(table.column("a", {"m.toml", 4, 1})),
+                       "m.toml:4:1: error: the record 'r.csv' has several columns 'a': name one by its number, from \"1\"", ModelError);
+  CHECK(table.column("3", {}) == 2);
+}
+
+// A row that is gone leaves a gap in times that come evenly; where values stay as they are nothing is lost.
+TEST_CASE("a row that is missing from a record is told, and forbids to call the machine sound") {
+  const Workbench bench;
+  std::mt19937 random(8);
+  std::string model = k_pulled;
+  model += "[[acceptance]]\nname = \"goes\"\nchannel = \"mass.x\"\nat_most = 1000\n";
+  for (int trial = 0; trial < 40; ++trial) {
+    const int rows = 20 + static_cast<int>(random() % 80), gone = trial % 2 == 0 ? 1 + static_cast<int>(random() % static_cast<unsigned>(rows - 2)) : -1;
+    const double step = 1e-3 * (1.0 + static_cast<double>(random() % 5));
+    std::ostringstream text;
+    text.precision(3 + trial % 3); // times with few digits
+    for (int row = 0; row < rows; ++row)
+      if (row != gone) text << step * row << "," << 1.0 + 0.1 * static_cast<double>(random() % 1000) << "\n";
+    bench.write("pull.csv", text.str());
+    CAPTURE(gone);
+    CAPTURE(text.str());
+    const Outcome outcome = steplap_does({"simulate", bench.write("a.toml", model), "-q", "--force", "-o", bench.at("out")});
+    CHECK(outcome.code != 3);
+    const std::string summary = text_of(bench.at("out/a/summary.json"));
+    CHECK(has(summary, "rows_missing") == (gone > 0 && gone < rows - 2));
+    CHECK(has(summary, "\"verdict\": \"open\"") == (gone > 0 && gone < rows - 2));
+  }
+  bench.write("pull.csv", "0,0\n0.1,0\n0.2,0\n0.5,0\n0.6,0\n0.7,0\n0.8,5\n0.9,2\n1,0\n1.1,0\n1.2,0\n"); // what repeats was left out
+  CHECK(!has(steplap_does({"check", bench.at("a.toml")}).out, "are rows missing?"));
+}
+
+TEST_CASE("a machine that no signal loads is not called sound") {
+  const Workbench bench;
+  std::string model = k_pulled;
+  model += "[[acceptance]]\nname = \"goes\"\nchannel = \"mass.x\"\nat_most = 1000\n";
+  const auto verdict = [&](const char* record, const char* velocity) {
+    bench.write("pull.csv", record);
+    std::string text = model;
+    text.replace(text.find("inertia = 1\n"), 12, std::string("inertia = 1\n") + velocity);
+    (void)steplap_does({"simulate", bench.write("a.toml", text), "-q", "--force", "-o", bench.at("out")});
+    const std::string summary = text_of(bench.at("out/a/summary.json"));
+    return has(summary, "\"verdict\": \"open\"") ? "open" : has(summary, "\"verdict\": \"hold\"") ? "hold" : "other";
+  };
+  CHECK(std::string(verdict("0,1\n1,2\n", "")) == "hold");
+  CHECK(std::string(verdict("0,0\n0.5,0\n1,0\n", "")) == "open");
+  CHECK(std::string(verdict("2,1\n3,1\n", "")) == "open"); // behind the end
+  CHECK(std::string(verdict("0,0\n0.5,0\n1,0\n", "velocity = [1, 0]\n")) == "hold"); // it moves without
+}
+
 // Every single damage of a cell of a sound record changes what is read, or is refused: no row is lost.
 TEST_CASE("a record with one damaged cell is refused, or read with the value that stands there") {
   std::mt19937 random(5);

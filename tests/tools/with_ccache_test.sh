@@ -1,6 +1,7 @@
 #!/bin/sh
 # with_ccache_test.sh LAUNCHER CCACHE COMPILER: a header is changed, changed back, and changed otherwise. The precompiled header is
-# that of the last state, though ccache has seen the one before it be made from the same old one.
+# that of the last state, though ccache has seen the one before it be made from the same old one. Then a comment alone changes: the
+# precompiled header that belongs to the old bytes must not be found again, or "#pragma once" lets the header be read twice.
 set -eu
 launcher=$1 ccache=$2 compiler=$3
 folder=$(mktemp -d)
@@ -19,7 +20,7 @@ change() {
   touch -d "$2 days ago" value.h
 }
 precompile() {
-  "$launcher" "$ccache" "$compiler" -std=c++20 -fpch-preprocess -x c++-header -include "$folder/all.hxx" -o all.hxx.gch -c all.hxx.cxx
+  "$launcher" "$ccache" "$compiler" -std=c++20 -fpch-preprocess -x c++-header -MD -MF all.hxx.d -include "$folder/all.hxx" -o all.hxx.gch -c all.hxx.cxx
 }
 is_now() {
   "$compiler" -std=c++20 -Winvalid-pch -Werror -include "$folder/all.hxx" main.cpp -o main
@@ -38,5 +39,17 @@ is_now 2
 change 1 7
 cp -p first.gch all.hxx.gch # as ccache gives it back
 change 3 6
+precompile
+is_now 3
+
+echo '#include "value.h"' >main.cpp # once more, by a source that includes what it uses
+echo 'int main() { return value; }' >>main.cpp
+is_now 3
+printf '#pragma once\n// said\ninline constexpr int value = 3;\n' >value.h
+touch -d '5 days ago' value.h
+precompile
+is_now 3
+printf '#pragma once\n// else\ninline constexpr int value = 3;\n' >value.h
+touch -d '4 days ago' value.h
 precompile
 is_now 3

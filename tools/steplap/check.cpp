@@ -4,6 +4,7 @@
 #include "mbd/analysis/freedom.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/formula/unit_dimension.h"
 #include "mbd/model/validate.h"
 #include "mbd/system/one_sided_row.h"
 #include "run/findings.h"
@@ -35,6 +36,7 @@ struct CheckOptions {
   std::vector<std::string> overrides;
   bool is_crossed = false;
   std::optional<std::string> cpu_limit;
+  std::optional<std::string> parameter; ///< whose uses are asked for
 };
 
 constexpr double k_usual_cpu_limit = 60.0; // s, of all runs
@@ -150,6 +152,53 @@ void print_contacts(std::ostream& out, const LoadedModel& loaded) {
   if (contacts.size() > k_shown_contacts) out << "  and " << counted(contacts.size() - k_shown_contacts, "contact", "contacts") << " more\n";
 }
 
+std::string parameter_value(const Parameters& parameters, std::size_t i) {
+  const std::string unit = unit_text(parameters.entries[i].powers);
+  return number_text(parameters.values[i]) + (unit.empty() ? "" : " " + unit);
+}
+
+std::string parameter_range(const Parameter& parameter) {
+  if (!parameter.least || !parameter.most) return "";
+  const std::string unit = unit_text(parameter.powers);
+  return number_text(*parameter.least) + " to " + number_text(*parameter.most) + (unit.empty() ? "" : " " + unit);
+}
+
+void print_parameters(std::ostream& out, const Parameters& parameters) {
+  if (parameters.entries.empty()) return;
+  TextTable table({Align::left, Align::left, Align::right, Align::left, Align::left});
+  table.add_row({"parameter", "given as", "value", "range", "meaning"});
+  for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
+    const Parameter& p = parameters.entries[i];
+    table.add_row({p.name, p.text, parameter_value(parameters, i), parameter_range(p), p.meaning});
+  }
+  out << table;
+}
+
+// All that follows from a parameter: other parameters, then fields, with what they come to.
+void print_uses(std::ostream& out, const LoadedModel& loaded, const std::string& name) {
+  const Parameters& parameters = loaded.model.parameters;
+  const std::optional<std::size_t> asked = parameters.find(name);
+  if (!asked) {
+    std::vector<std::string> known;
+    for (const Parameter& parameter : parameters.entries) known.push_back(parameter.name);
+    throw UsageError("--uses: " + loaded.path + " has no parameter '" + name + "'" + did_you_mean(name, known));
+  }
+  TextTable table({Align::left, Align::left, Align::right, Align::left});
+  table.add_row({"what follows", "formula", "value", "place"});
+  const auto place = [](const Location& where) { return where.file + ":" + std::to_string(where.line); };
+  for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
+    const Parameter& p = parameters.entries[i];
+    if (p.formula && parameters.needs(*p.formula, *asked)) table.add_row({"parameters." + p.name, p.text, parameter_value(parameters, i), place(p.where)});
+  }
+  std::size_t uses = 0;
+  for (const ParameterUse& use : parameters.uses) {
+    if (!parameters.needs(use.formula, *asked)) continue;
+    ++uses;
+    table.add_row({use.path, use.text, number_text(use.formula.value(parameters.values)) + (use.unit.empty() ? "" : " " + use.unit), place(use.where)});
+  }
+  out << loaded.path << ": '" << name << "' is " << parameter_value(parameters, *asked) << "; " << counted(uses, "field follows", "fields follow") << " from it\n" << table;
+}
+
 void print_model(std::ostream& out, const LoadedModel& loaded) {
   const Model& model = loaded.model;
   out << loaded.path << ": fine\n";
@@ -165,6 +214,7 @@ void print_model(std::ostream& out, const LoadedModel& loaded) {
                                number_text(model.output.step) + " s, " +
                                number_text(std::floor(model.simulation.end / model.output.step) + 1.0) + " rows"});
   out << table;
+  print_parameters(out, model.parameters);
   print_assembly(out, loaded);
   print_contacts(out, loaded);
   for (const Finding& finding : findings_of(loaded))
@@ -175,6 +225,10 @@ ExitCode check(const CheckOptions& options, Console& console) {
   const double cpu_limit = cpu_limit_of(options);
   const auto models = load_models(options.models, options.overrides);
   if (options.is_crossed) return cross_check_models(models, cpu_limit, console);
+  if (options.parameter) {
+    for (const auto& loaded : models) print_uses(console.out, *loaded, *options.parameter);
+    return ExitCode::done;
+  }
   if (console.verbosity == Verbosity::quiet) return ExitCode::done;
   for (const auto& loaded : models)
     print_model(console.out, *loaded);
@@ -197,6 +251,7 @@ disagrees beyond these.
 )";
   command.options = {{"MODEL", &o->models, "FILE", "model files (TOML)", true},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
+                     {"--uses", &o->parameter, "NAME", "show all that follows from this parameter, instead of the counts"},
                      {"--cross", &o->is_crossed, "", "run each model by methods that share little, and compare"},
                      {"--cpu-limit", &o->cpu_limit, "S", "with --cross: CPU time of all runs together, s; each method may take an even part of what is left (default: 60)"}};
   command.run = [o](Console& console) { return check(*o, console); };

@@ -4,6 +4,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/io/atomic_file.h"
 #include "mbd/io/read_input.h"
+#include "record/event_pictures.h"
 #include "record/fields.h"
 #include "record/option_words.h"
 #include "record/outputs.h"
@@ -32,7 +33,7 @@ constexpr OptionWords<DriftCorrection, 2> k_drifts{{{"none", DriftCorrection::no
 
 struct RecordOptions : ReadingOptions {
   std::vector<std::string> files;
-  Text output, make, event, drift;
+  Text output, make, event, drift, high_pass;
   bool is_json = false, is_overwriting = false;
 };
 
@@ -171,12 +172,38 @@ void print_result(std::ostream& out, const RecordResult& result, const std::opti
   for (const std::string& line : facts_text(result.recording)) out << "  " << line << "\n";
   if (layout.is_peaks) return print_peaks(out, result);
   if (result.interpolated > 0) out << "  " << result.interpolated << " samples lie between those of the record: it was resampled at " << rounded_text(result.rate) << " Hz.\n";
+  if (result.conditioning.high_pass) out << "  high-pass: what is slower than " << rounded_text(*result.conditioning.high_pass) << " Hz was taken away, as asked.\n";
+  if (!result.conditioning.segment_offsets.empty()) {
+    out << "  drift: of each segment a constant was taken away, as asked; of the first";
+    for (std::size_t i = 0; i < layout.axes.size(); ++i) out << (i > 0 ? ", " : " ") << layout.axes[i].axis << " " << rounded_text(result.conditioning.segment_offsets.front()[i] / k_gravity, 3) << " g";
+    out << ".\n";
+  }
   out << "  drift: driven by this acceleration alone, a base would after " << rounded_text(result.drift.duration, 4) << " s have";
   for (std::size_t i = 0; i < layout.axes.size(); ++i)
     out << (i > 0 ? "; " : " ") << layout.axes[i].axis << " " << rounded_text(result.drift.velocity[i], 3) << " m/s, " << rounded_text(result.drift.displacement[i], 3) << " m";
   out << "\n";
   if (no_events_because) out << "\nEvents are not listed: " << *no_events_because << ".\n";
   else print_events(out, result);
+}
+
+// Without effect but for the Conditioner before it.
+class Nowhere : public SignalSink {
+public:
+  void begin(const RecordLayout&, double) override {}
+  void begin_segment(std::size_t) override {}
+  void put(double, const double*, const double*) override {}
+  void end_segment() override {}
+};
+
+// Of the whole signal, segment by segment: needs a first reading.
+std::vector<std::array<double, 3>> means_of(const std::string& file, const RecordOptions& options, const Conditioning& conditioning) {
+  if (is_standard_input(file)) throw UsageError("--drift line of a whole signal needs a file that can be read twice, not standard input");
+  Nowhere nowhere;
+  GravityFirst first(conditioning, options.gravity, options, nowhere);
+  LineSource source(file);
+  const Recording recording = read_record(source, read_options(options), first);
+  if (recording.layout.is_peaks) throw UsageError("--drift: '" + file + "' holds peaks, no signal");
+  return first.conditioner().segment_means();
 }
 
 // What an axis reads at rest counts towards the threshold: beyond this share of it events would tell of gravity, not of shocks.
@@ -211,13 +238,17 @@ void process(const std::string& file, const RecordOptions& options, const Output
   result.rules = event_rules(options);
   Conditioning conditioning;
   if (options.cfc) conditioning.frequency_class = number_of(options.cfc, "--cfc", 0.0, ", in Hz");
+  if (options.high_pass) conditioning.high_pass = number_of(options.high_pass, "--high-pass", 0.0, ", in Hz");
   if (options.quiet) conditioning.offset = quiet_offset(file, *options.quiet, reading);
+  if (outputs.drift == DriftCorrection::line && outputs.event == 0) conditioning.segment_offsets = means_of(file, options, conditioning);
   std::optional<std::string> window;
   const RecordLayout* layout = nullptr;
+  EventPictures pictures;
   ShockFinder finder(result.rules, [&](const ShockEvent& event, const Window& samples) {
     EventResult found{event, {}};
     for (std::size_t i = 0; i < event.axes.size() && !outputs.folder.empty(); ++i) found.spectra.push_back(shock_spectrum(samples.filtered[i], samples.rate));
     if (event.number == outputs.event) window = window_csv(samples, *layout, outputs.drift);
+    if (!outputs.folder.empty()) pictures.add(event, samples, found.spectra);
     result.events.push_back(std::move(found));
   });
   SignalWriter writer(outputs.folder, false);
@@ -248,6 +279,7 @@ void process(const std::string& file, const RecordOptions& options, const Output
   if (options.is_json) console.out << record_json(result);
   if (outputs.folder.empty()) return;
   write_tables(result, outputs);
+  if (const std::string picture = pictures.svg(result.recording.layout, result.bandwidth); !picture.empty()) write_file(outputs.folder + "/events.svg", picture);
   if (window) write_file(outputs.folder + "/event_" + std::to_string(outputs.event) + ".csv", *window);
   static_cast<void>(writer.commit());
 }
@@ -294,7 +326,7 @@ ExitCode record(const RecordOptions& options, Console& console) {
   if (options.event) outputs.event = static_cast<std::size_t>(std::floor(number_of(options.event, "--event", 0.0)));
   if (options.event && std::to_string(outputs.event) != *options.event) throw UsageError("--event '" + *options.event + "': give the number of an event, from 1");
   if (options.event && !options.output) throw UsageError("--event writes the window of one event: say where with -o DIR");
-  if (outputs.drift != DriftCorrection::none && !options.event) throw UsageError("--drift corrects the window of one event: give --event N");
+  if (outputs.drift != DriftCorrection::none && options.high_pass) throw UsageError("--high-pass leaves no drift for --drift: give one of them");
   const bool is_silent = console.verbosity == Verbosity::quiet || options.is_json;
   std::vector<std::unique_ptr<RecordFolder>> folders;
   if (options.output) folders = result_folders(options);
@@ -326,9 +358,10 @@ What cannot be known from the file is asked for, with the option that settles it
       {"--json", &o->is_json, "", "print the result as JSON"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier files"},
       {"--make", &o->make, "KIND", "write a synthetic record to FILE: gcdc, gcdc-epoch, phone, palt, shocklog, monilog, msr, lansmont, solve, endaq"},
-      {"--drift", &o->drift, "HOW", "of an event's window: none (default), or line: velocity ends where it began"}};
+      {"--drift", &o->drift, "HOW", "of the signal, or with --event of its window: none (default), or line: less a constant, so that velocity ends where it began"},
+      {"--high-pass", &o->high_pass, "HZ", "take away what is slower, without phase shift"}};
   const std::vector<Option> reading = reading_options(*o);
-  command.options.insert(command.options.end() - 1, reading.begin(), reading.end());
+  command.options.insert(command.options.end() - 2, reading.begin(), reading.end());
   command.run = [o](Console& console) { return record(*o, console); };
   return command;
 }

@@ -70,7 +70,7 @@ std::vector<Option> reading_options(ReadingOptions& options) {
       {"--decimal", &o->decimal, "SIGN", "point or comma"},
       {"--dates", &o->dates, "ORDER", "day-first, month-first or year-first"},
       {"--missing", &o->missing, "HOW", "rows with empty or NaN fields: refuse (default), skip or hold"},
-      {"--repeated", &o->repeated, "HOW", "rows with the time of the row before: refuse (default) or first"},
+      {"--repeated", &o->repeated, "HOW", "rows with the time of the row before: refuse (default), first or last"},
       {"--backward", &o->backward, "HOW", "times before that of the row before: refuse (default), split or drop"},
       {"--hold", &o->holds, "", "left-out samples have the value before them"},
       {"--gap", &o->gap, "N", "sampling intervals beyond which a gap splits the record: 3.5"},

@@ -33,6 +33,8 @@ std::string default_store(const std::string& file) {
 }
 
 bool is_database(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return false; // a named pipe would be waited for
   std::ifstream stream(file, std::ios::binary);
   char head[16]{};
   return stream.read(head, sizeof head) && std::string(head, 15) == "SQLite format 3";

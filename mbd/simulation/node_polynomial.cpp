@@ -1,0 +1,176 @@
+#include "mbd/simulation/node_polynomial.h"
+
+#include "mbd/math/portable_math.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_points = NodePolynomial::k_last + 1;
+// Cuts of a gap between points: at the top one or two are enough, halvings take 24 to be off by 4^-24 of what the coefficients differ by.
+constexpr int k_most_cuts = 24;
+constexpr int k_newton_steps = 4;       // towards the top: from a control point's place they leave rounding
+constexpr double k_beside_an_end = 0.02; // of a part: cut nearer, one of the two would hardly be smaller
+
+using Coefficients = std::array<double, k_points>;
+
+// Made before main(): threads that run side by side find it made.
+struct Tables {
+  /// Of level l, in the gap behind point j: what value i adds to coefficient k.
+  double bernstein[NodePolynomial::k_levels + 1][NodePolynomial::k_last][k_points][k_points] = {};
+  /// Of level l: what the sum (k even) or difference (k odd) of values i and n − i adds to the largest |p″| by Chebyshev's
+  /// polynomial T_k, whose second derivative is k² (k² − 1)/3 at most, and four times that on [0, 1].
+  double bend[NodePolynomial::k_levels + 1][k_points][k_points] = {};
+
+  Tables() {
+    for (int level = 1; level <= NodePolynomial::k_levels; ++level) {
+      const int n = 1 << level;
+      for (int k = 2; k <= n; ++k)
+        for (int i = 0; 2 * i <= n; ++i)
+          bend[level][k][i] = (k == n ? 1.0 : 2.0) / n * (i == 0 ? 0.5 : 1.0) * portable::cos(std::numbers::pi * k * i / n) * k * k * (k * k - 1) * 4.0 / 3.0;
+    }
+    for (int level = 1; level <= NodePolynomial::k_levels; ++level)
+      for (int gap = 0; gap < 1 << level; ++gap)
+        for (int i = 0; i <= 1 << level; ++i) set(level, gap, i);
+  }
+
+  // Lagrange's polynomial of point i is a product of factors that are linear in the gap: each raises the degree by one.
+  void set(int level, int gap, int i) {
+    const int step = NodePolynomial::spacing(level), n = 1 << level;
+    const auto theta = [](int node) { return NodePolynomial::theta(node); };
+    const double from = theta(gap * step), to = theta((gap + 1) * step);
+    Coefficients b{1.0};
+    int degree = 0;
+    for (int k = 0; k <= n; ++k) {
+      if (k == i) continue;
+      const double scale = 1.0 / (theta(i * step) - theta(k * step));
+      const double low = (from - theta(k * step)) * scale, high = (to - theta(k * step)) * scale;
+      ++degree;
+      for (int j = degree; j >= 0; --j)
+        b[j] = ((degree - j) * low * (j < degree ? b[j] : 0.0) + j * high * (j > 0 ? b[j - 1] : 0.0)) / degree;
+    }
+    for (int k = 0; k <= n; ++k) bernstein[level][gap][k][i] = b[k];
+  }
+};
+
+const Tables k_tables;
+
+// Looks for the top in a gap, or a part of one.
+class TopSearch {
+public:
+  TopSearch(int degree, double floor, double slack) : degree_(degree), best_(floor), slack_(slack) {}
+
+  [[nodiscard]] bool is_below(double bound) const { return bound <= best_ + slack_; }
+
+  // The part from `from` on, `width` wide.
+  void look(const Coefficients& b, double from, double width, int cuts) {
+    take(b[0], from);
+    take(b[degree_], from + width);
+    if (is_below(*std::max_element(b.begin(), b.begin() + degree_ + 1)) || cuts == 0) return;
+    const double s = place_of_top(b), t = 1.0 - s;
+    Coefficients left, right = b;
+    left[0] = b[0];
+    for (int k = 1; k <= degree_; ++k) {
+      for (int j = 0; j <= degree_ - k; ++j) right[j] = t * right[j] + s * right[j + 1];
+      left[k] = right[0];
+    }
+    take(right[0], from + s * width);
+    look(left, from, s * width, cuts - 1);
+    look(right, from + s * width, t * width, cuts - 1);
+  }
+
+  void take(double value, double theta) {
+    if (!(value > best_)) return;
+    best_ = value;
+    found_ = {value, theta};
+  }
+
+  [[nodiscard]] const std::optional<NodePolynomial::Top>& found() const { return found_; }
+
+private:
+  // By Newton's method from the highest coefficient's place. The middle where that leads to an end, or the part is not curved as about a top.
+  [[nodiscard]] double place_of_top(const Coefficients& b) const {
+    const auto highest = std::max_element(b.begin(), b.begin() + degree_ + 1) - b.begin();
+    double s = std::clamp(static_cast<double>(highest) / degree_, k_beside_an_end, 1.0 - k_beside_an_end);
+    for (int step = 0; step < k_newton_steps; ++step) {
+      Coefficients d; // of the slope
+      for (int j = 0; j < degree_; ++j) d[j] = b[j + 1] - b[j];
+      for (int k = 1; k < degree_ - 1; ++k)
+        for (int j = 0; j < degree_ - k; ++j) d[j] += s * (d[j + 1] - d[j]);
+      const double bend = (degree_ - 1) * (d[1] - d[0]);
+      if (!(bend < 0.0)) return 0.5;
+      s -= (d[0] + s * (d[1] - d[0])) / bend;
+      if (!(s > k_beside_an_end && s < 1.0 - k_beside_an_end)) return 0.5;
+    }
+    return s;
+  }
+
+  int degree_;
+  double best_, slack_;
+  std::optional<NodePolynomial::Top> found_;
+};
+
+} // namespace
+
+// Barycentric.
+double NodePolynomial::at(double theta) const {
+  const int step = spacing(level_), n = 1 << level_;
+  double above = 0.0, below = 0.0, sign = 1.0;
+  for (int i = 0; i <= n; ++i) {
+    const double distance = theta - NodePolynomial::theta(i * step);
+    if (distance == 0.0) return values_[i];
+    const double weight = (i == 0 || i == n ? 0.5 : 1.0) * sign / distance;
+    above += weight * values_[i];
+    below += weight;
+    sign = -sign;
+  }
+  return above / below;
+}
+
+double NodePolynomial::largest_bend() const {
+  const int n = 1 << level_;
+  double sum = 0.0;
+  Values even, odd;
+  for (int i = 0; 2 * i < n; ++i) {
+    even[i] = values_[i] + values_[n - i];
+    odd[i] = values_[i] - values_[n - i];
+  }
+  even[n / 2] = values_[n / 2];
+  odd[n / 2] = 0.0;
+  for (int k = 2; k <= n; ++k) {
+    const Values& folded = k % 2 == 0 ? even : odd;
+    double part = 0.0;
+    for (int i = 0; 2 * i <= n; ++i) part += k_tables.bend[level_][k][i] * folded[i];
+    sum += std::abs(part);
+  }
+  return sum;
+}
+
+std::optional<NodePolynomial::Top> NodePolynomial::top_above(double floor, double slack) const {
+  const int step = spacing(level_), n = 1 << level_;
+  const auto [least, most] = std::minmax_element(values_.begin(), values_.begin() + n + 1);
+  if (*most + k_overshoot * (*most - *least) <= floor) return std::nullopt;
+  TopSearch search(n, floor, slack);
+  search.take(*most, theta(static_cast<int>(most - values_.begin()) * step));
+  const double bend = largest_bend();
+  // The gaps beside the highest point first, for what they have rules out most of the others.
+  const int first = std::max(static_cast<int>(most - values_.begin()) - 1, 0);
+  for (int k = 0; k < n; ++k) {
+    const int gap = (first + k) % n;
+    const double from = theta(gap * step), width = theta((gap + 1) * step) - from;
+    if (search.is_below(std::max(values_[gap], values_[gap + 1]) + bend * width * width / 8.0)) continue;
+    Coefficients b;
+    for (int j = 0; j <= n; ++j) {
+      b[j] = 0.0;
+      for (int i = 0; i <= n; ++i) b[j] += k_tables.bernstein[level_][gap][j][i] * values_[i];
+    }
+    search.look(b, from, width, k_most_cuts);
+  }
+  return search.found();
+}
+
+} // namespace steplap

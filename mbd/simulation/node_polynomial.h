@@ -1,0 +1,50 @@
+// The polynomial through values at the points of Chebyshev and Lobatto of [0, 1], and its top wherever it lies.
+//
+// Of level l there are 2^l + 1 points θ_i = (1 − cos(π i / 2^l)) / 2, so that each level has the points of the one before.
+// Between two neighbouring points the polynomial of degree n = 2^l is written in Bernstein's form,
+//   p = Σ b_k C(n,k) s^k (1 − s)^(n−k),  0 ≤ s ≤ 1,
+// which nowhere exceeds its largest coefficient. It is cut where its slope is zero (de Casteljau), or in the middle, and parts that
+// cannot exceed what is found are left; so are gaps between points of which max |p″| w²/8 says that they cannot, w their
+// width. So no gap is taken for lower than it is.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+namespace steplap {
+
+class NodePolynomial {
+public:
+  static constexpr int k_levels = 3, k_last = 1 << k_levels; ///< place of the last point of the highest level
+  /// By how much a polynomial may exceed its values at the points, of their spread: half of what Lebesgue's constant is above one.
+  /// That is 1.25, 1.7988 and 2.2748 for the three levels.
+  static constexpr double k_overshoot = 0.6375;
+  using Values = std::array<double, k_last + 1>;
+
+  /// Point `node` of the highest level.
+  [[nodiscard]] static constexpr double theta(int node) { return k_theta[static_cast<std::size_t>(node)]; }
+  /// From one point of a level to the next, in points of the highest level.
+  [[nodiscard]] static constexpr int spacing(int level) { return k_last >> level; }
+
+  /// The first 2^level + 1 of `values` count.
+  NodePolynomial(int level, const Values& values) : level_(level), values_(values) {}
+  [[nodiscard]] double at(double theta) const;
+
+  struct Top {
+    double value, theta;
+  };
+  /// The largest value, to within `slack`, where one is above `floor`; else nothing.
+  [[nodiscard]] std::optional<Top> top_above(double floor, double slack) const;
+
+private:
+  static constexpr std::array<double, k_last + 1> k_theta{0.0, 0.03806023374435662, 0.14644660940672624, 0.30865828381745512, 0.5,
+                                                          0.69134171618254488, 0.85355339059327376, 0.96193976625564338, 1.0};
+  /// Nowhere is |p″| more.
+  [[nodiscard]] double largest_bend() const;
+
+  int level_;
+  Values values_;
+};
+
+} // namespace steplap
