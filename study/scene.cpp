@@ -17,6 +17,17 @@
 
 namespace steplap::study {
 
+/// Which ends of a channel's range anybody asks for; `low_below`: only of what is less.
+struct AskedEnds {
+  bool low = false, high = false;
+  double low_below = std::numeric_limits<double>::infinity();
+  void add(const AskedEnds& more) {
+    low_below = !low ? more.low_below : more.low ? std::max(low_below, more.low_below) : low_below;
+    low = low || more.low;
+    high = high || more.high;
+  }
+};
+
 namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
@@ -83,19 +94,8 @@ double value_of(const Response& r, const RunResult& result, const Judgement& jud
   return r.what.starts_with("time_of") && !std::isnan(e.value) ? e.t : e.value;
 }
 
-/// Which ends of a channel's range anybody asks for; `low_below`: only of what is less.
-struct Ends {
-  bool low = false, high = false;
-  double low_below = std::numeric_limits<double>::infinity();
-  void add(const Ends& more) {
-    low_below = !low ? more.low_below : more.low ? std::max(low_below, more.low_below) : low_below;
-    low = low || more.low;
-    high = high || more.high;
-  }
-};
-
 // Bounds of a value that costs much rule out the end that nobody asks for.
-void leave_out_others(Channel& channel, const Ends& ends) {
+void leave_out_others(Channel& channel, const AskedEnds& ends) {
   constexpr double k_never = 1e300; // no extreme is beyond it
   if (!channel.bounds || (ends.high && ends.low && std::isinf(ends.low_below))) return;
   channel.bounds = [bounds = std::move(channel.bounds), ends](const Snapshot& s) {
@@ -107,8 +107,8 @@ void leave_out_others(Channel& channel, const Ends& ends) {
 }
 
 // A run is not trusted where a joint has less margin than it needs: beyond 1 its value tells nothing of that.
-Ends ends_of_trust(const std::string& channel) {
-  return channel.ends_with(".margin") ? Ends{true, false, 1.0} : Ends{true, true};
+AskedEnds ends_of_trust(const std::string& channel) {
+  return channel.ends_with(".margin") ? AskedEnds{true, false, 1.0} : AskedEnds{true, true};
 }
 
 void worsen(Outcome& outcome, SampleStatus status, const std::string& reason) {
@@ -149,7 +149,7 @@ struct Scene::Runner {
   const StudyModel& model;
   bool is_judged = false;             ///< a response is the verdict, for which criteria may look at any channel
   std::vector<std::string> channels;  ///< names
-  std::map<std::string, Ends> extremes; ///< of these, those whose extremes are asked for
+  std::map<std::string, AskedEnds> extremes; ///< of these, those whose extremes are asked for
   std::vector<std::string> sampled;   ///< patterns
   Sampling sampling;                  ///< for histories
   std::vector<Setting> settings;
@@ -186,7 +186,7 @@ private:
     is_judged = is_judged || r.what == "verdict";
     if (needs_samples(r)) sampled.push_back(r.channel);
     const bool is_extreme = r.what.find("est") != std::string::npos, is_largest = r.what.ends_with("largest");
-    const Ends ends{is_largest || r.what.ends_with("lowest"), is_largest || r.what.ends_with("highest")};
+    const AskedEnds ends{is_largest || r.what.ends_with("lowest"), is_largest || r.what.ends_with("highest")};
     for (const Channel* c : channels_of(r, *model.system)) {
       channels.push_back(c->name);
       if (is_extreme) extremes[c->name].add(ends);
