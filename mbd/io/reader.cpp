@@ -327,7 +327,7 @@ void Reader::read_tables() {
       r.known_keys = {"name"};
       const auto read = read_fields(entry, kind->fields, table.get(), r, problems_);
       source.given.insert(source.given.end(), read.begin(), read.end());
-      source.is_usable = problems_.size() == before;
+      source.is_usable = problems_.size() == before && std::all_of(read.begin(), read.end(), [](const GivenField& g) { return g.is_usable; });
       if (auto* object = dynamic_cast<TableObject*>(table.get()))
         for (const GivenField& field : source.given)
           if (field.node) object->places[field.field->name] = field.node->where();
@@ -338,7 +338,7 @@ void Reader::read_tables() {
 
 // A pulse of "0.5 gravity" is no force, one of "20 deg" no way.
 void Reader::check_signal_units() {
-  SignalUnits units;
+  SignalUnits units(*parameters_);
   for (std::size_t i = 0; i < model_.signals.size(); ++i)
     units.enter(model_.signals[i].definition->name, model_.signals[i].kind->name, given(Section::signal)[i]);
   const auto check = [&](const std::vector<GivenField>& fields, const FieldTable& table, const void* object,

@@ -1,5 +1,6 @@
 #include "mbd/io/signal_units.h"
 
+#include "mbd/io/parameters_reader.h"
 #include "mbd/io/units.h"
 
 namespace steplap {
@@ -12,19 +13,10 @@ bool has_unit(const std::string& text) {
   return text.find_first_not_of("0123456789.+-eE \t\r\n") != std::string::npos;
 }
 
-std::string problem_of(const Node& node, const std::string& text, const std::string& unit) {
+std::string problem_of_text(const Node& node, const std::string& text, const std::string& unit) {
   if (!has_unit(text)) return "";
   const Quantity quantity = parse_quantity(text, unit);
   return quantity.problem.empty() ? "" : "(line " + std::to_string(node.line) + "): " + quantity.problem;
-}
-
-// Of a value in any unit, or of each of a list.
-std::string problem_of(const Node& node, const std::string& unit) {
-  if (node.type == Node::Type::text) return problem_of(node, node.text(), unit);
-  std::string problem;
-  for (const Node& item : node.children)
-    if (problem.empty()) problem = problem_of(item, unit);
-  return problem;
 }
 
 // Of kinds whose values are of one unit, whatever their fields are given in; "" of others.
@@ -42,6 +34,15 @@ bool is_factor(const GivenField& given) {
 }
 
 } // namespace
+
+// Of a value in any unit, or of each of a list.
+std::string SignalUnits::problem_of(const Node& node, const std::string& unit) const {
+  if (node.type == Node::Type::text) return problem_of_text(node, is_formula(node) ? parameters_.text_of(node) : node.text(), unit);
+  std::string problem;
+  for (const Node& item : node.children)
+    if (problem.empty()) problem = problem_of(item, unit);
+  return problem;
+}
 
 void SignalUnits::enter(const std::string& signal, const std::string& kind, const std::vector<GivenField>& given) {
   signals_[signal] = {kind, &given};
@@ -68,7 +69,7 @@ std::string SignalUnits::misfit(const std::string& signal, const std::string& un
     std::string problem;
     if (field.unit == "*" && !is_factor(given)) problem = problem_of(*given.node, unit);
     if (field.name == "unit" && field.type == FieldType::text && !given.node->text().empty()) // of a record's values
-      problem = problem_of(*given.node, "1 " + given.node->text(), unit);
+      problem = problem_of_text(*given.node, "1 " + given.node->text(), unit);
     if (!problem.empty()) return "its signal '" + signal + "' " + problem;
     if (!is_of_its_parts) continue;
     if (field.type == FieldType::signal) problem = misfit(given.node->text(), unit, depth + 1);
