@@ -152,9 +152,15 @@ void print_contacts(std::ostream& out, const LoadedModel& loaded) {
   if (contacts.size() > k_shown_contacts) out << "  and " << counted(contacts.size() - k_shown_contacts, "contact", "contacts") << " more\n";
 }
 
+// Formulas give numbers that nobody has rounded: six digits.
+std::string with_unit(double value, const std::string& unit) {
+  char rounded[32];
+  std::snprintf(rounded, sizeof rounded, "%.6g", value);
+  return rounded + (unit.empty() ? "" : " " + unit);
+}
+
 std::string parameter_value(const Parameters& parameters, std::size_t i) {
-  const std::string unit = unit_text(parameters.entries[i].powers);
-  return number_text(parameters.values[i]) + (unit.empty() ? "" : " " + unit);
+  return with_unit(parameters.values[i], unit_text(parameters.entries[i].powers));
 }
 
 std::string parameter_range(const Parameter& parameter) {
@@ -194,7 +200,7 @@ void print_uses(std::ostream& out, const LoadedModel& loaded, const std::string&
   for (const ParameterUse& use : parameters.uses) {
     if (!parameters.needs(use.formula, *asked)) continue;
     ++uses;
-    table.add_row({use.path, use.text, number_text(use.formula.value(parameters.values)) + (use.unit.empty() ? "" : " " + use.unit), place(use.where)});
+    table.add_row({use.path, use.text, with_unit(use.formula.value(parameters.values), use.unit), place(use.where)});
   }
   out << loaded.path << ": '" << name << "' is " << parameter_value(parameters, *asked) << "; " << counted(uses, "field follows", "fields follow") << " from it\n" << table;
 }
