@@ -383,7 +383,9 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   add_wrench_channels(builder, *friction);
   if (friction->has_sheets()) {
     add_usage_channels(builder, *friction, *interfaces.front());
-    add_share_channels(builder, *friction, interfaces, mass_of(e.limb, builder).mass * builder.model().header.gravity.norm());
+    constexpr double k_standard_gravity = 9.80665; // m/s²: of a model that shows the limb from above, whose gravity has no part in its plane
+    const double gravity = builder.model().header.gravity.norm();
+    add_share_channels(builder, *friction, interfaces, mass_of(e.limb, builder).mass * (gravity > 0.0 ? gravity : k_standard_gravity));
     add_loss_channels(builder, *friction, std::any_of(interfaces.begin(), interfaces.end(), [](const auto* i) {
                         return i->clearance.has_value();
                       }));

@@ -64,7 +64,7 @@ double GripShares::least_margin(const std::vector<Group>& groups, const Pressure
   for (const Group& group : groups) {
     const double capacity = group.capacity_at(now);
     if (!(capacity > 0.0)) return 0.0;
-    if (load > 0.0) least = std::min(least, capacity / (group.share * load));
+    least = std::min(least, capacity / (group.share * load));
   }
   return least;
 }
@@ -78,13 +78,12 @@ void add_share_channels(SystemBuilder& builder, const StepLapFriction& friction,
   const auto demand = [self](const Snapshot& s) { return self->wrench(s).head<2>().norm(); };
   if (shares->corner_count() > 1)
     builder.add_channel("corner_margin", "",
-                        "of the corner that holds least by itself: capacity over its share of the limb's weight (without gravity: of the force on "
-                        "it), one corner like the other; infinite without a load",
-                        [self, shares, demand](const Snapshot& s) { return shares->corner_margin(self->pressure_at(s.t), demand(s)); });
+                        "of the corner that holds least by itself: capacity over its share of the limb's weight, one corner like the other",
+                        [self, shares](const Snapshot& s) { return shares->corner_margin(self->pressure_at(s.t)); });
   if (shares->has_parts())
     builder.add_channel("part_margin", "",
                         "of the packet of sheets that holds itself least: capacity over its share of the limb's weight or of the force on the limb, "
-                        "whichever is larger; infinite without a load",
+                        "whichever is larger",
                         [self, shares, demand](const Snapshot& s) { return shares->part_margin(self->pressure_at(s.t), demand(s)); });
   builder.add_channel("demand", "N", {"size of the force on the limb", "never negative"}, demand);
 }

@@ -4,8 +4,8 @@
 // up for by the others in a sum, while its own sheets rest on nothing. So each has to hold its own share as well: a packet, of the
 // limb's weight and of the force on the limb, whichever is larger, the share that its sheets have of its mass
 // (StepLapInterface::part_share), since it moves as the limb does and nothing but its own friction moves it. Of n corners each has to hold
-// 1/n of the weight: how stiff sheets share what the motion asks beyond it is no matter of statics, and is judged of the whole joint; where there is
-// no gravity, 1/n of the force. The capacity is that in translation, Σ n μ p A over the interfaces in the reference pose, μ static, which no wrench
+// 1/n of the weight: how stiff sheets share what the motion asks beyond it is no matter of statics, and is judged of the whole joint.
+// A limb has its weight in a model without gravity, too, which shows it from above. The capacity is that in translation, Σ n μ p A over the interfaces in the reference pose, μ static, which no wrench
 // exceeds. A corner without overlap and interfaces without pressure have no capacity: their margin is zero.
 #pragma once
 
@@ -18,15 +18,14 @@ namespace steplap {
 
 class GripShares {
 public:
-  /// `interfaces` as the friction's sheets, `weight` of the limb, N.
+  /// `interfaces` as the friction's sheets, `weight` of the limb, N, > 0.
   GripShares(const StepLapFriction& friction, const std::vector<const StepLapInterface*>& interfaces, double weight);
 
   /// Pa: the least that any interface has anywhere in its overlap; zero where tilting has lifted it off.
   [[nodiscard]] double least_pressure(const PressureState& now) const;
-  /// Capacity over what it has to hold, of the corner that has least; infinite where there is nothing to hold. `demand`: N, size of the
-  /// force on the limb.
-  [[nodiscard]] double corner_margin(const PressureState& now, double demand) const { return least_margin(corners_, now, weight_ > 0.0 ? weight_ : demand); }
-  /// The same of packets; only where has_parts().
+  /// Capacity over what it has to hold, of the corner that has least.
+  [[nodiscard]] double corner_margin(const PressureState& now) const { return least_margin(corners_, now, weight_); }
+  /// The same of packets; only where has_parts(). `demand`: N, size of the force on the limb.
   [[nodiscard]] double part_margin(const PressureState& now, double demand) const { return least_margin(parts_, now, std::max(weight_, demand)); }
   [[nodiscard]] std::size_t corner_count() const { return corners_.size(); }
   [[nodiscard]] bool has_parts() const { return !parts_.empty(); }

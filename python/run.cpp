@@ -143,7 +143,7 @@ void add_run(py::module_& module) {
       .def("write", [](const PyRun& r, const std::string& folder, bool overwrite) {
              const py::gil_scoped_release unlocked;
              r.report->write(folder, overwrite);
-           }, py::arg("folder"), py::arg("overwrite") = false, "All files of the run, as `steplap simulate -o` writes them, or none. Raises FileError.")
+           }, py::arg("folder"), py::arg("overwrite") = false, "All files of the run, as the program writes them, or none. Raises FileError.")
       .def("page", page_of, "The page of the run: one HTML text that needs no other file.")
       .def("__repr__", [](const PyRun& r) { return "<steplap.Run of " + r.report->run.loaded->path + ": " + name_of(r.report->judgement.verdict) + ">"; });
   module.attr("Model").attr("run") = py::cpp_function(

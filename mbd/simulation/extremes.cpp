@@ -397,7 +397,9 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
   for (int i = step; i < k_last; i += 2 * step) {
     const double theta = NodePolynomial::theta(i);
     const Snapshot snapshot = look(theta, integrator, dynamics);
-    if (level == 1) { // what the ends did not show the middle may, for every channel: it has been evaluated
+    // What the ends did not show the middle may, for every channel: it has been evaluated. Steps whose error nothing controls are not
+    // looked into so closely: about the end of a slip they know its direction too badly.
+    if (level == 1 && integrator.is_adaptive()) {
       for (const std::size_t c : tracked_) {
         Curve& curve = curve_[c];
         if (curve.is_open || rate_of_[c] >= 0 || formulas_->is_formula(c)) continue; // rates tell whether places and velocities turn
@@ -525,7 +527,7 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
   double* const values = scratch_.data();
   for (const double sign : {1.0, -1.0}) {
     std::array<int, k_last - 1> middles;
-    const int count = tops_of(node_, c, sign, middles);
+    const int tops = tops_of(node_, c, sign, middles), count = integrator.is_adaptive() ? tops : std::min(tops, 1);
     for (int top = 0; top < count; ++top) {
       const int middle = middles[top];
       const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);

@@ -14,12 +14,14 @@
 
 namespace steplap {
 
+/// The polynomial through values at points of [0, 1]: the ends, and between them those of a Chebyshev grid of one of three levels.
 class NodePolynomial {
 public:
   static constexpr int k_levels = 3, k_last = 1 << k_levels; ///< place of the last point of the highest level
   /// By how much a polynomial may exceed its values at the points, of their spread: half of what Lebesgue's constant is above one.
   /// That is 1.25, 1.7988 and 2.2748 for the three levels.
   static constexpr double k_overshoot = 0.6375;
+  /// At the points of the highest level; those of a lower one lie among them, first.
   using Values = std::array<double, k_last + 1>;
 
   /// Point `node` of the highest level.
@@ -29,10 +31,13 @@ public:
 
   /// The first 2^level + 1 of `values` count.
   NodePolynomial(int level, const Values& values) : level_(level), values_(values) {}
+  /// Its value at a place in [0, 1].
   [[nodiscard]] double at(double theta) const;
 
+  /// A largest value and where it lies.
   struct Top {
-    double value, theta;
+    double value; ///< of the polynomial
+    double theta; ///< in [0, 1]
   };
   /// The largest value, to within `slack`, where one is above `floor`; else nothing.
   [[nodiscard]] std::optional<Top> top_above(double floor, double slack) const;

@@ -97,8 +97,7 @@ Simulation::Simulation(const System& system, const State& initial, SimulationOpt
     const FrictionElement& friction = *system.frictions[f].friction;
     if (friction.dimension() > 1 && !friction.never_slips()) joints_.push_back(static_cast<int>(f));
   }
-  if (options_.has_extremes)
-    extremes_ = std::make_unique<ExtremeFinder>(system, system.largest_dimension());
+  if (options_.has_extremes) extremes_ = std::make_unique<ExtremeFinder>(system, system.largest_dimension());
   if (!system.integrands.empty()) {
     ledger_ = std::make_unique<PowerLedger>(system, system.largest_dimension());
     dynamics_.show_integrals(ledger_.get());
@@ -319,8 +318,7 @@ static void guard_against_kinks(long kinks, long max_events, double t, const std
 void Simulation::pass_event(double t, const double* y, const std::vector<int>& fired) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
-  // Begun with factors of its own: those of the last evaluation may be a sample's, and what is left of the joints within the
-  // tolerance would hang on it.
+  // Projection begins with factors of this state: after those of a sample it would leave something else within its tolerance.
   (void)dynamics_.residual(t, y_.data());
   dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
   energy_.check_step(dynamics_, t, y_.data());

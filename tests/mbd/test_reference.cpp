@@ -43,7 +43,9 @@ TEST_CASE("the schema follows the tables") {
   CHECK(spring["properties"]["stiffness"]["anyOf"][0]["exclusiveMinimum"] == 0.0);
   CHECK(spring["properties"]["law"]["enum"][1] == "table");
   CHECK(spring["properties"]["turns"]["default"] == 3);
-  CHECK(spring["properties"]["turns"]["maximum"] == 20);
+  CHECK(spring["properties"]["turns"]["anyOf"][0]["maximum"] == 20);
+  CHECK(spring["properties"]["turns"]["anyOf"][0]["type"] == "integer");
+  CHECK(schema["properties"]["parameters"]["additionalProperties"]["anyOf"].size() == 3); // a number, a text, a table with range and meaning
   CHECK(spring["additionalProperties"] == false);
   CHECK(schema["properties"]["body"]["items"]["properties"]["position"]["default"][0] == 0.0);
   CHECK(schema["properties"].contains("pair"));
