@@ -43,6 +43,7 @@ const std::map<std::string, std::string> k_not_yet_by_time = {
     {"machines/jamming_slide.toml", k_no_rate},
 };
 const std::map<std::string, std::string> k_not_yet_by_length = {
+    {"layouts/joint_apart.toml", "without gravity a limb's weight is that of standard gravity"},
     {"assess/transformer.toml", k_rest},
     {"benchmarks/andrews.toml", k_places},
     {"benchmarks/andrews_a03.toml", k_places},

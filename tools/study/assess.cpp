@@ -104,9 +104,11 @@ void print_event(TextTable& table, const Assessment& a, std::size_t number) {
     const bool slips = std::any_of(p.joints.begin(), p.joints.end(), [](const JointPassage& j) { return j.slips; });
     double slid = 0.0;
     for (const JointPassage& joint : p.joints) slid = std::max(slid, joint.slid_total);
+    const char* const event = words_of(EventKind::slips);
+    const char* const outcome = p.is_made ? "holds" : "not run";
     const bool is_first = m == 0;
     table.add_row({is_first ? std::to_string(number + 1) : "", is_first ? rounded_text(axis.peak_time, 7) : "", is_first ? std::string(1, record.recording.layout.axes[shock.worst].axis) + " " + rounded_text(axis.peak / k_gravity, 3) : "",
-                   a.models[m].recorder.plane, name_of(p.verdict), slips ? words_of(EventKind::slips) : p.is_made ? "holds" : "not run", weakest == p.joints.end() ? "-" : rounded_text(weakest->margin, 3),
+                   a.models[m].recorder.plane, name_of(p.verdict), slips ? event : outcome, weakest == p.joints.end() ? "-" : rounded_text(weakest->margin, 3),
                    quantity_text(slid, "m"), m < e.slip.size() && e.slip[m].runs > 0 ? percent(e.slip[m].value) : "-"});
   }
 }
