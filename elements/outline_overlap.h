@@ -94,7 +94,7 @@ inline Separation face_separation(const PlacedOutline<double>& own, int edge, co
   found.gap = std::numeric_limits<double>::infinity();
   for (int i = 0; i < other.corner_count; ++i) {
     const double height = dot(own.normal[edge], other.corner[i]) - own.offset[edge];
-    if (height < found.gap) {
+    if (!(height >= found.gap)) { // not-a-number, too, is no gap: it is told where forces are checked
       found.gap = height;
       found.corner = i;
     }
@@ -109,7 +109,7 @@ inline Separation separation_of(const PlacedOutline<double>& a, const PlacedOutl
     if (other.corner_count == 0) return; // a half-plane reaches behind every face
     for (int edge = 0; edge < own.edge_count; ++edge) {
       Separation found = face_separation(own, edge, other);
-      if (found.gap <= best.gap) continue;
+      if (best.corner >= 0 && found.gap <= best.gap) continue;
       found.face = first + edge;
       best = found;
     }
