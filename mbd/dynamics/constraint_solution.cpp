@@ -1,6 +1,5 @@
 #include "mbd/dynamics/constraint_solution.h"
 #include "mbd/base/team.h"
-#include "mbd/dynamics/carriage.h"
 #include "mbd/dynamics/parts.h"
 #include "mbd/dynamics/row_pull.h"
 
@@ -32,7 +31,6 @@ MeasureValue<double> ConstraintSolution::load(const RowSpec& spec, SchurRow& row
   for (int side = 0; side < 2; ++side)
     if (row.body[side] >= 0) std::copy_n(layout_->clusters[row.body[side]].w, 3, row.w[side]);
   put_in_clusters<true>(*layout_, spec, motion_, m, row);
-  if (layout_->carriages) layout_->carriages->weigh_row(row);
   return m;
 }
 
@@ -49,7 +47,6 @@ void ConstraintSolution::prepare() {
   if (count == 0) return;
   for (std::size_t r = 0; r < count; ++r) multiplier_[r] = pull(r);
   if (layout.has_long_rows()) [[unlikely]] pull_parts();
-  if (layout.carriages) layout.carriages->weigh_rows(layout.schur_rows.data());
   layout.schur.factor(layout.schur_rows);
 }
 
@@ -193,7 +190,6 @@ void ConstraintSolution::compare(double t) {
   else
     for (int r = 0; r < count; ++r) compare_row(r, t);
   if (layout_->has_long_rows()) [[unlikely]] compare_parts();
-  if (layout_->carriages) layout_->carriages->weigh_rows(layout_->schur_rows.data());
   for_mechanisms([this](Mechanism& m) { m.reduce_rows(layout_->schur_rows.data() + m.first_row); });
 }
 
@@ -231,7 +227,6 @@ void ConstraintSolution::take_away(const double* r, double* change) {
   double* const response = response_.data();
   for (std::size_t i = 0; i < layout.active.size(); ++i) response[i] = -r[i];
   layout.schur.solve(layout.schur_rows, response);
-  if (layout.carriages) layout.carriages->hold_back(change);
   if (layout.division) {
     team_.each(layout.division->count(), [&](int p) { respond_part(p, response, change); });
   } else {
@@ -240,7 +235,6 @@ void ConstraintSolution::take_away(const double* r, double* change) {
         if (layout.schur_rows[i].body[side] >= 0) add_response(layout.schur_rows[i], side, response[i], change);
   }
   if (layout.has_long_rows()) [[unlikely]] add_part_responses(response, change);
-  if (layout.carriages) layout.carriages->let_go(change);
   for_mechanisms([&](const Mechanism& m) {
     if (m.row_count == 0) return;
     m.solve_rows(response + m.first_row);

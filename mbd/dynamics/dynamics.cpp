@@ -1,6 +1,5 @@
 #include "mbd/dynamics/dynamics.h"
 
-#include "mbd/dynamics/carriage.h"
 #include "mbd/dynamics/parts.h"
 
 #include <algorithm>
@@ -63,7 +62,7 @@ void Dynamics::set_state(const State& state) {
       if (state_like->size() < packed.size()) state_like->resize(packed.size());
     if (kept_.size() < layout_->active.size()) kept_.resize(layout_->active.size());
   }
-  if (layout_->has_joint_coordinates()) cluster_a_.resize(3 * layout_->clusters.size());
+  if (layout_->has_mechanisms()) cluster_a_.resize(3 * layout_->clusters.size());
   if (layout_->division) part_power_.resize(layout_->division->parts.size());
   decide_rank();
 }
@@ -267,13 +266,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
     a[k] = kinematics_.lock_target(i).acceleration;
     dy[k] = kinematics_.lock_target(i).rate;
   }
-  if (layout.carriages) {
-    layout.carriages->accelerate(force_.data(), a);
-    rows_.solve(t, force_.data(), a);
-    layout.carriages->follow(a);
-  } else {
-    rows_.solve(t, force_.data(), a);
-  }
+  rows_.solve(t, force_.data(), a);
   finish_rates(y, dy);
 }
 
@@ -481,7 +474,7 @@ Snapshot Dynamics::snapshot(const double* dy) {
   const double* const lambda = multipliers().data();
   reactions_.find_accelerations(cluster_a);
   reactions_.find_joints(cluster_a, lambda);
-  if (layout.has_joint_coordinates()) reactions_.find_pins(cluster_a, lambda);
+  if (layout.has_mechanisms()) reactions_.find_pins(cluster_a, lambda);
   reactions_.take_rows(dy + coordinate_count(), lambda);
   settle_loads();
   Snapshot s;

@@ -1,6 +1,5 @@
 #include "mbd/dynamics/kinematics.h"
 
-#include "mbd/dynamics/carriage.h"
 #include "mbd/dynamics/parts.h"
 
 #include <algorithm>
@@ -84,20 +83,13 @@ void Kinematics::place(double t, const double* q, const double* v) {
     aim_locks(t);
     for (std::size_t i = 0; i < layout.locks.size(); ++i) place_lock(i);
   }
-  const ActiveLink* link = layout.links.data();
-  const ActiveLink* end = link + layout.links.size();
-  if (layout.carriages) {
-    layout.carriages->place(q - 3 * layout.absolute_count, v - 3 * layout.absolute_count, motion);
-    end = link + layout.carriages->plain_links;
-  }
   for (const int i : layout.riding) place_member(i);
-  for (; link != end; ++link) motion[link->slot] = seen_from(motion[link->a], motion[link->b]);
+  for (const ActiveLink& link : layout.links) motion[link.slot] = seen_from(motion[link.a], motion[link.b]);
 }
 
 bool Kinematics::is_placed(double t, const double* y) const {
   if (t != time_) return false;
   const double* const v = y + layout_->coordinate_count;
-  if (layout_->carriages && !layout_->carriages->is_at(y, v)) return false;
   if (!layout_->division) {
     const int mechanisms = static_cast<int>(layout_->mechanisms.size());
     return are_mechanisms_at(0, mechanisms, y, v) && are_clusters_at(0, layout_->absolute_count, y, v);

@@ -1,6 +1,6 @@
 #include "mbd/dynamics/layout.h"
 
-#include "mbd/dynamics/carriage_layout.h"
+#include "mbd/dynamics/mechanism_layout.h"
 #include "mbd/dynamics/parts.h"
 #include "mbd/dynamics/stage_program.h"
 #include "mbd/math/portable_math.h"
@@ -246,12 +246,10 @@ void add_parts(Layout& layout) {
     }
 }
 
-// Clusters of mechanisms behind the others, each mechanism's together, then carriages.
-void take_joint_coordinates(JointCoordinates found, std::unique_ptr<Carriages> carriages, Layout& layout) {
-  std::vector<int> order, place(layout.clusters.size());
-  const int mechanisms = static_cast<int>(found.mechanisms.size());
-  for (int k = 0; k < layout.cluster_count(); ++k)
-    if (found.mechanism_of[k] < mechanisms) order.push_back(k);
+// Clusters of mechanisms behind the others, each mechanism's together.
+void take_joint_coordinates(JointCoordinates found, Layout& layout) {
+  std::vector<int> order(layout.clusters.size()), place(layout.clusters.size());
+  std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&found](int a, int b) { return found.mechanism_of[a] < found.mechanism_of[b]; });
   layout.absolute_count = 0;
   for (int i = static_cast<int>(order.size()) - 1; i >= 0; --i) {
@@ -259,8 +257,6 @@ void take_joint_coordinates(JointCoordinates found, std::unique_ptr<Carriages> c
     if (in >= 0) found.mechanisms[in].first_cluster = i;
     else if (layout.absolute_count == 0) layout.absolute_count = i + 1;
   }
-  if (carriages)
-    for (const Carriage& k : carriages->carriages) order.push_back(k.cluster);
   const std::vector<Cluster> clusters = layout.clusters;
   for (std::size_t i = 0; i < order.size(); ++i) {
     place[order[i]] = static_cast<int>(i);
@@ -273,10 +269,6 @@ void take_joint_coordinates(JointCoordinates found, std::unique_ptr<Carriages> c
     for (Member& member : m.members)
       if (member.cluster >= 0) member.cluster = place[member.cluster];
   layout.mechanisms = std::move(found.mechanisms);
-  layout.carriages = std::move(carriages);
-  if (!layout.carriages) return;
-  for (Carriage& k : layout.carriages->carriages) k.cluster = place[k.cluster];
-  for (Carrier& k : layout.carriages->carriers) k.cluster = place[k.cluster];
 }
 
 // Coordinates of the absolute clusters and of the mechanisms behind them.
@@ -290,46 +282,8 @@ void number_coordinates(const System& system, Layout& layout) {
     for (int k = 0; k < m.size(); ++k) layout.scales.push_back({m.is_place(k), m.reach(k)});
     next += m.size();
   }
-  if (layout.carriages)
-    for (Carriage& k : layout.carriages->carriages) {
-      k.coordinate = next++;
-      layout.scales.push_back({true, 0.0});
-    }
   layout.coordinate_count = next;
   layout.inverse_mass.resize(next, 1.0);
-}
-
-bool acts_on_carrier(const Layout& layout, const SchurRow& row) {
-  return layout.carriages && (layout.carriages->find_carrier(row.body[0]) || layout.carriages->find_carrier(row.body[1]));
-}
-
-// Their equations are not the clusters' own.
-void close_carriages(Layout& layout) {
-  Carriages& all = *layout.carriages;
-  all.close(layout.schur_rows);
-  for (Carrier& k : all.carriers)
-    for (int c = 0; c < 3; ++c) {
-      const bool is_locked = layout.clusters[k.cluster].w[c] == 0.0;
-      layout.inverse_mass[3 * k.cluster + c] = is_locked ? 0.0 : 1.0;
-      if (is_locked) k.locked[k.locked_count++] = c;
-      else k.free[k.free_count++] = c;
-    }
-  for (const Lock& lock : layout.locks) {
-    const Carrier* const k = all.find_carrier(lock.cluster);
-    all.carrier_of_lock.push_back(k ? static_cast<int>(k - all.carriers.data()) : -1);
-  }
-  // How a carrier sees what slides on it is known without looking.
-  const auto carriage_of = [&](const ActiveLink& link) -> Carriage* {
-    for (const int body : {link.a, link.b})
-      if (body == k_ground || !layout.placements[body].is_trivial || layout.placements[body].angle != 0.0) return nullptr;
-    const Carriage* const k = all.find(layout.placements[link.a].cluster);
-    const bool is_on = k && k->carrier >= 0 && all.carriers[k->carrier].cluster == layout.placements[link.b].cluster;
-    return is_on ? &all.carriages[k - all.carriages.data()] : nullptr;
-  };
-  const auto first = std::stable_partition(layout.links.begin(), layout.links.end(),
-                                           [&](const ActiveLink& link) { return !carriage_of(link); });
-  all.plain_links = static_cast<int>(first - layout.links.begin());
-  for (auto link = first; link != layout.links.end(); ++link) carriage_of(*link)->link = link->slot;
 }
 
 // Links of force elements are needed always, those of rows while they hold.
@@ -350,14 +304,12 @@ void find_links(const System& system, const State& state, Layout& layout) {
       layout.links.push_back({system.links.slot(i), system.links[i].a, system.links[i].b});
 }
 
-// One row of each pin or rod by which a member of a mechanism hangs, and of the guides of carriages.
+// One row of each pin or rod by which a member of a mechanism hangs.
 std::vector<const RowSpec*> pin_rows(const System& system, const Layout& layout) {
   std::vector<const RowSpec*> rows;
   for (const Mechanism& mechanism : layout.mechanisms)
     for (const Member& m : mechanism.members)
       if (m.block >= 0) rows.push_back(&system.rows[system.row_blocks[m.block].first]);
-  if (layout.carriages)
-    for (const Carriage& k : layout.carriages->carriages) rows.push_back(&system.rows[system.row_blocks[k.block].first]);
   return rows;
 }
 
@@ -427,16 +379,13 @@ MergedRows merged_rows(const System& system, const std::vector<RigidJoint>& join
   return rows;
 }
 
-// Angles and slides instead of places, where small mechanisms have them. Returns which row blocks are pins that need no rows then.
+// Angles instead of places, where small mechanisms have them. Returns which row blocks are pins that need no rows then.
 std::vector<char> choose_coordinates(const System& system, const State& state, Coordinates coordinates, const MergedRows& merged, Layout& layout) {
   // The small blocks of inner states (Linearization::InnerBlock) are between clusters in absolute coordinates.
   if (coordinates == Coordinates::absolute || system.inner_count() != 0) return std::vector<char>(system.row_blocks.size(), 0);
   JointCoordinates found = find_joint_coordinates(system, state, layout, coordinates, merged.is_block, merged.is_friction);
-  std::unique_ptr<Carriages> carriages;
-  if (coordinates == Coordinates::joint)
-    carriages = find_carriages(system, state, layout, merged.is_block, merged.is_friction, found);
   std::vector<char> is_pin = found.is_pin;
-  if (carriages || !found.mechanisms.empty()) take_joint_coordinates(std::move(found), std::move(carriages), layout);
+  if (!found.mechanisms.empty()) take_joint_coordinates(std::move(found), layout);
   return is_pin;
 }
 
@@ -481,10 +430,6 @@ void fill_rows(Layout& layout) {
   for (std::size_t r = 0; r < layout.active.size(); ++r) {
     if (layout.active[r].spec->kind != MeasureKind::angle) continue;
     SchurRow& row = layout.schur_rows[r];
-    if (acts_on_carrier(layout, row)) { // there W is not
-      layout.active[r].pull = RowPullKind::other;
-      continue;
-    }
     row.is_constant = true;
     row.j[0][2] = 1.0;
     row.j[1][2] = -1.0;
@@ -527,7 +472,6 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   find_links(system, state, layout);
   weigh_clusters(system, layout);
   number_coordinates(system, layout);
-  if (layout.carriages) close_carriages(layout);
   find_lock_terms(layout);
   fill_rows(layout);
   for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());

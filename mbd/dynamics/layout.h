@@ -5,8 +5,8 @@
 // locked (infinite mass); what remains are rows. A layout is found once for a set of modes.
 //
 // Coordinates are the clusters' own, x, y and θ of each, or, in small islands with pins, joint coordinates
-// (mechanism.h), or the place along a guide (carriage.h). Clusters and active rows are numbered so that those in
-// absolute coordinates come first, then those of mechanisms, then carriages; coordinates likewise.
+// (mechanism.h). Clusters and active rows are numbered so that those in absolute coordinates come first, then those
+// of mechanisms; coordinates likewise.
 #pragma once
 
 #include "mbd/dynamics/load_sharing.h"
@@ -21,7 +21,6 @@
 
 namespace steplap {
 
-class Carriages;
 class StageProgram;
 struct Parts;
 
@@ -119,7 +118,6 @@ struct Layout {
   std::vector<Cluster> clusters;
   int absolute_count = 0;            ///< clusters in absolute coordinates, the first ones
   std::vector<Mechanism> mechanisms; ///< of the others
-  std::unique_ptr<Carriages> carriages; ///< and what slides on a guide; null: nothing
   int coordinate_count = 0;
   std::vector<CoordinateScale> scales; ///< per coordinate
   std::vector<Placement> placements; ///< per body
@@ -169,9 +167,8 @@ struct Layout {
   [[nodiscard]] int cluster_count() const { return static_cast<int>(clusters.size()); }
   /// Some rows that hold are over more than two bodies.
   [[nodiscard]] bool has_long_rows() const { return !parts.empty(); }
+  /// Some clusters are in joint coordinates.
   [[nodiscard]] bool has_mechanisms() const { return !mechanisms.empty(); }
-  /// Some clusters are not in absolute coordinates.
-  [[nodiscard]] bool has_joint_coordinates() const { return !mechanisms.empty() || carriages; }
   /// The mechanism of a cluster or row that is not absolute.
   [[nodiscard]] const Mechanism& mechanism_of_cluster(int cluster) const {
     return *std::prev(std::upper_bound(mechanisms.begin(), mechanisms.end(), cluster,

@@ -87,7 +87,7 @@ void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
   for (std::size_t r = 0; r < layout_->active.size(); ++r) add_row(r);
   for (const int f : layout_->sliding) add_sliding(f);
   add_transport();
-  if (layout_->has_joint_coordinates()) reduce();
+  if (layout_->has_mechanisms()) reduce();
 }
 
 // ∂(force on a body)/∂(motion of a body), both moved to their clusters' coordinates.

@@ -14,8 +14,7 @@
 // and M⁻¹Jᵀ apart. They follow from those of the clusters, T being their velocities by the coordinates' rates, by
 //   δv = T δṡ + (∂(T ṡ)/∂s) δs,   D_s = Tᵀ(D T − m ∂a/∂ṡ)
 //   K_s = Tᵀ(K T + D ∂(T ṡ)/∂s − m ∂a/∂s) + (∂Tᵀ/∂s)(Q + Jᵀλ − m a)
-// with a = T s̈ + b at constant s̈: all in closed form, since a coordinate turns but its own member's vectors. The same of
-// carriages and their carriers (carriage.h), where an angle turns the guide as well.
+// with a = T s̈ + b at constant s̈: all in closed form, since a coordinate turns but its own member's vectors.
 //
 // Inner states of force elements (roles.h) bring forces of their own and follow rates of their own,
 //   δQ += F_z δz,   δż = P δq + V δv + Z δz,
@@ -31,9 +30,6 @@
 
 namespace steplap {
 
-struct Carriage;
-struct Carrier;
-
 class Linearization {
 public:
   using Triplet = Eigen::Triplet<double, int>;
@@ -44,7 +40,7 @@ public:
 
   [[nodiscard]] int coordinates() const { return n_; } ///< of the layout
   [[nodiscard]] int rows() const { return m_; }        ///< active constraint rows
-  /// Inverse masses and inertias, 1/kg and 1/(kg m²); zero where locked, 1 in mechanisms and of carriers. n entries.
+  /// Inverse masses and inertias, 1/kg and 1/(kg m²); zero where locked, 1 in mechanisms. n entries.
   [[nodiscard]] const std::vector<double>& inverse_mass() const { return *inverse_mass_; }
 
   // Sparse: duplicates add up. SI units, rad.
@@ -81,12 +77,7 @@ private:
   void reduce();
   void find_levers();
   void reduce_forces(const Mechanism& m);
-  void start_columns(int rows);
-  void find_carriage_levers();
-  void reduce_carriages(const Carrier* carrier, int begin, int end);
-  void add_carriage_inertia(const Carriage& k, int at, int slide);
-  void respond_on_carriers();
-  [[nodiscard]] bool is_of_carrier(int coordinate) const;
+  void start_columns();
   void add_inertia(const Mechanism& m, const Member& member);
   void reduce_rows();
   struct Sliding;
@@ -118,8 +109,6 @@ private:
     bool is_own = false;   ///< it is the cluster's angle
     double omega = 0.0, alpha = 0.0;
     Pair<double> arm;      ///< what it turns
-    bool has_slide = false; ///< it turns a guide as well, along which a carriage moves; the three behind are due to that
-    Pair<double> rate_by_pose, acceleration_by_pose, acceleration_by_rate;
   };
   /// By what a cluster's coordinate changes: its rate by that of a lever's coordinate, its rate and its acceleration by
   /// the coordinate, its acceleration by the rate.

@@ -1,6 +1,5 @@
 // The matrices of the problem that decides which friction sticks: how the candidates' rows answer forces
 // along one another, everything else as it is in the present modes.
-#include "mbd/dynamics/carriage.h"
 #include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>
@@ -55,36 +54,14 @@ void Dynamics::slip_motion(int f, const double* dy, double* rate, double* accele
 }
 
 // A candidate's row in the coordinates of a layout: by clusters, or where a side is in a mechanism, by its coordinates.
-// A row between two clusters of one mechanism is all in the first side's. A side on a carriage is one on its carrier, and
-// one along the guide.
+// A row between two clusters of one mechanism is all in the first side's.
 struct Dynamics::CandidateRow {
   SchurRow row;
   const Mechanism* mechanism[2] = {nullptr, nullptr};
   double gradient[2][Mechanism::k_most] = {}; ///< J
   double response[2][Mechanism::k_most] = {}; ///< M⁻¹ Jᵀ
-  const Carriage* carriage[2] = {nullptr, nullptr};
-  double slide[2] = {0.0, 0.0}; ///< J along the guide
-
-  // Jᵀ λ on the carrier is by J less what the slide gives way: W (j − v_e j_s), and then j_s/m − v_e of that along the guide.
-  void take_carriage(const Layout& layout, int side) {
-    const Carriage& k = *(carriage[side] = layout.carriages->find(row.body[side]));
-    double* const j = row.j[side];
-    slide[side] = j[0] * k.e.x + j[1] * k.e.y;
-    if (k.carrier < 0) {
-      row.body[side] = -1;
-      return;
-    }
-    const Carrier& carrier = layout.carriages->carriers[k.carrier];
-    row.body[side] = carrier.cluster;
-    j[2] += k.lever.x * j[1] - k.lever.y * j[0];
-    const double left[3] = {j[0] - slide[side] * k.e.x, j[1] - slide[side] * k.e.y, j[2] + slide[side] * k.across};
-    std::fill_n(row.wj[side], 3, 0.0);
-    carrier.multiply(left, row.wj[side]);
-  }
 
   void reduce(const Layout& layout) {
-    for (int side = 0; side < 2; ++side)
-      if (layout.carriages && layout.carriages->find(row.body[side])) take_carriage(layout, side);
     for (int side = 0; side < 2; ++side) {
       if (row.body[side] < layout.absolute_count) continue;
       mechanism[side] = &layout.mechanism_of_cluster(row.body[side]);
@@ -105,7 +82,6 @@ struct Dynamics::CandidateRow {
   [[nodiscard]] double along(const double* a) const {
     double sum = 0.0;
     for (int side = 0; side < 2; ++side) {
-      if (carriage[side]) sum += slide[side] * a[carriage[side]->coordinate];
       if (row.body[side] < 0) continue;
       if (const Mechanism* m = mechanism[side])
         for (int i = 0; i < m->size(); ++i) sum += gradient[side][i] * a[m->first_coordinate + i];
@@ -116,7 +92,6 @@ struct Dynamics::CandidateRow {
   }
   void add_response(double f, double* a) const {
     for (int side = 0; side < 2; ++side) {
-      if (carriage[side]) a[carriage[side]->coordinate] += f * slide[side] / carriage[side]->mass;
       if (row.body[side] < 0) continue;
       if (const Mechanism* m = mechanism[side])
         for (int i = 0; i < m->size(); ++i) a[m->first_coordinate + i] += f * response[side][i];
@@ -151,7 +126,6 @@ void Dynamics::respond(Candidates& candidates, const double* dy) {
   for (std::size_t c = 0; c < n; ++c) {
     std::fill(response.begin(), response.end(), 0.0);
     for (const CandidateRow& part : rows[c]) part.add_response(1.0, response.data());
-    if (layout.carriages) layout.carriages->let_go(response.data()); // carriers move what stands on them
     if (!layout.active.empty()) {
       for (std::size_t r = 0; r < layout.active.size(); ++r) kept_[r] = rows_.along(r, response.data());
       rows_.take_away(kept_.data(), response.data());

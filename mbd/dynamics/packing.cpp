@@ -1,5 +1,4 @@
 // Dynamics: from the poses and rates of bodies to the coordinates that are integrated, those of clusters, and back.
-#include "mbd/dynamics/carriage.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/dynamics/parts.h"
 
@@ -13,7 +12,7 @@ void Dynamics::pack(const State& state, double* y) const {
   std::fill(y, y + 2 * n, 0.0);
   double* all_q = y;
   double* all_v = y + n;
-  if (layout_->has_joint_coordinates()) {
+  if (layout_->has_mechanisms()) {
     const std::size_t count = 3 * layout_->clusters.size();
     cluster_q_.assign(count, 0.0);
     cluster_v_.assign(count, 0.0);
@@ -44,11 +43,10 @@ void Dynamics::pack(const State& state, double* y) const {
              system_.bodies[i].mass * (lever.x() * bv[1] - lever.y() * bv[0])) / cluster.inertia;
   }
   // Angular momentum was taken about the cluster's centre, where Σ m lever = 0: no correction is due.
-  if (layout_->has_joint_coordinates()) {
+  if (layout_->has_mechanisms()) {
     std::copy_n(all_q, 3 * layout_->absolute_count, y);
     std::copy_n(all_v, 3 * layout_->absolute_count, y + n);
     for (Mechanism& m : layout_->mechanisms) m.pack(all_q, all_v, y + m.first_coordinate, y + n + m.first_coordinate);
-    if (layout_->carriages) layout_->carriages->pack(all_q, all_v, y, y + n);
   }
   double* const rest = std::copy(state.inner.begin(), state.inner.end(), y + 2 * n);
   rest[0] = state.dissipated;
@@ -60,7 +58,7 @@ void Dynamics::unpack(double t, const double* y, State& state) const {
   state.t = t;
   const double* all_q = y;
   const double* all_v = y + n;
-  if (layout_->has_joint_coordinates()) {
+  if (layout_->has_mechanisms()) {
     const std::size_t absolute = 3 * static_cast<std::size_t>(layout_->absolute_count);
     cluster_q_.resize(3 * layout_->clusters.size());
     cluster_v_.resize(cluster_q_.size());
@@ -70,7 +68,6 @@ void Dynamics::unpack(double t, const double* y, State& state) const {
     all_v = cluster_v_.data();
     for (Mechanism& m : layout_->mechanisms)
       m.unpack(y + m.first_coordinate, y + n + m.first_coordinate, cluster_q_.data(), cluster_v_.data());
-    if (layout_->carriages) layout_->carriages->unpack(y, y + n, cluster_q_.data(), cluster_v_.data());
   }
   for (std::size_t i = 1; i < layout_->placements.size(); ++i) {
     const Placement& place = layout_->placements[i];
@@ -97,7 +94,7 @@ void Dynamics::unpack(double t, const double* y, State& state) const {
 
 const double* Dynamics::cluster_rates(const double* y) {
   const int n = coordinate_count();
-  if (!layout_->has_joint_coordinates()) return y + n;
+  if (!layout_->has_mechanisms()) return y + n;
   cluster_q_.resize(3 * layout_->clusters.size());
   cluster_v_.resize(cluster_q_.size());
   std::copy_n(y, 3 * layout_->absolute_count, cluster_q_.begin());
@@ -114,17 +111,15 @@ const double* Dynamics::cluster_rates(const double* y) {
   }
   for (const Mechanism& m : layout_->mechanisms)
     m.unpack(y + m.first_coordinate, y + n + m.first_coordinate, cluster_q_.data(), cluster_v_.data());
-  if (layout_->carriages) layout_->carriages->unpack(y, y + n, cluster_q_.data(), cluster_v_.data());
   return cluster_v_.data();
 }
 
 const double* Dynamics::cluster_accelerations(const double* dy) {
   const double* const a = dy + coordinate_count();
-  if (!layout_->has_joint_coordinates()) return a;
+  if (!layout_->has_mechanisms()) return a;
   catch_up();
   std::copy_n(a, 3 * layout_->absolute_count, cluster_a_.begin());
   for (const Mechanism& m : layout_->mechanisms) m.expand(a + m.first_coordinate, cluster_a_.data());
-  if (layout_->carriages) layout_->carriages->expand(a, cluster_a_.data());
   return cluster_a_.data();
 }
 

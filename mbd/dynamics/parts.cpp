@@ -156,7 +156,7 @@ int Parts::of(const Layout& layout, int a, int b) const {
 }
 
 std::unique_ptr<Parts> make_parts(const System& system, Layout& layout, int rows) {
-  if (layout.cluster_count() < Parts::k_least_clusters || layout.carriages || layout.has_long_rows()) return nullptr;
+  if (layout.cluster_count() < Parts::k_least_clusters || layout.has_long_rows()) return nullptr;
   auto parts = std::make_unique<Parts>();
   parts->of_cluster.assign(layout.clusters.size(), 0);
   divide_absolute(layout, rows, *parts);

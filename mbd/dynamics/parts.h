@@ -65,7 +65,7 @@ struct Parts {
   [[nodiscard]] int of(const Layout& layout, int a, int b) const; ///< of what is between two bodies
 };
 
-/// Null where the layout is to be evaluated in one piece: if it is small, or has guides as coordinates or rows over more than two bodies.
+/// Null where the layout is to be evaluated in one piece: if it is small, or has rows over more than two bodies.
 /// Puts the layout's links in the parts' order. `rows`: how many of the active rows are between absolute clusters.
 [[nodiscard]] std::unique_ptr<Parts> make_parts(const System& system, Layout& layout, int rows);
 

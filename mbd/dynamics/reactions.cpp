@@ -1,6 +1,5 @@
 #include "mbd/dynamics/reactions.h"
 
-#include "mbd/dynamics/carriage.h"
 #include "mbd/dynamics/joint_wrench.h"
 
 #include <algorithm>
@@ -66,7 +65,6 @@ void Reactions::add_carried(const RowSpec& spec, double lambda) {
 // Multipliers of the pins and rods of mechanisms, which are no rows of theirs: what hangs on them lacks so much.
 void Reactions::find_pins(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
-  if (layout.carriages) find_guides(cluster_a);
   for (const Mechanism& mechanism : layout.mechanisms) {
     mechanism.pin_forces(cluster_a, force_, layout.schur_rows.data() + mechanism.first_row, lambda + mechanism.first_row,
                          pin_force_);
@@ -89,22 +87,6 @@ void Reactions::find_pins(const double* cluster_a, const double* lambda) {
   }
 }
 
-// Multipliers of the guides of carriages: across the axis at the point where a is led, and the couple.
-void Reactions::find_guides(const double* cluster_a) {
-  const Layout& layout = *layout_;
-  for (const Carriage& k : layout.carriages->carriages) {
-    const RowSpec& spec = system_.rows[system_.row_blocks[k.block].first];
-    const BodyForce held = layout.carriages->held_by(k, cluster_a, force_);
-    const double sign = layout.placements[spec.a].cluster == k.cluster ? 1.0 : -1.0;
-    const Pair<double> n = to_ground(motion_[spec.b], spec.direction);
-    const Motion<double>& a = motion_[spec.a];
-    const Pair<double> lever = offset(a, motion_[k.slot]) + to_ground(a, spec.point_a);
-    double* const along = &row_force_[system_.row_blocks[k.block].first];
-    along[0] = sign * (held.fx * n.x + held.fy * n.y);
-    along[1] = sign * held.m - cross(lever, n) * along[0];
-  }
-}
-
 void Reactions::find_joints(const double* cluster_a, const double* lambda) {
   const Layout& layout = *layout_;
   for (const RigidEdge& edge : layout.edges) {
@@ -123,26 +105,13 @@ void Reactions::find_joints(const double* cluster_a, const double* lambda) {
         const RowBlock& block = system_.row_blocks[m.block];
         for (int r = block.first; r < block.first + block.count; ++r) add_carried(system_.rows[r], row_force_[r]);
       }
-    if (layout.carriages)
-      for (const Carriage& k : layout.carriages->carriages)
-        for (int r = 0; r < 2; ++r) {
-          const int row = system_.row_blocks[k.block].first + r;
-          add_carried(system_.rows[row], row_force_[row]);
-        }
   }
   hand_on_lack(layout, edges_, wrench_.data(),
                [this](const RigidEdge& edge, const double* along) { std::copy_n(along, 3, multipliers_of(edge)); });
 }
 
 double Reactions::of_lock(const Lock& lock, const double* a, const double* lambda) const {
-  const Layout& layout = *layout_;
-  const int carrier = layout.carriages ? layout.carriages->carrier_of_lock[&lock - layout.locks.data()] : -1;
-  if (carrier < 0)
-    return missing_force(layout, lock, force_[layout.clusters[lock.cluster].motion], a, layout.schur_rows.data(), lambda);
-  double force = Carriages::lack(layout.carriages->carriers[carrier], lock.coordinate, a + 3 * lock.cluster);
-  for (const LockedTerm& term : lock.terms)
-    force -= layout.schur_rows[term.row].j[term.side][lock.coordinate] * lambda[term.multiplier];
-  return force;
+  return missing_force(*layout_, lock, force_[layout_->clusters[lock.cluster].motion], a, layout_->schur_rows.data(), lambda);
 }
 
 void Reactions::take_rows(const double* a, const double* lambda) {

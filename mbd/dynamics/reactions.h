@@ -11,7 +11,7 @@
 
 namespace steplap {
 
-/// What is missing in the equation of motion of a locked coordinate of a cluster that is no carrier. `f`: on the cluster;
+/// What is missing in the equation of motion of a locked coordinate of a cluster. `f`: on the cluster;
 /// `lambda`, `rows`: per active row.
 template <class S>
 [[nodiscard]] STEPLAP_INLINE S missing_force(const Layout& layout, const Lock& lock, const BodyForceOf<S>& f, const S* a,
@@ -36,7 +36,7 @@ public:
   void find_accelerations(const double* cluster_a);
   /// Of joints inside clusters, which go to row_force() and friction_force(). `lambda`: per active row.
   void find_joints(const double* cluster_a, const double* lambda);
-  /// Of the rows and rods by which members of mechanisms hang, and of the guides of carriages.
+  /// Of the rows and rods by which members of mechanisms hang.
   void find_pins(const double* cluster_a, const double* lambda);
   /// Of active rows, of locks, and none where friction does not act. `a`: of the layout's coordinates.
   void take_rows(const double* a, const double* lambda);
@@ -49,7 +49,6 @@ public:
 
 private:
   void add_carried(const RowSpec& spec, double lambda);
-  void find_guides(const double* cluster_a);
   [[nodiscard]] double* multipliers_of(const RigidEdge& edge);
 
   const System& system_;

@@ -1,6 +1,5 @@
 // What slip laws that turn with the direction of slip ask of a method: how fine velocities have to be known, and how
 // short steps have to be.
-#include "mbd/dynamics/carriage.h"
 #include "mbd/dynamics/dynamics.h"
 #include "mbd/math/portable_math.h"
 
@@ -12,16 +11,8 @@ namespace steplap {
 
 namespace {
 
-// Coordinates that move a cluster of a mechanism, or a carriage: by how much each at most moves the place of slip.
+// Coordinates that move a cluster of a mechanism: by how much each at most moves the place of slip.
 void narrow_scales(const Layout& layout, int cluster, const SlipScale& found, double lever, double* scale) {
-  if (const Carriage* k = layout.carriages ? layout.carriages->find(cluster) : nullptr) {
-    scale[k->coordinate] = std::min(scale[k->coordinate], found.speed);
-    if (k->carrier < 0) return;
-    double* const of_carrier = scale + 3 * layout.carriages->carriers[k->carrier].cluster;
-    const double reach = lever + portable::hypot(k->lever.x, k->lever.y);
-    for (int c = 0; c < 3; ++c) of_carrier[c] = std::min(of_carrier[c], c < 2 ? found.speed : found.speed / reach);
-    return;
-  }
   const Mechanism& m = layout.mechanism_of_cluster(cluster);
   for (int i = 0; i < m.size(); ++i) {
     if ((m.moved_by(cluster) >> i & 1U) == 0) continue;

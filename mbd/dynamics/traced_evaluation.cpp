@@ -19,7 +19,7 @@ constexpr std::size_t k_of_lock = 3, k_of_driven_row = 2;
 constexpr int k_most_coordinates = 100;
 
 bool is_plain(const System& system, const Layout& layout) {
-  return layout.coordinate_count <= k_most_coordinates && !layout.carriages && !layout.has_long_rows() && system.inner_count() == 0 &&
+  return layout.coordinate_count <= k_most_coordinates && !layout.has_long_rows() && system.inner_count() == 0 &&
          layout.schur.is_small() && !layout.is_singular() && !layout.sharing &&
          std::none_of(layout.active.begin(), layout.active.end(), // an angle of centre against centre is no operation of a tape
                       [](const ActiveRow& row) { return row.spec->kind == MeasureKind::roll_round; });

@@ -52,8 +52,8 @@ const FieldTable& SimulationSettings::fields() {
     f.add("tolerance", &T::tolerance).at_least(1e-14).at_most(0.1).doc(
         "relative tolerance of the adaptive methods, for each step; 1e-8 if not given");
     f.add("coordinates", &T::coordinates).one_of({"automatic", "joint", "absolute"}).doc(
-        "what describes small mechanisms with pins, and with \"joint\" what slides on a guide, too: the angles and the slides that "
-        "these leave, or each body's place and angle; the motion is the same");
+        "what describes small mechanisms with pins, and with \"joint\" those that hang on a free body, too: the angles that these "
+        "leave, or each body's place and angle; the motion is the same");
     f.add("initial", &T::initial).one_of({"as_given", "equilibrium"}).doc(
         "start from the poses in the file or from static equilibrium");
     f.add("velocity", &T::velocity).in("m/s").doc("added to the initial velocity of every body");

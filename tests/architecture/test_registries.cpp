@@ -164,7 +164,6 @@ TEST_CASE("where kinds of rows are told apart") {
       {"mbd/system/row.h", "what each measures"},
       {"mbd/dynamics/traced_evaluation.cpp", "which no tape is made of"},
       {"mbd/dynamics/layout.cpp", "which have a shorter way, angles a constant gradient"},
-      {"mbd/dynamics/carriage_layout.cpp", "which joints are guides"},
       {"mbd/dynamics/mechanism_layout.cpp", "which joints a member of a mechanism may hang by"},
       {"mbd/dynamics/projection.cpp", "the unit of a message"},
       {"mbd/dynamics/load_sharing.cpp", "the unit of a residual"},

@@ -58,10 +58,11 @@ std::string everything() {
 }
 
 struct Outcome {
-  std::vector<double> acceleration, channel;
+  std::vector<double> acceleration, channel, compliance, along;
 };
 
-// At the state as `coordinates` have it: what a snapshot shows of all bodies and joints.
+// At the state as `coordinates` have it: what a snapshot shows of all bodies and joints, and how the rows of friction that
+// slips would answer to it.
 Outcome outcome_at(const System& system, const State& state, Coordinates coordinates) {
   Dynamics dynamics(system);
   dynamics.use_coordinates(coordinates);
@@ -70,8 +71,15 @@ Outcome outcome_at(const System& system, const State& state, Coordinates coordin
   std::vector<double> y(dynamics.dimension()), dy(y.size());
   dynamics.pack(state, y.data());
   dynamics.rates(state.t, y.data(), dy.data());
-  const Snapshot snapshot = dynamics.snapshot(dy.data());
   Outcome outcome;
+  Dynamics::Candidates candidates;
+  for (std::size_t f = 0; f < system.frictions.size(); ++f)
+    if (state.friction[f].phase == FrictionPhase::slip)
+      candidates.rows.push_back(system.frictions[f].friction->rows(state.friction[f]));
+  dynamics.respond(candidates, dy.data());
+  outcome.compliance = candidates.compliance;
+  outcome.along = candidates.acceleration;
+  const Snapshot snapshot = dynamics.snapshot(dy.data());
   outcome.acceleration.assign(snapshot.acceleration, snapshot.acceleration + 3 * system.bodies.size());
   for (const Channel& channel : system.channels) outcome.channel.push_back(channel.value(snapshot));
   return outcome;
@@ -107,6 +115,29 @@ TEST_CASE("joint coordinates: the same accelerations and reactions in one state"
   }
   // post, arm, tip with tail, strut: 4; cart free: 3; the rod and bob: 2; kite free with string: 4.
   CHECK(count_coordinates(*system, state) == 13);
+}
+
+// Of one mechanism, of two, of a free body and of the ground: the answers fill a matrix whose rows mix both descriptions.
+TEST_CASE("joint coordinates: friction between whatever hangs where") {
+  const std::string all = everything() +
+                          element("joint_friction", "arm on strut", "a = 'arm'; b = 'strut'; coordinate = 'x'; holds = 2") +
+                          element("joint_friction", "tip on kite", "a = 'tip'; b = 'kite'; coordinate = 'y'; holds = 2") +
+                          element("joint_friction", "cart on string", "a = 'cart'; b = 'string'; coordinate = 'x'; holds = 2") +
+                          element("joint_friction", "kite on ground", "a = 'kite'; coordinate = 'y'; holds = 2") +
+                          element("joint_friction", "cart on ground", "a = 'cart'; coordinate = 'x'; holds = 2");
+  const Model model = scene(all);
+  const auto system = compile(model);
+  State state = start_of(model, *system);
+  for (FrictionState& friction : state.friction) {
+    friction.phase = FrictionPhase::slip;
+    friction.sign = 1;
+  }
+  const Outcome absolute = outcome_at(*system, state, Coordinates::absolute);
+  const Outcome joint = outcome_at(*system, state, Coordinates::joint);
+  REQUIRE(absolute.compliance.size() == 36);
+  for (std::size_t i = 0; i < 36; ++i) // rounding, as above
+    CHECK(std::abs(joint.compliance[i] - absolute.compliance[i]) < 1e-12 * largest(absolute.compliance));
+  for (std::size_t i = 0; i < 6; ++i) CHECK(std::abs(joint.along[i] - absolute.along[i]) < 1e-12 * largest(absolute.acceleration));
 }
 
 TEST_CASE("joint coordinates: packed and unpacked again, a state on the joints is the same") {
@@ -204,6 +235,53 @@ TEST_CASE("joint coordinates: friction in a pin sticks and slides at the same ti
   const double worst = difference(*system, absolute, joint, channel);
   CAPTURE(channel);
   CHECK(worst < 1e-6);
+}
+
+// A guide keeps its rows where the piston hangs on a mechanism. Two runs at 1e-11 each: as above.
+TEST_CASE("joint coordinates: a crank and its piston") {
+  const std::string crank =
+      "gravity = [0.5, -9.0]\n[simulation]\nstep = 1e-3\n" +
+      body("crank", "mass = 2; inertia = 0.3; position = [0.15, 0.1]; angular_velocity = 3") +
+      body("conrod", "mass = 1; inertia = 0.1; position = [0.7, 0.1]") +
+      body("piston", "mass = 0.6; inertia = 0.1; position = [1.1, 0.0]") +
+      element("revolute", "main", "a = { body = 'crank', at = [0, 0] }") +
+      element("revolute", "big end", "a = { body = 'conrod', at = [0.3, 0.2] }; b = { body = 'crank', at = [0.3, 0.2] }") +
+      element("revolute", "small end", "a = { body = 'piston', at = [1.1, 0] }; b = { body = 'conrod', at = [1.1, 0] }") +
+      element("prismatic", "cylinder", "a = 'piston'; axis = [1.0, 0.0]");
+  const Model model = scene(crank);
+  const auto system = compile(model);
+  CHECK(count_coordinates(*system, start_of(model, *system)) == 3);
+  const RunResult absolute = run_in(model, *system, Coordinates::absolute, 1e-11, 1.0);
+  for (const Coordinates coordinates : {Coordinates::joint, Coordinates::automatic}) {
+    std::string channel;
+    const double worst = difference(*system, absolute, run_in(model, *system, coordinates, 1e-11, 1.0), channel);
+    CAPTURE(channel);
+    CHECK(worst < 1e-7);
+  }
+}
+
+// A bead without weight on a rod that turns at ω: r = r0 cosh ωt, the rod presses with 2 m ω ṙ. 1e-9: the tolerance is 1e-12.
+TEST_CASE("a bead on a turning rod, by its closed form") {
+  constexpr double k_omega = 2.0, k_mass = 0.8, k_start = 0.3, k_end = 1.2;
+  const std::string text =
+      k_no_gravity + "[simulation]\nstep = 1e-3\n" +
+      body("rod", "mass = 3; inertia = 0.4; position = [0, 0]; angular_velocity = 2") +
+      body("bead", "mass = 0.8; inertia = 0.01; position = [0.3, 0]; velocity = [0, 0.6]; angular_velocity = 2") +
+      signal_entry("constant", "zero", "value = 0") + signal_entry("constant", "speed", "value = 2") +
+      element("prescribed_motion", "x", "a = 'rod'; coordinate = 'x'; signal = 'zero'; as = 'velocity'") +
+      element("prescribed_motion", "y", "a = 'rod'; coordinate = 'y'; signal = 'zero'; as = 'velocity'") +
+      element("prescribed_motion", "motor", "a = 'rod'; coordinate = 'angle'; signal = 'speed'; as = 'velocity'") +
+      element("prismatic", "guide", "a = 'bead'; b = 'rod'; axis = [1.0, 0.0]");
+  const Model model = scene(text);
+  const auto system = compile(model);
+  const RunResult result = run_in(model, *system, Coordinates::automatic, 1e-12, k_end);
+  const auto last = [&result](const char* name) { return result.trajectory->series(name).back(); };
+  const double r = k_start * std::cosh(k_omega * k_end), speed = k_omega * k_start * std::sinh(k_omega * k_end);
+  CHECK(std::hypot(last("bead.x"), last("bead.y")) == doctest::Approx(r).epsilon(1e-9));
+  CHECK(std::atan2(last("bead.y"), last("bead.x")) == doctest::Approx(k_omega * k_end).epsilon(1e-9));
+  CHECK(last("guide.force") == doctest::Approx(2.0 * k_mass * k_omega * speed).epsilon(1e-9));
+  // The motor turns bead and guide: couple d/dt (m r² ω).
+  CHECK(last("motor.reaction") == doctest::Approx(2.0 * k_mass * k_omega * r * speed).epsilon(1e-9));
 }
 
 // Of a mechanism that the program may choose for itself: from a flat position on that joint coordinates do not pass
