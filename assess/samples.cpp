@@ -75,7 +75,7 @@ VoyageSample voyage_with(const std::vector<DrivenModel>& models, const std::vect
 
 std::vector<VoyageSample> sample_voyages(const std::vector<DrivenModel>& models, const std::vector<std::vector<DriveHistory>>& histories,
                                          const UncertainValues& uncertain, const SamplingOptions& options) {
-  const int threads = std::max(1, options.threads);
+  const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
   std::vector<VoyageSample> samples(static_cast<std::size_t>(std::max(0L, options.samples)));
   for (std::size_t n = 0; n < samples.size(); ++n) samples[n].values = uncertain.draw(options.seed, n + 1);
   SampleStore store(options, models, histories, uncertain);

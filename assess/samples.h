@@ -24,7 +24,7 @@ struct VoyageSample {
 struct SamplingOptions {
   long samples = 200;
   std::uint64_t seed = 1;
-  int threads = 1;
+  int threads = 0;                                ///< 0: OMP_NUM_THREADS, else as many as there are processors
   std::string store;                              ///< file that keeps them; "": none
   std::function<void(long done, long all)> progress;
   std::function<std::string()> stop;              ///< what it says is why to stop; ""

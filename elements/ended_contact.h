@@ -37,11 +37,6 @@ public:
   void add_forces(Evaluation& e) const override {
     for (const Entry& entry : entries) add_force(entry, e);
   }
-  [[nodiscard]] int divisible_count() const override { return static_cast<int>(entries.size()); }
-  [[nodiscard]] Link link_of(int element) const override { return {entries[element].a, entries[element].b}; }
-  void add_forces_of(std::span<const int> elements, Evaluation& e) const override {
-    for (const int i : elements) add_force(entries[i], e);
-  }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   [[nodiscard]] double inner_energy(const Motion<double>* motion, const double* inner) const override {
     double sum = 0.0;

@@ -53,11 +53,6 @@ public:
       add<Traced>(entry, load_by(entry, e.motion[entry.body], [&e](const Signal* signal) { return e.of_time({signal}); }), e);
     return true;
   }
-  [[nodiscard]] int divisible_count() const override { return static_cast<int>(entries.size()); }
-  [[nodiscard]] Link link_of(int element) const override { return {entries[element].body, k_ground}; }
-  void add_forces_of(std::span<const int> elements, Evaluation& e) const override {
-    for (const int i : elements) add(entries[i], load_at(entries[i], e), e);
-  }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
 
   void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const override {

@@ -17,9 +17,7 @@ void stop_if_asked(const RunOptions& options, double t) {
 } // namespace
 
 SimulationOptions simulation_options(const LoadedModel& loaded, const RunOptions& options) {
-  if (options.threads < 1) throw std::invalid_argument("RunOptions::threads is less than 1");
   SimulationOptions simulation = options_of(loaded.model);
-  simulation.threads = options.threads;
   simulation.has_extremes = options.has_extremes;
   simulation.progress = [options](double t) { stop_if_asked(options, t); };
   return simulation;

@@ -26,7 +26,6 @@ struct RunOptions {
   std::optional<double> step;                ///< instead of that of [simulation], s: for methods of a fixed step only
   std::optional<double> end;                 ///< instead of that of [simulation], s
   std::optional<double> output_step;         ///< instead of `step` of [output], s
-  int threads = 1;                           ///< at least 1: SimulationOptions::threads
   bool has_extremes = true;                  ///< without them nothing is judged: the verdict is open
   std::optional<State> start;                ///< where the run begins; the model's own start if not given
   Estimating estimating = Estimating::cheap; ///< when errors are estimated

@@ -56,9 +56,9 @@ bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan
 } // namespace
 
 // A scene for each thread.
-class Team {
+class Workers {
 public:
-  Team(const LoadedStudy& loaded, int threads)
+  Workers(const LoadedStudy& loaded, int threads)
       : width_(loaded.study.variables.size()), has_models_(!loaded.models.empty()) {
     const int count = threads > 0 ? threads : omp_get_max_threads();
     for (int i = 0; i < count; ++i) scenes_.push_back(std::make_unique<Scene>(loaded));
@@ -89,7 +89,7 @@ private:
 
 Evaluator::Evaluator(const LoadedStudy& loaded, Store& store, const Ranks& ranks, int threads,
                      std::function<void(const Pace&)> progress)
-    : loaded_(loaded), store_(store), ranks_(ranks), team_(std::make_unique<Team>(loaded, threads)),
+    : loaded_(loaded), store_(store), ranks_(ranks), workers_(std::make_unique<Workers>(loaded, threads)),
       progress_(std::move(progress)),
       chunk_(loaded.models.empty() ? 10000 : 16 * static_cast<std::size_t>(ranks.count())), begin_(now()) {}
 
@@ -110,7 +110,7 @@ void Evaluator::fetch(std::size_t from, std::size_t count, const std::vector<dou
         store_.forget_from(fetched_[i].number);
         return;
       }
-    if (!team_->is_derived(fetched_[i]))
+    if (!workers_->is_derived(fetched_[i]))
       throw StoreError(store_.path(), "the store is damaged, or was edited: sample " + std::to_string(fetched_[i].number) +
                        " has numbers that do not follow from its values and responses: let the study make the store anew", {StoreMode::restart});
     rows_[from + i] = std::move(fetched_[i]);
@@ -134,7 +134,7 @@ void Evaluator::run(std::size_t from, std::size_t count, const std::vector<doubl
   }
   ranks_.spread(part);
   const auto stride = static_cast<std::size_t>(ranks_.count());
-  team_->run(part.data(), count, 0, stride, [&](std::size_t i) -> Outcome& { return rows_[from + i].outcome; });
+  workers_->run(part.data(), count, 0, stride, [&](std::size_t i) -> Outcome& { return rows_[from + i].outcome; });
   if (stride > 1) {
     const std::vector<std::vector<char>> all = ranks_.gather({});
     for (std::size_t r = 1; r < stride; ++r) {
@@ -199,14 +199,14 @@ void Evaluator::expect(long more, bool is_guess) {
 }
 
 void Evaluator::serve(const LoadedStudy& loaded, const Ranks& ranks, int threads) {
-  Team team(loaded, threads);
+  Workers workers(loaded, threads);
   const std::size_t width = loaded.study.variables.size();
   std::vector<double> points;
   std::vector<Outcome> outcomes;
   for (ranks.spread(points); !points.empty(); ranks.spread(points)) {
     const std::size_t count = points.size() / width, stride = static_cast<std::size_t>(ranks.count());
     outcomes.resize(count);
-    team.run(points.data(), count, static_cast<std::size_t>(ranks.rank()), stride,
+    workers.run(points.data(), count, static_cast<std::size_t>(ranks.rank()), stride,
              [&](std::size_t i) -> Outcome& { return outcomes[i]; });
     std::vector<char> bytes;
     for (std::size_t i = static_cast<std::size_t>(ranks.rank()); i < count; i += stride) pack(outcomes[i], bytes);

@@ -29,7 +29,7 @@ struct Pace {
   bool is_guess = false;         ///< that hangs on how an estimate goes on
 };
 
-class Team;
+class Workers;
 
 class Evaluator {
 public:
@@ -63,7 +63,7 @@ private:
   const LoadedStudy& loaded_;
   Store& store_;
   const Ranks& ranks_;
-  std::unique_ptr<Team> team_;
+  std::unique_ptr<Workers> workers_;
   std::function<void(const Pace&)> progress_;
   std::vector<StoredSample> rows_, fetched_;
   long next_ = 1, notes_ = 0;

@@ -1,6 +1,4 @@
 #include "mbd/dynamics/constraint_solution.h"
-#include "mbd/base/team.h"
-#include "mbd/dynamics/parts.h"
 #include "mbd/dynamics/row_pull.h"
 
 #include <algorithm>
@@ -9,7 +7,7 @@
 
 namespace steplap {
 
-ConstraintSolution::ConstraintSolution(const Kinematics& kinematics, Team& team) : team_(team), motion_(kinematics.motion().data()) {}
+ConstraintSolution::ConstraintSolution(const Kinematics& kinematics) : motion_(kinematics.motion().data()) {}
 
 void ConstraintSolution::use(Layout& layout, const State& state) {
   layout_ = &layout;
@@ -19,7 +17,6 @@ void ConstraintSolution::use(Layout& layout, const State& state) {
   if (multiplier_.size() < rows)
     for (std::vector<double>* v : {&multiplier_, &target_rate_, &off_, &rate_off_, &response_}) v->resize(rows);
   if (layout.has_mechanisms()) cluster_a_.resize(3 * layout.clusters.size());
-  layout.schur.use(team_);
 }
 
 // --- rows ---------------------------------------------------------------------------------------------
@@ -99,73 +96,6 @@ void ConstraintSolution::solve(double t, const BodyForce* force, double* a) {
   if (layout.has_long_rows()) [[unlikely]] add_part_responses(right, a);
 }
 
-// --- the same in parts --------------------------------------------------------------------------------
-
-void ConstraintSolution::pull_part(int p) {
-  for (const int r : layout_->division->rows[p]) multiplier_[r] = pull(r);
-}
-
-void ConstraintSolution::accelerate_part(int p, const BodyForce* force, double* a) {
-  const Part& part = layout_->division->parts[p];
-  for (int i = part.mechanisms; i < part.mechanisms_end; ++i) accelerate_mechanism(layout_->mechanisms[i], force, a);
-}
-
-void ConstraintSolution::solve_divided(double t, double* a) {
-  Layout& layout = *layout_;
-  if (layout.active.empty()) return;
-  const Parts& division = *layout.division;
-  double* const right = multiplier_.data();
-  is_factored_ = true;
-  const bool has_rows = layout.schur.size() > 0; // between absolute clusters
-  if (has_rows) {
-    layout.schur.factor(layout.schur_rows);
-    team_.each(division.count(), [&](int p) {
-      for (const int r : division.rows[p]) right[r] = less_accelerations(layout.schur_rows[r], right[r], a);
-    });
-  }
-  drive(t);
-  if (has_rows) layout.schur.solve(layout.schur_rows, right);
-  team_.each(division.count(), [&](int p) {
-    const Part& part = division.parts[p];
-    for (int i = part.mechanisms; i < part.mechanisms_end; ++i) respond(layout.mechanisms[i], a);
-    note_pivots(p);
-    respond_part(p, right, a);
-  });
-}
-
-// a += W Jᵀ λ on the clusters of the part, those of absolute coordinates.
-void ConstraintSolution::respond_part(int p, const double* lambda, double* a) const {
-  for (const int place : layout_->division->row_sides[p]) {
-    const SchurRow& row = layout_->schur_rows[place / 2];
-    const int side = place % 2;
-    if (row.is_constant) a[3 * row.body[side] + 2] += row.wj[side][2] * lambda[place / 2];
-    else add_response(row, side, lambda[place / 2], a);
-  }
-}
-
-void ConstraintSolution::note_pivots(int p) {
-  const Part& part = layout_->division->parts[p];
-  Layout::Pivots found;
-  for (int i = part.mechanisms; i < part.mechanisms_end; ++i) {
-    const Mechanism& m = layout_->mechanisms[i];
-    found.smallest = std::min(found.smallest, m.smallest_pivot());
-    found.is_singular = found.is_singular || m.is_singular();
-  }
-  layout_->pivots[p] = found;
-}
-
-template <class F> void ConstraintSolution::for_mechanisms(const F& f) {
-  if (!layout_->division) {
-    for (Mechanism& m : layout_->mechanisms) f(m);
-    return;
-  }
-  team_.each(layout_->division->count(), [&](int p) {
-    const Part& part = layout_->division->parts[p];
-    for (int i = part.mechanisms; i < part.mechanisms_end; ++i) f(layout_->mechanisms[i]);
-    note_pivots(p);
-  });
-}
-
 double ConstraintSolution::power_of_drives() const {
   double power = 0.0;
   for (const int r : layout_->driven_rows) power += multiplier_[r] * target_rate_[r];
@@ -182,15 +112,9 @@ STEPLAP_INLINE void ConstraintSolution::compare_row(std::size_t r, double t) {
 }
 
 void ConstraintSolution::compare(double t) {
-  const int count = static_cast<int>(layout_->active.size());
-  if (layout_->division)
-    team_.stretches(count, [&](int from, int to) {
-      for (int r = from; r < to; ++r) compare_row(r, t);
-    });
-  else
-    for (int r = 0; r < count; ++r) compare_row(r, t);
+  for (std::size_t r = 0; r < layout_->active.size(); ++r) compare_row(r, t);
   if (layout_->has_long_rows()) [[unlikely]] compare_parts();
-  for_mechanisms([this](Mechanism& m) { m.reduce_rows(layout_->schur_rows.data() + m.first_row); });
+  for (Mechanism& m : layout_->mechanisms) m.reduce_rows(layout_->schur_rows.data() + m.first_row);
 }
 
 namespace {
@@ -215,10 +139,10 @@ Residual ConstraintSolution::residual() const {
 void ConstraintSolution::factor(double shift) {
   Layout& layout = *layout_;
   layout.schur.factor(layout.schur_rows, shift);
-  for_mechanisms([&](Mechanism& m) {
+  for (Mechanism& m : layout.mechanisms) {
     m.factor_mass();
     m.factor_rows(layout.schur_rows.data() + m.first_row, shift);
-  });
+  }
   is_factored_ = true;
 }
 
@@ -227,19 +151,15 @@ void ConstraintSolution::take_away(const double* r, double* change) {
   double* const response = response_.data();
   for (std::size_t i = 0; i < layout.active.size(); ++i) response[i] = -r[i];
   layout.schur.solve(layout.schur_rows, response);
-  if (layout.division) {
-    team_.each(layout.division->count(), [&](int p) { respond_part(p, response, change); });
-  } else {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(layout.schur.size()); ++i)
-      for (int side = 0; side < 2; ++side)
-        if (layout.schur_rows[i].body[side] >= 0) add_response(layout.schur_rows[i], side, response[i], change);
-  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(layout.schur.size()); ++i)
+    for (int side = 0; side < 2; ++side)
+      if (layout.schur_rows[i].body[side] >= 0) add_response(layout.schur_rows[i], side, response[i], change);
   if (layout.has_long_rows()) [[unlikely]] add_part_responses(response, change);
-  for_mechanisms([&](const Mechanism& m) {
-    if (m.row_count == 0) return;
+  for (const Mechanism& m : layout.mechanisms) {
+    if (m.row_count == 0) continue;
     m.solve_rows(response + m.first_row);
     m.add_response(response + m.first_row, change + m.first_coordinate);
-  });
+  }
 }
 
 double ConstraintSolution::along(std::size_t r, const double* change) const {

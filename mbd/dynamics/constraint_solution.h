@@ -22,8 +22,7 @@ struct Residual {
 
 class ConstraintSolution {
 public:
-  /// `team`: shares the work where a layout is divided.
-  ConstraintSolution(const Kinematics& kinematics, Team& team);
+  explicit ConstraintSolution(const Kinematics& kinematics);
 
   /// Both must outlive the use of this object or be set anew.
   void use(Layout& layout, const State& state);
@@ -34,11 +33,6 @@ public:
   /// After prepare(). Adds W Jᵀλ to the accelerations `a` that forces alone give; those of mechanisms are found from
   /// `force`.
   void solve(double t, const BodyForce* force, double* a);
-  /// The two in a layout that is divided: pull_part() with the motion of a part and of the bodies that its rows go to, and
-  /// accelerate_part() for its mechanisms, part by part; when all of that is done solve_divided().
-  void pull_part(int part);
-  void accelerate_part(int part, const BodyForce* force, double* a);
-  void solve_divided(double t, double* a);
   /// Of the layout's active rows.
   [[nodiscard]] const std::vector<double>& multipliers() const { return multiplier_; }
   /// Work of drives that are rows, W.
@@ -71,9 +65,6 @@ private:
   void respond(Mechanism& m, double* a);
   void drive(double t);
   void compare_row(std::size_t r, double t);
-  void respond_part(int part, const double* lambda, double* a) const;
-  void note_pivots(int part);
-  template <class F> void for_mechanisms(const F& f);
   // Of rows over more than two bodies what their parts add (row_parts.cpp): to γ, to what they are off by, to what is left
   // of `right` at the accelerations `a`, to the accelerations, and along a row.
   template <bool WithBias> MeasureValue<double> load_part(std::size_t i);
@@ -85,7 +76,6 @@ private:
   void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
   [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
 
-  Team& team_;
   const Motion<double>* motion_; ///< per slot
   Layout* layout_ = nullptr;
   const State* state_ = nullptr;

@@ -1,6 +1,5 @@
 #include "mbd/dynamics/dynamics.h"
 
-#include "mbd/dynamics/parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +14,9 @@ constexpr double k_placed_pivot = 1e-4;
 
 } // namespace
 
-Dynamics::Dynamics(const System& system, int threads)
-    : system_(system), team_(threads), layouts_(system), force_(system.bodies.size() + system.links.slot_count()), kinematics_(system, team_),
-      rows_(kinematics_, team_), reactions_(system, kinematics_, force_.data()), motion_(kinematics_.motion().data()),
+Dynamics::Dynamics(const System& system)
+    : system_(system), layouts_(system), force_(system.bodies.size() + system.links.slot_count()), kinematics_(system),
+      rows_(kinematics_), reactions_(system, kinematics_, force_.data()), motion_(kinematics_.motion().data()),
       friction_force_(reactions_.friction_force().data()) {
   contact_force_.assign(system.contact_count, 0.0);
   watch_.assign(system.watch_count, 1.0);
@@ -63,7 +62,6 @@ void Dynamics::set_state(const State& state) {
     if (kept_.size() < layout_->active.size()) kept_.resize(layout_->active.size());
   }
   if (layout_->has_mechanisms()) cluster_a_.resize(3 * layout_->clusters.size());
-  if (layout_->division) part_power_.resize(layout_->division->parts.size());
   decide_rank();
 }
 
@@ -95,17 +93,13 @@ void Dynamics::set_time_limit(double limit) {
   time_cap_ = std::nextafter(limit, -std::numeric_limits<double>::infinity());
 }
 
-// What is written down is the sums of a layout in one piece.
-void Dynamics::begin_stages() {
-  if (layout_->division) stage_programs_.leave();
-  else stage_programs_.enter(*layout_, *state_, layouts_);
-}
+void Dynamics::begin_stages() { stage_programs_.enter(*layout_, *state_, layouts_); }
 
 // --- one evaluation -----------------------------------------------------------------------------
 
 void Dynamics::take_inner(const double* inner) { std::copy_n(inner, inner_count(), inner_.begin()); }
 
-STEPLAP_INLINE void Dynamics::apply_sliding(std::size_t i, Evaluation& e) {
+STEPLAP_INLINE void Dynamics::apply_sliding(std::size_t i) {
   const int f = layout_->sliding[i], link = layout_->sliding_link[i];
   const FrictionUnit& unit = system_.frictions[f];
   const FrictionState& friction = state_->friction[f];
@@ -117,20 +111,13 @@ STEPLAP_INLINE void Dynamics::apply_sliding(std::size_t i, Evaluation& e) {
     m[r] = evaluate_row<false>(rows[r], motion_[link], Origin{});
     rate[r] = m[r].rate;
   }
-  unit.friction->slip_wrench(e, friction, rate, wrench);
+  unit.friction->slip_wrench(evaluation_, friction, rate, wrench);
   for (int r = 0; r < n; ++r) {
     apply_force(force_[link], m[r], wrench[r]);
-    e.dissipation -= wrench[r] * rate[r];
+    evaluation_.dissipation -= wrench[r] * rate[r];
     friction_force_[unit.row + r] = wrench[r];
   }
-  unit.friction->watch_slip(e, friction, rate, &watch_[unit.watch]);
-}
-
-void Dynamics::apply_sliding_of(int p) {
-  Evaluation e = evaluation_;
-  e.dissipation = 0.0;
-  for (const int i : layout_->division->sliding[p]) apply_sliding(i, e);
-  part_power_[p].dissipation += e.dissipation;
+  unit.friction->watch_slip(evaluation_, friction, rate, &watch_[unit.watch]);
 }
 
 // Forces of all elements, on clusters and on the bodies that ride on them.
@@ -143,7 +130,7 @@ void Dynamics::apply_forces() {
   for (const ActiveLink& link : layout.links) force[link.slot] = {};
   for (const int i : layout.riding) force[i] = {};
   for (const auto& group : system_.groups) group->add_forces(evaluation_);
-  for (std::size_t i = 0; i < layout.sliding.size(); ++i) apply_sliding(i, evaluation_);
+  for (std::size_t i = 0; i < layout.sliding.size(); ++i) apply_sliding(i);
   const Motion<double>* const motion = motion_;
   for (const ActiveLink& link : layout.links) {
     const BodyForce& f = force[link.slot];
@@ -183,13 +170,8 @@ void Dynamics::finish_watches() {
                                  &watch_[unit.watch]);
     watch_place(f);
   };
-  if (!layout.division) {
-    for (const int f : layout.holding) watch(f);
-    for (const int f : layout.sliding) watch_place(f);
-    return;
-  }
-  team_.each(static_cast<int>(layout.holding.size()), [&](int i) { watch(layout.holding[i]); });
-  team_.each(static_cast<int>(layout.sliding.size()), [&](int i) { watch_place(layout.sliding[i]); });
+  for (const int f : layout.holding) watch(f);
+  for (const int f : layout.sliding) watch_place(f);
 }
 
 void Dynamics::rates(double t, const double* y, double* dy) {
@@ -213,8 +195,6 @@ STEPLAP_INLINE void Dynamics::finish_rates(const double* y, double* dy) {
   power[1] = evaluation_.work;
 }
 
-void Dynamics::finish_divided_rates(const double* y, double* dy) { finish_rates(y, dy); }
-
 STEPLAP_INLINE void Dynamics::begin_rates(double t, const double* y, double* dy) {
   const int n = coordinate_count();
   ++evaluations_;
@@ -234,8 +214,6 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   const int n = coordinate_count();
   t = std::min(t, time_cap_);
   begin_rates(t, y, dy);
-  if (layout.division) [[unlikely]]
-    return rates_in_parts(t, y, dy);
   kinematics_.place(t, y, y + n);
   rows_.prepare();
   apply_forces();
@@ -412,7 +390,6 @@ double Dynamics::mechanical_energy(double t, const double* y) {
   t = std::min(t, time_cap_);
   if (!kinematics_.is_placed(t, y)) kinematics_.place(t, y, y + coordinate_count());
   double kinetic = 0.0, potential = 0.0;
-  if (layout_->division) return energy_in_parts(y);
   for (const Cluster& c : layout_->clusters) {
     const Motion<double>& m = motion_[c.motion];
     kinetic += 0.5 * c.mass * (m.vx * m.vx + m.vy * m.vy) + 0.5 * c.inertia * m.omega * m.omega;

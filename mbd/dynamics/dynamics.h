@@ -33,8 +33,7 @@ struct ConstraintFailure : NumericalFailure {
 
 class Dynamics {
 public:
-  /// `threads` share the evaluation of scenes that are large enough (parts.h); their number changes no result.
-  explicit Dynamics(const System& system, int threads = 1);
+  explicit Dynamics(const System& system);
   Dynamics(const Dynamics&) = delete; // what it evaluates points into it
   Dynamics& operator=(const Dynamics&) = delete;
 
@@ -184,8 +183,6 @@ public:
   };
   void respond(Candidates& candidates, const double* dy);
 
-  /// Shares work between this object's threads; not while it evaluates.
-  [[nodiscard]] Team& team() const { return team_; }
   [[nodiscard]] long evaluations() const { return evaluations_; }
   [[nodiscard]] const System& system() const { return system_; }
 
@@ -193,19 +190,11 @@ private:
   void take_inner(const double* inner);
   Residual project_rows(double t, double* y, double tolerance);
   void settle_inner(double t, double* y);
-  void apply_sliding(std::size_t i, Evaluation& e);
+  void apply_sliding(std::size_t i);
   void sliding_rates(std::size_t i, double* rate) const;
   void apply_forces();
   void begin_rates(double t, const double* y, double* dy);
   void finish_rates(const double* y, double* dy);
-  void rates_in_parts(double t, const double* y, double* dy);
-  void finish_divided_rates(const double* y, double* dy);
-  void apply_sliding_of(int part);
-  void apply_forces_of(int part);
-  void collect_forces_of(int part);
-  void add_links_inside(int part);
-  void accelerate_part(int part, const double* y, double* dy);
-  [[nodiscard]] double energy_in_parts(const double* y);
   void finish_power(const double* a);
   void finish_watches();
   Residual constraint_values(double t, const double* y);
@@ -244,14 +233,7 @@ private:
   static constexpr double k_near_limit = 0.5;
   static constexpr double k_bound_slack = 1e-13; ///< as in coulomb_stick.cpp
 
-  /// What the elements of one part do, in whole lines of the cache.
-  struct alignas(64) PartPower {
-    double dissipation = 0.0, work = 0.0;
-  };
-
   const System& system_;
-  mutable Team team_;
-  std::vector<PartPower> part_power_;
   const State* state_ = nullptr;
   LayoutStore layouts_;
   Coordinates choice_ = Coordinates::absolute;

@@ -1,12 +1,11 @@
 #include "mbd/dynamics/kinematics.h"
 
-#include "mbd/dynamics/parts.h"
 
 #include <algorithm>
 
 namespace steplap {
 
-Kinematics::Kinematics(const System& system, Team& team) : system_(system), team_(team) {
+Kinematics::Kinematics(const System& system) : system_(system) {
   motion_.resize(system.bodies.size() + system.links.slot_count()); // at most every body is a cluster's with a slot of its own
 }
 
@@ -16,7 +15,6 @@ void Kinematics::use(Layout& layout, const State& state) {
   time_ = lock_time_ = std::numeric_limits<double>::quiet_NaN();
   is_complete_ = false;
   if (lock_target_.size() < layout.locks.size()) lock_target_.resize(layout.locks.size());
-  if (layout.division) is_part_at_.resize(layout.division->parts.size());
 }
 
 void Kinematics::aim_locks(double t) {
@@ -34,41 +32,8 @@ STEPLAP_INLINE void Kinematics::place_lock(std::size_t i) {
   place_locked(lock.coordinate, lock_target_[i].value, lock_target_[i].rate, motion_[layout_->slots[lock.cluster]]);
 }
 
-void Kinematics::begin(double t) {
-  time_ = t;
-  is_complete_ = false;
-  if (!layout_->locks.empty()) aim_locks(t);
-}
-
-void Kinematics::place_part(int p, const double* q, const double* v) {
-  const Parts& division = *layout_->division;
-  const Part& part = division.parts[p];
-  Motion<double>* const motion = motion_.data();
-  for (int i = part.mechanisms; i < part.mechanisms_end; ++i) {
-    Mechanism& m = layout_->mechanisms[i];
-    m.place(q + m.first_coordinate, v + m.first_coordinate, motion);
-  }
-  const int* const slots = layout_->slots.data();
-  for (int k = part.clusters; k < part.clusters_end; ++k) place_cluster(q + 3 * k, v + 3 * k, motion[slots[k]]);
-  for (const int i : division.locks[p]) place_lock(i);
-  for (const int i : division.riding[p]) place_member(i);
-}
-
-void Kinematics::place_links(int p) {
-  const Part& part = layout_->division->parts[p];
-  Motion<double>* const motion = motion_.data();
-  const ActiveLink* const links = layout_->links.data();
-  for (const ActiveLink *link = links + part.links, *const end = links + part.links_end; link != end; ++link)
-    motion[link->slot] = seen_from(motion[link->a], motion[link->b]);
-}
-
 void Kinematics::place(double t, const double* q, const double* v) {
   const Layout& layout = *layout_;
-  if (layout.division) [[unlikely]] {
-    begin(t);
-    team_.each(layout.division->count(), [&](int p) { place_part(p, q, v); });
-    return team_.each(layout.division->count(), [&](int p) { place_links(p); });
-  }
   time_ = t;
   is_complete_ = false;
   Motion<double>* const motion = motion_.data();
@@ -90,30 +55,11 @@ void Kinematics::place(double t, const double* q, const double* v) {
 bool Kinematics::is_placed(double t, const double* y) const {
   if (t != time_) return false;
   const double* const v = y + layout_->coordinate_count;
-  if (!layout_->division) {
-    const int mechanisms = static_cast<int>(layout_->mechanisms.size());
-    return are_mechanisms_at(0, mechanisms, y, v) && are_clusters_at(0, layout_->absolute_count, y, v);
-  }
-  const int count = layout_->division->count();
-  team_.each(count, [&](int p) {
-    const Part& part = layout_->division->parts[p];
-    is_part_at_[p] = are_mechanisms_at(part.mechanisms, part.mechanisms_end, y, v) && are_clusters_at(part.clusters, part.clusters_end, y, v);
-  });
-  return std::all_of(is_part_at_.begin(), is_part_at_.begin() + count, [](char is_at) { return is_at != 0; });
-}
-
-bool Kinematics::are_mechanisms_at(int begin, int end, const double* q, const double* v) const {
-  for (int i = begin; i < end; ++i) {
-    const Mechanism& m = layout_->mechanisms[i];
-    if (!m.is_at(q + m.first_coordinate, v + m.first_coordinate)) return false;
-  }
-  return true;
-}
-
-bool Kinematics::are_clusters_at(int begin, int end, const double* q, const double* v) const {
-  for (int k = begin; k < end; ++k) {
+  for (const Mechanism& m : layout_->mechanisms)
+    if (!m.is_at(y + m.first_coordinate, v + m.first_coordinate)) return false;
+  for (int k = 0; k < layout_->absolute_count; ++k) {
     const Motion<double>& m = motion_[layout_->slots[k]];
-    const double* const qk = q + 3 * k;
+    const double* const qk = y + 3 * k;
     const double* const vk = v + 3 * k;
     if (m.x != qk[0] || m.y != qk[1] || m.theta != qk[2] || m.vx != vk[0] || m.vy != vk[1] || m.omega != vk[2]) return false;
   }

@@ -6,7 +6,6 @@
 // parts of a core that hold to each other, wait for complete(), which whoever looks at every body calls.
 #pragma once
 
-#include "mbd/base/team.h"
 #include "mbd/dynamics/layout.h"
 
 #include <limits>
@@ -46,8 +45,7 @@ template <class S> STEPLAP_INLINE void place_locked(int coordinate, const S& val
 
 class Kinematics {
 public:
-  /// `team`: shares the work where a layout is divided.
-  Kinematics(const System& system, Team& team);
+  explicit Kinematics(const System& system);
   Kinematics(const Kinematics&) = delete; // what it places is pointed into
   Kinematics& operator=(const Kinematics&) = delete;
 
@@ -56,11 +54,6 @@ public:
 
   /// At time t, coordinates q and rates v of the layout.
   void place(double t, const double* q, const double* v);
-  /// What place() does in a layout that is divided, for who does more with a part than that: begin() first, then the parts' bodies,
-  /// and their links when the bodies of all parts that they go to are there.
-  void begin(double t);
-  void place_part(int part, const double* q, const double* v);
-  void place_links(int part);
   /// Are those the ones that were placed last? y: q, then v.
   [[nodiscard]] bool is_placed(double t, const double* y) const;
   /// Bodies that place() has left out.
@@ -79,15 +72,11 @@ private:
   void place_member(int body);
   void place_lock(std::size_t lock);
   void place_rest();
-  [[nodiscard]] bool are_clusters_at(int begin, int end, const double* q, const double* v) const;
-  [[nodiscard]] bool are_mechanisms_at(int begin, int end, const double* q, const double* v) const;
 
   const System& system_;
-  Team& team_;
   Layout* layout_ = nullptr;
   const State* state_ = nullptr;
   std::vector<Motion<double>> motion_;
-  mutable std::vector<char> is_part_at_; ///< scratch, per part
   std::vector<SignalJet> lock_target_; ///< per lock, at lock_time_
   double lock_time_ = std::numeric_limits<double>::quiet_NaN();
   double time_ = std::numeric_limits<double>::quiet_NaN(); ///< of motion_

@@ -1,7 +1,6 @@
 #include "mbd/dynamics/layout.h"
 
 #include "mbd/dynamics/mechanism_layout.h"
-#include "mbd/dynamics/parts.h"
 #include "mbd/dynamics/stage_program.h"
 #include "mbd/math/portable_math.h"
 
@@ -437,12 +436,10 @@ void fill_rows(Layout& layout) {
   }
 }
 
-void divide_and_analyze(const System& system, Layout& layout) {
+void analyze_rows(Layout& layout) {
   int absolute_rows = static_cast<int>(layout.active.size());
   for (const Mechanism& m : layout.mechanisms) absolute_rows -= m.row_count;
-  layout.division = make_parts(system, layout, absolute_rows);
-  if (layout.division) layout.pivots.resize(layout.division->parts.size());
-  layout.schur.analyze(layout.schur_rows, absolute_rows, layout.parts, layout.division ? layout.division->of_row : std::vector<int>{});
+  layout.schur.analyze(layout.schur_rows, absolute_rows, layout.parts);
 }
 
 } // namespace
@@ -476,7 +473,7 @@ Layout make_layout(const System& system, const State& state, Coordinates coordin
   fill_rows(layout);
   for (const ActiveRow& row : layout.active) layout.is_friction_row.push_back(row.friction >= 0 && !system.frictions[row.friction].friction->never_slips());
   layout.forget_sharing();
-  divide_and_analyze(system, layout);
+  analyze_rows(layout);
   return layout;
 }
 

@@ -22,7 +22,6 @@
 namespace steplap {
 
 class StageProgram;
-struct Parts;
 
 /// What describes islands for which there is a choice; `automatic`: joint coordinates where they pay.
 enum class Coordinates : unsigned char { automatic, joint, absolute };
@@ -151,12 +150,6 @@ struct Layout {
   std::vector<SchurRow> schur_rows;  ///< per active row, then per part: bodies filled in, numbers are scratch
   std::vector<SchurPart> parts;      ///< of rows over more than two bodies; those are between absolute clusters
   std::vector<const RowSpec*> part_specs; ///< of each of those
-  std::unique_ptr<Parts> division;   ///< null: it is evaluated in one piece
-  struct Pivots {
-    double smallest = 1.0;
-    bool is_singular = false;
-  };
-  std::vector<Pivots> pivots; ///< of mechanisms, in each part of the division; noted where these are factored
   std::vector<std::unique_ptr<StageProgram>> programs; ///< of sets of modes that have this layout (stage_program.h)
 
   /// As when it was made: what rows share hangs on the pose in which that was first asked for.
@@ -182,16 +175,12 @@ struct Layout {
   // Of all constraint equations, as SchurSolver says of its own.
   [[nodiscard]] bool is_singular() const {
     bool is_any = schur.is_singular();
-    for (const Pivots& part : pivots) is_any = is_any || part.is_singular;
-    if (pivots.empty())
-      for (const Mechanism& m : mechanisms) is_any = is_any || m.is_singular();
+    for (const Mechanism& m : mechanisms) is_any = is_any || m.is_singular();
     return is_any;
   }
   [[nodiscard]] double smallest_pivot() const {
     double least = schur.smallest_pivot();
-    for (const Pivots& part : pivots) least = std::min(least, part.smallest);
-    if (pivots.empty())
-      for (const Mechanism& m : mechanisms) least = std::min(least, m.smallest_pivot());
+    for (const Mechanism& m : mechanisms) least = std::min(least, m.smallest_pivot());
     return least;
   }
   [[nodiscard]] bool is_dependent(int row) const {

@@ -1,6 +1,5 @@
 // Dynamics: from the poses and rates of bodies to the coordinates that are integrated, those of clusters, and back.
 #include "mbd/dynamics/dynamics.h"
-#include "mbd/dynamics/parts.h"
 
 #include <algorithm>
 
@@ -99,16 +98,6 @@ const double* Dynamics::cluster_rates(const double* y) {
   cluster_v_.resize(cluster_q_.size());
   std::copy_n(y, 3 * layout_->absolute_count, cluster_q_.begin());
   std::copy_n(y + n, 3 * layout_->absolute_count, cluster_v_.begin());
-  if (layout_->division) {
-    team_.each(layout_->division->count(), [&](int p) {
-      const Part& part = layout_->division->parts[p];
-      for (int i = part.mechanisms; i < part.mechanisms_end; ++i) {
-        const Mechanism& m = layout_->mechanisms[i];
-        m.unpack(y + m.first_coordinate, y + n + m.first_coordinate, cluster_q_.data(), cluster_v_.data());
-      }
-    });
-    return cluster_v_.data();
-  }
   for (const Mechanism& m : layout_->mechanisms)
     m.unpack(y + m.first_coordinate, y + n + m.first_coordinate, cluster_q_.data(), cluster_v_.data());
   return cluster_v_.data();

@@ -3,7 +3,6 @@
 #include "mbd/base/types.h"
 #include "mbd/system/motion.h"
 #include "mbd/dynamics/dependent_rows.h"
-#include "mbd/base/team.h"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -89,34 +88,6 @@ std::vector<int> fill_reducing_order(int n, const std::vector<SchurCoupling>& co
 }
 
 } // namespace
-
-// Rows that are coupled with each other, directly or by others: the first of them, for each.
-static std::vector<int> components(int n, const std::vector<SchurCoupling>& coupled, const std::vector<int>& of) {
-  std::vector<int> first(n);
-  std::iota(first.begin(), first.end(), 0);
-  const auto root = [&first](int i) {
-    while (first[i] != i) i = first[i] = first[first[i]];
-    return i;
-  };
-  for (const SchurCoupling& c : coupled) {
-    const int i = root(of[c.i]), j = root(of[c.j]);
-    first[std::max(i, j)] = std::min(i, j);
-  }
-  for (int i = 0; i < n; ++i) first[i] = root(i);
-  return first;
-}
-
-// What is coupled comes together, each in the order that it had, and is of its first row's block.
-void SchurSolver::order_blocks(const std::vector<int>& block, const std::vector<int>& component) {
-  const auto place = [&](int row) { return std::pair(block.empty() ? 0 : block[component[row]], component[row]); };
-  if (!block.empty())
-    std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return place(a) < place(b); });
-  block_begin_.assign(1, 0);
-  for (int k = 1; k < n_; ++k)
-    if (place(order_[k]).first != place(order_[k - 1]).first) block_begin_.push_back(k);
-  block_begin_.push_back(n_);
-  found_.assign(block_begin_.size() - 1, {});
-}
 
 namespace {
 
@@ -214,7 +185,7 @@ void SchurSolver::find_pattern(const Columns& columns) {
     for (int p = pattern_begin_[k]; p < pattern_begin_[k + 1]; ++p) column_row_[next[pattern_[p]]++] = k;
 }
 
-void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts, const std::vector<int>& block) {
+void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts) {
   n_ = count;
   parts_ = parts;
   length_ = std::max(1.0, n_ / k_usual_rows);
@@ -231,7 +202,6 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const st
     return;
   }
   order_ = fill_reducing_order(n_, coupled, of);
-  order_blocks(block, block.empty() ? of : components(n_, coupled, of));
   for (int k = 0; k < n_; ++k) position_[order_[k]] = k;
   const Columns columns = columns_of(coupled, of, !parts.empty());
   list_products(columns);
@@ -426,28 +396,12 @@ void SchurSolver::add_part_products(const std::vector<SchurRow>& rows, int k) {
   }
 }
 
-template <class F> void SchurSolver::for_blocks(const F& f) const {
-  const int count = static_cast<int>(found_.size());
-  if (team_) return team_->each(count, f);
-  for (int b = 0; b < count; ++b) f(b);
-}
-
 void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
-  for_blocks([&](int b) { factor_block(rows, b); });
   dependent_count_ = 0;
-  smallest_pivot_ = 1.0;
-  for (const Found& found : found_) {
-    dependent_count_ += found.dependent_count;
-    smallest_pivot_ = std::min(smallest_pivot_, found.smallest_pivot);
-  }
-}
-
-void SchurSolver::factor_block(const std::vector<SchurRow>& rows, int block) {
-  const int begin = block_begin_[block], last = block_begin_[block + 1];
-  Found found;
+  double smallest_pivot = 1.0;
   double* const y = work_.data();
-  for (int k = begin; k < last; ++k) column_fill_[k] = column_begin_[k];
-  for (int k = begin; k < last; ++k) {
+  for (int k = 0; k < n_; ++k) column_fill_[k] = column_begin_[k];
+  for (int k = 0; k < n_; ++k) {
     const SchurRow& row_k = rows[order_[k]];
     for (int p = product_begin_[k]; p < product_begin_[k + 1]; ++p) {
       const Product& product = products_[p];
@@ -473,13 +427,13 @@ void SchurSolver::factor_block(const std::vector<SchurRow>& rows, int block) {
     d_[k] = d;
     if (leaves_out(order_[k], d, diagonal)) [[unlikely]] {
       inverse_d_[k] = 0.0;
-      ++found.dependent_count;
+      ++dependent_count_;
     } else {
       inverse_d_[k] = 1.0 / d;
-      found.smallest_pivot = std::min(found.smallest_pivot, d / diagonal);
+      smallest_pivot = std::min(smallest_pivot, d / diagonal);
     }
   }
-  found_[block] = found;
+  smallest_pivot_ = smallest_pivot;
 }
 
 void SchurSolver::solve(const std::vector<SchurRow>& rows, double* x) const {
@@ -545,19 +499,18 @@ void SchurSolver::eliminate(double* x) const {
   default: break;
   }
   if (n_ <= k_max_dense) return solve_dense<0>(x);
-  for_blocks([&](int b) { eliminate_block(x, b); });
+  eliminate_sparse(x);
 }
 
-void SchurSolver::eliminate_block(double* x, int block) const {
-  const int begin = block_begin_[block], end = block_begin_[block + 1];
+void SchurSolver::eliminate_sparse(double* x) const {
   double* const y = permuted_.data();
-  for (int k = begin; k < end; ++k) y[k] = x[order_[k]];
-  for (int k = begin; k < end; ++k)
+  for (int k = 0; k < n_; ++k) y[k] = x[order_[k]];
+  for (int k = 0; k < n_; ++k)
     for (int c = column_begin_[k]; c < column_begin_[k + 1]; ++c) y[column_row_[c]] -= l_[c] * y[k];
-  for (int k = begin; k < end; ++k) y[k] *= inverse_d_[k];
-  for (int k = end - 1; k >= begin; --k)
+  for (int k = 0; k < n_; ++k) y[k] *= inverse_d_[k];
+  for (int k = n_ - 1; k >= 0; --k)
     for (int c = column_begin_[k]; c < column_begin_[k + 1]; ++c) y[k] -= l_[c] * y[column_row_[c]];
-  for (int k = begin; k < end; ++k) x[order_[k]] = y[k];
+  for (int k = 0; k < n_; ++k) x[order_[k]] = y[k];
 }
 
 } // namespace steplap

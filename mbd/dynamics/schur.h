@@ -25,8 +25,6 @@
 
 namespace steplap {
 
-class Team;
-
 /// Row in the coordinates of the moving bodies ("clusters") of one layout; S is double, or written down (mbd/tape).
 template <class S> struct SchurRowOf {
   int body[2] = {-1, -1};     ///< cluster on either side, −1: the ground
@@ -53,12 +51,8 @@ class SchurSolver {
 public:
   /// Pattern from the bodies of the first `count` rows, which are all that it solves, and of the parts of some of them that
   /// stand behind. Body −1 couples nothing.
-  /// `block` of each row, if any: rows that no other ones couple are eliminated block by block, several at a time by the threads
-  /// of use(). That changes no number.
-  void analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts = {}, const std::vector<int>& block = {});
+  void analyze(const std::vector<SchurRow>& rows, int count, const std::vector<SchurPart>& parts = {});
   void analyze(const std::vector<SchurRow>& rows) { analyze(rows, static_cast<int>(rows.size())); }
-  /// The threads that factor() and solve() share their work between; they must outlive the use of this object.
-  void use(Team& team) { team_ = &team; }
   /// Numbers from the rows' j and wj, the diagonal raised by the fraction `shift` (damping). Allocates nothing.
   void factor(const std::vector<SchurRow>& rows, double shift = 0.0);
   /// Rows that hold friction: which of them depend on others is decided by the next factorisation, and those stay out
@@ -102,11 +96,8 @@ private:
   [[nodiscard]] Columns columns_of(const std::vector<SchurCoupling>& coupled, const std::vector<int>& of, bool has_parts) const;
   void list_products(const Columns& columns);
   void find_pattern(const Columns& columns);
-  void order_blocks(const std::vector<int>& block, const std::vector<int>& component);
   void factor_sparse(const std::vector<SchurRow>& rows);
-  void factor_block(const std::vector<SchurRow>& rows, int block);
-  void eliminate_block(double* x, int block) const;
-  template <class F> void for_blocks(const F& f) const;
+  void eliminate_sparse(double* x) const;
   void add_part_products(const std::vector<SchurRow>& rows, int k);
   template <class F> void for_parts(const F& f, const std::vector<SchurRow>& rows) const;
   template <int N> void solve_dense(double* x) const;
@@ -149,13 +140,6 @@ private:
   int dependent_count_ = 0;
   double smallest_pivot_ = 1.0;
   double length_ = 1.0; ///< rows over k_usual_rows, at least 1
-  struct Found {
-    double smallest_pivot = 1.0;
-    int dependent_count = 0;
-  };
-  Team* team_ = nullptr;
-  std::vector<int> block_begin_; ///< of order_: rows of two blocks share no body
-  std::vector<Found> found_;     ///< in each
   std::vector<int> order_;     ///< order_[k]: row eliminated as k-th
   std::vector<int> position_;  ///< inverse of order_
   std::vector<int> product_begin_;

@@ -45,16 +45,12 @@ protected:
     add_stages<Rows, Row, Row>(scratch_.data());
     evaluate_stage(dynamics, t0_ + c * h_, scratch_.data(), k(Row), c);
   }
-  /// combine() and weighted_sum() of the stages, long states by all threads.
+  /// combine() and weighted_sum() of the stages.
   template <const auto& Rows, std::size_t Row, std::size_t Count> void add_stages(double* out) {
-    team_.stretches(n_, [this, out](int from, int to) {
-      combine<Rows, Row, Count>(y0_.data() + from, h_, k_.data() + from, stride_, to - from, out + from);
-    });
+    combine<Rows, Row, Count>(y0_.data(), h_, k_.data(), stride_, n_, out);
   }
   template <const auto& Weights, std::size_t Count> void sum_stages(double* out) {
-    team_.stretches(n_, [this, out](int from, int to) {
-      weighted_sum<Weights, Count>(k_.data() + from, stride_, to - from, out + from);
-    });
+    weighted_sum<Weights, Count>(k_.data(), stride_, n_, out);
   }
   /// h ‖k_i − k_j‖/‖y_i − y_j‖ of two stages at the step's end: the fastest rate in the steps' direction
   /// (Hairer, Wanner, Solving ODEs II, IV.2). `difference`: y_i − y_j.

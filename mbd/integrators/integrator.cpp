@@ -1,6 +1,5 @@
 #include "mbd/integrators/integrator.h"
 
-#include "mbd/dynamics/parts.h"
 #include "mbd/integrators/scene_rate.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/system/element_failure.h"
@@ -36,13 +35,11 @@ constexpr double k_least_slip = 0.1;
 constexpr double k_shorter_slip = 0.8;
 // Halved steps leave a 32nd of the error of the methods of least order here, 5.
 double slip_share(int division) { return k_slip_share / (static_cast<double>(division) * division * division * division * division); }
-// Numbers of a state of which sums are made in pieces.
-constexpr int k_long_state = 6 * Parts::k_least_clusters;
 
 } // namespace
 
 Integrator::Integrator(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
-    : system_(dynamics.system()), team_(dynamics.team()), settings_(settings), y0_(max_dimension, 0.0),
+    : system_(dynamics.system()), settings_(settings), y0_(max_dimension, 0.0),
       y1_(max_dimension, 0.0), weight_(max_dimension, 0.0), scratch_(3 * max_dimension, 0.0),
       watch0_(system_.watch_count, 1.0), watch1_(watch0_), watch_rate0_(watch0_),
       watch_rate1_(watch0_), nodes_(system_.watch_count), slip_scale0_(max_dimension, 0.0), slip_scale1_(slip_scale0_),
@@ -150,7 +147,7 @@ SingularCrossing::Step Integrator::crossing_step(Dynamics& dynamics) {
 void Integrator::accept() {
   t0_ = t1_;
   std::swap(y0_, y1_);
-  team_.stretches(n_, [this](int from, int to) { std::copy(k1_ + from, k1_ + to, k0_ + from); });
+  std::copy(k1_, k1_ + n_, k0_);
   std::swap(watch0_, watch1_);
   std::swap(watch_rate0_, watch_rate1_);
   std::swap(slip_scale0_, slip_scale1_);
@@ -222,9 +219,7 @@ void Integrator::update_weights(Dynamics& dynamics) {
     weight_[m + i] =
         is_locked ? 0.0 : 1.0 / (tolerance * (rate_floor_ * size + std::abs(y0_[m + i])));
   };
-  team_.stretches(m, [&](int from, int to) {
-    for (int i = from; i < to; ++i) weigh(i);
-  });
+  for (int i = 0; i < m; ++i) weigh(i);
   if (has_slip_scale0_) {
     const double share = slip_care_ * slip_share(settings_.division) * std::min(1.0, std::sqrt(k_slip_numbers / n_));
     for (int i = 0; i < m; ++i)
@@ -246,15 +241,12 @@ void Integrator::update_weights(Dynamics& dynamics) {
 }
 
 double Integrator::error_norm(const double* error) const {
-  const double all = ordered_sum<double>(team_, n_, k_long_state, [&](int from, int to) {
-    double sum = 0.0;
-    for (int i = from; i < to; ++i) {
-      const double e = error[i] * weight_[i];
-      sum += e * e;
-    }
-    return sum;
-  });
-  return std::sqrt(all / n_);
+  double sum = 0.0;
+  for (int i = 0; i < n_; ++i) {
+    const double e = error[i] * weight_[i];
+    sum += e * e;
+  }
+  return std::sqrt(sum / n_);
 }
 
 double Integrator::projected_error_norm(Dynamics& dynamics, double* error) const {

@@ -163,7 +163,6 @@ protected:
   [[nodiscard]] double restrained_step(Dynamics& dynamics, double h);
 
   const System& system_;
-  Team& team_; ///< of the dynamics: shares sums of long states
   IntegratorSettings settings_;
   int n_ = 0; ///< dimension now
   bool is_restarted_ = false; ///< no step was made since

@@ -77,10 +77,8 @@ private:
     stage(dynamics, 1, 0.5, k(0));
     stage(dynamics, 2, 0.5, k(1));
     stage(dynamics, 3, 1.0, k(2));
-    team_.stretches(n_, [this](int from, int to) {
-      for (int i = from; i < to; ++i)
-        y1_[i] = y0_[i] + h_ / 6.0 * (k(0)[i] + 2.0 * (k(1)[i] + k(2)[i]) + k(3)[i]);
-    });
+    for (int i = 0; i < n_; ++i)
+      y1_[i] = y0_[i] + h_ / 6.0 * (k(0)[i] + 2.0 * (k(1)[i] + k(2)[i]) + k(3)[i]);
     return try_finish_step(dynamics);
   }
   // The step that is due, into `division` parts.
@@ -110,9 +108,7 @@ private:
   double* k(int i) { return k_.data() + i * stride_; }
   void stage(Dynamics& dynamics, int index, double c, const double* previous) {
     double* y = scratch_.data();
-    team_.stretches(n_, [=, this](int from, int to) {
-      for (int i = from; i < to; ++i) y[i] = y0_[i] + c * h_ * previous[i];
-    });
+    for (int i = 0; i < n_; ++i) y[i] = y0_[i] + c * h_ * previous[i];
     evaluate_stage(dynamics, t0_ + c * h_, y, k(index), c);
   }
   std::vector<double> k_, kept_; ///< kept_: end of a step that is tried anew

@@ -1,7 +1,6 @@
 #include "mbd/simulation/energy_account.h"
 
 #include "mbd/base/number_text.h"
-#include "mbd/dynamics/parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,18 +28,14 @@ struct Kinetic {
   double total = 0.0, about_centre = 0.0;
   double of_floor = 0.0; ///< T₀ of the motion to which tolerances are absolute
   double least = 0.0;    ///< of the motion that a whole run's balance is measured against at least
-
-  Kinetic& operator+=(const Kinetic& other) {
-    for (double Kinetic::*const term : {&Kinetic::mass, &Kinetic::px, &Kinetic::py, &Kinetic::total, &Kinetic::of_floor, &Kinetic::least})
-      this->*term += other.*term;
-    return *this;
-  }
 };
 
-/// Of some clusters, all but about_centre; `v`: 3 numbers of each.
-Kinetic kinetic_sum(const Layout& layout, int begin, int end, const double* v, double size) {
+/// `size`: L, the largest radius of gyration, m.
+Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
+  const Layout& layout = dynamics.layout();
+  const double* const v = dynamics.cluster_rates(y); // 3 numbers of each cluster
   Kinetic sum;
-  for (int k = begin; k < end; ++k) {
+  for (int k = 0; k < layout.cluster_count(); ++k) {
     const Cluster& c = layout.clusters[k];
     const double *const u = v + 3 * static_cast<std::ptrdiff_t>(k);
     sum.total += 0.5 * c.mass * (u[0] * u[0] + u[1] * u[1]) + 0.5 * c.inertia * u[2] * u[2];
@@ -50,15 +45,6 @@ Kinetic kinetic_sum(const Layout& layout, int begin, int end, const double* v, d
     sum.px += c.mass * u[0];
     sum.py += c.mass * u[1];
   }
-  return sum;
-}
-
-/// `size`: L, the largest radius of gyration, m.
-Kinetic kinetic_energy(Dynamics& dynamics, const double* y, double size) {
-  const Layout& layout = dynamics.layout();
-  const double* const v = dynamics.cluster_rates(y);
-  Kinetic sum = ordered_sum<Kinetic>(dynamics.team(), layout.cluster_count(), Parts::k_least_clusters,
-                                     [&](int begin, int end) { return kinetic_sum(layout, begin, end, v, size); });
   sum.about_centre = sum.total;
   if (sum.mass > 0.0) sum.about_centre -= 0.5 * (sum.px * sum.px + sum.py * sum.py) / sum.mass;
   return sum;

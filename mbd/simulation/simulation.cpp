@@ -2,7 +2,6 @@
 
 #include "mbd/simulation/arguments.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/dynamics/parts.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
 #include "mbd/system/slip_scratch.h"
@@ -65,14 +64,8 @@ SimulationOptions options_of(const Model& model) {
   return options;
 }
 
-// One for each part at most.
-static int threads_worth_while(const System& system, int threads) {
-  if (system.body_count() <= Parts::k_least_clusters) return 1;
-  return std::clamp(threads, 1, system.body_count() / Parts::k_clusters);
-}
-
 Simulation::Simulation(const System& system, const State& initial, SimulationOptions options)
-    : system_(system), options_(checked(std::move(options), initial.t)), state_(checked(initial, system)), dynamics_(system, threads_worth_while(system, options_.threads)),
+    : system_(system), options_(checked(std::move(options), initial.t)), state_(checked(initial, system)), dynamics_(system),
       handler_(system, dynamics_), finder_(system, system.largest_dimension()),
       y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   cpu_start_ = thread_cpu_seconds();

@@ -35,7 +35,6 @@ struct SimulationOptions {
   double storm_step = 1e-2;                         ///< of time stepping through a storm of events, in shares of its window
   long storm_parts = 10000;                         ///< into which these are halved at most: events are the cheaper then
   long max_events = 100000;                         ///< beyond which the run is given up
-  int threads = 1;                                  ///< that share the evaluation of scenes of some thousand bodies; changes no result
   std::function<void(double t)> progress;           ///< called now and then, if given
 };
 

@@ -98,19 +98,6 @@ public:
     return TraceableLaw<Law>;
   }
 
-  [[nodiscard]] int divisible_count() const override { return static_cast<int>(entries.size()); }
-  [[nodiscard]] Link link_of(int element) const override { return {entries[element].a, entries[element].b}; }
-  void add_forces_of(std::span<const int> elements, Evaluation& e) const override {
-    double dissipation = 0.0;
-    for (const int i : elements) dissipation += add_force_to(entries[i], static_cast<Evaluated<double>&>(e));
-    e.dissipation += dissipation;
-  }
-  [[nodiscard]] double potential_of(std::span<const int> elements, const Motion<double>* motion) const override {
-    double sum = 0.0;
-    for (const int i : elements) sum += energy_of(entries[i], motion);
-    return sum;
-  }
-
   [[nodiscard]] double potential(const Motion<double>* motion) const override {
     double sum = 0.0;
     for (const Entry& entry : entries) sum += energy_of(entry, motion);

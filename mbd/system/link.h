@@ -82,16 +82,4 @@ STEPLAP_INLINE void add_link_force(const BodyForceOf<S>& f, const Motion<S>& lin
   on_b.m -= f.m + (link.x * f.fy - link.y * f.fx);
 }
 
-/// The same on one of the two alone.
-STEPLAP_INLINE void add_link_force_on_a(const BodyForce& f, const Motion<double>& b, BodyForce& on_a) {
-  on_a.fx += b.c * f.fx - b.s * f.fy;
-  on_a.fy += b.s * f.fx + b.c * f.fy;
-  on_a.m += f.m;
-}
-STEPLAP_INLINE void add_link_force_on_b(const BodyForce& f, const Motion<double>& link, const Motion<double>& b, BodyForce& on_b) {
-  on_b.fx -= b.c * f.fx - b.s * f.fy;
-  on_b.fy -= b.s * f.fx + b.c * f.fy;
-  on_b.m -= f.m + (link.x * f.fy - link.y * f.fx);
-}
-
 } // namespace steplap

@@ -151,14 +151,6 @@ public:
   /// Enters the pairs of bodies that it acts between, and remembers their indices.
   virtual void enter_links(LinkTable& /*links*/) {}
 
-  // Of large scenes, whose elements are evaluated a part at a time, and by several threads.
-  /// Elements, if each adds to the force of one link alone and shares nothing else with others; 0: they are evaluated as a whole.
-  [[nodiscard]] virtual int divisible_count() const { return 0; }
-  [[nodiscard]] virtual Link link_of(int /*element*/) const { return {}; }
-  /// What add_forces() and potential() do, for these elements.
-  virtual void add_forces_of(std::span<const int> /*elements*/, Evaluation& /*e*/) const {}
-  [[nodiscard]] virtual double potential_of(std::span<const int> /*elements*/, const Motion<double>* /*motion*/) const { return 0.0; }
-
   /// Modes, for groups whose elements are units. `slot` is the watch value that fell below zero.
   [[nodiscard]] virtual UnitMode initial_mode(int /*element*/, const Evaluation&) const { return 0; }
   [[nodiscard]] virtual UnitMode next_mode(int /*element*/, UnitMode mode, int /*slot*/, const Evaluation&) const {

@@ -3,13 +3,10 @@
 // the whole program with -fsanitize=thread would be a third one.
 //
 //   threads [shared]     what the library promises: exit code 0 if the results are the same bytes as without threads
-//   threads parts        one run whose evaluations are shared by threads: the same bytes as by one
 //   threads RACE         what it does not promise, of which helgrind has to complain, or it would see nothing at all:
 //     dynamics             two threads evaluate one Dynamics
 //     system               one thread writes a number into a System that another one runs
-//     team                 two pieces of a team's work write the same number
 //     once                 a flag without a lock guards what the first thread to come fills in
-#include "mbd/base/team.h"
 #include "mbd/ensemble/ensemble.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
@@ -19,7 +16,6 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -125,45 +121,6 @@ int shared() {
   return 0;
 }
 
-// Bodies enough for several parts (mbd/dynamics/parts.h): groups of three, pinned to each other, in a row that springs hold together,
-// then pendulums of three, which are mechanisms.
-std::string large_scene() {
-  constexpr int k_bodies = 4200;
-  std::ostringstream text;
-  text << "gravity = [0.0, -9.81]\n[simulation]\nend = 1.0\nstep = 1e-3\n";
-  for (int i = 0; i < k_bodies; ++i)
-    text << "[[body]]\nname = \"" << i << "\"\nmass = 1.0\ninertia = 0.1\nposition = [" << i << ".5, 0.0]\n";
-  for (int i = 0; i < k_bodies; ++i) {
-    const bool is_sprung = i % 3 == 0 && i < k_bodies / 2 && i > 0;
-    const std::string before = i % 3 == 0 && !is_sprung ? "ground" : std::to_string(i - 1);
-    text << "[[element]]\nkind = \"" << (is_sprung ? "spring_damper" : "revolute") << "\"\nname = \"e" << i << "\"\na = { body = \"" << i
-         << "\", at = [" << i << ".0, 0.0] }\nb = { body = \"" << before << "\", at = [" << i << (is_sprung ? ".0, 0.5" : ".0, 0.0") << "] }\n";
-    if (is_sprung) text << "stiffness = 1e3\ndamping = 1.0\n";
-  }
-  return text.str();
-}
-
-int in_parts() {
-  const auto system = compile(parse_model(large_scene(), "large.toml", transformer_catalog()));
-  SimulationOptions options;
-  options.integrator = "rk4";
-  options.settings.step = 1e-3;
-  options.end = 2e-3;
-  options.threads = k_threads;
-  const std::vector<double> together = run(*system, options);
-  options.threads = 1;
-  if (run(*system, options) == together) return 0;
-  std::printf("other numbers by %d threads than by one\n", k_threads);
-  return 1;
-}
-
-int team_of_two() {
-  Team team(2);
-  double sum = 0.0;
-  team.each(2, [&sum](int i) { sum += i; });
-  return sum > 0.0 ? 0 : 1;
-}
-
 int dynamics_of_two() {
   const Scene s = scene("benchmarks/andrews", "dop853", 0.0);
   const State start = s.system->initial_state();
@@ -204,8 +161,6 @@ int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "shared";
   try {
     if (what == "shared") return shared();
-    if (what == "parts") return in_parts();
-    if (what == "team") return team_of_two();
     if (what == "dynamics") return dynamics_of_two();
     if (what == "system") return system_of_two();
     if (what == "once") return filled_once();
@@ -213,6 +168,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", error.what());
     return 3;
   }
-  std::fprintf(stderr, "usage: threads [shared|parts|dynamics|system|team|once]\n");
+  std::fprintf(stderr, "usage: threads [shared|dynamics|system|once]\n");
   return 2;
 }

@@ -44,6 +44,14 @@ TEST_CASE("wrong usage is exit code 2 and one line") {
   CHECK(nothing.code == 2);
   CHECK(has(nothing.err, "MODEL"));
   CHECK(steplap_does({"simulate", "x.toml", "-q", "-v"}).code == 2);
+  for (const std::vector<std::string>& threads : {std::vector<std::string>{"--threads", "4"}, {"--threads=4"}}) { // an option of earlier days
+    std::vector<std::string> arguments{"simulate", "x.toml"};
+    arguments.insert(arguments.end(), threads.begin(), threads.end());
+    const Outcome retired = steplap_does(arguments);
+    CHECK(retired.code == 2);
+    CHECK(retired.err == "steplap: error: a run takes one thread: leave --threads out. Many runs side by side take all processors: "
+                         "steplap study, steplap assess\n");
+  }
 }
 
 TEST_CASE("errors of a model are exit code 3, all of them, with their places") {

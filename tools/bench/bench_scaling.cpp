@@ -1,8 +1,7 @@
 // What a body costs in scenes of 10 to 100 000 of them: reading, compiling, starting, a step of rk4, memory.
 // Chains of pendulums (two constraint rows a body: sparse constraint algebra), square grids of masses on
 // springs (no constraints), and four-bar linkages side by side (islands). Linear cost shows as columns that do not change with n.
-//   bench_scaling [largest number of bodies, default 100000] [threads, default 1] [smallest number, default 10] [scene]
-// The step's time is CPU time of the calling thread, and by the clock.
+//   bench_scaling [largest number of bodies, default 100000] [smallest number, default 10] [scene]
 #include "elements/catalog.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
@@ -10,7 +9,6 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -94,13 +92,9 @@ std::string linkages(int n) {
   return text.str();
 }
 
-double clock_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 double allocated() { return static_cast<double>(mallinfo2().uordblks); }
 
-void measure(const char* scene, const std::string& text, int threads, bool is_absolute = false) {
+void measure(const char* scene, const std::string& text, bool is_absolute = false) {
   const double empty = allocated();
   const double start = thread_cpu_seconds();
   const Model model = parse_model(text, scene, element_catalog());
@@ -110,24 +104,22 @@ void measure(const char* scene, const std::string& text, int threads, bool is_ab
   const double n = system->body_count() - 1.0;
   SimulationOptions options = options_of(model);
   options.output_step = 0.0;
-  options.threads = threads;
   if (is_absolute) options.coordinates = Coordinates::absolute;
   options.has_extremes = false; // a search of its own, over all channels
   Simulation simulation(*system, system->initial_state(), options);
   const double started = thread_cpu_seconds();
   const double memory = allocated() - empty;
   const int steps = std::max(3, static_cast<int>(20000 / n));
-  double best = std::numeric_limits<double>::infinity(), by_clock = best;
+  double best = std::numeric_limits<double>::infinity();
   const long evaluated = simulation.statistics().evaluations;
   for (int batch = 0; batch < k_batches; ++batch) {
-    const double begin = thread_cpu_seconds(), begin_by_clock = clock_seconds();
+    const double begin = thread_cpu_seconds();
     for (int i = 0; i < steps; ++i) simulation.advance();
     best = std::min(best, (thread_cpu_seconds() - begin) / steps);
-    by_clock = std::min(by_clock, (clock_seconds() - begin_by_clock) / steps);
   }
   const double evaluations = static_cast<double>(simulation.statistics().evaluations - evaluated) / (k_batches * steps);
-  std::printf("%-10s %7.0f %10.1f %10.2f %10.2f %10.3f %10.3f %13.4f %10.2f\n", scene, n, 1e6 * (read - start) / n,
-              1e6 * (compiled - read) / n, 1e6 * (started - compiled) / n, 1e6 * best / n, 1e6 * by_clock / n,
+  std::printf("%-10s %7.0f %10.1f %10.2f %10.2f %10.3f %13.4f %10.2f\n", scene, n, 1e6 * (read - start) / n,
+              1e6 * (compiled - read) / n, 1e6 * (started - compiled) / n, 1e6 * best / n,
               1e6 * best / n / evaluations, memory / n / 1024.0);
   std::fflush(stdout);
 }
@@ -136,18 +128,16 @@ void measure(const char* scene, const std::string& text, int threads, bool is_ab
 
 int main(int argc, char** argv) {
   const int largest = argc > 1 ? std::atoi(argv[1]) : 100000;
-  const int threads = argc > 2 ? std::atoi(argv[2]) : 1;
-  const int smallest = argc > 3 ? std::atoi(argv[3]) : 10;
-  const std::string only = argc > 4 ? argv[4] : "";
-  std::printf("per body, µs: %19s %10s %10s %10s %10s %13s   kB\n", "read", "compile", "start", "step (rk4)", "by clock",
-              "an evaluation");
+  const int smallest = argc > 2 ? std::atoi(argv[2]) : 10;
+  const std::string only = argc > 3 ? argv[3] : "";
+  std::printf("per body, µs: %19s %10s %10s %10s %13s   kB\n", "read", "compile", "start", "step (rk4)", "an evaluation");
   const auto is_wanted = [&only](const char* scene) { return only.empty() || only == scene; };
   try {
     for (int n = smallest; n <= largest; n *= 10) {
-      if (is_wanted("chain")) measure("chain", chain(n), threads);
-      if (is_wanted("grid")) measure("grid", grid(n), threads);
-      if (is_wanted("linkages")) measure("linkages", linkages(n), threads);
-      if (is_wanted("absolute")) measure("absolute", linkages(n), threads, true);
+      if (is_wanted("chain")) measure("chain", chain(n));
+      if (is_wanted("grid")) measure("grid", grid(n));
+      if (is_wanted("linkages")) measure("linkages", linkages(n));
+      if (is_wanted("absolute")) measure("absolute", linkages(n), true);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

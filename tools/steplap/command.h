@@ -45,12 +45,19 @@ struct Option {
   bool is_required = false;
 };
 
+/// An option that there was once.
+struct RetiredOption {
+  std::string name;   ///< "--threads"
+  std::string advice; ///< what to do without it
+};
+
 struct Command {
   std::string name;
   std::string summary;  ///< one line
   std::string examples; ///< shown after the options, lines end with \n
   std::vector<Option> options;
   std::function<ExitCode(Console& console)> run;
+  std::vector<RetiredOption> retired{};
 };
 
 } // namespace steplap

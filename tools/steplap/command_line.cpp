@@ -105,6 +105,17 @@ ExitCode run_command(const Command& command, Console& console) {
   }
 }
 
+// What to do without the first option among the arguments that the command has no longer; empty: there is none.
+std::string advice_on_retired(const std::vector<std::string>& arguments, const std::vector<Command>& commands) {
+  if (arguments.empty()) return "";
+  const auto command = std::find_if(commands.begin(), commands.end(), [&](const Command& c) { return c.name == arguments.front(); });
+  if (command == commands.end()) return "";
+  for (const RetiredOption& option : command->retired)
+    for (const std::string& argument : arguments)
+      if (argument == option.name || argument.starts_with(option.name + "=")) return option.advice;
+  return "";
+}
+
 // What the parser says about a wrong command line, with the nearest sub-command.
 ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::string>& arguments, const Program& program) {
   const std::vector<Command>& commands = program.commands;
@@ -116,6 +127,8 @@ ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::strin
   if (is_unknown)
     log_error("there is no command '" + arguments.front() + "'" +
               did_you_mean(arguments.front(), names) + "; see " + program.name + " --help");
+  else if (const std::string advice = advice_on_retired(arguments, commands); !advice.empty())
+    log_error(advice);
   else
     log_error(std::string(error.what()) + "; see " + program.name + " " +
               (arguments.empty() || arguments.front().starts_with('-') ? "" : arguments.front() + " ") +

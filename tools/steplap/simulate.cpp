@@ -1,7 +1,6 @@
 #include "tools/steplap/simulate.h"
 
 #include "mbd/base/shown_text.h"
-#include "mbd/base/team.h"
 #include "mbd/model/validate.h"
 #include "run/quantity_text.h"
 #include "run/findings.h"
@@ -34,7 +33,7 @@ struct SimulateOptions {
   std::vector<std::string> models;
   std::vector<std::string> overrides;
   std::string output = "out";
-  std::optional<std::string> end, step, integrator, tolerance, output_step, threads, digits;
+  std::optional<std::string> end, step, integrator, tolerance, output_step, digits;
   bool is_overwriting = false, is_error_estimated = false, is_estimate_left_out = false, is_reported = false,
        is_hold_required = false;
 
@@ -47,18 +46,6 @@ struct SimulateOptions {
     if (tolerance) all.push_back("simulation.tolerance=" + *tolerance);
     if (output_step) all.push_back("output.step=" + *output_step);
     return all;
-  }
-
-  /// As asked for, or by OMP_NUM_THREADS, or those of all processors; scenes that are too small for them do without.
-  [[nodiscard]] int thread_count() const {
-    constexpr int k_most = 1024;
-    if (!threads) return std::min(Team::usual_size(), k_most);
-    int count = 0;
-    const char* const end_of_text = threads->data() + threads->size();
-    const auto [last, error] = std::from_chars(threads->data(), end_of_text, count);
-    if (error != std::errc() || last != end_of_text || count < 1 || count > k_most)
-      throw UsageError("--threads takes a whole number from 1 to " + std::to_string(k_most) + ", not '" + *threads + "'");
-    return count;
   }
 
   /// Of the numbers on the screen.
@@ -110,7 +97,6 @@ void check_folders(const SimulateOptions& options, const Models& models) {
 
 RunOptions run_options(const SimulateOptions& options, const LoadedModel& loaded) {
   RunOptions run;
-  run.threads = options.thread_count();
   run.estimating = options.is_estimate_left_out ? Estimating::never : options.is_error_estimated ? Estimating::always : Estimating::cheap;
   run.has_second_opinion = options.is_hold_required;
   run.stop = interruption;
@@ -175,7 +161,6 @@ void show_runs(const SimulateOptions& options, const std::vector<FinishedRun>& r
 ExitCode simulate(const SimulateOptions& options, Console& console) {
   if (options.is_error_estimated && options.is_estimate_left_out)
     throw UsageError("--estimate-error and --no-estimate exclude each other");
-  (void)options.thread_count(); // wrong ones are told before anything is read
   (void)options.shown_digits();
   const Models models = load_models(options.models, options.all_overrides());
   check_step(options, models);
@@ -243,9 +228,6 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
       {"--tolerance", &o->tolerance, "TOL",
        "relative tolerance of an adaptive integrator, for each step; the estimated error tells what "
        "it comes to"},
-      {"--threads", &o->threads, "N",
-       "threads that share the work of a scene of some thousand bodies (default: OMP_NUM_THREADS, or all processors); "
-       "results are the same for any number"},
       {"--estimate-error", &o->is_error_estimated, "",
        "estimate the error of all numbers, from runs at a finer tolerance or step, however long they take; without "
        "it, where they take about a second"},
@@ -258,6 +240,7 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
        "exit code 5 unless the verdict on every run is hold, 4 if a second method, which is run for it, disagrees beyond both "
        "errors; see steplap elements acceptance"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
+  command.retired = {{"--threads", "a run takes one thread: leave --threads out. Many runs side by side take all processors: steplap study, steplap assess"}};
   command.run = [o](Console& console) { return simulate(*o, console); };
   return command;
 }

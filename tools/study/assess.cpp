@@ -3,7 +3,6 @@
 #include "assess/assessment.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/shown_text.h"
-#include "mbd/base/team.h"
 #include "mbd/io/atomic_file.h"
 #include "record/fields.h"
 #include "run/quantity_text.h"
@@ -62,7 +61,7 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
   if (o.is_estimate_left_out) options.estimating = Estimating::never;
   options.sampling.samples = whole_number(o.samples, "--samples", 0, options.sampling.samples);
   options.sampling.seed = static_cast<std::uint64_t>(whole_number(o.seed, "--seed", 0, 1));
-  options.sampling.threads = static_cast<int>(std::min(whole_number(o.threads, "--threads", 1, Team::usual_size()), 1024L));
+  options.sampling.threads = static_cast<int>(std::min(whole_number(o.threads, "--threads", 1, 0), 1024L));
   options.sampling.store = (output_folder(o) / "samples.sqlite").string();
   options.stop = interruption;
   return options;

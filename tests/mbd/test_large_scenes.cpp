@@ -1,22 +1,17 @@
-// Scenes that are evaluated in parts (mbd/dynamics/parts.h): the same bytes for every number of threads, and what mechanics says of
-// them, which shows whether every force between two parts acts on both.
-#include "mbd/base/team.h"
-#include "mbd/dynamics/parts.h"
+// Scenes of some thousand bodies: what mechanics says of them as a whole, and of one of many that do not touch.
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <numeric>
 #include <sstream>
-#include <stdexcept>
 
 using namespace steplap;
 using namespace steplap::testing;
 
 namespace {
 
-constexpr int k_bodies = 4200; // more than one piece has at most, and several parts
+constexpr int k_bodies = 4200;
 
 const char* const k_header = "gravity = [0.0, -9.81]\n[simulation]\nend = 1.0\n";
 
@@ -57,7 +52,7 @@ std::string grid(bool hangs, const std::string& more = "") {
   return text + more;
 }
 
-// Masses on axle: what acts in a large scene beside springs and pins. Parts begin and end among the masses of the grid.
+// What acts in a large scene beside springs and pins.
 const char* const k_extras = R"(
 [[signal]]
 name = "shaking"
@@ -157,40 +152,23 @@ std::vector<Case> cases() {
           {"blocks among linkages, absolute", blocks_among_linkages(k_bodies / 3), {"tsit5", 1e-6, 6e-3}, Coordinates::absolute}};
 }
 
-RunResult run_in_threads(const System& system, const Case& c, int threads) {
+RunResult run(const System& system, const Case& c) {
   SimulationOptions o = options(c.settings);
   o.coordinates = c.coordinates;
-  o.threads = threads;
   return simulate(system, system.initial_state(), o);
 }
 
 } // namespace
 
-TEST_CASE("the same bytes for any number of threads") {
+TEST_CASE("the energy of large scenes is in balance") {
   for (const Case& c : cases()) {
     CAPTURE(c.name);
     const auto system = compile(scene(c.text));
-    REQUIRE(system->body_count() > Parts::k_least_clusters);
-    const RunResult one = run_in_threads(*system, c, 1);
-    CHECK(one.statistics.steps > 1);
-    // Energies of all kinds are in the balance. The least of them, the load's work, is 2e-5 of what the drive exchanges; the methods'
+    const RunResult result = run(*system, c);
+    CHECK(result.statistics.steps > 1);
+    // Energies of all kinds are in it. The least of them, the load's work, is 2e-5 of what the drive exchanges; the methods'
     // errors are 4e-7 of that or less.
-    CHECK(one.statistics.energy_residual < 1e-5 * one.statistics.energy_exchanged);
-    for (const int threads : {2, 3, 4}) {
-      CAPTURE(threads);
-      const RunResult more = run_in_threads(*system, c, threads);
-      CHECK(more.final_state.q == one.final_state.q);
-      CHECK(more.final_state.v == one.final_state.v);
-      CHECK(more.final_state.dissipated == one.final_state.dissipated);
-      CHECK(more.final_state.work == one.final_state.work);
-      CHECK(more.statistics.energy_residual == one.statistics.energy_residual);
-      CHECK(more.statistics.evaluations == one.statistics.evaluations);
-      REQUIRE(more.events.size() == one.events.size());
-      for (std::size_t i = 0; i < one.events.size(); ++i) {
-        CHECK(more.events[i].t == one.events[i].t);
-        CHECK(more.events[i].element == one.events[i].element);
-      }
-    }
+    CHECK(result.statistics.energy_residual < 1e-5 * result.statistics.energy_exchanged);
   }
 }
 
@@ -199,7 +177,7 @@ TEST_CASE("a net that flies keeps its momentum, and the moment of it about what 
   const auto system = compile(scene(grid(false)));
   const State start = system->initial_state();
   const double t = 0.02;
-  const RunResult result = run_in_threads(*system, {"", "", {"rk4", 1e-3, t}}, 2);
+  const RunResult result = run(*system, {"", "", {"rk4", 1e-3, t}});
   struct Momentum {
     double x = 0.0, y = 0.0, moment = 0.0, mass = 0.0, at_x = 0.0, at_y = 0.0;
   };
@@ -235,7 +213,7 @@ TEST_CASE("a linkage among hundreds moves as it does alone") {
     const Case c{"", "", {"rk4", 1e-3, 1e-2}, coordinates};
     const auto many = compile(scene(linkages(k_bodies / 3)));
     const auto alone = compile(scene(std::string(k_header) + linkage(0)));
-    const State last = run_in_threads(*many, c, 3).final_state, expected = run_in_threads(*alone, c, 1).final_state;
+    const State last = run(*many, c).final_state, expected = run(*alone, c).final_state;
     double largest = 0.0;
     for (int i = 0; i < k_bodies / 3; ++i)
       for (int k = 0; k < 9; ++k) {
@@ -246,67 +224,5 @@ TEST_CASE("a linkage among hundreds moves as it does alone") {
       }
     CHECK(largest <= 0.0);
     CHECK(std::abs(expected.v[5]) > 1e-3); // it has begun to turn
-  }
-}
-
-TEST_CASE("parts hold every cluster, link, row and element once") {
-  for (const Case& c : cases()) {
-    CAPTURE(c.name);
-    const auto system = compile(scene(c.text));
-    const Layout layout = make_layout(*system, system->initial_state(), c.coordinates);
-    REQUIRE(layout.division != nullptr);
-    const Parts& division = *layout.division;
-    REQUIRE(division.count() > 2);
-    std::vector<int> clusters(layout.clusters.size(), 0), rows(layout.schur.size(), 0), links(layout.links.size(), 0);
-    int coordinates = 0;
-    std::vector<std::size_t> elements(system->groups.size(), 0);
-    for (int p = 0; p < division.count(); ++p) {
-      const Part& part = division.parts[p];
-      for (int k = part.clusters; k < part.clusters_end; ++k) ++clusters[k];
-      for (int i = part.mechanisms; i < part.mechanisms_end; ++i)
-        for (int k = 0; k < layout.mechanisms[i].cluster_count(); ++k) ++clusters[layout.mechanisms[i].first_cluster + k];
-      for (int i = part.links; i < part.links_end; ++i) ++links[i];
-      for (const int r : division.rows[p]) ++rows[r];
-      coordinates += part.coordinates_end - part.coordinates;
-      for (std::size_t g = 0; g < elements.size(); ++g) elements[g] += division.elements[g][p].size();
-    }
-    const auto are_once = [](const std::vector<int>& counts) {
-      return std::all_of(counts.begin(), counts.end(), [](int count) { return count == 1; });
-    };
-    CHECK(are_once(clusters));
-    CHECK(are_once(rows));
-    CHECK(are_once(links));
-    CHECK(coordinates == layout.coordinate_count);
-    for (std::size_t g = 0; g < elements.size(); ++g) CHECK(elements[g] == static_cast<std::size_t>(system->groups[g]->divisible_count()));
-    CHECK(division.are_separate == (c.name.find("linkages") != std::string::npos));
-  }
-}
-
-TEST_CASE("a team does every piece of work once and passes on the first failure") {
-  for (const int threads : {1, 2, 5}) {
-    Team team(threads);
-    std::vector<int> done(1000, 0);
-    for (int round = 0; round < 200; ++round) team.each(1000, [&](int i) { ++done[i]; });
-    CHECK(std::all_of(done.begin(), done.end(), [](int count) { return count == 200; }));
-    std::vector<int> touched(100000, 0);
-    team.stretches(100000, [&](int from, int to) {
-      for (int i = from; i < to; ++i) ++touched[i];
-    });
-    CHECK(std::accumulate(touched.begin(), touched.end(), 0) == 100000);
-    const auto fail = [](int i) {
-      if (i % 300 == 299) throw std::runtime_error(std::to_string(i));
-    };
-    CHECK_THROWS_WITH_AS(team.each(1000, fail), "299", std::runtime_error);
-    team.each(10, [&](int i) { ++done[i]; }); // and goes on
-    CHECK(done[9] == 201);
-    const double sum = ordered_sum<double>(team, 10000, 100, [](int from, int to) {
-      double part = 0.0;
-      for (int i = from; i < to; ++i) part += 1.0 / (i + 1.0);
-      return part;
-    });
-    static double first = 0.0;
-    if (threads == 1) first = sum;
-    CHECK(sum == first);
-    CHECK(sum == doctest::Approx(std::log(10000.0) + 0.57721566490153286 + 0.5e-4).epsilon(1e-9)); // harmonic number, to 1/(12 n²)
   }
 }
