@@ -295,8 +295,8 @@ void Dynamics::look_rates(double t, const double* y, double* dy, bool always) {
     watch_merged_if_near(dy, always);
   } else if (may_look_by_code() && run_code(t, y, dy, true)) {
     const StageProgram& program = *stage_programs_.now();
-    fall_behind(program, program.last(), t, y);
-    (void)look_by_code(program, program.last(), t);
+    fall_behind(program, t, y);
+    (void)look_by_code(program, t);
   } else {
     rates(t, y, dy);
     watch_merged_if_near(dy, always);
@@ -311,10 +311,10 @@ void Dynamics::end_rates(double t, const double* y, double* dy) {
     return;
   }
   const StageProgram& program = *stage_programs_.now();
-  fall_behind(program, program.last(), t, y);
+  fall_behind(program, t, y);
   if (!layout_->is_merged_watched) return;
   was_merged_near_ = is_merged_near_;
-  is_merged_near_ = look_by_code(program, program.last(), t);
+  is_merged_near_ = look_by_code(program, t);
 }
 
 bool Dynamics::may_look_by_code() const {
@@ -323,10 +323,10 @@ bool Dynamics::may_look_by_code() const {
 }
 
 // After a stage made by code: the watch values of merged joints. Is any near its limit?
-bool Dynamics::look_by_code(const StageProgram& program, const StageColumn& made, double t) {
+bool Dynamics::look_by_code(const StageProgram& program, double t) {
   // What holds in a cluster is judged by its wrench, the time and what is remembered.
   evaluation_.t = std::min(t, time_cap_);
-  program.put_wrenches(made, friction_force_);
+  program.put_wrenches(friction_force_);
   return watch_wrenches();
 }
 
@@ -343,10 +343,10 @@ void Dynamics::note_stage(double t, const double* y, const double* dy) {
   program->take_down(system_, *state_, now, y, found);
 }
 
-void Dynamics::fall_behind(const StageProgram& program, const StageColumn& made, double t, const double* y) {
+void Dynamics::fall_behind(const StageProgram& program, double t, const double* y) {
   is_behind_ = true;
   behind_t_ = std::min(t, time_cap_);
-  behind_pivot_ = program.smallest_pivot(made);
+  behind_pivot_ = program.smallest_pivot();
   std::copy_n(y, dimension(), behind_y_.begin());
 }
 
@@ -354,36 +354,6 @@ void Dynamics::fall_behind(const StageProgram& program, const StageColumn& made,
 void Dynamics::evaluate_behind() {
   --evaluations_;
   rates_at(behind_t_, behind_y_.data(), behind_dy_.data());
-}
-
-StageProgram* Dynamics::lane_program() {
-  StageProgram* const program = stage_programs_.now();
-  if (!program || layout_->smallest_pivot() < k_traced_pivot) return nullptr;
-  program->look_for_lane_code();
-  return program->lane_code() ? program : nullptr;
-}
-
-void Dynamics::stage_time_inputs(const StageProgram& program, double t, double* into) {
-  t = std::min(t, time_cap_);
-  take_time_inputs(t, into);
-  into += program.time_count() - static_cast<int>(program.signals().size());
-  for (const TimeInput& signal : program.signals()) *into++ = signal.at(t);
-}
-
-void Dynamics::take_stage(const StageProgram& program, const StageColumn& made) {
-  ++evaluations_;
-  ++coded_stages_;
-  is_behind_ = false;
-  rows_.forget_factors();
-  program.put_watches(made, watch_.data());
-}
-
-void Dynamics::take_look(const StageProgram& program, const StageColumn& made, double t, const double* y) {
-  take_stage(program, made);
-  fall_behind(program, made, t, y);
-  const auto n = static_cast<std::size_t>(2 * coordinate_count());
-  for (std::size_t i = 0; i < n; ++i) behind_y_[i] = made.input(i);
-  (void)look_by_code(program, made, t);
 }
 
 double Dynamics::mechanical_energy(double t, const double* y) {

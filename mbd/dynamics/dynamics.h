@@ -94,15 +94,6 @@ public:
   /// rates() and watch_merged() at the end of a step, of which nobody may ask more than rates and watch values: by-products
   /// are found when somebody does.
   void end_rates(double t, const double* y, double* dy);
-  /// What makes stages of several samples side by side; null: nothing does, here and now.
-  [[nodiscard]] StageProgram* lane_program();
-  /// The numbers of time that stages of `program` take at t.
-  void stage_time_inputs(const StageProgram& program, double t, double* into);
-  /// As after stage_rates(), with what was made elsewhere.
-  void take_stage(const StageProgram& program, const StageColumn& made);
-  /// As after look_rates() that looks at merged joints, for a program that can_look(). `y`: coordinates and rates are those of
-  /// `made`, what follows is taken from here.
-  void take_look(const StageProgram& program, const StageColumn& made, double t, const double* y);
   /// From here on stages are made in the modes that state() has now.
   void begin_stages();
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
@@ -219,9 +210,9 @@ private:
   void take_time_inputs(double t, double* into);
   [[nodiscard]] bool run_code(double t, const double* y, double* dy, bool all);
   [[nodiscard]] bool may_look_by_code() const;
-  [[nodiscard]] bool look_by_code(const StageProgram& program, const StageColumn& made, double t);
+  [[nodiscard]] bool look_by_code(const StageProgram& program, double t);
   void note_stage(double t, const double* y, const double* dy);
-  void fall_behind(const StageProgram& program, const StageColumn& made, double t, const double* y);
+  void fall_behind(const StageProgram& program, double t, const double* y);
   void catch_up() {
     if (is_behind_) [[unlikely]] evaluate_behind();
   }

@@ -3,32 +3,10 @@
 #include "mbd/dynamics/layout_store.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 #include <utility>
 
 namespace steplap {
-
-namespace {
-
-bool agrees_in_all_lanes(const MachineCode& code, const TracedRates& traced) {
-  const auto lanes = static_cast<std::size_t>(code.lanes());
-  static thread_local std::vector<double> inputs, constants, wanted, found; // asked for every tape of every run
-  const auto fill = [lanes](std::vector<double>& columns, const std::vector<double>& x) {
-    columns.resize(std::max(columns.size(), x.size() * lanes));
-    double* to = columns.data();
-    for (const double value : x) to = std::fill_n(to, lanes, value);
-  };
-  fill(inputs, traced.inputs);
-  fill(constants, traced.tape.constants);
-  fill(wanted, traced.outputs);
-  found.resize(wanted.size());
-  const unsigned holds = code.run(inputs.data(), constants.data(), found.data());
-  return holds == (1U << lanes) - 1U &&
-         std::memcmp(found.data(), wanted.data(), traced.outputs.size() * lanes * sizeof(double)) == 0;
-}
-
-} // namespace
 
 StageProgram::StageProgram(const Layout& layout, const State& state, StageCode choice)
     : layout_(&layout), modes_(state.mode.begin(), state.mode.end()),
@@ -70,7 +48,7 @@ bool StageProgram::is_of(const State& state) const {
 void StageProgram::look_for_code() {
   if (code_ || !stored_ || !stored_->code()) return;
   const MachineCode& made = *stored_->code();
-  const bool is_same = made.run(traced_.inputs.data(), traced_.tape.constants.data(), outputs_.data()) != 0 &&
+  const bool is_same = made.run(traced_.inputs.data(), traced_.tape.constants.data(), outputs_.data()) &&
                        std::memcmp(outputs_.data(), traced_.outputs.data(), outputs_.size() * sizeof(double)) == 0;
   if (is_same) {
     code_ = &made;
@@ -80,35 +58,12 @@ void StageProgram::look_for_code() {
   }
 }
 
-void StageProgram::look_for_lane_code() {
-  if (lane_code_ || !stored_) return;
-  const MachineCode* const made = choice_ == StageCode::at_once ? stored_->make_lanes() : stored_->lane_code();
-  if (!made) return;
-  if (agrees_in_all_lanes(*made, traced_)) {
-    lane_code_ = made;
-  } else {
-    give_up();
-    is_hopeless_ = true;
-  }
-}
-
-void StageProgram::put_watches(const StageColumn& made, double* watch) const {
-  std::size_t at = coordinate_count_ + 2;
-  for (const int slot : traced_.watches) watch[slot] = made.output(at++);
-}
-
-std::vector<int> StageProgram::lock_coordinates() const {
-  std::vector<int> all;
-  for (const Lock& lock : layout_->locks) all.push_back(3 * lock.cluster + lock.coordinate);
-  return all;
-}
-
 void StageProgram::note_failure() {
   if (++failures_ > k_most_failures) give_up();
 }
 
 void StageProgram::give_up() {
-  code_ = lane_code_ = nullptr;
+  code_ = nullptr;
   stored_.reset();
   failures_ = 0;
   stages_ = 0;
@@ -119,7 +74,7 @@ bool StageProgram::run(double t, const double* y, double* dy, double* watch, dou
   const std::size_t n = coordinate_count_, signals = traced_.signals.size();
   std::copy_n(y, 2 * n, inputs_.data());
   for (std::size_t i = 0; i < signals; ++i) inputs_[inputs_.size() - signals + i] = traced_.signals[i].at(t);
-  if (code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data(), all) == 0) {
+  if (!code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data(), all)) {
     note_failure();
     return false;
   }
@@ -140,19 +95,19 @@ void StageProgram::note_stage() {
   look_for_code();
 }
 
-void StageProgram::put_wrenches(const StageColumn& made, double* friction_force) const {
+void StageProgram::put_wrenches(double* friction_force) const {
   std::size_t at = traced_.usual_outputs();
-  for (const int slot : traced_.wrenches) friction_force[slot] = made.output(at++);
+  for (const int slot : traced_.wrenches) friction_force[slot] = outputs_[at++];
 }
 
 // In the order in which the solvers compare.
-double StageProgram::smallest_pivot(const StageColumn& made) const {
-  std::size_t at = traced_.usual_outputs() + traced_.wrenches.size();
+double StageProgram::smallest_pivot_in(const double* outputs) const {
+  const double* at = outputs + traced_.usual_outputs() + traced_.wrenches.size();
   double smallest = 1.0;
   for (const int count : traced_.pivots) {
     double of_solver = 1.0;
     for (int i = 0; i < count; ++i, at += 2)
-      if (made.output(at) < of_solver * made.output(at + 1)) of_solver = made.output(at) / made.output(at + 1);
+      if (at[0] < of_solver * at[1]) of_solver = at[0] / at[1];
     smallest = std::min(smallest, of_solver);
   }
   return smallest;
@@ -167,7 +122,7 @@ bool StageProgram::has_found(const StageFound& found) const {
   };
   return std::all_of(found.dy, found.dy + coordinate_count_ + 2, is_same) && are_same(traced_.watches, found.watch) &&
          are_same(traced_.watch_rates, found.watch_rate) && are_same(traced_.wrenches, found.friction_force) &&
-         smallest_pivot({nullptr, traced_.outputs.data(), 1}) == found.smallest_pivot;
+         smallest_pivot_in(traced_.outputs.data()) == found.smallest_pivot;
 }
 
 void StageProgram::take_down(const System& system, const State& state, double t, const double* y,
@@ -187,8 +142,6 @@ void StageProgram::take_down(const System& system, const State& state, double t,
   if (known && !is_traced) return;
   is_hopeless_ = !is_traced || !has_found(found); // to the bit
   if (is_hopeless_) return;
-  static std::atomic<std::uint64_t> tapes{0};
-  tape_number_ = ++tapes;
   inputs_.resize(2 * coordinate_count_ + time_count_ + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());
   stored_ = known ? known : stored_code(traced_.tape);

@@ -33,16 +33,6 @@ struct StageFound {
   double smallest_pivot;
 };
 
-/// A stage that was made, each number `stride` places from the one before.
-struct StageColumn {
-  const double* inputs;  ///< coordinates and rates, numbers of time
-  const double* outputs; ///< of the tape
-  int stride;
-
-  [[nodiscard]] double output(std::size_t i) const { return outputs[i * static_cast<std::size_t>(stride)]; }
-  [[nodiscard]] double input(std::size_t i) const { return inputs[i * static_cast<std::size_t>(stride)]; }
-};
-
 /// Of one layout, which owns it, in one set of modes.
 class StageProgram {
 public:
@@ -56,39 +46,13 @@ public:
   /// For accelerations, power and switching values at coordinates and rates y; false: evaluate as ever, nothing was changed.
   /// `all`: also what can_look(), put_wrenches() and smallest_pivot() are asked for.
   [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all);
-  /// That of the last run().
-  [[nodiscard]] StageColumn last() const { return {inputs_.data(), outputs_.data(), 1}; }
-  void put_watches(const StageColumn& made, double* watch) const;
-  /// Can merged joints be looked at by what a stage has found? Then: what they bear, into their slots.
+  /// Can merged joints be looked at by what a stage has found? Then: what they bear at the last run(), into their slots.
   [[nodiscard]] bool can_look() const { return traced_.has_wrenches; }
-  void put_wrenches(const StageColumn& made, double* friction_force) const;
-  /// To the bit that of Layout::smallest_pivot.
-  [[nodiscard]] double smallest_pivot(const StageColumn& made) const;
+  void put_wrenches(double* friction_force) const;
+  /// To the bit that of Layout::smallest_pivot, at the last run().
+  [[nodiscard]] double smallest_pivot() const { return smallest_pivot_in(outputs_.data()); }
   /// Where run() takes the layout's numbers of time, in the order of traced_evaluation.h.
   [[nodiscard]] double* time_inputs() { return inputs_.data() + 2 * coordinate_count_; }
-
-  // --- for several samples side by side (mbd/integrators/lane_try.h) ---------------------------------------------------------
-  /// Code for several lanes may have been made since. It is used if in every lane it makes of the stage that was written down what
-  /// that has made.
-  void look_for_lane_code();
-  [[nodiscard]] const MachineCode* lane_code() const { return lane_code_; }
-  /// Keeps lane_code() where it is.
-  [[nodiscard]] const std::shared_ptr<StoredCode>& stored() const { return stored_; }
-  /// Whether the tape's conditions held in this sample's lane.
-  void note_lane(bool holds) {
-    if (holds) failures_ = 0;
-    else note_failure();
-  }
-  [[nodiscard]] int coordinate_count() const { return static_cast<int>(coordinate_count_); }
-  /// Inputs behind coordinates and rates: the layout's numbers of time, signals.
-  [[nodiscard]] int time_count() const { return static_cast<int>(time_count_ + traced_.signals.size()); }
-  [[nodiscard]] int output_count() const { return static_cast<int>(traced_.outputs.size()); }
-  [[nodiscard]] const std::vector<TimeInput>& signals() const { return traced_.signals; }
-  [[nodiscard]] const std::vector<double>& constants() const { return traced_.tape.constants; }
-  /// Of driven coordinates, in the order of their numbers of time.
-  [[nodiscard]] std::vector<int> lock_coordinates() const;
-  /// Another one for every tape written down in this process; 0: none was.
-  [[nodiscard]] std::uint64_t tape_number() const { return tape_number_; }
 
   /// Have the modes lasted, so that the stage that follows is to be written down?
   [[nodiscard]] bool wants_stage() const {
@@ -103,6 +67,7 @@ public:
 
 private:
   void note_failure();
+  [[nodiscard]] double smallest_pivot_in(const double* outputs) const;
   void give_up();
   [[nodiscard]] std::uint64_t key() const;
   [[nodiscard]] bool has_found(const StageFound& found) const;
@@ -129,8 +94,6 @@ private:
   std::shared_ptr<StoredCode> known_;  ///< a tape that has code, which this one should be; null: none, or it was not
   std::shared_ptr<StoredCode> stored_; ///< null until it is written down
   const MachineCode* code_ = nullptr;
-  const MachineCode* lane_code_ = nullptr;
-  std::uint64_t tape_number_ = 0;
   std::vector<double> inputs_, outputs_;
   std::size_t coordinate_count_ = 0, time_count_ = 0;
   long stages_ = 0;              ///< as ever, in this run and those before it

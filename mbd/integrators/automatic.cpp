@@ -82,7 +82,6 @@ public:
 
   void make_try(Dynamics& dynamics) override { active_->make_try(dynamics); }
 
-  [[nodiscard]] LaneTry* lane_try() override { return active_->lane_try(); }
 
   [[nodiscard]] bool conclude_try(Dynamics& dynamics) override {
     if (!active_->conclude_try(dynamics)) return false;

@@ -1,15 +1,12 @@
 // The explicit pair of order 8 of Dormand and Prince (DOP853) with its dense output of order 7, whose
 // three extra evaluations are made only for steps that are looked into.
 #include "mbd/integrators/explicit_pair.h"
-#include "mbd/integrators/lane_try.h"
 #include "mbd/integrators/methods.h"
 #include "mbd/integrators/tableau_dop853.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 namespace steplap {
 
@@ -26,7 +23,7 @@ constexpr double k_most_departure = 5.0;
 constexpr double k_most_departure_of_slips = 10.0 / 60.0;
 constexpr double k_most_defect = 10.0; // of accurate steps about 1: an eighth of the polynomial's error, times hρ
 
-class Dop853 final : public ExplicitPair, public LaneTry {
+class Dop853 final : public ExplicitPair {
 public:
   Dop853(const Dynamics& dynamics, const IntegratorSettings& settings, int max_dimension)
       : ExplicitPair(dynamics, settings, max_dimension, 16, 8), r_(7 * max_dimension) {
@@ -59,25 +56,6 @@ public:
     return rate_of_stages(12, 11, y) / 6.1; // stable for hρ up to 6.1 on the negative axis
   }
 
-  [[nodiscard]] LaneTry* lane_try() override { return this; }
-  [[nodiscard]] Given given(const Dynamics& dynamics) override {
-    return {t0_, h_, n_, y0_.data(), k0_, weight_.data(), stages_looked_at(dynamics)};
-  }
-  void take(Dynamics& dynamics, const LaneColumns& made, int lane) override {
-    is_dense_ready_ = false;
-    const StageProgram& program = *dynamics.lane_program();
-    const int lanes = made.lanes();
-    for (int s = 1; s <= k_lane_stages; ++s) {
-      const auto stage = static_cast<std::size_t>(s);
-      gather(made.rates(s, lane), lanes, k(stage));
-      take_stage(dynamics, program, made.stage(s, lane), stage);
-    }
-    gather(made.end(lane), lanes, y1_.data());
-    try_error_ = dynamics.is_near_singular()
-                     ? error_of_stages(dynamics)
-                     : error_of(std::sqrt(made.fifth(lane) / n_), std::sqrt(made.third(lane) / n_));
-  }
-
 protected:
   double try_step(Dynamics& dynamics) override {
     using namespace dop853;
@@ -102,54 +80,9 @@ private:
     sum_stages<e5, 12>(scratch_.data());
     const double fifth = projected_error_norm(dynamics, scratch_.data());
     sum_stages<e3, 12>(scratch_.data());
-    return error_of(fifth, projected_error_norm(dynamics, scratch_.data()));
-  }
-  [[nodiscard]] double error_of(double fifth, double third) const {
+    const double third = projected_error_norm(dynamics, scratch_.data());
     const double denominator = std::sqrt(fifth * fifth + 0.01 * third * third);
     return denominator > 0.0 ? h_ * fifth * fifth / denominator : h_ * fifth;
-  }
-
-  void gather(const double* column, int lanes, double* to) const {
-    for (int i = 0; i < n_; ++i) to[i] = column[static_cast<std::ptrdiff_t>(i) * lanes];
-  }
-
-  // Bits of stages, as take_stage() will have it.
-  [[nodiscard]] unsigned stages_looked_at(const Dynamics& dynamics) {
-    unsigned looks = 0;
-    for (std::size_t s = 1; s <= k_lane_stages; ++s) {
-      const bool is_due = is_merged_look_due(dop853::c[s]);
-      if (is_due) last_merged_look_ = dop853::c[s];
-      if (dynamics.looks_at_merged(is_due)) looks |= 1U << s;
-    }
-    last_merged_look_ = 0.0;
-    return looks;
-  }
-
-  // As evaluate_stage(), of what was made elsewhere.
-  void take_stage(Dynamics& dynamics, const StageProgram& program, const StageColumn& made, std::size_t stage) {
-    const double theta = dop853::c[stage];
-    const bool is_due = is_merged_look_due(theta);
-    if (is_due) last_merged_look_ = theta;
-    const bool has_merged = dynamics.looks_at_merged(is_due);
-    if (!has_merged) dynamics.take_stage(program, made);
-    else if (program.can_look()) dynamics.take_look(program, made, t0_ + theta * h_, y0_.data());
-    else evaluate_again(dynamics, made, stage);
-    nodes_.add(theta, dynamics.watch().data(), has_merged);
-  }
-
-  // Joints inside clusters are looked at by an evaluation.
-  void evaluate_again(Dynamics& dynamics, const StageColumn& made, std::size_t stage) {
-    double* const y = scratch_.data();
-    double* const f = y + n_;
-    for (int i = 0; i < n_ - 2; ++i) y[i] = made.input(static_cast<std::size_t>(i));
-    std::copy_n(y0_.begin() + n_ - 2, 2, y + n_ - 2); // energies, on which no rate hangs
-    dynamics.rates(t0_ + dop853::c[stage] * h_, y, f);
-    const auto is_same = [](double a, double b) { // a motion that becomes infinite is refused elsewhere
-      return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b));
-    };
-    if (!std::equal(f, f + n_, k(stage), is_same))
-      throw std::logic_error("a stage made in lanes is not what its evaluation makes");
-    dynamics.watch_merged_if_near(f, true);
   }
 
   void prepare_dense(Dynamics& dynamics) {

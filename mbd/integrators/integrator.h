@@ -18,7 +18,6 @@
 
 namespace steplap {
 
-class LaneTry;
 
 struct IntegratorSettings {
   double tolerance = 1e-8;            ///< relative local error of adaptive methods
@@ -63,13 +62,11 @@ public:
   static constexpr double k_largest_turn = 1.6;
   /// Makes one step of at most t_limit − t. Throws NumericalFailure where no step can be made.
   virtual void step(Dynamics& dynamics, double t_limit) = 0;
-  /// The same in parts, so that tries of several samples can be made side by side (mbd/ensemble): begin_step(), then make_try() and
-  /// conclude_try() in turn until the step is made. A method without tries makes its step in the last.
+  /// The same in parts, so that a step whose events forbid it can be tried anew: begin_step(), then make_try() and conclude_try()
+  /// in turn until the step is made. A method without tries makes its step in the last.
   virtual void begin_step(Dynamics& dynamics, double t_limit);
   virtual void make_try(Dynamics& dynamics);
   [[nodiscard]] virtual bool conclude_try(Dynamics& dynamics);
-  /// The try that is due, where it may be made by others and taken instead of make_try(); null: it may not.
-  [[nodiscard]] virtual LaneTry* lane_try() { return nullptr; }
   /// Ends the step just made at theta of it, anew as a step of its own. Fixed steps do where forces have a kink behind
   /// the event; no error estimate has shortened them. False: it was left as it is.
   virtual bool end_at(Dynamics& dynamics, double theta);

@@ -406,23 +406,14 @@ void Simulation::look_for_extremes(long evaluations, bool is_last) {
   extremes_->add_step(*integrator_, dynamics_, is_at_end, is_last);
 }
 
+// False at the end.
 bool Simulation::begin_advance() {
   if (is_over()) return false;
   integrator_->begin_step(dynamics_, next_limit());
   return true;
 }
 
-void Simulation::load_try(LaneColumns& columns, int lane) {
-  const StageProgram& program = *lane_program();
-  columns.begin(program);
-  columns.load(lane, integrator_->lane_try()->given(dynamics_), dynamics_, program);
-}
-
-void Simulation::take_try(const LaneColumns& columns, int lane) {
-  lane_program()->note_lane(true);
-  integrator_->lane_try()->take(dynamics_, columns, lane);
-}
-
+// True once the step is made. Throws NumericalFailure.
 bool Simulation::conclude_try() {
   bool is_made = false;
   try {
@@ -439,7 +430,7 @@ bool Simulation::conclude_try() {
 
 bool Simulation::advance() {
   if (!begin_advance()) return false;
-  do make_try();
+  do integrator_->make_try(dynamics_);
   while (!conclude_try());
   return !is_over();
 }

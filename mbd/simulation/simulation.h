@@ -8,7 +8,6 @@
 #include "mbd/simulation/extremes.h"
 #include "mbd/simulation/power_ledger.h"
 #include "mbd/integrators/integrator.h"
-#include "mbd/integrators/lane_try.h"
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/simulation/trajectory.h"
 
@@ -81,23 +80,6 @@ public:
   /// One accepted step, or up to an event and through it. False at the end.
   bool advance();
 
-  /// The same in parts, for who makes the tries of several runs side by side (mbd/ensemble): unless begin_advance() says that
-  /// the end is reached, make_try() or take_try() and conclude_try() in turn, until that says that the step is made.
-  [[nodiscard]] bool begin_advance();
-  /// Makes the try that is due, alone.
-  void make_try() { integrator_->make_try(dynamics_); }
-  /// True once the step is made. Throws NumericalFailure.
-  [[nodiscard]] bool conclude_try();
-  /// What makes the try that is due in lanes; null: only make_try() does.
-  [[nodiscard]] StageProgram* lane_program() { return integrator_->lane_try() ? dynamics_.lane_program() : nullptr; }
-  /// Tells that the try was wrong in its lane; make_try() then makes it alone.
-  void refuse_try() { lane_program()->note_lane(false); }
-  [[nodiscard]] double time() const { return integrator_->t0(); } ///< s, where the step begins that is being tried
-  /// Precondition of both: lane_program() is not null.
-  void load_try(LaneColumns& columns, int lane);
-  /// The try was right in its lane, or not: then the next ones may be made otherwise.
-  void take_try(const LaneColumns& columns, int lane);
-
   [[nodiscard]] const State& state() const { return state_; } ///< at the last event or the end
   /// The state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
@@ -113,6 +95,8 @@ public:
   [[nodiscard]] RunResult result() &&;
 
 private:
+  [[nodiscard]] bool begin_advance();
+  [[nodiscard]] bool conclude_try();
   void restart(bool is_evaluated = false);
   void end_run();
   void look_for_extremes(long evaluations, bool is_last);

@@ -45,15 +45,6 @@ void StoredCode::make() {
   made_ = MachineCode(simplified(tape_));
 }
 
-const MachineCode* StoredCode::lane_code() { return evaluations_.load() >= k_enough ? make_lanes() : nullptr; }
-
-const MachineCode* StoredCode::make_lanes() {
-  const std::scoped_lock lock(mutex_);
-  if (!are_lanes_made_) made_lanes_ = MachineCode(simplified(tape_), MachineCode::most_lanes());
-  are_lanes_made_ = true;
-  return made_lanes_ ? &made_lanes_ : nullptr;
-}
-
 std::shared_ptr<StoredCode> KnownKind::coded() const {
   const std::scoped_lock lock(mutex_);
   return stored_ && stored_->code() ? stored_ : nullptr;

@@ -29,11 +29,6 @@ public:
   /// So many evaluations were made that it could have made: it is made as soon as they are as many as would have paid for it.
   void note_use(long evaluations);
   void make();
-  /// Code for several lanes (MachineCode::most_lanes), made when asked for once note_use() has heard of enough; null till then,
-  /// and where there is none.
-  [[nodiscard]] const MachineCode* lane_code();
-  /// The same, made at once.
-  [[nodiscard]] const MachineCode* make_lanes();
 
 private:
   /// Making code takes as long as some of these save.
@@ -42,8 +37,8 @@ private:
   Tape tape_;
   std::atomic<long> evaluations_{0};
   mutable std::mutex mutex_; ///< of those below: asked for until there is code, which helgrind follows, unlike an atomic pointer
-  bool is_made_ = false, are_lanes_made_ = false;
-  MachineCode made_, made_lanes_;
+  bool is_made_ = false;
+  MachineCode made_;
 };
 
 /// What this process has met of one kind of computation, before and beside whoever asks: how often it was made, and the tape that

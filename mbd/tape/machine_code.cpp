@@ -7,7 +7,6 @@
 #include <asmjit/x86.h>
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,9 +20,10 @@ using Kind = PlannedInstruction::Kind;
 
 constexpr int k_most_frame = 1 << 18; ///< bytes of the stack
 constexpr int k_page = 4096;
-constexpr int k_masks_size = 128; ///< bytes before the first instruction: −0 and the bits besides its sign, eight times each
-// What the frame begins with where functions are called: the arguments, the lanes that hold, and whether all is wanted.
-constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_lanes = 24, k_saved_wish = 32;
+constexpr int k_mask_copies = 4;
+constexpr int k_masks_size = 2 * 8 * k_mask_copies; ///< bytes before the first instruction: −0 and the bits besides its sign; a line of the cache
+// What the frame begins with where functions are called: the arguments, and whether all is wanted.
+constexpr int k_saved_inputs = 0, k_saved_constants = 8, k_saved_outputs = 16, k_saved_wish = 24;
 constexpr int k_saved_size = 64;
 
 InstructionSet find_best_instructions() {
@@ -46,25 +46,14 @@ template <int lanes, void (*sin_cos)(const double*, double*, double*)> void sin_
   for (int l = 0; l < 8; l += lanes) sin_cos(x + l, sines + l, cosines + l);
 }
 
-std::uint64_t sin_cos_address(int lanes) {
-  const auto function = lanes == 1 ? sin_cos_of_one : lanes == 2 ? sin_cos_of_two : lanes == 4 ? sin_cos_of_four : sin_cos_of_eight;
-  return reinterpret_cast<std::uint64_t>(function);
-}
-
 /// Instructions by what they work on.
 struct InstructionNames {
   using Id = asmjit::InstId;
   Id load, move, add, subtract, multiply, divide, square_root, minimum, maximum, exclusive_or, bit_and, compare;
 };
 
-InstructionNames names_for(bool is_packed, bool has_three_operands) {
+InstructionNames names_for(bool has_three_operands) {
   namespace I = x86::Inst;
-  if (is_packed && has_three_operands)
-    return {I::kIdVmovupd, I::kIdVmovapd, I::kIdVaddpd, I::kIdVsubpd, I::kIdVmulpd, I::kIdVdivpd,
-            I::kIdVsqrtpd, I::kIdVminpd, I::kIdVmaxpd, I::kIdVxorpd, I::kIdVandpd, I::kIdVcmppd};
-  if (is_packed)
-    return {I::kIdMovupd, I::kIdMovapd, I::kIdAddpd, I::kIdSubpd, I::kIdMulpd, I::kIdDivpd,
-            I::kIdSqrtpd, I::kIdMinpd, I::kIdMaxpd, I::kIdXorpd, I::kIdAndpd, I::kIdCmppd};
   if (has_three_operands)
     return {I::kIdVmovsd, I::kIdVmovapd, I::kIdVaddsd, I::kIdVsubsd, I::kIdVmulsd, I::kIdVdivsd,
             I::kIdVsqrtsd, I::kIdVminsd, I::kIdVmaxsd, I::kIdVxorpd, I::kIdVandpd, I::kIdVucomisd};
@@ -72,15 +61,10 @@ InstructionNames names_for(bool is_packed, bool has_three_operands) {
           I::kIdSqrtsd, I::kIdMinsd, I::kIdMaxsd, I::kIdXorpd, I::kIdAndpd, I::kIdUcomisd};
 }
 
-RegisterRules rules_for(int lanes, InstructionSet instructions) {
+RegisterRules rules_for(InstructionSet instructions) {
   RegisterRules rules;
-  const bool has_avx = instructions != InstructionSet::sse2, has_512 = instructions == InstructionSet::avx512;
-  rules.registers = has_512 ? 32 : 16;
-  rules.has_three_operands = has_avx;
-  rules.takes_given_in_memory = lanes == 1 || has_avx; // packed SSE2 wants operands in memory aligned
-  rules.conditions_take_register = lanes > 1 && !has_512;
-  rules.swaps_conditions = lanes == 1; // a < b is b > a, whose jump is not taken with NaN
-  rules.stores_at_once = lanes > 1;
+  rules.registers = instructions == InstructionSet::avx512 ? 32 : 16;
+  rules.has_three_operands = instructions != InstructionSet::sse2;
   return rules;
 }
 
@@ -95,9 +79,8 @@ public:
 /// Writes the instructions of a plan.
 class Writer {
 public:
-  Writer(x86::Assembler& to, const RegisterPlan& plan, int lanes, InstructionSet instructions)
-      : a_(to), plan_(plan), lanes_(lanes), instructions_(instructions), has_avx_(instructions != InstructionSet::sse2),
-        names_(names_for(lanes > 1, has_avx_)), all_lanes_((1u << lanes) - 1) {}
+  Writer(x86::Assembler& to, const RegisterPlan& plan, InstructionSet instructions)
+      : a_(to), plan_(plan), has_avx_(instructions != InstructionSet::sse2), names_(names_for(has_avx_)) {}
 
   void write() {
     masks();
@@ -113,21 +96,19 @@ private:
     failed_ = a_.newLabel();
     done_ = a_.newLabel();
     a_.bind(sign_bits_);
-    a_.embedUInt64(0x8000000000000000u, 8);
+    a_.embedUInt64(0x8000000000000000u, k_mask_copies);
     a_.bind(value_bits_);
-    a_.embedUInt64(0x7fffffffffffffffu, 8);
+    a_.embedUInt64(0x7fffffffffffffffu, k_mask_copies);
   }
 
   bool has_frame() const { return plan_.slots > 0 || plan_.has_calls; }
-  bool counts_lanes() const { return lanes_ > 1 && plan_.conditions > 0; }
-  bool has_512() const { return instructions_ == InstructionSet::avx512; }
   int slots_begin() const { return plan_.has_calls ? k_saved_size : 0; }
 
   void begin() {
     if (has_frame()) {
       a_.push(x86::rbp);
       a_.mov(x86::rbp, x86::rsp);
-      const int size = slots_begin() + 8 * lanes_ * plan_.slots;
+      const int size = slots_begin() + 8 * plan_.slots;
       a_.sub(x86::rsp, size);
       a_.and_(x86::rsp, -64);
       // A page after the other, so that a stack that ends is met where it ends.
@@ -139,27 +120,19 @@ private:
       a_.mov(x86::ptr(x86::rsp, k_saved_outputs), x86::rdx);
       a_.mov(x86::ptr(x86::rsp, k_saved_wish), x86::ecx);
     }
-    if (counts_lanes()) {
-      a_.mov(x86::eax, all_lanes_);
-      if (has_512()) a_.kmovw(x86::k1, x86::eax);
-    }
   }
 
   void end() {
     a_.bind(done_);
-    if (!counts_lanes())
-      a_.mov(x86::eax, all_lanes_);
-    else if (has_512())
-      a_.kmovw(x86::eax, x86::k1);
+    a_.mov(x86::eax, 1);
     leave();
-    if (lanes_ > 1 || plan_.conditions == 0) return;
+    if (plan_.conditions == 0) return;
     a_.bind(failed_);
     a_.xor_(x86::eax, x86::eax);
     leave();
   }
 
   void leave() {
-    if (lanes_ > 1 && has_avx_) a_.vzeroupper();
     if (has_frame()) {
       a_.mov(x86::rsp, x86::rbp);
       a_.pop(x86::rbp);
@@ -167,15 +140,10 @@ private:
     a_.ret();
   }
 
-  asmjit::Operand reg(int index) const {
-    const auto id = static_cast<std::uint32_t>(index);
-    if (lanes_ <= 2) return x86::Xmm(id);
-    if (lanes_ == 4) return x86::Ymm(id);
-    return x86::Zmm(id);
-  }
+  static asmjit::Operand reg(int index) { return x86::Xmm(static_cast<std::uint32_t>(index)); }
 
   x86::Mem memory(OperandPlace place) const {
-    const std::int32_t offset = 8 * lanes_ * place.index;
+    const std::int32_t offset = 8 * place.index;
     switch (place.kind) {
     case OperandPlace::Kind::input: return x86::ptr(x86::rdi, offset);
     case OperandPlace::Kind::constant: return x86::ptr(x86::rsi, offset);
@@ -197,7 +165,7 @@ private:
     case Kind::move: a_.emit(names_.move, reg(i.destination), reg(i.second.index)); break;
     case Kind::store: a_.emit(names_.load, memory(i.second), reg(i.first)); break;
     case Kind::arithmetic: arithmetic(i); break;
-    case Kind::condition: lanes_ == 1 ? condition(i) : conditions(i); break;
+    case Kind::condition: condition(i); break;
     case Kind::sin_cos: call(i); break;
     case Kind::leave:
       a_.test(x86::ecx, x86::ecx);
@@ -224,7 +192,7 @@ private:
   void arithmetic(const PlannedInstruction& i) {
     const asmjit::InstId name = name_of(i.operation);
     if (i.operation == TapeOperation::square_root) {
-      if (has_avx_ && lanes_ == 1)
+      if (has_avx_)
         a_.emit(name, reg(i.destination), reg(i.first), reg(i.first));
       else
         a_.emit(name, reg(i.destination), reg(i.first));
@@ -244,50 +212,22 @@ private:
       a_.ja(failed_);
   }
 
-  void conditions(const PlannedInstruction& i) {
-    const int predicate = i.operation == TapeOperation::if_less ? 1 : 5; // less; not less, or a NaN among them
-    if (has_512()) {
-      a_.k(x86::k1).emit(names_.compare, x86::k1, reg(i.first), operand(i.second), asmjit::imm(predicate));
-      return;
-    }
-    if (has_avx_) {
-      a_.emit(names_.compare, reg(i.destination), reg(i.first), operand(i.second), asmjit::imm(predicate));
-      a_.emit(x86::Inst::kIdVmovmskpd, x86::r8d, reg(i.destination));
-    } else {
-      a_.emit(names_.compare, reg(i.destination), operand(i.second), asmjit::imm(predicate));
-      a_.emit(x86::Inst::kIdMovmskpd, x86::r8d, reg(i.destination));
-    }
-    a_.and_(x86::eax, x86::r8d);
-  }
-
   void call(const PlannedInstruction& i) {
-    if (counts_lanes()) {
-      if (has_512()) a_.kmovw(x86::eax, x86::k1);
-      a_.mov(x86::ptr(x86::rsp, k_saved_lanes), x86::eax);
-    }
     a_.lea(x86::rdi, memory(i.second));
     a_.lea(x86::rsi, memory({OperandPlace::Kind::slot, i.sine_slot}));
     a_.lea(x86::rdx, memory({OperandPlace::Kind::slot, i.cosine_slot}));
-    a_.mov(x86::rax, sin_cos_address(lanes_));
-    if (lanes_ > 1 && has_avx_) a_.vzeroupper();
+    a_.mov(x86::rax, reinterpret_cast<std::uint64_t>(sin_cos_of_one));
     a_.call(x86::rax);
     a_.mov(x86::rdi, x86::ptr(x86::rsp, k_saved_inputs));
     a_.mov(x86::rsi, x86::ptr(x86::rsp, k_saved_constants));
     a_.mov(x86::rdx, x86::ptr(x86::rsp, k_saved_outputs));
     a_.mov(x86::ecx, x86::ptr(x86::rsp, k_saved_wish));
-    if (counts_lanes()) {
-      a_.mov(x86::eax, x86::ptr(x86::rsp, k_saved_lanes));
-      if (has_512()) a_.kmovw(x86::k1, x86::eax);
-    }
   }
 
   x86::Assembler& a_;
   const RegisterPlan& plan_;
-  const int lanes_;
-  const InstructionSet instructions_;
   const bool has_avx_;
   const InstructionNames names_;
-  const std::uint32_t all_lanes_;
   asmjit::Label sign_bits_, value_bits_, failed_, done_;
 };
 
@@ -330,16 +270,10 @@ bool MachineCode::is_available() {
 
 InstructionSet MachineCode::best_instructions() { return k_best_instructions; }
 
-int MachineCode::most_lanes(InstructionSet instructions) {
-  return instructions == InstructionSet::sse2 ? 2 : instructions == InstructionSet::avx2 ? 4 : 8;
-}
-
-MachineCode::MachineCode(const Tape& tape, int lanes, InstructionSet instructions) : lanes_(lanes) {
-  if (lanes < 1 || lanes > most_lanes(instructions) || !std::has_single_bit(static_cast<unsigned>(lanes)))
-    throw std::invalid_argument("machine code: 1, 2, 4 or 8 lanes, as many as a register has");
+MachineCode::MachineCode(const Tape& tape, InstructionSet instructions) {
   if (instructions > best_instructions()) throw std::invalid_argument("machine code: the processor has no such instructions");
-  const RegisterPlan plan = plan_registers(tape, order_of_steps(tape), rules_for(lanes, instructions));
-  if (8 * lanes * plan.slots > k_most_frame) return;
+  const RegisterPlan plan = plan_registers(tape, order_of_steps(tape), rules_for(instructions));
+  if (8 * plan.slots > k_most_frame) return;
 
   Faults faults;
   asmjit::CodeHolder code;
@@ -347,7 +281,7 @@ MachineCode::MachineCode(const Tape& tape, int lanes, InstructionSet instruction
   code.setErrorHandler(&faults);
   x86::Assembler assembler(&code);
   code.reserveBuffer(&code.textSection()->buffer(), 1024 + 12 * plan.instructions.size());
-  Writer(assembler, plan, lanes, instructions).write();
+  Writer(assembler, plan, instructions).write();
   if (code.hasUnresolvedLinks()) throw std::logic_error("machine code: a jump leads nowhere");
 
   const asmjit::CodeBuffer& bytes = code.textSection()->buffer();
@@ -369,7 +303,6 @@ MachineCode& MachineCode::operator=(MachineCode&& other) noexcept {
   std::swap(memory_size_, other.memory_size_);
   std::swap(code_size_, other.code_size_);
   std::swap(instruction_count_, other.instruction_count_);
-  std::swap(lanes_, other.lanes_);
   return *this;
 }
 

@@ -4,8 +4,6 @@
 #include "mbd/math/portable_math.h"
 #include "mbd/tape/sine_lanes.h"
 
-#include <utility>
-
 namespace steplap {
 
 bool MachineCode::is_available() {
@@ -13,9 +11,6 @@ bool MachineCode::is_available() {
 }
 InstructionSet MachineCode::best_instructions() {
   return InstructionSet::sse2;
-}
-int MachineCode::most_lanes(InstructionSet) {
-  return 1;
 }
 
 void sin_cos_of_block(const double* x, double* sines, double* cosines) {
@@ -26,12 +21,9 @@ void sin_cos_of_block(const double* x, double* sines, double* cosines) {
   }
 }
 
-MachineCode::MachineCode(const Tape&, int lanes, InstructionSet) : lanes_(lanes) {}
-MachineCode::MachineCode(MachineCode&& other) noexcept : lanes_(other.lanes_) {}
-MachineCode& MachineCode::operator=(MachineCode&& other) noexcept {
-  lanes_ = other.lanes_;
-  return *this;
-}
+MachineCode::MachineCode(const Tape&, InstructionSet) {}
+MachineCode::MachineCode(MachineCode&&) noexcept {}
+MachineCode& MachineCode::operator=(MachineCode&&) noexcept { return *this; }
 MachineCode::~MachineCode() = default;
 
 } // namespace steplap

@@ -61,9 +61,8 @@ private:
 
   void arrange(const std::vector<std::int32_t>& order) {
     std::size_t last = 0; // behind the last condition
-    if (!rules_.stores_at_once)
-      for (std::size_t p = 0; p < order.size(); ++p)
-        if (is_condition(tape_.steps[at(order[p])].operation)) last = p + 1;
+    for (std::size_t p = 0; p < order.size(); ++p)
+      if (is_condition(tape_.steps[at(order[p])].operation)) last = p + 1;
     order_.reserve(order.size() + 1);
     order_.insert(order_.end(), order.begin(), order.begin() + static_cast<std::ptrdiff_t>(last));
     order_.push_back(k_store_outputs);
@@ -268,8 +267,7 @@ private:
       busy_ |= 1u << v.reg;
       return {OperandPlace::Kind::in_register, v.reg};
     }
-    if (v.home.kind == OperandPlace::Kind::slot || rules_.takes_given_in_memory) return v.home;
-    return {OperandPlace::Kind::in_register, in_register(step)};
+    return v.home;
   }
 
   // Free are, from here on, the registers of operands that are used no more.
@@ -334,16 +332,11 @@ private:
 
   void condition(const TapeStep& s) {
     ++plan_.conditions;
-    const std::int32_t a = rules_.swaps_conditions ? s.b : s.a, b = rules_.swaps_conditions ? s.a : s.b;
-    keep(b);
-    const int first = in_register(a);
-    const OperandPlace second = in_register_or_memory(b);
-    int r = first;
-    if (rules_.conditions_take_register)
-      r = destination(s, first);
-    else
-      let_operands_go(s);
-    arithmetic(Kind::condition, s.operation, r, rules_.has_three_operands || !rules_.conditions_take_register ? first : r, second);
+    keep(s.a);
+    const int first = in_register(s.b);
+    const OperandPlace second = in_register_or_memory(s.a);
+    let_operands_go(s);
+    arithmetic(Kind::condition, s.operation, first, first, second);
     let_slots_go(s);
   }
 

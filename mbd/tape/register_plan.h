@@ -36,7 +36,7 @@ struct PlannedInstruction {
     store,     ///< second = first
     arithmetic, ///< destination = first operation second; maximum: first > second ? first : second, first being the tape's b;
                 ///< negate: first ^ second, sign_bits; absolute: first & second, value_bits; square_root: of first
-    condition, ///< first operation second, as the tape has them, or, with `swaps_conditions`, b first and a second
+    condition, ///< first is the tape's b and second its a: a < b is b > a, whose jump is not taken with NaN
     sin_cos,   ///< slots sine_slot and cosine_slot = of second, in memory; registers are lost
     leave,     ///< the usual outputs are stored, and conditions looked at: here it ends if no more is wanted
   };
@@ -51,10 +51,6 @@ struct PlannedInstruction {
 struct RegisterRules {
   int registers = 16;
   bool has_three_operands = false;    ///< else the destination is the first operand's register
-  bool takes_given_in_memory = true;  ///< inputs, constants and outputs as second operand; slots are taken always
-  bool conditions_take_register = false; ///< a destination, whose value is lost
-  bool swaps_conditions = false;
-  bool stores_at_once = false;        ///< else no output before all conditions have been looked at
 };
 
 struct RegisterPlan {

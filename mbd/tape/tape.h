@@ -2,9 +2,8 @@
 // indices and branches that led there.
 //
 // An evaluation of the equations of motion in one set of modes makes the same operations each time, on other numbers.
-// Written down once (traced.h) they can be done again by machine code made for them (machine_code.h), for one sample or for
-// several in the lanes of one register. Each operation rounds as IEEE 754 says, in the order in which it was written down:
-// the results have the same bits as those of the code that was traced. (Tapes: A. Griewank, A. Walther, Evaluating
+// Written down once (traced.h) they can be done again by machine code made for them (machine_code.h). Each operation rounds
+// as IEEE 754 says, in the order in which it was written down: the results have the same bits as those of the code that was traced. (Tapes: A. Griewank, A. Walther, Evaluating
 // Derivatives, 2nd ed., SIAM 2008, ch. 4.)
 #pragma once
 

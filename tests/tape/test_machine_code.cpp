@@ -1,5 +1,7 @@
-// Machine code against replay, to the bit, for every set of instructions and number of lanes that the processor has.
+// Machine code against replay, to the bit, for every set of instructions that the processor has, and sines side by side.
+#include "mbd/math/portable_math.h"
 #include "mbd/tape/machine_code.h"
+#include "mbd/tape/sine_lanes.h"
 #include "random_tape.h"
 #include "same_bits.h"
 
@@ -24,17 +26,12 @@ namespace {
 
 constexpr double k_untouched = 1234.5;
 
-struct Target {
-  InstructionSet instructions;
-  int lanes;
-};
-
-std::vector<Target> all_targets() {
-  std::vector<Target> targets;
-  if (!MachineCode::is_available()) return targets;
+std::vector<InstructionSet> all_sets() {
+  std::vector<InstructionSet> sets;
+  if (!MachineCode::is_available()) return sets;
   for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512})
-    for (int lanes = 1; set <= MachineCode::best_instructions() && lanes <= MachineCode::most_lanes(set); lanes *= 2) targets.push_back({set, lanes});
-  return targets;
+    if (set <= MachineCode::best_instructions()) sets.push_back(set);
+  return sets;
 }
 
 /// Numbers of several samples, and what replay makes of them.
@@ -50,38 +47,22 @@ struct Samples {
   }
 };
 
-// [index][lane] of the samples that begin with `first`; behind the last comes the first again.
-std::vector<double> in_lanes(const std::vector<std::vector<double>>& of, std::size_t first, int lanes) {
-  std::vector<double> all(of.front().size() * static_cast<std::size_t>(lanes));
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = of[(first + i % lanes) % of.size()][i / lanes];
-  return all;
-}
-
 // What differs, "" if nothing does.
-std::string difference(const MachineCode& code, const Samples& samples, std::size_t first) {
-  const int lanes = code.lanes();
-  const auto inputs = in_lanes(samples.inputs, first, lanes), constants = in_lanes(samples.constants, first, lanes);
-  std::vector<double> outputs(samples.outputs.front().size() * static_cast<std::size_t>(lanes), k_untouched);
-  const unsigned held = code.run(inputs.data(), constants.data(), outputs.data());
-  if (held >> lanes != 0) return "lanes that are not there";
-  for (std::size_t l = 0; l < static_cast<std::size_t>(lanes); ++l) {
-    const std::size_t sample = (first + l) % samples.holds.size();
-    if ((held >> l & 1) != samples.holds[sample]) return "lane " + std::to_string(l) + ": a condition";
-    if (lanes > 1 && !samples.holds[sample]) continue;
-    for (std::size_t k = 0; k < samples.outputs[sample].size(); ++k)
-      if (!are_same_bits(outputs[k * lanes + l], samples.outputs[sample][k])) return "lane " + std::to_string(l) + ": output " + std::to_string(k);
-  }
+std::string difference(const MachineCode& code, const Samples& samples, std::size_t sample) {
+  std::vector<double> outputs(samples.outputs[sample].size(), k_untouched);
+  if (code.run(samples.inputs[sample].data(), samples.constants[sample].data(), outputs.data()) != samples.holds[sample]) return "a condition";
+  for (std::size_t k = 0; k < outputs.size(); ++k)
+    if (!are_same_bits(outputs[k], samples.outputs[sample][k])) return "output " + std::to_string(k);
   return "";
 }
 
 void check_everywhere(const Tape& tape, const Samples& samples) {
-  for (const Target& target : all_targets()) {
-    const MachineCode code(tape, target.lanes, target.instructions);
+  for (const InstructionSet set : all_sets()) {
+    const MachineCode code(tape, set);
     REQUIRE(code);
     std::string found;
-    for (std::size_t first = 0; first < samples.holds.size() && found.empty(); first += static_cast<std::size_t>(target.lanes))
-      found = difference(code, samples, first);
-    CHECK_MESSAGE(found.empty(), found << ", " << target.lanes << " lanes, instructions " << static_cast<int>(target.instructions));
+    for (std::size_t i = 0; i < samples.holds.size() && found.empty(); ++i) found = difference(code, samples, i);
+    CHECK_MESSAGE(found.empty(), found << ", instructions " << static_cast<int>(set));
   }
 }
 
@@ -157,18 +138,15 @@ TEST_CASE("the usual outputs alone, where no more is wanted") {
     const Samples samples = random_samples(random, tape, 8, true);
     CAPTURE(i);
     check_everywhere(tape, samples);
-    for (const Target& target : all_targets()) {
-      const MachineCode code(tape, target.lanes, target.instructions);
-      const auto lanes = static_cast<std::size_t>(target.lanes);
-      const auto inputs = in_lanes(samples.inputs, 0, target.lanes), constants = in_lanes(samples.constants, 0, target.lanes);
-      std::vector<double> outputs(tape.outputs.size() * lanes, k_untouched);
-      const unsigned held = code.run(inputs.data(), constants.data(), outputs.data(), false);
-      for (std::size_t l = 0; l < lanes; ++l) {
-        CHECK((held >> l & 1) == samples.holds[l]);
-        for (std::size_t k = 0; k < tape.usual_outputs && samples.holds[l]; ++k)
-          CHECK(are_same_bits(outputs[k * lanes + l], samples.outputs[l][k]));
+    for (const InstructionSet set : all_sets()) {
+      const MachineCode code(tape, set);
+      for (std::size_t sample = 0; sample < samples.holds.size(); ++sample) {
+        std::vector<double> outputs(tape.outputs.size(), k_untouched);
+        CHECK(code.run(samples.inputs[sample].data(), samples.constants[sample].data(), outputs.data(), false) == samples.holds[sample]);
+        for (std::size_t k = 0; k < tape.usual_outputs && samples.holds[sample]; ++k)
+          CHECK(are_same_bits(outputs[k], samples.outputs[sample][k]));
+        if (samples.holds[sample] && outputs.back() == k_untouched) ++left_out;
       }
-      if (lanes == 1 && samples.holds[0] && outputs.back() == k_untouched) ++left_out;
     }
   }
   CHECK(left_out > 100); // something was saved
@@ -217,7 +195,7 @@ TEST_CASE("a condition that fails first, in the middle, last leaves the outputs 
   }
 }
 
-TEST_CASE("conditions with NaN, equal numbers, zeros of two signs: lane by lane") {
+TEST_CASE("conditions with NaN, equal numbers, zeros of two signs") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const TapeOperation o : {if_less, if_not_less}) {
     const Tape tape{{{input, 0}, {input, 1}, {add, 0, 0}, {o, 0, 1}, {o, 2, 2}}, {}, 2, {2}};
@@ -281,12 +259,11 @@ TEST_CASE("sine and cosine of one argument, once, twice, one of them unwanted") 
   }
 }
 
-// Lanes find theirs by code of their own.
+// Waves take theirs eight at a time, by code of its own for each set of instructions.
 TEST_CASE("sines of all sizes side by side have the bits of portable::sin_cos") {
-  const Tape tape{{{input, 0}, {sine, 0}, {cosine, 0}}, {}, 1, {1, 2}};
   std::mt19937 random(9);
   const auto in = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
-  Samples samples;
+  std::vector<double> all;
   for (int i = 0; i < 4000; ++i) {
     double x = in(-0.9, 0.9);
     if (i % 4 == 1) x = in(-20.0, 20.0);
@@ -294,11 +271,32 @@ TEST_CASE("sines of all sizes side by side have the bits of portable::sin_cos") 
     if (i % 4 == 3) x = std::ldexp(in(-1.0, 1.0), static_cast<int>(in(-1060.0, 19.9)));
     if (i >= 2000 && i % 4 != 1) x = in(-0.78, 0.78) * (i % 3); // groups that are small throughout
     if (i >= 3800 && i % 5 == 0) x = in(-1e9, 1e9);
-    samples.add(tape, {x}, {});
+    all.push_back(x);
   }
   for (const double edge : {0.78539816339744828, 0x1p-28, 1e6, 0.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
-    for (const double x : {edge, -edge, std::nextafter(edge, 0.0), std::nextafter(edge, 1e7)}) samples.add(tape, {x}, {});
-  check_everywhere(tape, samples);
+    for (const double x : {edge, -edge, std::nextafter(edge, 0.0), std::nextafter(edge, 1e7)}) all.push_back(x);
+  REQUIRE(all.size() % 8 == 0);
+  struct Way {
+    int count;
+    void (*sin_cos)(const double*, double*, double*);
+  };
+  std::vector<Way> ways{{8, sin_cos_of_block}};
+  if (MachineCode::is_available()) ways.push_back({2, sin_cos_of_two});
+  if (MachineCode::best_instructions() >= InstructionSet::avx2) ways.push_back({4, sin_cos_of_four});
+  if (MachineCode::best_instructions() >= InstructionSet::avx512) ways.push_back({8, sin_cos_of_eight});
+  for (const Way& way : ways) {
+    CAPTURE(way.count);
+    int wrong = 0;
+    for (std::size_t i = 0; i < all.size(); i += static_cast<std::size_t>(way.count)) {
+      double sines[8], cosines[8];
+      way.sin_cos(&all[i], sines, cosines);
+      for (int l = 0; l < way.count; ++l) {
+        const portable::SinCos of = portable::sin_cos(all[i + static_cast<std::size_t>(l)]);
+        wrong += !are_same_bits(sines[l], of.sin) || !are_same_bits(cosines[l], of.cos);
+      }
+    }
+    CHECK(wrong == 0);
+  }
 }
 
 TEST_CASE("nothing, given numbers as outputs, the same output twice") {
@@ -327,14 +325,14 @@ TEST_CASE("compiled objects are freed and can be moved") {
     CHECK(!first);
     third = std::move(second);
     CHECK(!second);
-    CHECK(third.run(&x, nullptr, &y) == 1);
+    CHECK(third.run(&x, nullptr, &y));
   }
   CHECK(y == 42.0);
   CHECK(executable_mappings() == before);
   std::vector<MachineCode> kept;
   for (int i = 0; i < 500; ++i) kept.emplace_back(tape);
   y = 0.0;
-  for (const MachineCode& code : kept) CHECK(code.run(&x, nullptr, &y) == 1);
+  for (const MachineCode& code : kept) CHECK(code.run(&x, nullptr, &y));
   CHECK(executable_mappings() > before);
   kept.clear();
   CHECK(executable_mappings() == before);
@@ -352,7 +350,7 @@ TEST_CASE("where written pages may not be executed there is code all the same") 
     if (prctl(k_deny_write_execute, 1, 0, 0, 0) != 0) _exit(k_denies);
     const MachineCode code(tape);
     double x = 21.0, y = 0.0;
-    _exit(code && code.run(&x, nullptr, &y) == 1 && y == 42.0 ? 0 : 1);
+    _exit(code && code.run(&x, nullptr, &y) && y == 42.0 ? 0 : 1);
   }
   int status = 0;
   REQUIRE(waitpid(child, &status, 0) == child);
@@ -364,17 +362,14 @@ TEST_CASE("where written pages may not be executed there is code all the same") 
 }
 #endif
 
-TEST_CASE("lanes and instructions that there are not are refused") {
+TEST_CASE("instructions that there are not are refused") {
+  CHECK(!MachineCode());
   if (!MachineCode::is_available()) {
     CHECK(!MachineCode(Tape{}));
-    CHECK(MachineCode::most_lanes() == 1);
     return;
   }
-  CHECK_THROWS_AS(MachineCode(Tape{}, 3), std::invalid_argument);
-  CHECK_THROWS_AS(MachineCode(Tape{}, 0), std::invalid_argument);
-  CHECK_THROWS_AS(MachineCode(Tape{}, 16), std::invalid_argument);
-  CHECK_THROWS_AS(MachineCode(Tape{}, 4, InstructionSet::sse2), std::invalid_argument);
-  CHECK(!MachineCode());
+  const auto beyond = static_cast<InstructionSet>(static_cast<int>(MachineCode::best_instructions()) + 1);
+  CHECK_THROWS_AS(MachineCode(Tape{}, beyond), std::invalid_argument);
 }
 
 // All of n + 1 values are wanted again once they are all known, in the other order.

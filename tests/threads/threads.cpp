@@ -7,7 +7,6 @@
 //     dynamics             two threads evaluate one Dynamics
 //     system               one thread writes a number into a System that another one runs
 //     once                 a flag without a lock guards what the first thread to come fills in
-#include "mbd/ensemble/ensemble.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/system/instance.h"
@@ -71,24 +70,6 @@ void in_threads(int count, const std::function<void(int)>& job) {
   for (std::thread& thread : threads) thread.join();
 }
 
-// Two samples side by side, by code that all threads share.
-std::vector<double> run_together(const System& a, const System& b, SimulationOptions options) {
-  options.stage_code = StageCode::at_once;
-  std::vector<const System*> left{&a, &b};
-  std::vector<std::vector<double>> of_sample(left.size());
-  const auto start = [&]() -> std::unique_ptr<Simulation> {
-    if (left.empty()) return nullptr;
-    const System& system = *left.front();
-    left.erase(left.begin());
-    return std::make_unique<Simulation>(system, system.initial_state(), options);
-  };
-  Ensemble().run(start, [&](Ensemble::Finished&& done) {
-    of_sample[done.number] = numbers(std::move(*done.simulation).result().final_state);
-  });
-  of_sample[0].insert(of_sample[0].end(), of_sample[1].begin(), of_sample[1].end());
-  return of_sample[0];
-}
-
 // One scene: runs on its system, which all share, beside systems made of its model, which all share, and of variants.
 std::vector<double> all_of(const Scene& s, const std::string& path, double value) {
   std::vector<double> results = run(*s.system, s.options);
@@ -100,7 +81,9 @@ std::vector<double> all_of(const Scene& s, const std::string& path, double value
   Variants variants(s.given, {path});
   const auto variant = variants.make({value});
   append(run(*variant, s.options));
-  append(run_together(*variant, *s.system, s.options));
+  SimulationOptions by_code = s.options; // which all threads share
+  by_code.stage_code = StageCode::at_once;
+  append(run(*variant, by_code));
   return results;
 }
 

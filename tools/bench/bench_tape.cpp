@@ -1,5 +1,5 @@
 // Machine code of a tape: what a step of it takes to be compiled and to be run, in nanoseconds, for each set of instructions
-// and number of lanes that the processor has; beside it what replay takes.
+// that the processor has; beside it what replay takes.
 //
 // The tape is made up to be like an evaluation: sums of products along chains, of which a dozen go side by side, an operand in
 // three from inputs or constants, a value out of ten used again much later, two divisions in a hundred, a root, a condition.
@@ -59,15 +59,15 @@ int count_steps(const Tape& tape) {
   return count;
 }
 
-void print_per_step(benchmark::State& state, const Tape& tape, int lanes) {
-  const double done = static_cast<double>(state.iterations()) * count_steps(tape) * lanes;
+void print_per_step(benchmark::State& state, const Tape& tape) {
+  const double done = static_cast<double>(state.iterations()) * count_steps(tape);
   state.counters["per_step"] = benchmark::Counter(done, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 void simplify(benchmark::State& state) {
   const Tape tape = evaluation_like(static_cast<int>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(simplified(tape));
-  print_per_step(state, tape, 1);
+  print_per_step(state, tape);
 }
 
 void plan(benchmark::State& state) {
@@ -75,36 +75,29 @@ void plan(benchmark::State& state) {
   RegisterRules rules;
   rules.has_three_operands = true;
   for (auto _ : state) benchmark::DoNotOptimize(plan_registers(tape, order_of_steps(tape), rules));
-  print_per_step(state, tape, 1);
+  print_per_step(state, tape);
 }
 
-void compile(benchmark::State& state, int lanes, InstructionSet set) {
+void compile(benchmark::State& state, InstructionSet set) {
   const Tape tape = evaluation_like(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(MachineCode(tape, lanes, set));
-  print_per_step(state, tape, 1);
-  const MachineCode code(tape, lanes, set);
+  for (auto _ : state) benchmark::DoNotOptimize(MachineCode(tape, set));
+  print_per_step(state, tape);
+  const MachineCode code(tape, set);
   state.counters["instructions"] = static_cast<double>(code.instruction_count()) / count_steps(tape);
   state.counters["bytes"] = static_cast<double>(code.code_size()) / count_steps(tape);
 }
 
-std::vector<double> spread(const std::vector<double>& of, int lanes) {
-  std::vector<double> all;
-  for (const double x : of) all.insert(all.end(), static_cast<std::size_t>(lanes), x);
-  return all;
-}
-
-void run(benchmark::State& state, int lanes, InstructionSet set) {
+void run(benchmark::State& state, InstructionSet set) {
   const Tape tape = evaluation_like(static_cast<int>(state.range(0)));
-  const MachineCode code(tape, lanes, set);
-  const auto constants = spread(tape.constants, lanes);
-  auto inputs = spread(std::vector<double>(static_cast<std::size_t>(tape.input_count), 0.75), lanes);
-  std::vector<double> outputs(tape.outputs.size() * static_cast<std::size_t>(lanes));
+  const MachineCode code(tape, set);
+  std::vector<double> inputs(static_cast<std::size_t>(tape.input_count), 0.75);
+  std::vector<double> outputs(tape.outputs.size());
   for (auto _ : state) {
-    benchmark::DoNotOptimize(code.run(inputs.data(), constants.data(), outputs.data()));
+    benchmark::DoNotOptimize(code.run(inputs.data(), tape.constants.data(), outputs.data()));
     inputs[0] = 0.5 + 1e-3 * (outputs[0] > 0.0); // the next hangs on this one, as stages do
     benchmark::ClobberMemory();
   }
-  print_per_step(state, tape, lanes);
+  print_per_step(state, tape);
 }
 
 void interpret(benchmark::State& state) {
@@ -115,7 +108,7 @@ void interpret(benchmark::State& state) {
     benchmark::DoNotOptimize(replay(tape, inputs.data(), tape.constants.data(), outputs.data()));
     benchmark::ClobberMemory();
   }
-  print_per_step(state, tape, 1);
+  print_per_step(state, tape);
 }
 
 void add_all() {
@@ -124,10 +117,10 @@ void add_all() {
   benchmark::RegisterBenchmark("replay", interpret)->Arg(1000);
   const char* const names[] = {"sse2", "avx2", "avx512"};
   for (const InstructionSet set : {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512})
-    for (int lanes = 1; MachineCode::is_available() && set <= MachineCode::best_instructions() && lanes <= MachineCode::most_lanes(set); lanes *= 2) {
-      const std::string name = std::string(names[static_cast<int>(set)]) + "/lanes:" + std::to_string(lanes);
-      benchmark::RegisterBenchmark(("compile/" + name).c_str(), compile, lanes, set)->Arg(1000);
-      benchmark::RegisterBenchmark(("run/" + name).c_str(), run, lanes, set)->Arg(1000);
+    if (MachineCode::is_available() && set <= MachineCode::best_instructions()) {
+      const std::string name = names[static_cast<int>(set)];
+      benchmark::RegisterBenchmark(("compile/" + name).c_str(), compile, set)->Arg(1000);
+      benchmark::RegisterBenchmark(("run/" + name).c_str(), run, set)->Arg(1000);
     }
 }
 

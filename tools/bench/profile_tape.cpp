@@ -1,5 +1,5 @@
 // One evaluation of a model at a given time, written down on a tape (mbd/tape): what writing, simplifying and making code take, and
-// what an evaluation takes as ever and by code with 1, 2, 4 and 8 lanes, for each lane. The least of many batches.
+// what an evaluation takes as ever and by code. The least of many batches.
 //   profile_tape MODEL TIME
 #include "mbd/dynamics/traced_evaluation.h"
 #include "mbd/io/reader.h"
@@ -44,12 +44,6 @@ std::vector<double> time_inputs(const System& system, const State& state, const 
   return inputs;
 }
 
-std::vector<double> in_lanes(const std::vector<double>& x, int lanes) {
-  std::vector<double> columns;
-  for (const double value : x) columns.insert(columns.end(), static_cast<std::size_t>(lanes), value);
-  return columns;
-}
-
 int profile(const char* path, double time) {
   const Model model = read_model(path, transformer_catalog());
   const auto system = compile(model);
@@ -80,13 +74,10 @@ int profile(const char* path, double time) {
   std::printf("%zu steps, %zu simplified; writing %.0f, simplifying %.0f, making code %.0f ns\n", traced.tape.steps.size(),
               tape.steps.size(), writing, simplifying, making);
   std::printf("evaluation %.1f ns\n", nanoseconds(5000, [&] { dynamics.rates(state.t, y.data(), dy.data()); }));
-  for (int lanes = 1; lanes <= MachineCode::most_lanes(); lanes *= 2) {
-    const MachineCode code(tape, lanes);
-    const std::vector<double> in = in_lanes(inputs, lanes), constants = in_lanes(tape.constants, lanes);
-    std::vector<double> out(tape.outputs.size() * static_cast<std::size_t>(lanes));
-    const double one = nanoseconds(5000, [&] { (void)code.run(in.data(), constants.data(), out.data()); });
-    std::printf("%d lanes %.1f ns each, %zu instructions\n", lanes, one / lanes, code.instruction_count());
-  }
+  const MachineCode code(tape);
+  std::vector<double> out(tape.outputs.size());
+  const double one = nanoseconds(5000, [&] { (void)code.run(inputs.data(), tape.constants.data(), out.data()); });
+  std::printf("by code %.1f ns, %zu instructions\n", one, code.instruction_count());
   return 0;
 }
 
