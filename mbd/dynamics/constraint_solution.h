@@ -58,7 +58,6 @@ public:
   MeasureValue<double> load(const RowSpec& spec, SchurRow& row) const;
 
 private:
-  template <bool WithBias> MeasureValue<double> load_active(std::size_t r);
   double pull(std::size_t r);
   void solve_mechanisms(const BodyForce* force, double* a);
   void accelerate_mechanism(Mechanism& m, const BodyForce* force, double* a);
@@ -73,8 +72,6 @@ private:
   void take_part_accelerations(const double* a, double* right) const;
   void add_part_responses(const double* lambda, double* a) const;
   [[nodiscard]] double along_parts(std::size_t row, const double* change) const;
-  void to_clusters(const RowSpec& spec, const MeasureValue<double>& m, SchurRow& row) const;
-  [[nodiscard]] double cluster_bias(const RowSpec& spec, const MeasureValue<double>& m) const;
 
   const Motion<double>* motion_; ///< per slot
   Layout* layout_ = nullptr;

@@ -42,7 +42,7 @@ void Dynamics::set_state(const State& state) {
   evaluation_.mode = state.mode.data();
   evaluation_.friction = state.friction.data();
   evaluation_.memory = state.memory.data();
-  is_merged_near_ = was_merged_near_ = is_behind_ = false;
+  is_merged_near_ = was_merged_near_ = byproducts_pending_ = false;
   stage_programs_.leave();
   std::fill(watch_.begin(), watch_.end(), 1.0);
   std::fill(force_.begin(), force_.end(), BodyForce{}); // of bodies that none acts on in the new layout
@@ -57,7 +57,7 @@ void Dynamics::set_state(const State& state) {
     std::vector<double> packed(dimension());
     pack(system_.initial_state(), packed.data());
     layout_->reference.assign(packed.begin(), packed.begin() + coordinate_count());
-    for (std::vector<double>* const state_like : {&placed_, &behind_y_, &behind_dy_})
+    for (std::vector<double>* const state_like : {&placed_, &pending_y_, &pending_dy_})
       if (state_like->size() < packed.size()) state_like->resize(packed.size());
     if (kept_.size() < layout_->active.size()) kept_.resize(layout_->active.size());
   }
@@ -198,7 +198,7 @@ STEPLAP_INLINE void Dynamics::finish_rates(const double* y, double* dy) {
 STEPLAP_INLINE void Dynamics::begin_rates(double t, const double* y, double* dy) {
   const int n = coordinate_count();
   ++evaluations_;
-  is_behind_ = false;
+  byproducts_pending_ = false;
   evaluation_.t = t;
   evaluation_.dissipation = 0.0;
   evaluation_.work = 0.0;
@@ -263,8 +263,8 @@ void Dynamics::take_time_inputs(double t, double* into) {
   }
 }
 
-// Rates, power and watch values, and if `all`, what look_by_code() and fall_behind() take; false: as ever then, nothing was
-// changed.
+// Rates, power and watch values, and if `all`, what look_by_code() and defer_byproducts() take. Returns false if there is no code
+// that holds here; then nothing was changed.
 bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   StageProgram* const program = stage_programs_.now();
   if (!program || !program->is_ready() || !(layout_->smallest_pivot() >= k_traced_pivot)) return false;
@@ -273,7 +273,7 @@ bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   if (!program->run(now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data(), all)) return false;
   ++evaluations_;
   ++coded_stages_;
-  is_behind_ = false;
+  byproducts_pending_ = false;
   rows_.forget_factors();
   std::copy_n(y + coordinate_count(), coordinate_count(), dy);
   for (std::size_t i = 0; i < layout_->locks.size(); ++i)
@@ -286,7 +286,7 @@ void Dynamics::stage_rates(double t, const double* y, double* dy) {
   rates(t, y, dy);
   // A projection begins with the factors of the evaluation before it: results must not hang on which way that was made.
   if (layout_->smallest_pivot() >= k_traced_pivot) rows_.forget_factors();
-  note_stage(t, y, dy);
+  count_stage(t, y, dy);
 }
 
 void Dynamics::look_rates(double t, const double* y, double* dy, bool always) {
@@ -295,12 +295,12 @@ void Dynamics::look_rates(double t, const double* y, double* dy, bool always) {
     watch_merged_if_near(dy, always);
   } else if (may_look_by_code() && run_code(t, y, dy, true)) {
     const StageProgram& program = *stage_programs_.now();
-    fall_behind(program, t, y);
+    defer_byproducts(program, t, y);
     (void)look_by_code(program, t);
   } else {
     rates(t, y, dy);
     watch_merged_if_near(dy, always);
-    note_stage(t, y, dy);
+    count_stage(t, y, dy);
   }
 }
 
@@ -311,7 +311,7 @@ void Dynamics::end_rates(double t, const double* y, double* dy) {
     return;
   }
   const StageProgram& program = *stage_programs_.now();
-  fall_behind(program, t, y);
+  defer_byproducts(program, t, y);
   if (!layout_->is_merged_watched) return;
   was_merged_near_ = is_merged_near_;
   is_merged_near_ = look_by_code(program, t);
@@ -330,30 +330,30 @@ bool Dynamics::look_by_code(const StageProgram& program, double t) {
   return watch_wrenches();
 }
 
-// After a stage that was evaluated as ever: it is written down where that will pay.
-void Dynamics::note_stage(double t, const double* y, const double* dy) {
+// After a stage that was evaluated without code: counts it, and records it where code will pay.
+void Dynamics::count_stage(double t, const double* y, const double* dy) {
   StageProgram* const program = stage_programs_.now();
   if (!program) return;
-  program->note_stage();
+  program->count_stage();
   if (!program->wants_stage()) return;
   const double now = std::min(t, time_cap_);
   take_time_inputs(now, program->time_inputs());
   reactions_.find_joints(cluster_accelerations(dy), multipliers().data());
   const StageFound found{dy + coordinate_count(), watch_.data(), watch_rate_.data(), friction_force_, layout_->smallest_pivot()};
-  program->take_down(system_, *state_, now, y, found);
+  program->record(system_, *state_, now, y, found);
 }
 
-void Dynamics::fall_behind(const StageProgram& program, double t, const double* y) {
-  is_behind_ = true;
-  behind_t_ = std::min(t, time_cap_);
-  behind_pivot_ = program.smallest_pivot();
-  std::copy_n(y, dimension(), behind_y_.begin());
+void Dynamics::defer_byproducts(const StageProgram& program, double t, const double* y) {
+  byproducts_pending_ = true;
+  pending_t_ = std::min(t, time_cap_);
+  pending_pivot_ = program.smallest_pivot();
+  std::copy_n(y, dimension(), pending_y_.begin());
 }
 
 // Not one more of evaluations(): results must not hang on which way it was made.
-void Dynamics::evaluate_behind() {
+void Dynamics::evaluate_byproducts() {
   --evaluations_;
-  rates_at(behind_t_, behind_y_.data(), behind_dy_.data());
+  rates_at(pending_t_, pending_y_.data(), pending_dy_.data());
 }
 
 double Dynamics::mechanical_energy(double t, const double* y) {
@@ -387,7 +387,7 @@ bool Dynamics::has_groups() const { return !sharing()->groups().empty(); }
 
 // Is any near its limit?
 bool Dynamics::watch_joints(const double* dy) {
-  catch_up();
+  ensure_byproducts();
   kinematics_.complete();
   const double* const cluster_a = cluster_accelerations(dy);
   if (layout_->sharing) {
@@ -414,7 +414,7 @@ bool Dynamics::watch_wrenches() {
 
 Snapshot Dynamics::snapshot(const double* dy) {
   const Layout& layout = *layout_;
-  catch_up();
+  ensure_byproducts();
   kinematics_.complete();
   if (layout.sharing) take_solved_friction();
   const double* const cluster_a = cluster_accelerations(dy);

@@ -94,7 +94,7 @@ public:
   /// rates() and watch_merged() at the end of a step, of which nobody may ask more than rates and watch values: by-products
   /// are found when somebody does.
   void end_rates(double t, const double* y, double* dy);
-  /// From here on stages are made in the modes that state() has now.
+  /// Selects the compiled stage for the present modes, if there is one.
   void begin_stages();
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
   /// residuals found before. Stops at `tolerance`, 0: where rounding sets an end to it; throws ConstraintFailure
@@ -117,7 +117,7 @@ public:
   /// Was the last evaluation that near?
   [[nodiscard]] bool is_near_singular() const;
   /// That of the last rates(), look_rates() or end_rates(), or of a projection since.
-  [[nodiscard]] double smallest_pivot() const { return is_behind_ ? behind_pivot_ : layout_->smallest_pivot(); }
+  [[nodiscard]] double smallest_pivot() const { return byproducts_pending_ ? pending_pivot_ : layout_->smallest_pivot(); }
   /// Residuals at y without moving it.
   [[nodiscard]] Residual residual(double t, const double* y);
 
@@ -126,18 +126,18 @@ public:
   [[nodiscard]] const std::vector<double>& watch_rate() const { return watch_rate_; }
   /// Both with all bodies where they are.
   [[nodiscard]] const Evaluation& evaluation() {
-    catch_up();
+    ensure_byproducts();
     kinematics_.complete();
     return evaluation_;
   }
   [[nodiscard]] const std::vector<Motion<double>>& motion() {
-    catch_up();
+    ensure_byproducts();
     kinematics_.complete();
     return kinematics_.motion();
   }
   /// Multipliers of the layout's active rows.
   [[nodiscard]] const std::vector<double>& multipliers() {
-    catch_up();
+    ensure_byproducts();
     return rows_.multipliers();
   }
   /// The loads that sticking elements share in more than one way, as last solved by watch_merged(); null where
@@ -211,12 +211,12 @@ private:
   [[nodiscard]] bool run_code(double t, const double* y, double* dy, bool all);
   [[nodiscard]] bool may_look_by_code() const;
   [[nodiscard]] bool look_by_code(const StageProgram& program, double t);
-  void note_stage(double t, const double* y, const double* dy);
-  void fall_behind(const StageProgram& program, double t, const double* y);
-  void catch_up() {
-    if (is_behind_) [[unlikely]] evaluate_behind();
+  void count_stage(double t, const double* y, const double* dy);
+  void defer_byproducts(const StageProgram& program, double t, const double* y);
+  void ensure_byproducts() {
+    if (byproducts_pending_) [[unlikely]] evaluate_byproducts();
   }
-  void evaluate_behind();
+  void evaluate_byproducts();
   void settle_loads();
 
   /// A merged joint with more of its capacity left than this at a step's ends is not looked at in between: what
@@ -250,9 +250,9 @@ private:
   double booked_[2] = {0.0, 0.0};       ///< dissipated energy and work at the last rates(), J
   const Integrals* integrals_ = nullptr;
   /// The last evaluation was made by code: its by-products, factors among them, are found where somebody asks for them.
-  bool is_behind_ = false;
-  double behind_t_ = 0.0, behind_pivot_ = 1.0;
-  std::vector<double> behind_y_, behind_dy_;
+  bool byproducts_pending_ = false;
+  double pending_t_ = 0.0, pending_pivot_ = 1.0;
+  std::vector<double> pending_y_, pending_dy_;
   std::vector<double> placed_;     ///< state of rates_nearby
   std::vector<double> kept_;       ///< scratch of keep_allowed, per active row
   std::vector<char> was_out_;      ///< scratch of decide_rank, per active row

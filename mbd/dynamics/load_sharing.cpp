@@ -109,7 +109,7 @@ LoadSharing::LoadSharing(const System& system, const State& state, const std::ve
   }
   std::vector<int> part_of(system.bodies.size(), -1), size(system.bodies.size(), 0);
   for (int i = 1; i < system.body_count(); ++i) ++size[find_root(parent, i)];
-  std::vector<Part> parts;
+  std::vector<ConnectedRows> parts;
   for (const HeldRow& row : rows) {
     const int root = find_root(parent, first_body(*row.spec));
     if (root == k_ground) continue;
@@ -120,7 +120,7 @@ LoadSharing::LoadSharing(const System& system, const State& state, const std::ve
     parts[part_of[root]].rows.push_back(row);
   }
   std::vector<int> body_index(system.bodies.size());
-  for (Part& part : parts) {
+  for (ConnectedRows& part : parts) {
     const bool has_friction = part.rows.back().is_bounded;
     has_friction_ = has_friction_ || has_friction;
     const int bodies = size[find_root(parent, first_body(*part.rows.front().spec))];
@@ -132,7 +132,7 @@ LoadSharing::LoadSharing(const System& system, const State& state, const std::ve
   }
 }
 
-void LoadSharing::analyze(Part& part, const std::vector<Motion<double>>& motion, std::vector<int>& body_index) {
+void LoadSharing::analyze(ConnectedRows& part, const std::vector<Motion<double>>& motion, std::vector<int>& body_index) {
   std::fill(body_index.begin(), body_index.end(), -1);
   int bodies = 0;
   for (const HeldRow& row : part.rows)
@@ -187,7 +187,7 @@ void LoadSharing::analyze(Part& part, const std::vector<Motion<double>>& motion,
 }
 
 // Elements that a vector loads belong together.
-void LoadSharing::make_groups(Part& part, const std::vector<int>& pivots, const MatX& basis) {
+void LoadSharing::make_groups(ConnectedRows& part, const std::vector<int>& pivots, const MatX& basis) {
   const auto element_of = [&](Eigen::Index row) { return part.rows[part.free_count + row].friction; };
   std::vector<int> parent(system_.frictions.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -237,7 +237,7 @@ void LoadSharing::make_groups(Part& part, const std::vector<int>& pivots, const 
 }
 
 // Per null vector: what it moves, of the size of its terms.
-VecX LoadSharing::off_balance(const Part& part, const std::vector<Motion<double>>& motion) const {
+VecX LoadSharing::off_balance(const ConnectedRows& part, const std::vector<Motion<double>>& motion) const {
   const Eigen::Index vectors = part.null.cols();
   MatX sum = MatX::Zero(3 * static_cast<Eigen::Index>(system_.bodies.size()), vectors);
   VecX size = VecX::Zero(vectors);
@@ -257,7 +257,7 @@ VecX LoadSharing::off_balance(const Part& part, const std::vector<Motion<double>
 // Rows that were found to depend nearly were out of balance from the first.
 bool LoadSharing::holds_at(const std::vector<Motion<double>>& motion, const std::vector<char>& left_out) const {
   if (left_out != left_out_) return false;
-  return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+  return std::all_of(parts_.begin(), parts_.end(), [&](const ConnectedRows& part) {
     return ((off_balance(part, motion) - part.off).array() <= k_out_of_balance).all();
   });
 }
@@ -341,7 +341,7 @@ void add_row(const System& system, const RowSpec& spec, double n, bool is_led, c
 
 double LoadSharing::discord(int group, const Evaluation& e, const double* acceleration) const {
   double worst = 0.0;
-  for (const Part& part : parts_)
+  for (const ConnectedRows& part : parts_)
     for (std::size_t g = 0; g < part.groups.size(); ++g) {
       if (part.groups[g] != group) continue;
       for (const int column : part.columns[g]) {
@@ -390,7 +390,7 @@ std::vector<Release> LoadSharing::releases(int index) const {
 }
 
 void LoadSharing::settle(double* row_force, double* friction_force) const {
-  for (const Part& part : parts_) {
+  for (const ConnectedRows& part : parts_) {
     const auto slot = [&](Eigen::Index r) -> double& {
       const HeldRow& row = part.rows[r];
       return row.friction < 0 ? row_force[row.slot] : friction_force[row.slot];

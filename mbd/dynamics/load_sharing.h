@@ -69,7 +69,7 @@ private:
     double norm = 0.0, mobility = 0.0;
   };
   /// Rows between bodies that are connected, with their null vectors: first those that load friction.
-  struct Part {
+  struct ConnectedRows {
     std::vector<HeldRow> rows; ///< bounded ones last
     int free_count = 0;        ///< rows that are not
     MatX null;                 ///< rows × vectors
@@ -79,13 +79,13 @@ private:
     std::vector<int> groups;   ///< of this part
     std::vector<std::vector<int>> columns; ///< per group: its vectors
   };
-  void analyze(Part& part, const std::vector<Motion<double>>& motion, std::vector<int>& body_index);
-  [[nodiscard]] VecX off_balance(const Part& part, const std::vector<Motion<double>>& motion) const;
-  void make_groups(Part& part, const std::vector<int>& pivots, const MatX& basis);
+  void analyze(ConnectedRows& part, const std::vector<Motion<double>>& motion, std::vector<int>& body_index);
+  [[nodiscard]] VecX off_balance(const ConnectedRows& part, const std::vector<Motion<double>>& motion) const;
+  void make_groups(ConnectedRows& part, const std::vector<int>& pivots, const MatX& basis);
   [[nodiscard]] std::vector<HeldRow> held_rows(const State& state) const;
 
   const System& system_;
-  std::vector<Part> parts_;
+  std::vector<ConnectedRows> parts_;
   std::vector<SharingGroup> groups_;
   std::vector<int> group_of_;
   std::vector<char> left_out_;

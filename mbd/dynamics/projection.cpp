@@ -66,7 +66,7 @@ Residual Dynamics::constraint_values(double t, const double* y) {
 
 Residual Dynamics::residual(double t, const double* y) {
   if (layout_->active.empty()) return {};
-  is_behind_ = false; // nobody asks for by-products behind this
+  byproducts_pending_ = false; // nobody asks for by-products behind this
   rows_.forget_factors();
   return constraint_values(t, y);
 }
@@ -105,7 +105,7 @@ bool Dynamics::is_near_singular() const {
 void Dynamics::keep_allowed(double* change) {
   const Layout& layout = *layout_;
   if (layout.active.empty()) return;
-  catch_up();
+  ensure_byproducts();
   if (!rows_.is_factored()) rows_.factor();
   for (std::size_t r = 0; r < layout.active.size(); ++r) kept_[r] = rows_.along(r, change);
   rows_.take_away(kept_.data(), change);
@@ -135,7 +135,7 @@ void Dynamics::settle_inner(double t, double* y) {
 Residual Dynamics::project_rows(double t, double* y, double tolerance) {
   const Layout& layout = *layout_;
   const int n = coordinate_count();
-  if (!layout.active.empty()) catch_up(); // it begins with the factors of the evaluation before
+  if (!layout.active.empty()) ensure_byproducts(); // it begins with the factors of the evaluation before
   kinematics_.aim_locks(std::min(t, time_cap_));
   for (std::size_t i = 0; i < layout.locks.size(); ++i) {
     const int k = 3 * layout.locks[i].cluster + layout.locks[i].coordinate;
@@ -159,7 +159,7 @@ Residual Dynamics::project_rows(double t, double* y, double tolerance) {
 
 void Dynamics::close_velocities(double t, double* y) {
   if (!layout_->active.empty()) {
-    catch_up();
+    ensure_byproducts();
     const Residual now = constraint_values(t, y);
     reach_velocities(t, y, now, k_close * rate_rounding(y));
   }

@@ -36,7 +36,7 @@ bool Dynamics::slip_scales(double* scale) {
     const FrictionState& friction = state_->friction[layout_->sliding[i]];
     const FrictionElement& element = *system_.frictions[layout_->sliding[i]].friction;
     if (!element.turns_with_slip(friction)) continue;
-    catch_up();
+    ensure_byproducts();
     double rate[3];
     sliding_rates(i, rate);
     const SlipScale found = element.slip_scale(evaluation_, friction, rate);
@@ -67,7 +67,7 @@ double Dynamics::slip_decay_rate() {
   for (std::size_t i = 0; i < layout_->sliding.size(); ++i) {
     const int f = layout_->sliding[i];
     if (!system_.frictions[f].friction->turns_with_slip(state_->friction[f])) continue;
-    catch_up();
+    ensure_byproducts();
     double rate[3];
     sliding_rates(i, rate);
     fastest = std::max(fastest, system_.frictions[f].friction->decay_rate(evaluation_, state_->friction[f], rate));

@@ -14,9 +14,9 @@ StageProgram::StageProgram(const Layout& layout, const State& state, StageCode c
       is_hopeless_(!MachineCode::is_available()) {
   inputs_.resize(2 * coordinate_count_ + time_count_);
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
-  kind_ = known_kind(key());
-  stages_ = kind_->made();
-  look_for_known();
+  family_ = tape_family(key());
+  stages_ = family_->made();
+  look_for_candidate();
 }
 
 // What tells layouts and modes apart, and scenes by their sizes.
@@ -35,8 +35,8 @@ std::uint64_t StageProgram::key() const {
   return hash;
 }
 
-void StageProgram::look_for_known() {
-  if (choice_ == StageCode::when_it_pays && !stored_ && tapes_ == 0 && !is_hopeless_) known_ = kind_->coded();
+void StageProgram::look_for_candidate() {
+  if (choice_ == StageCode::when_it_pays && !tape_code_ && tapes_ == 0 && !is_hopeless_) candidate_ = family_->coded();
 }
 
 bool StageProgram::is_of(const State& state) const {
@@ -46,14 +46,14 @@ bool StageProgram::is_of(const State& state) const {
 }
 
 void StageProgram::look_for_code() {
-  if (code_ || !stored_ || !stored_->code()) return;
-  const MachineCode& made = *stored_->code();
+  if (code_ || !tape_code_ || !tape_code_->code()) return;
+  const MachineCode& made = *tape_code_->code();
   const bool is_same = made.run(traced_.inputs.data(), traced_.tape.constants.data(), outputs_.data()) &&
                        std::memcmp(outputs_.data(), traced_.outputs.data(), outputs_.size() * sizeof(double)) == 0;
   if (is_same) {
     code_ = &made;
   } else {
-    stored_.reset();
+    tape_code_.reset();
     is_hopeless_ = true;
   }
 }
@@ -64,7 +64,7 @@ void StageProgram::note_failure() {
 
 void StageProgram::give_up() {
   code_ = nullptr;
-  stored_.reset();
+  tape_code_.reset();
   failures_ = 0;
   stages_ = 0;
   is_hopeless_ = tapes_ >= k_most_tapes;
@@ -87,11 +87,11 @@ bool StageProgram::run(double t, const double* y, double* dy, double* watch, dou
   return true;
 }
 
-void StageProgram::note_stage() {
+void StageProgram::count_stage() {
   ++stages_;
-  kind_->note_made();
-  if (!stored_) return;
-  stored_->note_use(1);
+  family_->count_evaluation();
+  if (!tape_code_) return;
+  tape_code_->count_uses(1);
   look_for_code();
 }
 
@@ -125,10 +125,10 @@ bool StageProgram::has_found(const StageFound& found) const {
          smallest_pivot_in(traced_.outputs.data()) == found.smallest_pivot;
 }
 
-void StageProgram::take_down(const System& system, const State& state, double t, const double* y,
+void StageProgram::record(const System& system, const State& state, double t, const double* y,
                              const StageFound& found) {
   ++tapes_;
-  const std::shared_ptr<StoredCode> known = std::exchange(known_, nullptr);
+  const std::shared_ptr<TapeCode> known = std::exchange(candidate_, nullptr);
   // Steps are kept by the store alone, and their memory for the next tape: a run has dozens of sets of modes.
   static thread_local std::vector<TapeStep> steps;
   traced_.tape.steps.swap(steps);
@@ -144,9 +144,9 @@ void StageProgram::take_down(const System& system, const State& state, double t,
   if (is_hopeless_) return;
   inputs_.resize(2 * coordinate_count_ + time_count_ + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());
-  stored_ = known ? known : stored_code(traced_.tape);
-  if (!known) kind_->keep(stored_);
-  if (choice_ == StageCode::at_once) stored_->make();
+  tape_code_ = known ? known : shared_code(traced_.tape);
+  if (!known) family_->keep(tape_code_);
+  if (choice_ == StageCode::at_once) tape_code_->make();
   look_for_code();
 }
 
@@ -156,7 +156,7 @@ void StagePrograms::enter(Layout& layout, const State& state, const LayoutStore&
   if (known != layout.programs.end()) {
     now_ = known->get();
     now_->look_for_code();
-    now_->look_for_known();
+    now_->look_for_candidate();
     return;
   }
   now_ = nullptr;

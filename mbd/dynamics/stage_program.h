@@ -2,8 +2,9 @@
 //
 // Stages are most of a run's evaluations, and nobody asks them for anything but rates and switching values. So where a set of
 // modes lasts, one of its evaluations is written down (traced_evaluation.h), and the stages after it are made by the machine code
-// of that tape (mbd/tape): the same bits without the loops, indices and branches. Whatever is not as it was when the tape was
-// written (a branch, a singular position that comes near) is told by the tape's conditions, and the stage is evaluated as ever.
+// of that tape (mbd/tape): the same bits without the loops, indices and branches. The tape's
+// conditions tell what is not as it was when the tape was written (a branch, a singular position that comes near): that stage is
+// evaluated without code.
 #pragma once
 
 #include "mbd/dynamics/traced_evaluation.h"
@@ -15,7 +16,7 @@
 
 namespace steplap {
 
-/// Nearer to a singular position than this, pivot against diagonal, stages are evaluated as ever: the integrators ask how
+/// Nearer to a singular position than this, pivot against diagonal, stages are evaluated without code: the integrators ask how
 /// near they came (Dynamics::lowest_pivot), and below 2e-2 it matters.
 inline constexpr double k_traced_pivot = 2.5e-2;
 
@@ -26,7 +27,7 @@ enum class StageCode : std::uint8_t {
   at_once,      ///< from the second stage on
 };
 
-/// What an evaluation as ever has found.
+/// What an evaluation without code has found.
 struct StageFound {
   const double* dy; ///< accelerations, dissipation and work
   const double *watch, *watch_rate, *friction_force;
@@ -43,7 +44,7 @@ public:
   /// Code may have been made since. It is used if it makes of the stage that was written down what that has made.
   void look_for_code();
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
-  /// For accelerations, power and switching values at coordinates and rates y; false: evaluate as ever, nothing was changed.
+  /// For accelerations, power and switching values at coordinates and rates y. False: evaluate without code; nothing was changed.
   /// `all`: also what can_look(), put_wrenches() and smallest_pivot() are asked for.
   [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all);
   /// Can merged joints be looked at by what a stage has found? Then: what they bear at the last run(), into their slots.
@@ -56,14 +57,14 @@ public:
 
   /// Have the modes lasted, so that the stage that follows is to be written down?
   [[nodiscard]] bool wants_stage() const {
-    return !is_hopeless_ && !stored_ && (known_ || stages_ >= k_settled || choice_ == StageCode::at_once);
+    return !is_hopeless_ && !tape_code_ && (candidate_ || stages_ >= k_settled || choice_ == StageCode::at_once);
   }
-  /// After a stage that was evaluated as ever: counts it.
-  void note_stage();
+  /// Counts a stage that was evaluated without code.
+  void count_stage();
   /// Where modes come back: was code made for such a tape since?
-  void look_for_known();
+  void look_for_candidate();
   /// Writes down the stage evaluated last, at t, y and these time_inputs(). The tape is held against what was found.
-  void take_down(const System& system, const State& state, double t, const double* y, const StageFound& found);
+  void record(const System& system, const State& state, double t, const double* y, const StageFound& found);
 
 private:
   void note_failure();
@@ -76,7 +77,7 @@ private:
   /// written down anew, but not for ever.
   static constexpr int k_most_failures = 16, k_most_tapes = 8;
   /// Writing a stage down for the first time takes as long as code saves in so many: in this run, or in others before it.
-  /// Of a tape that is known constants alone are gathered, which most stretches between events are long enough for.
+  /// A candidate needs nothing but its constants gathered, which most stretches between events are long enough for.
   static constexpr long k_settled = 120;
 
   struct Friction {
@@ -90,13 +91,13 @@ private:
   std::vector<UnitMode> modes_;
   std::vector<Friction> frictions_;
   TracedRates traced_;
-  std::shared_ptr<KnownKind> kind_;
-  std::shared_ptr<StoredCode> known_;  ///< a tape that has code, which this one should be; null: none, or it was not
-  std::shared_ptr<StoredCode> stored_; ///< null until it is written down
+  std::shared_ptr<TapeFamily> family_;
+  std::shared_ptr<TapeCode> candidate_;  ///< a tape that has code, which this one should be; null: none, or it was not
+  std::shared_ptr<TapeCode> tape_code_; ///< null until it is written down
   const MachineCode* code_ = nullptr;
   std::vector<double> inputs_, outputs_;
   std::size_t coordinate_count_ = 0, time_count_ = 0;
-  long stages_ = 0;              ///< as ever, in this run and those before it
+  long stages_ = 0;              ///< made without code, in this run and those before it
   int failures_ = 0, tapes_ = 0; ///< failures: since it last held
   StageCode choice_;
   bool is_hopeless_ = false;

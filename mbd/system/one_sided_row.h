@@ -44,12 +44,12 @@ public:
   template <class F> void for_parts(const F& f) const {
     for (const RowSpec* part = &row; part; part = part->next) f(*part);
   }
-  struct Part {
+  struct ShortestPart {
     double length = std::numeric_limits<double>::infinity();
     std::size_t place = 0;
   };
-  [[nodiscard]] Part shortest_part(const Motion<double>* motion) const {
-    Part shortest;
+  [[nodiscard]] ShortestPart shortest_part(const Motion<double>* motion) const {
+    ShortestPart shortest;
     std::size_t place = 0;
     for_parts([&](const RowSpec& part) {
       const double now = evaluate_row<false>(part, motion[part.a], motion[part.b]).value;

@@ -142,8 +142,8 @@ class ForceGroup {
 public:
   virtual ~ForceGroup() = default;
   virtual void add_forces(Evaluation& e) const = 0;
-  /// The same operations in the same order on numbers that are written down. False: it cannot, and nothing that it acts
-  /// in is; then evaluations go on as they are.
+  /// The same operations in the same order on numbers that are written down. Returns false if this group cannot be traced: the
+  /// whole scene is then evaluated without machine code.
   [[nodiscard]] virtual bool trace_forces(TracedEvaluation& /*e*/) const { return false; }
   [[nodiscard]] virtual double potential(const Motion<double>* motion) const = 0;
   virtual void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const = 0;

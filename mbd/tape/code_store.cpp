@@ -7,7 +7,7 @@ namespace steplap {
 
 namespace {
 
-constexpr std::size_t k_most_tapes = 500, k_most_kinds = 4000;
+constexpr std::size_t k_most_tapes = 500, k_most_families = 4000;
 
 // FNV-1a, a step at a time.
 std::uint64_t hash_of(const Tape& tape) {
@@ -21,50 +21,50 @@ std::uint64_t hash_of(const Tape& tape) {
 
 struct Store {
   std::mutex mutex;
-  std::unordered_multimap<std::uint64_t, std::shared_ptr<StoredCode>> codes;
-  std::unordered_map<std::uint64_t, std::shared_ptr<KnownKind>> kinds;
+  std::unordered_multimap<std::uint64_t, std::shared_ptr<TapeCode>> codes;
+  std::unordered_map<std::uint64_t, std::shared_ptr<TapeFamily>> families;
 };
 
 Store all_code; // made before main(): threads use it
 
 } // namespace
 
-void StoredCode::note_use(long evaluations) {
+void TapeCode::count_uses(long evaluations) {
   if (evaluations_.fetch_add(evaluations) + evaluations >= k_enough) make();
 }
 
-const MachineCode* StoredCode::code() const {
+const MachineCode* TapeCode::code() const {
   const std::scoped_lock lock(mutex_);
   return made_ ? &made_ : nullptr;
 }
 
-void StoredCode::make() {
+void TapeCode::make() {
   const std::scoped_lock lock(mutex_);
   if (is_made_) return;
   is_made_ = true;
   made_ = MachineCode(simplified(tape_));
 }
 
-std::shared_ptr<StoredCode> KnownKind::coded() const {
+std::shared_ptr<TapeCode> TapeFamily::coded() const {
   const std::scoped_lock lock(mutex_);
-  return stored_ && stored_->code() ? stored_ : nullptr;
+  return code_ && code_->code() ? code_ : nullptr;
 }
 
-void KnownKind::keep(std::shared_ptr<StoredCode> stored) {
+void TapeFamily::keep(std::shared_ptr<TapeCode> code) {
   const std::scoped_lock lock(mutex_);
-  stored_ = std::move(stored);
+  code_ = std::move(code);
 }
 
-std::shared_ptr<KnownKind> known_kind(std::uint64_t key) {
+std::shared_ptr<TapeFamily> tape_family(std::uint64_t key) {
   Store& all = all_code;
   const std::scoped_lock lock(all.mutex);
-  if (all.kinds.size() >= k_most_kinds && !all.kinds.contains(key)) all.kinds.clear();
-  std::shared_ptr<KnownKind>& kind = all.kinds[key];
-  if (!kind) kind = std::make_shared<KnownKind>();
-  return kind;
+  if (all.families.size() >= k_most_families && !all.families.contains(key)) all.families.clear();
+  std::shared_ptr<TapeFamily>& family = all.families[key];
+  if (!family) family = std::make_shared<TapeFamily>();
+  return family;
 }
 
-std::shared_ptr<StoredCode> stored_code(const Tape& tape) {
+std::shared_ptr<TapeCode> shared_code(const Tape& tape) {
   const std::uint64_t hash = hash_of(tape);
   Store& all = all_code;
   const std::scoped_lock lock(all.mutex);
@@ -72,7 +72,7 @@ std::shared_ptr<StoredCode> stored_code(const Tape& tape) {
   for (auto at = begin; at != end; ++at)
     if (at->second->is_of(tape)) return at->second;
   if (all.codes.size() >= k_most_tapes) all.codes.clear();
-  return all.codes.emplace(hash, std::make_shared<StoredCode>(tape))->second;
+  return all.codes.emplace(hash, std::make_shared<TapeCode>(tape))->second;
 }
 
 } // namespace steplap

@@ -12,10 +12,10 @@
 namespace steplap {
 
 /// One tape and its code, once that is worth making. Thread-safe.
-class StoredCode {
+class TapeCode {
 public:
   /// `tape`: its constants are not looked at.
-  explicit StoredCode(const Tape& tape) : tape_{tape.steps, {}, tape.input_count, tape.outputs, tape.usual_outputs} {}
+  explicit TapeCode(const Tape& tape) : tape_{tape.steps, {}, tape.input_count, tape.outputs, tape.usual_outputs} {}
   [[nodiscard]] bool is_of(const Tape& tape) const {
     static_assert(std::has_unique_object_representations_v<TapeStep>);
     return tape_.steps.size() == tape.steps.size() && tape_.outputs == tape.outputs && tape_.input_count == tape.input_count &&
@@ -26,8 +26,8 @@ public:
   [[nodiscard]] const Tape& tape() const { return tape_; }
   /// Null where it is not made yet.
   [[nodiscard]] const MachineCode* code() const;
-  /// So many evaluations were made that it could have made: it is made as soon as they are as many as would have paid for it.
-  void note_use(long evaluations);
+  /// So many evaluations were made without the code. It is made as soon as it would have paid for itself.
+  void count_uses(long evaluations);
   void make();
 
 private:
@@ -41,29 +41,29 @@ private:
   MachineCode made_;
 };
 
-/// What this process has met of one kind of computation, before and beside whoever asks: how often it was made, and the tape that
-/// was written down of it last, which another sample's is then compared with instead of being written. Thread-safe.
-class KnownKind {
+/// What this process knows of evaluations that are likely to have the same tape: how many were made without code, and the tape
+/// recorded last. The next one to be recorded is compared with that tape, which is quicker than writing a new one. Thread-safe.
+class TapeFamily {
 public:
-  /// Made once more, as ever.
-  void note_made() { made_.fetch_add(1, std::memory_order_relaxed); }
+  /// One more was made without code.
+  void count_evaluation() { made_.fetch_add(1, std::memory_order_relaxed); }
   [[nodiscard]] long made() const { return made_.load(std::memory_order_relaxed); }
   /// Null: none, or its code is not made.
-  [[nodiscard]] std::shared_ptr<StoredCode> coded() const;
-  void keep(std::shared_ptr<StoredCode> stored);
+  [[nodiscard]] std::shared_ptr<TapeCode> coded() const;
+  void keep(std::shared_ptr<TapeCode> code);
 
 private:
   std::atomic<long> made_{0};
   mutable std::mutex mutex_;
-  std::shared_ptr<StoredCode> stored_;
+  std::shared_ptr<TapeCode> code_;
 };
 
-/// By a number that is different for what can be told to be another kind; of two that share one by chance nothing but time is lost.
+/// Different evaluations should have different keys. Where two share one by chance, nothing but time is lost.
 /// Thread-safe.
-[[nodiscard]] std::shared_ptr<KnownKind> known_kind(std::uint64_t key);
+[[nodiscard]] std::shared_ptr<TapeFamily> tape_family(std::uint64_t key);
 
-/// That of an equal tape, whichever thread has asked first. Of some hundred tapes: the store is emptied when it is full, and who
-/// has one keeps it. Thread-safe.
-[[nodiscard]] std::shared_ptr<StoredCode> stored_code(const Tape& tape);
+/// Equal tapes share one, whichever thread asked first. The store keeps some hundred tapes and is emptied when it is full; code that
+/// somebody still uses lives on. Thread-safe.
+[[nodiscard]] std::shared_ptr<TapeCode> shared_code(const Tape& tape);
 
 } // namespace steplap
