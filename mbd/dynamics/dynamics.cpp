@@ -42,7 +42,8 @@ void Dynamics::set_state(const State& state) {
   evaluation_.mode = state.mode.data();
   evaluation_.friction = state.friction.data();
   evaluation_.memory = state.memory.data();
-  is_merged_near_ = was_merged_near_ = byproducts_pending_ = false;
+  is_merged_near_ = was_merged_near_ = false;
+  pending_.end();
   stage_programs_.leave();
   std::fill(watch_.begin(), watch_.end(), 1.0);
   std::fill(force_.begin(), force_.end(), BodyForce{}); // of bodies that none acts on in the new layout
@@ -57,8 +58,8 @@ void Dynamics::set_state(const State& state) {
     std::vector<double> packed(dimension());
     pack(system_.initial_state(), packed.data());
     layout_->reference.assign(packed.begin(), packed.begin() + coordinate_count());
-    for (std::vector<double>* const state_like : {&placed_, &pending_y_, &pending_dy_})
-      if (state_like->size() < packed.size()) state_like->resize(packed.size());
+    if (placed_.size() < packed.size()) placed_.resize(packed.size());
+    pending_.reserve(packed.size());
     if (kept_.size() < layout_->active.size()) kept_.resize(layout_->active.size());
   }
   if (layout_->has_mechanisms()) cluster_a_.resize(3 * layout_->clusters.size());
@@ -174,6 +175,17 @@ void Dynamics::finish_watches() {
   for (const int f : layout.sliding) watch_place(f);
 }
 
+void Dynamics::evaluate(Request request, double t, const double* y, double* dy) {
+  switch (request) {
+  case Request::rates: return rates(t, y, dy);
+  case Request::rates_as_given: return rates_as_given(t, y, dy);
+  case Request::stage: return evaluate_stage(t, y, dy);
+  case Request::stage_near_limit: return evaluate_stage_and_joints(t, y, dy, false);
+  case Request::stage_and_joints: return evaluate_stage_and_joints(t, y, dy, true);
+  case Request::end: return evaluate_end(t, y, dy);
+  }
+}
+
 void Dynamics::rates(double t, const double* y, double* dy) {
   rates_as_given(t, y, dy);
   if (!layout_->active.empty() && layout_->smallest_pivot() < k_placed_pivot) [[unlikely]]
@@ -198,7 +210,7 @@ STEPLAP_INLINE void Dynamics::finish_rates(const double* y, double* dy) {
 STEPLAP_INLINE void Dynamics::begin_rates(double t, const double* y, double* dy) {
   const int n = coordinate_count();
   ++evaluations_;
-  byproducts_pending_ = false;
+  pending_.end();
   evaluation_.t = t;
   evaluation_.dissipation = 0.0;
   evaluation_.work = 0.0;
@@ -273,7 +285,7 @@ bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   if (!program->run(now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data(), all)) return false;
   ++evaluations_;
   ++coded_stages_;
-  byproducts_pending_ = false;
+  pending_.end();
   rows_.forget_factors();
   std::copy_n(y + coordinate_count(), coordinate_count(), dy);
   for (std::size_t i = 0; i < layout_->locks.size(); ++i)
@@ -281,7 +293,7 @@ bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   return true;
 }
 
-void Dynamics::stage_rates(double t, const double* y, double* dy) {
+void Dynamics::evaluate_stage(double t, const double* y, double* dy) {
   if (run_code(t, y, dy, false)) return;
   rates(t, y, dy);
   // A projection begins with the factors of the evaluation before it: results must not hang on which way that was made.
@@ -289,9 +301,9 @@ void Dynamics::stage_rates(double t, const double* y, double* dy) {
   count_stage(t, y, dy);
 }
 
-void Dynamics::look_rates(double t, const double* y, double* dy, bool always) {
+void Dynamics::evaluate_stage_and_joints(double t, const double* y, double* dy, bool always) {
   if (!looks_at_merged(always)) {
-    stage_rates(t, y, dy);
+    evaluate_stage(t, y, dy);
     watch_merged_if_near(dy, always);
   } else if (may_look_by_code() && run_code(t, y, dy, true)) {
     const StageProgram& program = *stage_programs_.now();
@@ -304,7 +316,7 @@ void Dynamics::look_rates(double t, const double* y, double* dy, bool always) {
   }
 }
 
-void Dynamics::end_rates(double t, const double* y, double* dy) {
+void Dynamics::evaluate_end(double t, const double* y, double* dy) {
   if (!may_look_by_code() || !run_code(t, y, dy, true)) {
     rates(t, y, dy);
     watch_merged(dy);
@@ -344,16 +356,13 @@ void Dynamics::count_stage(double t, const double* y, const double* dy) {
 }
 
 void Dynamics::defer_byproducts(const StageProgram& program, double t, const double* y) {
-  byproducts_pending_ = true;
-  pending_t_ = std::min(t, time_cap_);
-  pending_pivot_ = program.smallest_pivot();
-  std::copy_n(y, dimension(), pending_y_.begin());
+  pending_.begin(std::min(t, time_cap_), y, dimension(), program.smallest_pivot());
 }
 
 // Not one more of evaluations(): results must not hang on which way it was made.
 void Dynamics::evaluate_byproducts() {
   --evaluations_;
-  rates_at(pending_t_, pending_y_.data(), pending_dy_.data());
+  rates_at(pending_.t(), pending_.y(), pending_.dy());
 }
 
 double Dynamics::mechanical_energy(double t, const double* y) {

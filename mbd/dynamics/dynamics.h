@@ -16,6 +16,7 @@
 #include "mbd/dynamics/reactions.h"
 #include "mbd/dynamics/stage_program.h"
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -29,6 +30,44 @@ struct ConstraintFailure : NumericalFailure {
   int element;     ///< the one that is off most
   double residual; ///< m, or rad
   bool is_angle;
+};
+
+/// What is asked of an evaluation beside the rates.
+enum class Request : unsigned char {
+  rates,           ///< all by-products. Near a singular position the rates are those of the nearest state on the constraints
+  rates_as_given,  ///< all by-products, with the rates at y itself: the function of y and t that Linearization differentiates
+  stage,           ///< of a stage inside a step: watch() and the count of evaluations. Other by-products may be those of the
+                   ///< evaluation before, and factors are forgotten. Near a singular position (k_traced_pivot) it is `rates`
+  stage_near_limit, ///< as `stage`, and the watch values of merged joints and of groups that share a load, where some are near their limit
+  stage_and_joints, ///< as `stage`, and those watch values in any case
+  end,             ///< of a step's end: rates, watch() and watch_merged(). Other by-products are found when somebody asks for them
+};
+
+/// The evaluation made last, if it was made by code: then its by-products are still to be found, and this is what is known of it.
+/// While it is pending, nothing else of Dynamics may be asked for by-products before they are found.
+class PendingEvaluation {
+public:
+  void reserve(std::size_t dimension) {
+    if (y_.size() < dimension) y_.resize(dimension);
+    if (dy_.size() < dimension) dy_.resize(dimension);
+  }
+  void begin(double t, const double* y, int dimension, double smallest_pivot) {
+    is_pending_ = true;
+    t_ = t;
+    smallest_pivot_ = smallest_pivot;
+    std::copy_n(y, dimension, y_.begin());
+  }
+  void end() { is_pending_ = false; }
+  [[nodiscard]] bool is_pending() const { return is_pending_; }
+  [[nodiscard]] double t() const { return t_; }                           ///< s
+  [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; } ///< as Layout::smallest_pivot
+  [[nodiscard]] const double* y() const { return y_.data(); }
+  [[nodiscard]] double* dy() { return dy_.data(); } ///< where its rates go once more
+
+private:
+  bool is_pending_ = false;
+  double t_ = 0.0, smallest_pivot_ = 1.0;
+  std::vector<double> y_, dy_;
 };
 
 class Dynamics {
@@ -79,21 +118,10 @@ public:
   [[nodiscard]] const double* cluster_rates(const double* y);
   [[nodiscard]] const double* cluster_accelerations(const double* dy);
 
-  /// dy/dt. Also leaves watch values, multipliers and forces for the functions below.
+  /// dy/dt at (t, y). What is asked for beside it is left for the functions below.
+  void evaluate(Request request, double t, const double* y, double* dy);
+  /// The same with all by-products.
   void rates(double t, const double* y, double* dy);
-  /// The same at y itself, however near to a singular position: there rates() are those of the nearest state on the constraints,
-  /// which is another function of y and t than the one that Linearization differentiates.
-  void rates_as_given(double t, const double* y, double* dy);
-  /// The same for a stage inside a step, whose rates, watch() and count of evaluations are all that is asked for: other
-  /// by-products may be those of the evaluation before, and factors are forgotten. Near a singular position (k_traced_pivot) it
-  /// is rates().
-  void stage_rates(double t, const double* y, double* dy);
-  /// The same with the watch values of joints that are merged and of groups that share a load, where some are near their
-  /// limit, or `always`; as of rates() and watch_merged_if_near().
-  void look_rates(double t, const double* y, double* dy, bool always);
-  /// rates() and watch_merged() at the end of a step, of which nobody may ask more than rates and watch values: by-products
-  /// are found when somebody does.
-  void end_rates(double t, const double* y, double* dy);
   /// Selects the compiled stage for the present modes, if there is one.
   void begin_stages();
   /// Moves y onto the constraints (mass-weighted least change), locked coordinates exactly. Returns the
@@ -116,8 +144,8 @@ public:
   void forget_pivots() { lowest_pivot_ = 1.0; }
   /// Was the last evaluation that near?
   [[nodiscard]] bool is_near_singular() const;
-  /// That of the last rates(), look_rates() or end_rates(), or of a projection since.
-  [[nodiscard]] double smallest_pivot() const { return byproducts_pending_ ? pending_pivot_ : layout_->smallest_pivot(); }
+  /// That of the last evaluation, stages without joints apart, or of a projection since.
+  [[nodiscard]] double smallest_pivot() const { return pending_.is_pending() ? pending_.smallest_pivot() : layout_->smallest_pivot(); }
   /// Residuals at y without moving it.
   [[nodiscard]] Residual residual(double t, const double* y);
 
@@ -188,6 +216,10 @@ private:
   void finish_rates(const double* y, double* dy);
   void finish_power(const double* a);
   void finish_watches();
+  void rates_as_given(double t, const double* y, double* dy);
+  void evaluate_stage(double t, const double* y, double* dy);
+  void evaluate_stage_and_joints(double t, const double* y, double* dy, bool always);
+  void evaluate_end(double t, const double* y, double* dy);
   Residual constraint_values(double t, const double* y);
   void rates_at(double t, const double* y, double* dy);
   void rates_nearby(double t, const double* y, double* dy);
@@ -214,7 +246,7 @@ private:
   void count_stage(double t, const double* y, const double* dy);
   void defer_byproducts(const StageProgram& program, double t, const double* y);
   void ensure_byproducts() {
-    if (byproducts_pending_) [[unlikely]] evaluate_byproducts();
+    if (pending_.is_pending()) [[unlikely]] evaluate_byproducts();
   }
   void evaluate_byproducts();
   void settle_loads();
@@ -249,10 +281,7 @@ private:
   double lowest_pivot_ = 1.0;
   double booked_[2] = {0.0, 0.0};       ///< dissipated energy and work at the last rates(), J
   const Integrals* integrals_ = nullptr;
-  /// The last evaluation was made by code: its by-products, factors among them, are found where somebody asks for them.
-  bool byproducts_pending_ = false;
-  double pending_t_ = 0.0, pending_pivot_ = 1.0;
-  std::vector<double> pending_y_, pending_dy_;
+  PendingEvaluation pending_;
   std::vector<double> placed_;     ///< state of rates_nearby
   std::vector<double> kept_;       ///< scratch of keep_allowed, per active row
   std::vector<char> was_out_;      ///< scratch of decide_rank, per active row

@@ -66,7 +66,7 @@ Residual Dynamics::constraint_values(double t, const double* y) {
 
 Residual Dynamics::residual(double t, const double* y) {
   if (layout_->active.empty()) return {};
-  byproducts_pending_ = false; // nobody asks for by-products behind this
+  pending_.end(); // nobody asks for by-products behind this
   rows_.forget_factors();
   return constraint_values(t, y);
 }

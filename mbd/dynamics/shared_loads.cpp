@@ -21,7 +21,7 @@ void Dynamics::find_sharing() {
 const LoadSharing* Dynamics::sharing() const {
   const Layout& layout = *layout_;
   // Code holds where no rows depend on each other.
-  return layout.sharing && !byproducts_pending_ && layout.is_singular() ? layout.sharing.get() : nullptr;
+  return layout.sharing && !pending_.is_pending() && layout.is_singular() ? layout.sharing.get() : nullptr;
 }
 
 bool Dynamics::is_shared(int friction) const {

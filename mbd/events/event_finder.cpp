@@ -36,7 +36,7 @@ EventFinder::EventFinder(const System& system, int max_dimension)
 void EventFinder::watch_at(Integrator& integrator, Dynamics& dynamics, double theta, Look& look) {
   integrator.dense(dynamics, theta, y_.data());
   const double t = integrator.t0() + theta * integrator.h();
-  dynamics.look_rates(t, y_.data(), dy_.data(), is_merged_near_);
+  dynamics.evaluate(is_merged_near_ ? Request::stage_and_joints : Request::stage_near_limit, t, y_.data(), dy_.data());
   look.theta = theta;
   look.watch = dynamics.watch();
   look.rate = dynamics.watch_rate();

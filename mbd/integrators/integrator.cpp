@@ -159,7 +159,7 @@ void Integrator::finish_step(Dynamics& dynamics) {
   residual_.position = std::max(residual_.position, found.position);
   residual_.velocity = std::max(residual_.velocity, found.velocity);
   if (is_adaptive() || !are_looks_expected_) {
-    dynamics.end_rates(t1_, y1_.data(), k1_);
+    dynamics.evaluate(Request::end, t1_, y1_.data(), k1_);
   } else { // who looks at fixed steps takes what was found at their ends
     dynamics.rates(t1_, y1_.data(), k1_);
     dynamics.watch_merged(k1_);
@@ -192,7 +192,7 @@ void Integrator::evaluate_stage(Dynamics& dynamics, double t, const double* y, d
   const bool is_due = is_merged_look_due(theta);
   if (is_due) last_merged_look_ = theta;
   const bool has_merged = dynamics.looks_at_merged(is_due);
-  dynamics.look_rates(t, y, dy, is_due);
+  dynamics.evaluate(is_due ? Request::stage_and_joints : Request::stage_near_limit, t, y, dy);
   nodes_.add(theta, dynamics.watch().data(), has_merged);
 }
 
@@ -266,7 +266,7 @@ double Integrator::restrained_step(Dynamics& dynamics, double h) {
   double* const f = y + n_;
   for (int attempt = 0; attempt < k_most_tries; ++attempt) {
     for (int i = 0; i < n_; ++i) y[i] = y0_[i] + h * k0_[i];
-    dynamics.stage_rates(t0_ + h, y, f);
+    dynamics.evaluate(Request::stage, t0_ + h, y, f);
     double turned = 0.0;
     for (int i = m; i < 2 * m; ++i)
       turned = std::max(turned, settings_.tolerance * weight_[i] * h * std::abs(f[i] - k0_[i]));

@@ -124,7 +124,7 @@ void Rodas5p::find_time_slope(Dynamics& dynamics) {
   bool is_still = true;
   for (int i = 0; i < n; ++i) slope_[i] = -25.0 / 12.0 * k0_[i] / d;
   for (int p = 3; p >= 0; --p) {
-    dynamics.rates_as_given(t0_ + (p + 1) * d, y0_.data(), f);
+    dynamics.evaluate(Request::rates_as_given, t0_ + (p + 1) * d, y0_.data(), f);
     is_still = is_still && std::equal(f, f + n, k0_);
     if (is_still && p < 3) break; // the same at three instants: no explicit time
     for (int i = 0; i < n; ++i) slope_[i] += weights[p] / d * f[i];
@@ -151,7 +151,7 @@ double Rodas5p::try_step(Dynamics& dynamics) {
     }
     const double* f = k0_;
     if (i > 0) {
-      dynamics.rates_as_given(t0_ + c[i] * h_, y, rate_.data());
+      dynamics.evaluate(Request::rates_as_given, t0_ + c[i] * h_, y, rate_.data());
       f = rate_.data();
     }
     for (int k = 0; k < n; ++k) right_[k] += f[k];

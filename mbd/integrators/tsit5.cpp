@@ -52,7 +52,7 @@ protected:
     stage<a, 5>(dynamics, c[5]);
     add_stages<a, 6, 6>(y1_.data());
     // The estimate counts the rates at the end: taken before projection, which moves far less.
-    dynamics.stage_rates(t0_ + h_, y1_.data(), k(6));
+    dynamics.evaluate(Request::stage, t0_ + h_, y1_.data(), k(6));
     std::copy(y1_.begin(), y1_.begin() + n_, raw_.begin());
     sum_stages<e, 7>(scratch_.data());
     return h_ * projected_error_norm(dynamics, scratch_.data());

@@ -46,8 +46,8 @@ void profile(const char* path, double time, long count, const std::string& coord
   std::printf("%.1f ns per evaluation", nanoseconds([&](double t) { dynamics.rates(t, y.data(), dy.data()); }));
   dynamics.use_stage_code(StageCode::at_once);
   dynamics.begin_stages();
-  dynamics.stage_rates(state.t, y.data(), dy.data());
-  const double coded = nanoseconds([&](double t) { dynamics.stage_rates(t, y.data(), dy.data()); });
+  dynamics.evaluate(Request::stage, state.t, y.data(), dy.data());
+  const double coded = nanoseconds([&](double t) { dynamics.evaluate(Request::stage, t, y.data(), dy.data()); });
   if (dynamics.coded_stages() > 0) std::printf(", %.1f ns of a stage by machine code", coded);
   std::printf("\n");
 }
