@@ -1,6 +1,5 @@
 #include "mbd/dynamics/kinematics.h"
 
-
 #include <algorithm>
 
 namespace steplap {
