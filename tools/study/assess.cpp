@@ -1,6 +1,7 @@
 #include "tools/study/assess.h"
 
 #include "assess/assessment.h"
+#include "assess/assumed_pulse.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/base/team.h"
@@ -56,6 +57,15 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
   if (o.resample) options.reading.rate = number_of(o.resample, "--resample", 0.0, ", in Hz");
   if (o.quiet && o.gravity) throw UsageError("--rest takes away all that is there at rest, gravity included: leave --gravity out");
   if (o.quiet) options.reading.rest = rest_stretch(*o.quiet);
+  if (o.pulse) {
+    options.reading.pulse = parse_assumed_pulse(*o.pulse);
+    if (!options.reading.pulse) throw UsageError("--pulse '" + *o.pulse + "': give half-sine, haversine or triangle, and how long where the list does not tell: \"half-sine 50 ms\"");
+  }
+  if (o.pulse_axis) {
+    if (!o.pulse) throw UsageError("--pulse-axis says along which axis pulses are: give --pulse, too");
+    if (*o.pulse_axis != "x" && *o.pulse_axis != "y" && *o.pulse_axis != "z") throw UsageError("--pulse-axis '" + *o.pulse_axis + "': give x, y or z");
+    options.reading.pulse->axis = o.pulse_axis->front();
+  }
   options.overrides = o.overrides;
   options.accepted = accepted_faults(o);
   options.criteria = o.criteria.value_or("acceptance-3g");
@@ -107,7 +117,7 @@ void print_event(TextTable& table, const Assessment& a, std::size_t number) {
     const char* const event = words_of(EventKind::slips);
     const char* const outcome = p.is_made ? "holds" : "not run";
     const bool is_first = m == 0;
-    table.add_row({is_first ? std::to_string(number + 1) : "", is_first ? rounded_text(axis.peak_time, 7) : "", is_first ? std::string(1, record.recording.layout.axes[shock.worst].axis) + " " + rounded_text(axis.peak / k_gravity, 3) : "",
+    table.add_row({is_first ? std::to_string(number + 1) : "", is_first ? rounded_text(axis.peak_time, 7) : "", is_first ? std::string(1, record.axes()[shock.worst]) + " " + rounded_text(axis.peak / k_gravity, 3) : "",
                    a.models[m].recorder.plane, name_of(p.verdict), slips ? event : outcome, weakest == p.joints.end() ? "-" : rounded_text(weakest->margin, 3),
                    quantity_text(slid, "m"), m < e.slip.size() && e.slip[m].runs > 0 ? percent(e.slip[m].value) : "-"});
   }
