@@ -30,6 +30,27 @@ constexpr OptionWords<RecordFault, 7> k_faults{{{"clipped", RecordFault::clipped
                                                 {"fall", RecordFault::fall}, {"dead", RecordFault::dead}, {"slow", RecordFault::slow}}};
 constexpr std::size_t k_shown_events = 8, k_shown_reasons = 6, k_shown_sentences = 2; // the screen has thirty lines
 
+// Made before anything is computed, so that hours of work do not end in a folder that cannot be; gone again if nothing came into it.
+class OutputFolder {
+public:
+  explicit OutputFolder(const fs::path& path) : path_(path) {
+    std::error_code error;
+    is_new_ = fs::create_directories(path_, error);
+    if (!error && !fs::is_directory(path_, error) && !error) error = std::make_error_code(std::errc::not_a_directory);
+    if (error) throw FileError(path_.string(), "cannot write to the folder '" + path_.string() + "': " + error.message() + ". Choose another one with -o");
+  }
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder() {
+    std::error_code ignored;
+    if (is_new_) fs::remove(path_, ignored); // does nothing to a folder with files in it
+  }
+
+private:
+  fs::path path_;
+  bool is_new_ = false;
+};
+
 fs::path output_folder(const AssessOptions& o) { return o.output.value_or("out/assessment"); }
 
 long whole_number(const std::optional<std::string>& text, const char* option, long least, long otherwise) {
@@ -192,6 +213,7 @@ ExitCode run_assessment(const AssessOptions& o, Console& console) {
   const std::string file = (output_folder(o) / "assessment.json").string();
   if (!o.is_overwriting && fs::exists(file)) throw UsageError("'" + file + "' exists. Choose another folder with -o, or give --force to overwrite it.");
   const InterruptionGuard guard;
+  const OutputFolder folder(output_folder(o));
   std::optional<Assessment> assessment;
   {
     AssessProgress progress(console);
@@ -199,7 +221,6 @@ ExitCode run_assessment(const AssessOptions& o, Console& console) {
     assessment = assess::assess(o.records, o.models, options);
   }
   const std::string json = assessment_json(*assessment);
-  fs::create_directories(output_folder(o));
   write_file(file, json, o.is_overwriting ? IfExists::replace : IfExists::refuse);
   if (o.is_json) console.out << json;
   else if (console.verbosity != Verbosity::quiet) print_assessment(console.out, *assessment, file);
