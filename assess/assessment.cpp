@@ -65,6 +65,8 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
     stop_if_asked(options, "before '" + record + "' was read");
     a.records.push_back(read_events(record, options.reading));
   }
+  if (options.reading.pulse && std::none_of(a.records.begin(), a.records.end(), [](const RecordEvents& r) { return r.pulse.has_value(); }))
+    throw FileError(a.records.front().file, "a pulse is assumed of lists of peaks alone, and '" + a.records.front().file + "' has waveforms: leave --pulse out");
   std::string order;
   order_records(a.records, order);
   if (!order.empty()) a.assumptions.push_back(order);
@@ -134,6 +136,7 @@ void assume(Assessment& a) {
   }
   a.assumptions.push_back("The voyage begins at rest, and each event where the one before left the machine. What stays below the threshold of " +
                           rounded_text(a.records.empty() ? 0.0 : a.records.front().rules.threshold / k_gravity, 3) + " g is not run, but for what is greatest of each axis.");
+  for (const RecordEvents& record : a.records) a.assumptions.insert(a.assumptions.end(), record.assumed.begin(), record.assumed.end());
   for (const UncertainValue& value : a.uncertain->values())
     if (value.source == "assumed") a.assumptions.push_back("The " + value.name + " is assumed: " + value.source_text + ".");
   constexpr double k_unlikely = 0.01; // on either side

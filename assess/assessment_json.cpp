@@ -73,17 +73,17 @@ Json models(const Assessment& a) {
 // Of each stretch the sample that is furthest from zero, so that peaks stay.
 Json figure(const RecordEvents& record, const Window& window) {
   const std::size_t count = window.times.size(), stride = std::max<std::size_t>(1, (count + k_figure_points - 1) / k_figure_points);
-  const std::size_t axes = record.recording.layout.axes.size();
+  const std::string axes = record.axes();
   Json curve = {{"times", Json::array()}};
-  for (std::size_t i = 0; i < axes; ++i) curve[std::string(1, record.recording.layout.axes[i].axis)] = Json::array();
+  for (std::size_t i = 0; i < axes.size(); ++i) curve[std::string(1, axes[i])] = Json::array();
   for (std::size_t from = 0; from < count; from += stride) {
     std::size_t best = from;
     double furthest = -1.0;
     for (std::size_t k = from; k < std::min(count, from + stride); ++k)
-      for (std::size_t i = 0; i < axes; ++i)
+      for (std::size_t i = 0; i < axes.size(); ++i)
         if (std::abs(window.filtered[i][k]) > furthest) furthest = std::abs(window.filtered[i][k]), best = k;
     curve["times"].push_back(window.times[best]);
-    for (std::size_t i = 0; i < axes; ++i) curve[std::string(1, record.recording.layout.axes[i].axis)].push_back(window.filtered[i][best]);
+    for (std::size_t i = 0; i < axes.size(); ++i) curve[std::string(1, axes[i])].push_back(window.filtered[i][best]);
   }
   return curve;
 }
@@ -114,10 +114,11 @@ Json event(const Assessment& a, std::size_t number_) {
   const RecordEvents& record = a.records[e.record];
   const RecordedEvent& recorded = record.events[e.event];
   const ShockEvent& shock = recorded.event;
+  const std::string axes = record.axes();
   Json peaks = Json::array(), passages = Json::array();
   for (std::size_t i = 0; i < shock.axes.size(); ++i) {
     const AxisEvent& axis = shock.axes[i];
-    peaks.push_back({{"axis", std::string(1, record.recording.layout.axes[i].axis)}, {"value", axis.peak}, {"unit", "m/s^2"}, {"bandwidth", record.bandwidth},
+    peaks.push_back({{"axis", std::string(1, axes[i])}, {"value", axis.peak}, {"unit", "m/s^2"}, {"bandwidth", record.pulse ? Json(nullptr) : Json(record.bandwidth)},
                      {"time", axis.peak_time}, {"velocity_change", axis.velocity_change}, {"duration", axis.duration}, {"frequency", axis.frequency},
                      {"up_to_100_Hz", number(axis.at_cfc60)}, {"up_to_17_Hz", number(axis.at_cfc10)}});
   }

@@ -1,5 +1,6 @@
 #include "assess/record_events.h"
 
+#include "assess/assumed_pulse.h"
 #include "assess/quiet_watch.h"
 #include "assess/record_faults.h"
 
@@ -71,7 +72,7 @@ public:
   WithoutGravity(Conditioning conditioning, const EventReading& reading, SignalSink& sink)
       : conditioning_(conditioning), reading_(reading), sink_(sink) {}
   void begin(const RecordLayout& layout) override {
-    if (reading_.gravity && *reading_.gravity != "none") {
+    if (reading_.gravity && *reading_.gravity != "none" && !layout.is_peaks) { // of peaks, see assumed_pulse.h
       const bool is_turned = reading_.gravity->starts_with('-');
       const std::string axis = reading_.gravity->substr(is_turned ? 1 : 0);
       const auto found = std::find_if(layout.axes.begin(), layout.axes.end(), [&](const AxisColumn& each) { return axis == std::string(1, each.axis); });
@@ -171,9 +172,15 @@ std::optional<std::int64_t> clock_of(const RecordLayout& layout) {
 } // namespace
 
 std::optional<std::size_t> RecordEvents::axis(char letter) const {
-  for (std::size_t i = 0; i < recording.layout.axes.size(); ++i)
-    if (recording.layout.axes[i].axis == letter) return i;
-  return {};
+  const std::size_t index = axes().find(letter);
+  return index == std::string::npos ? std::nullopt : std::optional(index);
+}
+
+std::string RecordEvents::axes() const {
+  if (pulse) return "xyz"; // what the list does not tell is zero
+  std::string letters;
+  for (const AxisColumn& each : recording.layout.axes) letters += each.axis;
+  return letters;
 }
 
 RecordEvents read_events(const std::string& file, const EventReading& reading) {
@@ -193,7 +200,11 @@ RecordEvents read_events(const std::string& file, const EventReading& reading) {
   record.clock_ns = clock_of(record.recording.layout);
   record.fall = first.fall();
   find_faults(record);
-  if (record.recording.layout.is_peaks) return record;
+  if (record.recording.layout.is_peaks) {
+    record.pulse = reading.pulse;
+    if (record.pulse) add_assumed_pulses(reading, record);
+    return record;
+  }
   record.offset = first.conditioning().offset;
   record.rate = first.conditioner().rate();
   record.bandwidth = first.conditioner().bandwidth();

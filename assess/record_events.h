@@ -14,6 +14,15 @@
 
 namespace steplap::assess {
 
+enum class PulseShape { half_sine, haversine, triangle };
+
+/// What a shock is taken for of which only the peak is known.
+struct AssumedPulse {
+  PulseShape shape = PulseShape::half_sine;
+  std::optional<double> duration; ///< s, of entries that tell neither it nor a change of velocity
+  std::optional<char> axis;       ///< "x", "y" or "z", of peaks without a direction
+};
+
 /// How a file is read and searched for shocks.
 struct EventReading {
   ReadOptions read;
@@ -22,6 +31,7 @@ struct EventReading {
   std::optional<double> rate;                ///< Hz of the conditioned signal; none: that of the record
   std::optional<std::string> gravity;        ///< "z", "-z", …: axis that it is subtracted from; "none": it stays
   std::optional<std::array<double, 2>> rest; ///< s: the mean of this stretch is subtracted
+  std::optional<AssumedPulse> pulse;         ///< of lists of peaks; none: no model is driven by them
 };
 
 /// A shock with its samples.
@@ -56,14 +66,20 @@ struct RecordEvents {
   std::vector<RecordedEvent> events;     ///< in order of time
   std::vector<RecordFault> faults;       ///< each once
   std::optional<std::int64_t> clock_ns;  ///< since 1970, of the time 0 of the record; none: it does not tell
+  std::optional<AssumedPulse> pulse;     ///< of a list of peaks that models are driven by
+  std::vector<std::string> assumed;      ///< of such a list, in whole sentences
 
-  /// Index of an axis in the layout; nothing if the record has none of that letter.
+  /// Letters of the axes that its events have.
+  [[nodiscard]] std::string axes() const;
+
+  /// Index of an axis in its events; nothing if the record has none of that letter.
   [[nodiscard]] std::optional<std::size_t> axis(char letter) const;
   /// Whole sentences.
   [[nodiscard]] std::vector<std::string> warnings() const;
 };
 
-/// Throws RecordError and FileError for what cannot be read or known, and if what an axis reads at rest would count as a shock.
+/// Throws RecordError and FileError for what cannot be read or known, and if what an axis reads at rest would count as a shock,
+/// or a list of peaks leaves open what a pulse of it needs.
 [[nodiscard]] RecordEvents read_events(const std::string& file, const EventReading& reading);
 
 /// In order of time: by their clocks where all have one, else as given. Throws FileError if two of them overlap in time. `note`

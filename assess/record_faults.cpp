@@ -68,7 +68,8 @@ std::vector<std::string> RecordEvents::warnings() const {
     switch (fault) {
     case RecordFault::clipped: return "The record is clipped: its peaks were higher than what the models are driven by.";
     case RecordFault::gaps: return "The record has gaps: what happened in them is not known.";
-    case RecordFault::peaks_only: return "The record holds peaks and no waveform: no model can be driven by it.";
+    case RecordFault::peaks_only:
+      return std::string("The record holds peaks and no waveform: ") + (pulse ? "models are driven by pulses that are assumed." : "no model can be driven by it.");
     case RecordFault::cut:
       return recording.facts.cut_line > 0 ? "The last line of the record is cut: what came after it is not known."
                                           : "The record ends with '" + recording.facts.last_comment + "': what came after it is not known.";

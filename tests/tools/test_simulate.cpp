@@ -223,6 +223,13 @@ TEST_CASE("a disk that fills up leaves nothing behind") {
   CHECK(has(outcome.err, "cannot write '" + bench.at("out/a/trajectory.csv") + "': File too large"));
   CHECK(count_lines(outcome.err) == 1);
   CHECK(bench.content("out").empty());
+  // A cleaned record, in a folder that is not made then.
+  REQUIRE(program_does(bench, "record --make endaq " + bench.at("shock.csv")).code == 0);
+  const Outcome record = program_does(bench, "record " + bench.at("shock.csv") + " --gravity z -o " + bench.at("cleaned"), "trap '' XFSZ; ulimit -f 2; ");
+  CHECK(record.code == 2);
+  CHECK(has(record.err, "signal.csv' cannot be written: File too large"));
+  CHECK_FALSE(std::filesystem::exists(bench.at("cleaned")));
+  CHECK(std::distance(std::filesystem::directory_iterator(bench.at(".")), {}) == 4); // a.toml, out, shock.csv, and what the program said
 }
 
 TEST_CASE("the program itself: exit codes, and no progress into a pipe") {

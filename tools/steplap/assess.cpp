@@ -58,6 +58,8 @@ Of a static proof (docs/how-to/prove_statically.md): 0 the machine is proven to 
       {"--seed", &o->seed, "N", "of the samples (default: 1)"},
       {"--threads", &o->threads, "N", "of the samples (default: all processors); results are the same for any number"},
       {"--accept", &o->accepted, "FAULT", "decide although a record is clipped, has gaps, holds peaks only, is cut, shows a fall, has a dead axis, or is sampled below 100 Hz: clipped, gaps, peaks, cut, fall, dead or slow; may be repeated"},
+      {"--pulse", &o->pulse, "SHAPE", "of lists of peaks without waveforms: drive the models by a half-sine, haversine or triangle; \"half-sine 50 ms\" where the list does not tell how long. The decision is open unless --accept peaks"},
+      {"--pulse-axis", &o->pulse_axis, "AXIS", "x, y or z: that of peaks whose list tells no direction"},
       {"--no-estimate", &o->is_estimate_left_out, "", "do not estimate errors of the runs"},
       {"--static", &o->static_preset, "PRESET", "constant loads instead of records: iec-1g, road, sea, or a file of your own (.toml)"},
       {"--plane", &o->plane, "PLANE", "with --static: lengthwise (default where it makes no difference) or transverse, the section that the models show"},

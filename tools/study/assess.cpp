@@ -1,6 +1,7 @@
 #include "tools/study/assess.h"
 
 #include "assess/assessment.h"
+#include "assess/assumed_pulse.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/atomic_file.h"
@@ -27,6 +28,27 @@ using Align = TextTable::Align;
 constexpr OptionWords<RecordFault, 7> k_faults{{{"clipped", RecordFault::clipped}, {"gaps", RecordFault::gaps}, {"peaks", RecordFault::peaks_only}, {"cut", RecordFault::cut},
                                                 {"fall", RecordFault::fall}, {"dead", RecordFault::dead}, {"slow", RecordFault::slow}}};
 constexpr std::size_t k_shown_events = 8, k_shown_reasons = 6, k_shown_sentences = 2; // the screen has thirty lines
+
+// Made before anything is computed, so that hours of work do not end in a folder that cannot be; gone again if nothing came into it.
+class OutputFolder {
+public:
+  explicit OutputFolder(const fs::path& path) : path_(path) {
+    std::error_code error;
+    is_new_ = fs::create_directories(path_, error);
+    if (!error && !fs::is_directory(path_, error) && !error) error = std::make_error_code(std::errc::not_a_directory);
+    if (error) throw FileError(path_.string(), "cannot write to the folder '" + path_.string() + "': " + error.message() + ". Choose another one with -o");
+  }
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder() {
+    std::error_code ignored;
+    if (is_new_) fs::remove(path_, ignored); // does nothing to a folder with files in it
+  }
+
+private:
+  fs::path path_;
+  bool is_new_ = false;
+};
 
 fs::path output_folder(const AssessOptions& o) { return o.output.value_or("out/assessment"); }
 
@@ -55,6 +77,15 @@ AssessmentOptions assessment_options(const AssessOptions& o) {
   if (o.resample) options.reading.rate = number_of(o.resample, "--resample", 0.0, ", in Hz");
   if (o.quiet && o.gravity) throw UsageError("--rest takes away all that is there at rest, gravity included: leave --gravity out");
   if (o.quiet) options.reading.rest = rest_stretch(*o.quiet);
+  if (o.pulse) {
+    options.reading.pulse = parse_assumed_pulse(*o.pulse);
+    if (!options.reading.pulse) throw UsageError("--pulse '" + *o.pulse + "': give half-sine, haversine or triangle, and how long where the list does not tell: \"half-sine 50 ms\"");
+  }
+  if (o.pulse_axis) {
+    if (!o.pulse) throw UsageError("--pulse-axis says along which axis pulses are: give --pulse, too");
+    if (*o.pulse_axis != "x" && *o.pulse_axis != "y" && *o.pulse_axis != "z") throw UsageError("--pulse-axis '" + *o.pulse_axis + "': give x, y or z");
+    options.reading.pulse->axis = o.pulse_axis->front();
+  }
   options.overrides = o.overrides;
   options.accepted = accepted_faults(o);
   options.criteria = o.criteria.value_or("acceptance-3g");
@@ -106,7 +137,7 @@ void print_event(TextTable& table, const Assessment& a, std::size_t number) {
     const char* const event = words_of(EventKind::slips);
     const char* const outcome = p.is_made ? "holds" : "not run";
     const bool is_first = m == 0;
-    table.add_row({is_first ? std::to_string(number + 1) : "", is_first ? rounded_text(axis.peak_time, 7) : "", is_first ? std::string(1, record.recording.layout.axes[shock.worst].axis) + " " + rounded_text(axis.peak / k_gravity, 3) : "",
+    table.add_row({is_first ? std::to_string(number + 1) : "", is_first ? rounded_text(axis.peak_time, 7) : "", is_first ? std::string(1, record.axes()[shock.worst]) + " " + rounded_text(axis.peak / k_gravity, 3) : "",
                    a.models[m].recorder.plane, name_of(p.verdict), slips ? event : outcome, weakest == p.joints.end() ? "-" : rounded_text(weakest->margin, 3),
                    quantity_text(slid, "m"), m < e.slip.size() && e.slip[m].runs > 0 ? percent(e.slip[m].value) : "-"});
   }
@@ -181,6 +212,7 @@ ExitCode run_assessment(const AssessOptions& o, Console& console) {
   const std::string file = (output_folder(o) / "assessment.json").string();
   if (!o.is_overwriting && fs::exists(file)) throw UsageError("'" + file + "' exists. Choose another folder with -o, or give --force to overwrite it.");
   const InterruptionGuard guard;
+  const OutputFolder folder(output_folder(o));
   std::optional<Assessment> assessment;
   {
     AssessProgress progress(console);
@@ -188,7 +220,6 @@ ExitCode run_assessment(const AssessOptions& o, Console& console) {
     assessment = assess::assess(o.records, o.models, options);
   }
   const std::string json = assessment_json(*assessment);
-  fs::create_directories(output_folder(o));
   write_file(file, json, o.is_overwriting ? IfExists::replace : IfExists::refuse);
   if (o.is_json) console.out << json;
   else if (console.verbosity != Verbosity::quiet) print_assessment(console.out, *assessment, file);
