@@ -286,16 +286,19 @@ bool ExtremeFinder::turns_inside(std::size_t c, double h) const {
 // The channels that may have passed an extreme of the run inside the stretch go to open_; true if there are any.
 bool ExtremeFinder::suspect(double h) {
   open_.clear();
+  const double *const first = node_[0].data(), *const end = node_[k_last].data(), *const before = before_.data();
+  const double h_last = h_last_, share = h / h_last, halves = 1.0 + h_last / h, square = h * h; // of the stretch before: used where there is one
   for (const std::size_t c : tracked_) {
-    const double a = node_[0][c], b = node_[k_last][c];
+    const double a = first[c], b = end[c];
     Curve& curve = curve_[c];
     curve.is_open = false;
     curve.error = std::numeric_limits<double>::infinity();
+    if (h_last > 0.0 && a == b && a == before[c] && curvature_[c] == 0.0 && rate_of_[c] < 0) continue; // it rests
     if (formulas_->is_formula(c) || is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
-    const double slope = b - a, last = h_last_ > 0.0 ? (a - before_[c]) * (h / h_last_) : k_unknown;
+    const double slope = b - a, last = h_last > 0.0 ? (a - before[c]) * share : k_unknown;
     if (!std::isnan(slope) && !std::isnan(last)) { // over the stretch, and over as long before
-      const double bend_now = std::abs(slope - last) / (1.0 + h_last_ / h);
-      curvature_[c] = std::max(bend_now / (h * h), k_remembered * curvature_[c]);
+      const double bend_now = std::abs(slope - last) / halves;
+      curvature_[c] = std::max(bend_now / square, k_remembered * curvature_[c]);
       const double bend = k_surprise * curvature_[c] * h * h;
       const bool turns = turns_inside(c, h);
       if (std::abs(slope) > bend && !turns) continue; // it only rises, or only falls
@@ -320,37 +323,13 @@ static NodePolynomial through_nodes(const std::vector<std::vector<double>>& node
   return {level, values};
 }
 
-// As NodePolynomial::at(), without a copy of the values.
-double ExtremeFinder::interpolate(std::size_t c, int level, double theta) const {
-  const int step = NodePolynomial::spacing(level);
-  double above = 0.0, below = 0.0, sign = 1.0;
-  for (int i = 0; i <= k_last; i += step) {
-    const double distance = theta - NodePolynomial::theta(i);
-    if (distance == 0.0) return at(c, i);
-    const double weight = (i == 0 || i == k_last ? 0.5 : 1.0) * sign / distance;
-    above += weight * at(c, i);
-    below += weight;
-    sign = -sign;
-  }
-  return above / below;
-}
-
-// About how high the curve may be: what parabolas through three nodes in a row show beyond them counts twice. `best`: the highest of `v`.
-static double highest_about(const NodePolynomial::Values& v, int level, double sign, double best) {
-  double highest = best;
+// At a node of the next level, by its weights.
+static double interpolated(const std::vector<std::vector<double>>& nodes, std::size_t c, int level, const NodePolynomial::Weights& weights) {
   const int n = 1 << level, step = NodePolynomial::spacing(level);
-  for (int i = 1; i < n; ++i) {
-    const double p = sign * (v[i] - v[i - 1]), q = sign * (v[i] - v[i + 1]);
-    if ((p < 0.0 || q < 0.0) && i != 1 && i != n - 1) continue;
-    const double at = NodePolynomial::theta(i * step), before = at - NodePolynomial::theta((i - 1) * step), behind = NodePolynomial::theta((i + 1) * step) - at;
-    const double down = p * behind + q * before; // of the parabola: its bend times before · behind (before + behind) / 2
-    if (!(down > 0.0)) continue;
-    const double slope = (p * behind * behind - q * before * before) / (before * behind * (before + behind));
-    const double curve = down / (before * behind * (before + behind)), shift = std::clamp(0.5 * slope / curve, -before, behind);
-    const double top = sign * v[i] + shift * (slope - curve * shift), three = sign * v[i] + std::max({0.0, -p, -q});
-    highest = std::max(highest, three + 2.0 * std::max(0.0, top - three));
-  }
-  return highest;
+  const std::vector<double>* row = nodes.data();
+  double above = 0.0;
+  for (int i = 0; i <= n; ++i, row += step) above += weights.of[i] * (*row)[c];
+  return above / weights.sum;
 }
 
 // Is channel c done with after the nodes of `level`? If its polynomial is exact enough its extremes are noted.
@@ -361,9 +340,10 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
   // What the polynomial of half the degree was off by at the new nodes; of a smooth curve twice as many nodes square
   // the share that is missed.
   NodePolynomial::Values v;
-  double least = at(c, 0), most = at(c, 0), sum = 0.0;
-  for (int i = 0, node = 0; i <= n; ++i, node += NodePolynomial::spacing(level)) {
-    v[i] = at(c, node);
+  const std::vector<double>* row = node_.data();
+  double least = (*row)[c], most = least, sum = 0.0;
+  for (int i = 0; i <= n; ++i, row += NodePolynomial::spacing(level)) {
+    v[i] = (*row)[c];
     least = std::min(least, v[i]);
     most = std::max(most, v[i]);
     sum += v[i];
@@ -371,15 +351,12 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
   const double spread = most - least;
   const double error = level > 1 && spread > 0.0 ? curve_[c].error * std::min(1.0, curve_[c].error / spread) : curve_[c].error;
   for (const double sign : {1.0, -1.0}) {
-    const double record = sign > 0.0 ? r.high.value : -r.low.value;
-    double best = sign * v[0];
-    for (int i = 1; i <= n; ++i)
-      if (sign * v[i] > best) best = sign * v[i];
+    const double record = sign > 0.0 ? r.high.value : -r.low.value, best = sign > 0.0 ? most : -least;
     if (!std::isfinite(best)) continue;
     if (!std::isfinite(sum)) return false;
     // Beyond the record by more than anybody asks for?
     if (best + NodePolynomial::k_overshoot * spread + error <= record + slack) continue;
-    if (highest_about(v, level, sign, best) + error <= record + slack) continue;
+    if (!NodePolynomial::may_exceed(record + slack, error, level, v, sign, best)) continue;
     if (error > slack) return false;
     // Beyond its pole's bound it is followed by its size, which the nodes have told: between them a polynomial of one over
     // rounding may have any sign.
@@ -397,6 +374,7 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
   for (int i = step; i < k_last; i += 2 * step) {
     const double theta = NodePolynomial::theta(i);
     const Snapshot snapshot = look(theta, integrator, dynamics);
+    const NodePolynomial::Weights* const weights = level > 1 ? &NodePolynomial::weights_at(level - 1, theta) : nullptr;
     // What the ends did not show the middle may, for every channel: it has been evaluated. Steps whose error nothing controls are not
     // looked into so closely: about the end of a slip they know its direction too badly.
     if (level == 1 && integrator.is_adaptive()) {
@@ -430,7 +408,7 @@ void ExtremeFinder::refine(int level, Integrator& integrator, Dynamics& dynamics
     for (const std::size_t c : open_) {
       take(c, t_ + theta * (t1_ - t_), snapshot, node_[i].data());
       double guess = k_unknown;
-      if (level > 1) guess = interpolate(c, level - 1, theta);
+      if (level > 1) guess = interpolated(node_, c, level - 1, *weights);
       else if (h_last_ > 0.0) { // the parabola through this stretch's ends and the last one's beginning
         const double h = t1_ - t_, a = at(c, 0), b = at(c, k_last);
         const double bend = ((b - a) - (a - before_[c]) * (h / h_last_)) / (1.0 + h_last_ / h);

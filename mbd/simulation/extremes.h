@@ -115,7 +115,6 @@ private:
   void adapt_length();
   [[nodiscard]] double tolerance(std::size_t c) const;
   [[nodiscard]] double at(std::size_t c, int node) const { return node_[node][c]; }
-  [[nodiscard]] double interpolate(std::size_t c, int level, double theta) const;
   [[nodiscard]] bool is_ruled_out(std::size_t c) const { return screened_slot_[c] >= 0 && !is_wanted_[screened_slot_[c]]; }
 
   const System& system_;

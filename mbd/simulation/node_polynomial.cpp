@@ -59,6 +59,41 @@ struct Tables {
 
 const Tables k_tables;
 
+constexpr auto k_weights = [] {
+  std::array<std::array<NodePolynomial::Weights, NodePolynomial::k_last / 2>, NodePolynomial::k_levels> tables{};
+  for (int level = 1; level < NodePolynomial::k_levels; ++level)
+    for (int gap = 0; gap < 1 << level; ++gap) {
+      const int n = 1 << level, step = NodePolynomial::spacing(level);
+      NodePolynomial::Weights& weights = tables[level][gap];
+      double sign = 1.0;
+      for (int i = 0; i <= n; ++i) {
+        weights.of[i] = (i == 0 || i == n ? 0.5 : 1.0) * sign / (NodePolynomial::theta(gap * step + step / 2) - NodePolynomial::theta(i * step));
+        weights.sum += weights.of[i];
+        sign = -sign;
+      }
+    }
+  return tables;
+}();
+
+// Three points in a row: the gaps between them, before · behind (before + behind), and what of `down` (may_exceed) the parabola
+// exceeds them by at most: in a gap w by a quarter of w² times its leading coefficient.
+struct Triple {
+  double before = 0.0, behind = 0.0, product = 0.0, most = 0.0;
+};
+
+constexpr auto k_triples = [] {
+  std::array<std::array<Triple, NodePolynomial::k_last>, NodePolynomial::k_levels + 1> triples{};
+  for (int level = 1; level <= NodePolynomial::k_levels; ++level)
+    for (int i = 1; i < 1 << level; ++i) {
+      const int step = NodePolynomial::spacing(level);
+      const double at = NodePolynomial::theta(i * step);
+      const double before = at - NodePolynomial::theta((i - 1) * step), behind = NodePolynomial::theta((i + 1) * step) - at;
+      const double wider = std::max(before, behind), product = before * behind * (before + behind);
+      triples[level][i] = {before, behind, product, 0.25 * wider * wider / product};
+    }
+  return triples;
+}();
+
 // Looks for the top in a gap, or a part of one.
 class TopSearch {
 public:
@@ -129,6 +164,33 @@ double NodePolynomial::at(double theta) const {
     sign = -sign;
   }
   return above / below;
+}
+
+const NodePolynomial::Weights& NodePolynomial::weights_at(int level, double theta) {
+  const int step = spacing(level), last = (1 << level) - 1;
+  int gap = 0;
+  while (gap < last && NodePolynomial::theta((gap + 1) * step) < theta) ++gap;
+  return k_weights[level][gap];
+}
+
+bool NodePolynomial::may_exceed(double limit, double error, int level, const Values& values, double sign, double best) {
+  constexpr double k_rounded = 1e-14; // of values, and far more than they are rounded by here
+  if (!(best + error <= limit)) return true;
+  const int n = 1 << level;
+  for (int i = 1; i < n; ++i) {
+    const double p = sign * (values[i] - values[i - 1]), q = sign * (values[i] - values[i + 1]);
+    if ((p < 0.0 || q < 0.0) && i != 1 && i != n - 1) continue;
+    const Triple& t = k_triples[level][i];
+    const double down = p * t.behind + q * t.before; // of the parabola: its leading coefficient times the product
+    if (!(down > 0.0)) continue;
+    const double middle = sign * values[i], three = middle + std::max({0.0, -p, -q});
+    if (three + 2.0 * t.most * down + k_rounded * (std::abs(middle) + std::abs(three)) + error <= limit) continue; // wherever its top is
+    const double slope = (p * t.behind * t.behind - q * t.before * t.before) / t.product;
+    const double curve = down / t.product, shift = std::clamp(0.5 * slope / curve, -t.before, t.behind);
+    const double top = middle + shift * (slope - curve * shift);
+    if (!(three + 2.0 * std::max(0.0, top - three) + error <= limit)) return true;
+  }
+  return false;
 }
 
 double NodePolynomial::largest_bend() const {

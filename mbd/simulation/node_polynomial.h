@@ -34,6 +34,18 @@ public:
   /// Its value at a place in [0, 1].
   [[nodiscard]] double at(double theta) const;
 
+  /// Of the values of a level at a node that the next one has between them: the barycentric weights, and their sum.
+  struct Weights {
+    std::array<double, k_last + 1> of{}; ///< the first 2^level + 1 count
+    double sum = 0.0;                    ///< by which the weighted sum of values is divided
+  };
+  /// `theta`: a node of level + 1 that `level` has not.
+  [[nodiscard]] static const Weights& weights_at(int level, double theta);
+
+  /// May the curve through `values` (times `sign`, 1 or −1), known to `error`, be higher than `limit`? What parabolas through three
+  /// points in a row show beyond them counts twice. `best`: the highest of the values, times the sign.
+  [[nodiscard]] static bool may_exceed(double limit, double error, int level, const Values& values, double sign, double best);
+
   /// A largest value and where it lies.
   struct Top {
     double value; ///< of the polynomial

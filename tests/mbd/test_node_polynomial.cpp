@@ -86,3 +86,40 @@ TEST_CASE("a polynomial that exceeds its points most is not taken for lower") {
     CHECK(most == doctest::Approx(level == 1 ? 1.25 : level == 2 ? 1.7988 : 2.2747).epsilon(1e-3)); // Lebesgue's constants
   }
 }
+
+// With the parabolas' own values a curve is at most as high as they show: the top of one that opens downwards, in closed form.
+TEST_CASE("whether parabolas through points may exceed a limit") {
+  random::RandomNumber random(43);
+  for (int i = 0; i < 3000; ++i) {
+    const int level = 1 + i % NodePolynomial::k_levels, n = 1 << level, step = NodePolynomial::spacing(level);
+    const double bend = random.decades(-3.0, 1.0), vertex = random.between(-0.2, 1.2), height = random.between(-1.0, 1.0), sign = random.chance(0.5) ? 1.0 : -1.0;
+    NodePolynomial::Values values{};
+    double best = -1e300;
+    for (int k = 0; k <= n; ++k) {
+      const double off = NodePolynomial::theta(k * step) - vertex, value = height - bend * off * off;
+      values[k] = sign * value;
+      best = std::max(best, value);
+    }
+    const double inside = std::clamp(vertex, 0.0, 1.0) - vertex, top = height - bend * inside * inside;
+    const double error = random.chance(0.5) ? 0.0 : random.decades(-6.0, -2.0);
+    CAPTURE(i);
+    CHECK(NodePolynomial::may_exceed(top + error - 1e-9, error, level, values, sign, best));
+    // What is shown beyond the highest point counts twice.
+    CHECK(!NodePolynomial::may_exceed(best + 2.0 * (top - best) + error + 1e-9, error, level, values, sign, best));
+  }
+}
+
+TEST_CASE("weights of a level at the points of the next one give the polynomial's value there") {
+  random::RandomNumber random(44);
+  for (int level = 1; level < NodePolynomial::k_levels; ++level)
+    for (int gap = 0; gap < 1 << level; ++gap) {
+      const int n = 1 << level, step = NodePolynomial::spacing(level);
+      NodePolynomial::Values values{};
+      for (int k = 0; k <= n; ++k) values[k] = random.between(-1.0, 1.0);
+      const double theta = NodePolynomial::theta(gap * step + step / 2);
+      const NodePolynomial::Weights& weights = NodePolynomial::weights_at(level, theta);
+      double sum = 0.0;
+      for (int k = 0; k <= n; ++k) sum += weights.of[k] * values[k];
+      CHECK(sum / weights.sum == NodePolynomial(level, values).at(theta)); // the same operations
+    }
+}
