@@ -51,6 +51,7 @@ struct Command {
   std::string examples; ///< shown after the options, lines end with \n
   std::vector<Option> options;
   std::function<ExitCode(Console& console)> run;
+  bool prints_tables = false; ///< it has --json (json_screen.h)
 };
 
 } // namespace steplap
