@@ -173,7 +173,7 @@ private:
     change.path = path;
     change.before = number_in(a);
     change.after = number_in(b);
-    if (change.before || change.after) change.unit = unit;
+    if ((change.before || change.after) && unit != "*") change.unit = unit; // any unit: of a signal
     change.before_text = text_of(a);
     change.after_text = text_of(b);
     change.follows = !formula_at(a_, path).empty() && formula_at(a_, path) == formula_at(b_, path);

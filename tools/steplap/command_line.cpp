@@ -140,7 +140,7 @@ ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::strin
     return ExitCode::usage;
   }
   log_error(std::string(error.what()) + "; see " + program.name + " " + (is_option ? "" : first + " ") + "--help");
-  if (arguments.size() == 1 && !is_option) err << "\n" << app.get_subcommand(first)->help();
+  if (arguments.size() == 1 && !is_option) err << "\n" << app.get_subcommand(first)->help(program.name);
   return ExitCode::usage;
 }
 
@@ -189,7 +189,7 @@ OrderedJson version_json(const Program& program) {
 
 // "help check" asks what "check --help" does.
 std::vector<std::string> without_help_command(const Program& program, std::vector<std::string> arguments) {
-  if (arguments.empty() || arguments.front() != "help") return arguments;
+  if (arguments.empty() || arguments.front() != "help" || (arguments.size() > 1 && arguments[1].starts_with('-'))) return arguments;
   arguments.erase(arguments.begin());
   if (arguments.empty() || is_command(program, arguments.front())) arguments.emplace_back("--help"); // else there is no such command
   return arguments;

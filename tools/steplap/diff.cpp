@@ -20,6 +20,7 @@ namespace steplap {
 namespace {
 
 namespace fs = std::filesystem;
+using Align = TextTable::Align;
 
 struct DiffOptions {
   std::string before, after;
@@ -49,7 +50,6 @@ std::string word_for(const ModelChange& change) {
 }
 
 void print_changes(std::ostream& out, const std::vector<ModelChange>& changes) {
-  using Align = TextTable::Align;
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::left});
   table.set_head("values", {"value", "before", "after", "change", ""}, {"path", "before", "after", "change", "why"});
   for (const ModelChange& c : changes)

@@ -2,7 +2,7 @@
 
 #include "mbd/base/shown_text.h"
 #include "run/measured_text.h"
-#include "run/quantity_text.h"
+#include "run/shown_quantity.h"
 #include "tools/steplap/json_screen.h"
 
 #include <algorithm>
@@ -53,7 +53,16 @@ bool differ(const Measured& a, const Measured& b) {
   return difference > std::max(rounding, a.error.value_or(0.0) + b.error.value_or(0.0)); // false for not-a-number
 }
 
-Cell cell_of(const Measured& m, const std::string& unit) { return std::isnan(m.value) ? Cell("–") : measured_cell(m.value, m.error, unit); }
+// Both values, in few digits with one prefix, or in all where few do not tell them apart.
+std::pair<Cell, Cell> cells_of(const Measured& a, const Measured& b, const std::string& unit) {
+  const double column = std::fmax(std::abs(a.value), std::abs(b.value)); // of one, where the other is none
+  const auto few = [&](const Measured& m) { return shown_quantity(m.value, unit, {.error = m.error, .limit = {}, .column = column}); };
+  const bool is_told_apart = few(a) != few(b);
+  const auto cell = [&](const Measured& m) {
+    return std::isnan(m.value) ? Cell("–") : Cell(is_told_apart ? few(m) : measured_text(m.value, m.error, unit), m.value, unit, m.error);
+  };
+  return {cell(a), cell(b)};
+}
 
 Cell change_of(const Measured& a, const Measured& b) { return std::isnan(a.value) || std::isnan(b.value) ? Cell("") : change_cell(a.value, b.value); }
 
@@ -87,8 +96,8 @@ std::size_t print_criteria(std::ostream& out, const Json& a, const Json& b) {
   const auto add = [&table](const Json& c, const Json* was, const Json* is) {
     const Measured first = was ? measured_in(*was, "value", "error") : Measured{}, second = is ? measured_in(*is, "value", "error") : Measured{};
     const std::string outcome = was ? text_in(*was, "outcome") : "–", now = is ? text_in(*is, "outcome") : "–";
-    if (outcome != now || differ(first, second))
-      table.add_row({text_in(c, "name"), text_in(c, "criterion"), cell_of(first, text_in(c, "unit")), cell_of(second, text_in(c, "unit")), outcome, now});
+    const auto [value_before, value_after] = cells_of(first, second, text_in(c, "unit"));
+    if (outcome != now || differ(first, second)) table.add_row({text_in(c, "name"), text_in(c, "criterion"), value_before, value_after, outcome, now});
   };
   for (const Json& c : before) {
     const auto other = same(after, c);
@@ -116,7 +125,8 @@ std::size_t print_joints(std::ostream& out, const Json& a, const Json& b) {
     for (const Figure& f : figures) {
       const std::string error = std::string("error_") + f.key;
       const Measured first = measured_in(before, f.key, error), second = measured_in(*after, f.key, error);
-      if (differ(first, second)) table.add_row({joint, f.name, cell_of(first, f.unit), cell_of(second, f.unit), change_of(first, second)});
+      const auto [value_before, value_after] = cells_of(first, second, f.unit);
+      if (differ(first, second)) table.add_row({joint, f.name, value_before, value_after, change_of(first, second)});
     }
   }
   if (table.is_empty()) return 0;
@@ -125,40 +135,50 @@ std::size_t print_joints(std::ostream& out, const Json& a, const Json& b) {
 }
 
 // By element and what happens, in the order of time: the first lift of a foot is compared with its first lift.
-using EventTimes = std::map<std::pair<std::string, std::string>, std::vector<Measured>>;
+template <class Value> using ByEvent = std::map<std::pair<std::string, std::string>, Value>;
+using EventTimes = ByEvent<std::vector<Measured>>;
 
-EventTimes times_of(const ShownRun& run) {
+EventTimes times_of(const ShownRun& run, ByEvent<EventKind>& kinds) {
   EventTimes times;
-  for (const ResultEvent& event : run.events) times[{event.element, event.words}].push_back({event.t, event.error});
+  for (const ResultEvent& event : run.events) {
+    times[{event.element, event.words}].push_back({event.t, event.error});
+    kinds[{event.element, event.words}] = event.kind;
+  }
   return times;
 }
 
 std::size_t print_events(std::ostream& out, const ShownRun& a, const ShownRun& b) {
   struct Row {
     double t;
+    bool is_main;
     TextTable::Row cells;
   };
   std::vector<Row> rows;
-  EventTimes before = times_of(a), after = times_of(b);
+  ByEvent<EventKind> kinds;
+  EventTimes before = times_of(a, kinds), after = times_of(b, kinds);
   for (const auto& [what, times] : before) after.try_emplace(what);
   for (const auto& [what, times] : after) {
     const std::vector<Measured>& was = before[what];
     for (std::size_t i = 0; i < std::max(was.size(), times.size()); ++i) {
       const Measured first = i < was.size() ? was[i] : Measured{}, second = i < times.size() ? times[i] : Measured{};
       if (!differ(first, second)) continue;
-      const auto cell = [](const Measured& m) { return std::isnan(m.value) ? Cell("–") : Cell(measured_time_text(m.value, m.error), m.value, "s", m.error); };
+      const auto [time_before, time_after] = cells_of(first, second, "s");
       const std::string change = std::isnan(first.value) ? "new" : std::isnan(second.value) ? "gone" : second.value > first.value ? "later" : "earlier";
-      rows.push_back({std::isnan(first.value) ? second.value : first.value, {what.first, what.second, cell(first), cell(second), change}});
+      rows.push_back({std::isnan(first.value) ? second.value : first.value, is_main(kinds[what]), {what.first, what.second, time_before, time_after, change}});
     }
   }
   if (rows.empty()) return 0;
   std::stable_sort(rows.begin(), rows.end(), [](const Row& x, const Row& y) { return x.t < y.t; });
   TextTable table({Align::left, Align::left, Align::right, Align::right, Align::left});
   table.set_head("events", {"element", "event", "before", "after", ""}, {"element", "event", "before", "after", "change"});
-  const std::size_t shown = json_screen(out) ? rows.size() : std::min(rows.size(), k_most_rows);
-  for (std::size_t i = 0; i < shown; ++i) table.add_row(rows[i].cells);
+  std::size_t shown = 0;
+  for (const Row& row : rows) {
+    if (!json_screen(out) && (!row.is_main || shown >= k_most_rows)) continue;
+    table.add_row(row.cells);
+    ++shown;
+  }
   out << "\nEvents: " << a.events.size() << " before, " << b.events.size() << " after; " << counted(rows.size(), "differs", "differ") << "\n" << table;
-  if (shown < rows.size()) out << "  … and " << rows.size() - shown << " more: --json has all\n";
+  if (shown < rows.size()) out << "  … and " << rows.size() - shown << " more, or minor ones: --json has all\n";
   return rows.size();
 }
 
@@ -180,9 +200,9 @@ std::size_t print_extremes(std::ostream& out, const Json& a, const Json& b) {
       const std::string error = std::string("error_") + which;
       const Measured first = measured_in(before, which, error), second = measured_in(after, which, error);
       if (!differ(first, second) || std::abs(first.value - second.value) <= k_rounding * scale) continue;
-      const std::string unit = text_in(before, "unit");
+      const auto [value_before, value_after] = cells_of(first, second, text_in(before, "unit"));
       rows.push_back({std::abs(first.value - second.value) / scale,
-                      {channel, std::string(which) == "min" ? "lowest" : "highest", cell_of(first, unit), cell_of(second, unit), change_of(first, second)}});
+                      {channel, std::string(which) == "min" ? "lowest" : "highest", value_before, value_after, change_of(first, second)}});
     }
   }
   if (rows.empty()) return 0;

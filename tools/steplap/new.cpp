@@ -86,8 +86,8 @@ void refuse_wrong_values(const ModelTemplate& one, const NewOptions& options) {
     if (value->find_first_of("\"\\\n") != std::string::npos || value->starts_with("=")) throw UsageError(problem);
     try {
       (void)parse_given_model(filled(one, options, option), one.name + ".toml", program_catalogue());
-    } catch (const ModelError& error) {
-      throw UsageError(problem + " (" + error.diagnostics().front().message + ")");
+    } catch (const ModelError&) {
+      throw UsageError(problem);
     }
   }
 }
