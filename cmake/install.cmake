@@ -1,4 +1,5 @@
-# What `cmake --install` puts where, and the package that find_package(steplap) finds: docs/how-to/use_from_cpp.md.
+# What `cmake --install` puts where, and the package that find_package(steplap) finds: docs/how-to/use_from_cpp.md. Each component is a
+# package of Debian (packages.cmake): program, study, development, python.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
@@ -40,37 +41,46 @@ else()
 endif()
 
 # Headers include each other as "mbd/…", users write <steplap/mbd/…>.
-install(TARGETS ${libraries} EXPORT steplap
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+install(TARGETS ${libraries} EXPORT steplap COMPONENT development
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${CMAKE_INSTALL_INCLUDEDIR}/steplap)
-install(DIRECTORY mbd elements transformer run DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap
+install(DIRECTORY mbd elements transformer run DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap COMPONENT development
   FILES_MATCHING PATTERN "*.h"
   PATTERN ordered_json.h EXCLUDE PATTERN summary.h EXCLUDE) # include another maker's
 configure_file(cmake/version.h.in version.h @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/steplap COMPONENT development)
 file(RELATIVE_PATH steplap_pc_up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /) # wherever it is installed or moved to
 configure_file(cmake/steplap.pc.in steplap.pc @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/steplap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-install(TARGETS steplap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/steplap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+install(TARGETS steplap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 # bin/steplap looks for it at ../libexec, in the build tree as well.
 if(TARGET steplap-study)
-  install(TARGETS steplap-study RUNTIME DESTINATION libexec)
+  install(TARGETS steplap-study RUNTIME DESTINATION libexec COMPONENT study)
 endif()
-install(DIRECTORY models examples DESTINATION ${CMAKE_INSTALL_DATADIR}/steplap)
-install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap)
+install(DIRECTORY models examples DESTINATION ${CMAKE_INSTALL_DATADIR}/steplap COMPONENT program)
+install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap COMPONENT program)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap COMPONENT program
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 file(STRINGS THIRD_PARTY.md rows REGEX "^\\| lib[^|]+\\|")
 foreach(row ${rows})
   string(REGEX REPLACE "^\\| ([^ |]+).*" "\\1" package ${row})
   if(EXISTS /usr/share/doc/${package}/copyright)
-    install(FILES /usr/share/doc/${package}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap/third_party RENAME ${package})
+    install(FILES /usr/share/doc/${package}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap/third_party RENAME ${package} COMPONENT program)
   endif()
 endforeach()
-install(FILES study/plotly/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap/third_party RENAME plotly)
+# Completions and man pages are what the program says of itself when it is installed.
+find_program(STEPLAP_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(STEPLAP_PYTHON3)
+  install(CODE "execute_process(COMMAND \"${STEPLAP_PYTHON3}\" \"${PROJECT_SOURCE_DIR}/tools/site/shell_files\"
+    \"$<TARGET_FILE:steplap>\" \"${CMAKE_CURRENT_BINARY_DIR}/shell\" COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
+  install(DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/shell/ DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT program)
+endif()
+install(FILES study/plotly/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap/third_party RENAME plotly COMPONENT program)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/steplap)
-install(EXPORT steplap NAMESPACE steplap:: FILE steplapTargets.cmake DESTINATION ${package_folder})
+install(EXPORT steplap NAMESPACE steplap:: FILE steplapTargets.cmake DESTINATION ${package_folder} COMPONENT development)
 configure_package_config_file(cmake/steplapConfig.cmake.in steplapConfig.cmake INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(steplapConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/steplapConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/steplapConfigVersion.cmake
-  DESTINATION ${package_folder})
+  DESTINATION ${package_folder} COMPONENT development)

@@ -41,29 +41,12 @@ std::string heading(const Described& kind) {
   return kind.role == "table" ? "[[" + kind.name + "]]" : "top level of a model file";
 }
 
-using Row = std::vector<std::string>;
-
-std::vector<Row> rows_of(const Described& kind) {
-  std::vector<Row> rows{{"field", "type", "unit", "default", "range", "meaning"}};
+ReferenceRows rows_of(const Described& kind) {
+  ReferenceRows rows{{"field", "type", "unit", "default", "range", "meaning"}};
   for (const Field& f : kind.fields->fields())
     rows.push_back(
         {f.name, type_text(f), unit_text(f), default_text(kind, f), range_text(f), f.doc});
   return rows;
-}
-
-std::string aligned(const std::vector<Row>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const Row& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], row[i].size());
-  std::string text;
-  for (const Row& row : rows) {
-    std::string line = "  ";
-    for (std::size_t i = 0; i + 1 < row.size(); ++i)
-      line += row[i] + std::string(widths[i] + 2 - row[i].size(), ' ');
-    text += line + row.back() + "\n";
-  }
-  return text;
 }
 
 std::string escaped(std::string cell) {
@@ -72,9 +55,9 @@ std::string escaped(std::string cell) {
   return cell;
 }
 
-std::string markdown(const std::vector<Row>& rows) {
+std::string markdown(const ReferenceRows& rows) {
   std::string text;
-  for (const Row& row : rows) {
+  for (const std::vector<std::string>& row : rows) {
     for (const std::string& cell : row)
       text += "| " + escaped(cell) + " ";
     text += "|\n";
@@ -100,8 +83,8 @@ std::string owner_of(const Described& kind) {
   return kind.name == "output" ? "whole." : "NAME.";
 }
 
-std::vector<Row> rows_of(const std::string& owner, const std::vector<KindChannel>& channels) {
-  std::vector<Row> rows{{"channel", "unit", "made", "sign", "meaning"}};
+ReferenceRows rows_of(const std::string& owner, const std::vector<KindChannel>& channels) {
+  ReferenceRows rows{{"channel", "unit", "made", "sign", "meaning"}};
   for (const KindChannel& c : channels)
     rows.push_back({owner + c.name, units_text(c), c.is_on_request ? "on request" : "always", c.sign,
                     c.codes.empty() ? c.meaning : c.meaning + ": " + c.codes});
@@ -109,7 +92,7 @@ std::vector<Row> rows_of(const std::string& owner, const std::vector<KindChannel
 }
 
 std::string events_markdown() {
-  std::vector<Row> rows{{"event", "what happens"}};
+  ReferenceRows rows{{"event", "what happens"}};
   for (std::size_t i = 1; i < k_event_kinds; ++i) {
     const auto kind = static_cast<EventKind>(i);
     rows.push_back({words_of(kind), doc_of(kind)});
@@ -119,20 +102,19 @@ std::string events_markdown() {
 
 } // namespace
 
-std::string kinds_text(const Catalogue& catalogue) {
-  std::vector<Row> rows{{"role", "kind", "what it is"}};
+ReferenceRows kinds_rows(const Catalogue& catalogue) {
+  ReferenceRows rows{{"role", "kind", "what it is"}};
   for (const Described& kind : describe(catalogue))
     rows.push_back({kind.role, kind.name, kind.doc});
-  return aligned(rows);
+  return rows;
 }
 
-std::string kind_text(const Catalogue& catalogue, const std::string& name) {
+KindReference kind_reference(const Catalogue& catalogue, const std::string& name) {
   std::vector<std::string> known;
   for (const Described& kind : describe(catalogue)) {
     if (kind.name == name) {
       const std::vector<KindChannel> channels = channels_of(catalogue, kind);
-      return heading(kind) + "\n" + kind.doc + "\n\n" + aligned(rows_of(kind)) +
-             (channels.empty() ? "" : "\n" + aligned(rows_of(owner_of(kind), channels)));
+      return {heading(kind), kind.doc, rows_of(kind), channels.empty() ? ReferenceRows{} : rows_of(owner_of(kind), channels)};
     }
     known.push_back(kind.name);
   }

@@ -28,6 +28,7 @@ LEFT_OUT = {
     "tools/test": "it builds and runs all tests, this one among them",
     "tools/docs": "it needs Sphinx",
     "tools/setup": "it installs",
+    "sudo apt ": "it installs",
     "tools/make_figures": "it takes minutes",
     "git ": "it needs a network",
     "cmake ": "it builds, or installs",

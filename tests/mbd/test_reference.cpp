@@ -6,31 +6,34 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 using namespace steplap;
 using steplap::testing::small_catalogue;
 
 TEST_CASE("the reference of a kind shows every field") {
-  CHECK(kind_text(small_catalogue(), "pair") ==
-        "[[pair]]\n"
-        "Two equal bodies side by side.\n"
-        "\n"
-        "  field    type    unit  default   range  meaning\n"
-        "  spacing  number  m     1         > 0    distance of the two\n"
-        "  carrier  body          \"ground\"         what carries them\n");
-  const std::string spring = kind_text(small_catalogue(), "spring");
-  CHECK(spring.find("[[element]] of kind \"spring\"") == 0);
-  for (const std::string& field : testing::spring_kind().fields.names())
-    CHECK(spring.find("\n  " + field + " ") != std::string::npos);
-  CHECK_THROWS_WITH_AS(static_cast<void>(kind_text(small_catalogue(), "sprong")),
+  const KindReference pair = kind_reference(small_catalogue(), "pair");
+  CHECK(pair.heading == "[[pair]]");
+  CHECK(pair.doc == "Two equal bodies side by side.");
+  CHECK(pair.fields == ReferenceRows{{"field", "type", "unit", "default", "range", "meaning"},
+                                     {"spacing", "number", "m", "1", "> 0", "distance of the two"},
+                                     {"carrier", "body", "", "\"ground\"", "", "what carries them"}});
+  CHECK(pair.channels.empty());
+  const KindReference spring = kind_reference(small_catalogue(), "spring");
+  CHECK(spring.heading == "[[element]] of kind \"spring\"");
+  const std::vector<std::string> names = testing::spring_kind().fields.names();
+  REQUIRE(spring.fields.size() == names.size() + 1);
+  for (std::size_t i = 0; i < names.size(); ++i) CHECK(spring.fields[i + 1].front() == names[i]);
+  CHECK_THROWS_WITH_AS(static_cast<void>(kind_reference(small_catalogue(), "sprong")),
                        "error: there is no kind 'sprong' (did you mean 'spring'?)", ModelError);
 }
 
 TEST_CASE("all kinds are listed") {
-  const std::string list = kinds_text(small_catalogue());
+  const ReferenceRows list = kinds_rows(small_catalogue());
   const std::string markdown = reference_markdown(small_catalogue());
   for (const std::string kind : {"body", "marker", "simulation", "output", "haversine", "record",
                                  "spring", "pusher", "pair"}) {
-    CHECK(list.find(" " + kind + " ") != std::string::npos);
+    CHECK(std::count_if(list.begin(), list.end(), [&kind](const auto& row) { return row[1] == kind; }) == 1);
     CHECK(markdown.find(kind) != std::string::npos);
   }
   CHECK(markdown.find("\"linear\" \\| \"table\"") != std::string::npos);

@@ -44,6 +44,9 @@ TEST_CASE("what cannot be said is an error, of every command") {
       {"accuracy", model + " --end 0.2 --setting rk4@1e-2 -o " + bench.at("acc")},
       {"record", bench.at("shock.csv")},
       {"elements", ""},
+      {"new", "block"},
+      {"diff", model + " " + core},
+      {"help", "check"},
       {"schema", ""},
       {"--help", ""},
       {"--version", ""}};

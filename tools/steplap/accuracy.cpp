@@ -8,6 +8,7 @@
 #include "run/run.h"
 #include "tools/steplap/accuracy_report.h"
 #include "tools/steplap/log.h"
+#include "tools/steplap/text_table.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -141,7 +142,7 @@ ExitCode accuracy_of(const AccuracyCommand& command, const LoadedModel& loaded, 
         study_accuracy(*loaded.system, initial_state_of(loaded), options_of(loaded.model), options);
     write_files(command, loaded, study);
     if (console.verbosity == Verbosity::quiet) return ExitCode::done;
-    console.out << loaded.name << ": t = 0 to " << number_text(loaded.model.simulation.end)
+    console.out << About{loaded.path} << loaded.name << ": t = 0 to " << number_text(loaded.model.simulation.end)
                 << " s, compared every " << number_text(loaded.model.output.step) << " s\n";
     print_accuracy(console.out, study, wanted_errors(command));
     console.out << "Written to " << files_of(command, loaded)[0] << " and work_precision.svg\n";
@@ -199,6 +200,7 @@ work_precision.svg.
       {"--cpu-limit", &o->cpu_limit, "S",
        "a run that needs more CPU time is given up, s (default: 60)"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
+  command.prints_tables = true;
   command.run = [o](Console& console) { return accuracy(*o, console); };
   return command;
 }

@@ -28,11 +28,14 @@ std::string milliseconds(double seconds) {
 }
 
 // "3.1e-09", "<2e-12" below what the reference resolves, "–" where it does not agree with itself.
-std::string error_text(const AccuracyStudy& study, const AccuracyEntry& entry, ErrorKind kind) {
+Cell error_cell(const AccuracyStudy& study, const AccuracyEntry& entry, ErrorKind kind) {
   if (!study.is_resolved(kind)) return "–";
   const double error = entry.error.of(kind).value, resolution = study.resolution.of(kind).value;
-  return error < resolution ? "<" + small_text(resolution) : small_text(error);
+  return error < resolution ? Cell("<" + small_text(resolution)) : Cell(small_text(error), error);
 }
+
+Cell number_cell(double value) { return {small_text(value), value}; }
+Cell whole_cell(long count) { return {std::to_string(count), static_cast<double>(count)}; }
 
 std::string events_text(const AccuracyStudy& study, const AccuracyEntry& entry) {
   std::string text = std::to_string(entry.cost.events);
@@ -201,17 +204,19 @@ void print_accuracy(std::ostream& out, const AccuracyStudy& study,
   std::vector<Align> columns(14, Align::right);
   columns[0] = columns[13] = Align::left;
   TextTable table(columns);
-  table.add_row({"setting", "CPU ms", "steps", "rejected", "evaluations", "events", "positions",
-                 "velocities", "reactions", "event times", "energy", "constraints", "", ""});
+  table.set_head("settings", {"setting", "CPU ms", "steps", "rejected", "evaluations", "events", "positions",
+                              "velocities", "reactions", "event times", "energy", "constraints", "", ""},
+                 {"setting", "CPU ms", "steps", "rejected", "evaluations", "events", "positions",
+                  "velocities", "reactions", "event times", "energy", "constraints", "", "pareto"});
   for (const AccuracyEntry& e : study.entries) {
     if (!e.failure.empty()) continue;
-    table.add_row({e.setting.text(), milliseconds(e.cpu_seconds), std::to_string(e.cost.steps),
-                   std::to_string(e.cost.rejections), std::to_string(e.cost.evaluations),
-                   events_text(study, e), error_text(study, e, ErrorKind::position),
-                   error_text(study, e, ErrorKind::velocity),
-                   error_text(study, e, ErrorKind::reaction),
-                   error_text(study, e, ErrorKind::event_time), small_text(e.energy_residual),
-                   small_text(e.constraint_residual), "", e.is_pareto ? "Pareto" : ""});
+    table.add_row({e.setting.text(), Cell(milliseconds(e.cpu_seconds), 1e3 * e.cpu_seconds), whole_cell(e.cost.steps),
+                   whole_cell(e.cost.rejections), whole_cell(e.cost.evaluations),
+                   events_text(study, e), error_cell(study, e, ErrorKind::position),
+                   error_cell(study, e, ErrorKind::velocity),
+                   error_cell(study, e, ErrorKind::reaction),
+                   error_cell(study, e, ErrorKind::event_time), number_cell(e.energy_residual),
+                   number_cell(e.constraint_residual), "", e.is_pareto ? "Pareto" : ""});
   }
   out << table;
   for (const AccuracyEntry& e : study.entries)

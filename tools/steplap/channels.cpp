@@ -64,14 +64,14 @@ std::string table_csv(const std::vector<Listed>& list) {
 
 void print_channels(std::ostream& out, const LoadedModel& loaded, const std::vector<Listed>& list) {
   TextTable table({Align::left, Align::left, Align::left, Align::left, Align::left});
-  table.add_row({"channel", "unit", "made", "sign", "meaning"});
+  table.set_head("channels", {"channel", "unit", "made", "sign", "meaning"});
   bool is_any_on_request = false;
   for (const Listed& each : list) {
     const Channel& c = *each.channel;
     is_any_on_request |= std::string_view(each.made) == "on request";
     table.add_row({c.name, c.unit.empty() ? "-" : c.unit, each.made, c.sign, c.codes.empty() ? c.doc : c.doc + ": " + c.codes});
   }
-  out << loaded.name << ": " << list.size() << " channels\n\n" << table;
+  out << About{loaded.path} << loaded.name << ": " << list.size() << " channels\n\n" << table;
   if (is_any_on_request)
     out << "\nThose on request are made if [output] names them: also = [\"" << list.back().channel->name << "\"]; patterns with * and ?\n";
 }
@@ -107,6 +107,7 @@ What formulas of channels may hold, and how to ask for channels: docs/reference/
                      {"-o,--output", &o->output, "FILE", "also write the list as CSV"},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite the file"}};
+  command.prints_tables = true;
   command.run = [o](Console& console) { return channels(*o, console); };
   return command;
 }

@@ -90,7 +90,7 @@ std::string run_text(const Model& model) {
 
 void print_freedom(TextTable& table, const System& system) {
   const Freedom freedom = count_freedom(system);
-  table.add_row({"coordinates", std::to_string(freedom.coordinates)});
+  table.add_row({"coordinates", count_cell(static_cast<std::size_t>(freedom.coordinates))});
   std::string rows = std::to_string(freedom.rows);
   if (freedom.rank < freedom.rows) {
     rows += ", only " + std::to_string(freedom.rank) + " of them independent";
@@ -109,11 +109,11 @@ void print_assembly(std::ostream& out, const LoadedModel& loaded) {
   const auto moves = assembly_moves(system.initial_state(), loaded.assembled);
   if (moves.empty()) return;
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
-  table.add_row({"assembled", "moved", "turned", "velocity changed", "angular velocity"});
+  table.set_head("assembled", {"assembled", "moved", "turned", "velocity changed", "angular velocity"}, {"body", "moved", "turned", "velocity changed", "angular velocity"});
   for (std::size_t i = 0; i < std::min(moves.size(), k_shown_moves); ++i) {
     const AssemblyMove& m = moves[i];
-    table.add_row({system.bodies[m.body].name, quantity_text(m.shift, "m", 1e-3), quantity_text(m.turn, "rad", 1e-3),
-                   quantity_text(m.velocity, "m/s", 1e-3), quantity_text(m.angular_velocity, "rad/s", 1e-3)});
+    table.add_row({system.bodies[m.body].name, quantity_cell(m.shift, "m", 1e-3), quantity_cell(m.turn, "rad", 1e-3),
+                   quantity_cell(m.velocity, "m/s", 1e-3), quantity_cell(m.angular_velocity, "rad/s", 1e-3)});
   }
   out << table;
   if (moves.size() > k_shown_moves) out << "  and " << counted(moves.size() - k_shown_moves, "body", "bodies") << " that moved less\n";
@@ -140,13 +140,13 @@ void print_contacts(std::ostream& out, const LoadedModel& loaded) {
   double largest = 0.0;
   for (const ContactAtStart& contact : contacts) largest = std::max(largest, contact.force);
   TextTable table({Align::left, Align::left, Align::right, Align::right, Align::right, Align::right});
-  table.add_row({title, "between", "gap", "force", "at x", "y"});
+  table.set_head("contacts", {title, "between", "gap", "force", "at x", "y"}, {"contact", "between", "gap", "force", "x", "y"});
   const auto name = [&](int body) { return body == k_ground ? std::string("ground") : loaded.system->bodies[body].name; };
   for (std::size_t i = 0; i < std::min(contacts.size(), k_shown_contacts); ++i) {
     const ContactAtStart& c = contacts[i];
     const double size = size_of_pair(*loaded.system, c.a, c.b);
-    table.add_row({c.entry->element->name, name(c.a) + ", " + name(c.b), quantity_text(c.gap, "m", size),
-                   c.force > 0.0 ? quantity_text(c.force, "N", largest) : "-", quantity_text(c.place.x(), "m", size), quantity_text(c.place.y(), "m", size)});
+    table.add_row({c.entry->element->name, name(c.a) + ", " + name(c.b), quantity_cell(c.gap, "m", size),
+                   c.force > 0.0 ? quantity_cell(c.force, "N", largest) : Cell("-", 0.0, "N"), quantity_cell(c.place.x(), "m", size), quantity_cell(c.place.y(), "m", size)});
   }
   out << table;
   if (contacts.size() > k_shown_contacts) out << "  and " << counted(contacts.size() - k_shown_contacts, "contact", "contacts") << " more\n";
@@ -159,8 +159,9 @@ std::string with_unit(double value, const std::string& unit) {
   return rounded + (unit.empty() ? "" : " " + unit);
 }
 
-std::string parameter_value(const Parameters& parameters, std::size_t i) {
-  return with_unit(parameters.values[i], unit_text(parameters.entries[i].powers));
+Cell parameter_value(const Parameters& parameters, std::size_t i) {
+  const std::string unit = unit_text(parameters.entries[i].powers);
+  return {with_unit(parameters.values[i], unit), parameters.values[i], unit};
 }
 
 std::string parameter_range(const Parameter& parameter) {
@@ -172,7 +173,7 @@ std::string parameter_range(const Parameter& parameter) {
 void print_parameters(std::ostream& out, const Parameters& parameters) {
   if (parameters.entries.empty()) return;
   TextTable table({Align::left, Align::left, Align::right, Align::left, Align::left});
-  table.add_row({"parameter", "given as", "value", "range", "meaning"});
+  table.set_head("parameters", {"parameter", "given as", "value", "range", "meaning"});
   for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
     const Parameter& p = parameters.entries[i];
     table.add_row({p.name, p.text, parameter_value(parameters, i), parameter_range(p), p.meaning});
@@ -190,7 +191,7 @@ void print_uses(std::ostream& out, const LoadedModel& loaded, const std::string&
     throw UsageError("--uses: " + loaded.path + " has no parameter '" + name + "'" + did_you_mean(name, known));
   }
   TextTable table({Align::left, Align::left, Align::right, Align::left});
-  table.add_row({"what follows", "formula", "value", "place"});
+  table.set_head("uses", {"what follows", "formula", "value", "place"}, {"path", "formula", "value", "place"});
   const auto place = [](const Location& where) { return where.file + ":" + std::to_string(where.line); };
   for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
     const Parameter& p = parameters.entries[i];
@@ -200,15 +201,17 @@ void print_uses(std::ostream& out, const LoadedModel& loaded, const std::string&
   for (const ParameterUse& use : parameters.uses) {
     if (!parameters.needs(use.formula, *asked)) continue;
     ++uses;
-    table.add_row({use.path, use.text, with_unit(use.formula.value(parameters.values), use.unit), place(use.where)});
+    const double value = use.formula.value(parameters.values);
+    table.add_row({use.path, use.text, Cell(with_unit(value, use.unit), value, use.unit), place(use.where)});
   }
-  out << loaded.path << ": '" << name << "' is " << parameter_value(parameters, *asked) << "; " << counted(uses, "field follows", "fields follow") << " from it\n" << table;
+  out << About{loaded.path} << loaded.path << ": '" << name << "' is " << parameter_value(parameters, *asked).text << "; " << counted(uses, "field follows", "fields follow") << " from it\n" << table;
 }
 
 void print_model(std::ostream& out, const LoadedModel& loaded) {
   const Model& model = loaded.model;
-  out << loaded.path << ": fine\n";
+  out << About{loaded.path} << loaded.path << ": fine\n";
   TextTable table({Align::left, Align::left});
+  table.set_name("model");
   if (!model.header.title.empty()) table.add_row({"title", model.header.title});
   table.add_row({"bodies", bodies_text(model)});
   table.add_row({"signals", counts_text(model.signals, [](const SignalEntry& e) { return e.kind->name; })});
@@ -260,6 +263,7 @@ disagrees beyond these.
                      {"--uses", &o->parameter, "NAME", "show all that follows from this parameter, instead of the counts"},
                      {"--cross", &o->is_crossed, "", "run each model by methods that share little, and compare"},
                      {"--cpu-limit", &o->cpu_limit, "S", "with --cross: CPU time of all runs together, s; each method may take an even part of what is left (default: 60)"}};
+  command.prints_tables = true;
   command.run = [o](Console& console) { return check(*o, console); };
   return command;
 }

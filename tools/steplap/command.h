@@ -58,6 +58,7 @@ struct Command {
   std::vector<Option> options;
   std::function<ExitCode(Console& console)> run;
   std::vector<RetiredOption> retired{};
+  bool prints_tables = false; ///< it has --json (json_screen.h)
 };
 
 } // namespace steplap

@@ -5,6 +5,7 @@
 #include "run/result_files.h"
 #include "run/version.h"
 #include "tools/steplap/commands.h"
+#include "tools/steplap/json_screen.h"
 #include "tools/steplap/licences.h"
 #include "tools/steplap/log.h"
 
@@ -34,7 +35,7 @@ Examples:
   steplap simulate my.toml -o out
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --integrator dop853
   steplap elements spring_damper
-"steplap COMMAND --help" tells the options of a command.)";
+"steplap help COMMAND" tells the options of a command.)";
 
 struct BindOption {
   CLI::App& app;
@@ -60,8 +61,8 @@ struct BindOption {
   CLI::Option* named(CLI::Option* bound) const { return bound->type_name(option.value_name); }
 };
 
-struct VerbosityFlags {
-  bool is_quiet = false, is_verbose = false;
+struct CommonFlags {
+  bool is_quiet = false, is_verbose = false, is_json = false;
 
   [[nodiscard]] Verbosity verbosity() const {
     if (is_quiet) return Verbosity::quiet;
@@ -71,19 +72,21 @@ struct VerbosityFlags {
 
 // `is_meant`: its options are made, which takes longer than all else that a short command does; the others are there
 // to be listed.
-void bind(CLI::App& app, const Command& command, bool is_meant, VerbosityFlags& flags) {
+void bind(CLI::App& app, const Command& command, bool is_meant, CommonFlags& flags) {
   CLI::App* sub = app.add_subcommand(command.name, command.summary);
   if (!is_meant) return;
   if (!command.examples.empty()) sub->footer("Examples:\n" + command.examples);
   for (const Option& option : command.options)
     std::visit(BindOption{*sub, option}, option.target)->required(option.is_required);
+  if (command.prints_tables) sub->add_flag("--json", flags.is_json, "print what the screen says as JSON instead, with all digits");
   CLI::Option* quiet = sub->add_flag("-q,--quiet", flags.is_quiet, "say nothing but errors");
   sub->add_flag("-v,--verbose", flags.is_verbose, "say more about what is done")->excludes(quiet);
 }
 
-ExitCode run_command(const Command& command, Console& console) {
+// To be called in a handler: what was thrown, told. Returns the exit code.
+ExitCode report_exception(Console& console) {
   try {
-    return command.run(console);
+    throw;
   } catch (const UsageError& error) {
     log_error(error.what());
     return ExitCode::usage;
@@ -116,56 +119,139 @@ std::string advice_on_retired(const std::vector<std::string>& arguments, const s
   return "";
 }
 
-// What the parser says about a wrong command line, with the nearest sub-command.
-ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::string>& arguments, const Program& program) {
-  const std::vector<Command>& commands = program.commands;
-  std::vector<std::string> names;
-  for (const Command& command : commands)
-    names.push_back(command.name);
-  const bool is_unknown = !arguments.empty() && !arguments.front().starts_with('-') &&
-                          std::find(names.begin(), names.end(), arguments.front()) == names.end();
-  if (is_unknown)
-    log_error("there is no command '" + arguments.front() + "'" +
-              did_you_mean(arguments.front(), names) + "; see " + program.name + " --help");
-  else if (const std::string advice = advice_on_retired(arguments, commands); !advice.empty())
+ExitCode run_command(const Program& program, const Command& command, const CommonFlags& flags, Console console) {
+  try {
+    if (!flags.is_json) return command.run(console);
+    JsonScreen screen;
+    Console recorded{screen, console.err, console.is_terminal, Verbosity::normal};
+    const ExitCode code = command.run(recorded);
+    console.out << screen.document(program.name, command.name, static_cast<int>(code));
+    return code;
+  } catch (...) {
+    return report_exception(console);
+  }
+}
+
+bool is_given(const std::vector<std::string>& arguments, const std::string& word) {
+  return std::find(arguments.begin(), arguments.end(), word) != arguments.end();
+}
+
+// What the parser says about a wrong command line, with the nearest sub-command. Who gives nothing at all is told what there is.
+ExitCode report_usage(const CLI::ParseError& error, const std::vector<std::string>& arguments, const Program& program, CLI::App& app, std::ostream& err) {
+  if (arguments.empty()) {
+    err << app.help();
+    return ExitCode::usage;
+  }
+  const std::string& first = arguments.front();
+  const bool is_option = first.starts_with('-');
+  if (!is_option && !is_command(program, first)) {
+    std::vector<std::string> names;
+    for (const Command& command : program.commands) names.push_back(command.name);
+    log_error("there is no command '" + first + "'" + did_you_mean(first, names) + "; see " + program.name + " --help");
+    return ExitCode::usage;
+  }
+  if (const std::string advice = advice_on_retired(arguments, program.commands); !advice.empty()) {
     log_error(advice);
-  else
-    log_error(std::string(error.what()) + "; see " + program.name + " " +
-              (arguments.empty() || arguments.front().starts_with('-') ? "" : arguments.front() + " ") +
-              "--help");
+    return ExitCode::usage;
+  }
+  log_error(std::string(error.what()) + "; see " + program.name + " " + (is_option ? "" : first + " ") + "--help");
+  if (arguments.size() == 1 && !is_option) err << "\n" << app.get_subcommand(first)->help(program.name);
   return ExitCode::usage;
+}
+
+// The options of a parser as the parser knows them: what completions and man pages are made from.
+OrderedJson options_json(const CLI::App& app) {
+  OrderedJson options = OrderedJson::array();
+  for (const CLI::Option* option : app.get_options()) {
+    OrderedJson names = OrderedJson::array();
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    const bool is_positional = option->get_positional();
+    if (is_positional) names.push_back(option->get_name(true));
+    const bool is_flag = !is_positional && option->get_expected_max() == 0;
+    options.push_back({{"names", std::move(names)},
+                       {"takes", is_flag ? "" : option->get_type_name()},
+                       {"is_positional", is_positional},
+                       {"is_required", option->get_required()},
+                       {"may_be_repeated", option->get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll || option->get_expected_max() > 1},
+                       {"meaning", option->get_description()}});
+  }
+  return options;
+}
+
+// All that --help says, of the program and of every command.
+OrderedJson help_json(const Program& program, const CLI::App& app, const std::string& exit_codes) {
+  OrderedJson commands = OrderedJson::array();
+  for (const Command& command : program.commands)
+    commands.push_back({{"name", command.name}, {"summary", command.summary}, {"examples", command.examples}, {"options", options_json(*app.get_subcommand(command.name))}});
+  OrderedJson json = OrderedJson::object();
+  json["program"] = program.name;
+  json["version"] = k_version;
+  json["summary"] = program.doc;
+  json["options"] = options_json(app);
+  json["commands"] = std::move(commands);
+  json["exit_codes"] = exit_codes;
+  return json;
+}
+
+OrderedJson version_json(const Program& program) {
+  OrderedJson json = OrderedJson::object();
+  json["program"] = program.name;
+  json["version"] = k_version;
+  json["compiler"] = __VERSION__;
+  return json;
+}
+
+// "help check" asks what "check --help" does.
+std::vector<std::string> without_help_command(const Program& program, std::vector<std::string> arguments) {
+  if (arguments.empty() || arguments.front() != "help" || (arguments.size() > 1 && arguments[1].starts_with('-'))) return arguments;
+  arguments.erase(arguments.begin());
+  if (arguments.empty() || is_command(program, arguments.front())) arguments.emplace_back("--help"); // else there is no such command
+  return arguments;
 }
 
 } // namespace
 
-int run_program(const Program& program, const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err,
+bool is_command(const Program& program, const std::string& word) {
+  return std::any_of(program.commands.begin(), program.commands.end(), [&word](const Command& command) { return command.name == word; });
+}
+
+int run_program(const Program& program, const std::vector<std::string>& given, std::ostream& out, std::ostream& err,
                 bool is_terminal) {
   Console console{out, err, is_terminal};
   start_log(err, is_terminal);
+  const bool is_json = is_given(given, "--json"), is_help_in_json = is_json && given.front() == "help";
+  if (is_json && given.size() == 2 && is_given(given, "--version")) {
+    out << version_json(program).dump(2) << "\n";
+    return static_cast<int>(ExitCode::done);
+  }
+  const std::vector<std::string> arguments = is_help_in_json ? given : without_help_command(program, given);
   CLI::App app(program.name + ": " + program.doc, program.name);
-  const std::vector<Command>& commands = program.commands;
-  VerbosityFlags flags;
-  app.set_version_flag("--version", program.name + " " + k_version);
+  CommonFlags flags;
+  app.set_version_flag("--version", program.name + " " + k_version, "Print the version; with --json more of it");
   app.add_flag_callback("--licences", [] { throw CLI::CallForVersion(std::string(k_licences), 0); }, "Print the licence, and those of all parts made by others")
       ->configurable(false);
   app.require_subcommand(1);
-  app.footer((program.exit_codes.empty() ? k_exit_codes : program.exit_codes) + (program.name == "steplap" ? k_examples : ""));
-  for (const Command& command : commands)
-    bind(app, command, std::find(arguments.begin(), arguments.end(), command.name) != arguments.end(), flags);
+  const std::string exit_codes = program.exit_codes.empty() ? k_exit_codes : program.exit_codes;
+  app.footer(exit_codes + (program.name == "steplap" ? k_examples : ""));
+  for (const Command& command : program.commands) bind(app, command, is_help_in_json || is_given(arguments, command.name), flags);
   try {
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
     app.parse(reversed);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0)
-      return static_cast<int>(report_usage(error, arguments, program));
+    if (error.get_exit_code() != 0) return static_cast<int>(report_usage(error, arguments, program, app, err));
     app.exit(error, out, err); // help or version
+    return static_cast<int>(ExitCode::done);
+  }
+  if (is_help_in_json) {
+    out << help_json(program, app, exit_codes).dump(2) << "\n";
     return static_cast<int>(ExitCode::done);
   }
   console.verbosity = flags.verbosity();
   set_log_level(console.verbosity);
   const std::string chosen = app.get_subcommands().front()->get_name();
-  for (const Command& command : commands)
-    if (command.name == chosen) return static_cast<int>(run_command(command, console));
+  for (const Command& command : program.commands)
+    if (command.name == chosen) return static_cast<int>(run_command(program, command, flags, console));
   return static_cast<int>(ExitCode::internal_error);
 }
 

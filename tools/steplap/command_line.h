@@ -24,6 +24,9 @@ struct Program {
   std::string exit_codes{}; ///< what help says of them; those of `steplap` if there is nothing
 };
 
+/// Is there a command of that name?
+[[nodiscard]] bool is_command(const Program& program, const std::string& word);
+
 /// The same for a program with other commands.
 int run_program(const Program& program, const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err,
                 bool is_terminal);

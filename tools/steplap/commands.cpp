@@ -5,10 +5,13 @@
 #include "tools/steplap/channels.h"
 #include "tools/steplap/check.h"
 #include "tools/steplap/core.h"
+#include "tools/steplap/diff.h"
 #include "tools/steplap/elements.h"
 #include "tools/steplap/equilibrium.h"
+#include "tools/steplap/help.h"
 #include "tools/steplap/joint.h"
 #include "tools/steplap/modes.h"
+#include "tools/steplap/new.h"
 #include "tools/steplap/plot.h"
 #include "tools/steplap/record.h"
 #include "tools/steplap/report.h"
@@ -21,12 +24,14 @@ namespace steplap {
 
 std::vector<Command> all_commands() {
   std::vector<Command> commands;
+  commands.push_back(new_command());
   commands.push_back(simulate_command());
   commands.push_back(show_command());
   commands.push_back(report_command());
   commands.push_back(plot_command());
   commands.push_back(record_command());
   commands.push_back(assess_command());
+  commands.push_back(diff_command());
   commands.push_back(check_command());
   commands.push_back(equilibrium_command());
   commands.push_back(modes_command());
@@ -37,6 +42,7 @@ std::vector<Command> all_commands() {
   commands.push_back(elements_command());
   commands.push_back(schema_command());
   commands.push_back(study_command());
+  commands.push_back(help_command());
   return commands;
 }
 

@@ -53,8 +53,8 @@ std::vector<const Core*> chosen_cores(const CoreOptions& options, const LoadedMo
 
 std::string metres(double value) { return quantity_text(value, "m"); }
 std::string whole(double value) { return number_text(std::round(value)); }
-
-std::string degrees(double angle) { return number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) + "°"; }
+Cell metres_cell(double value) { return quantity_cell(value, "m"); }
+Cell degrees_cell(double angle) { return {number_text(std::round(angle * 1800.0 / std::numbers::pi) / 10.0) + "°", angle, "rad"}; }
 
 std::string book_text(const Core& core, const CoreGeometry& geometry) {
   const Book& book = geometry.stack().book;
@@ -74,19 +74,19 @@ void print_packets(std::ostream& out, const Core& core, const CoreGeometry& geom
   const Stack& stack = geometry.stack();
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right,
                    Align::right, Align::right, Align::right});
-  table.add_row({"packet", "limb", "yoke", "depth", "sheets", "layers", "mitre", "angle"});
+  table.set_head("packets", {"packet", "limb", "yoke", "depth", "sheets", "layers", "mitre", "angle"});
   for (std::size_t p = 0; p < stack.packets.size(); ++p) {
     const Packet& packet = stack.packets[p];
     const bool is_middle = core.limbs.empty();
     const Mitre m = geometry.mitre(p, is_middle);
     const CornerFrame frame = is_middle ? notch_frame(m, 1.0, 1.0) : corner_frame(m, 1.0, 1.0);
-    table.add_row({std::to_string(p + 1), metres(packet.width), metres(packet.yoke_height),
-                   metres(packet.depth), std::to_string(sheets_in(stack, packet)),
-                   std::to_string(layers_in(stack, packet)), metres(frame.length),
-                   degrees(geometry.angle(p, is_middle))});
+    table.add_row({count_cell(p + 1), metres_cell(packet.width), metres_cell(packet.yoke_height),
+                   metres_cell(packet.depth), count_cell(static_cast<std::size_t>(sheets_in(stack, packet))),
+                   count_cell(static_cast<std::size_t>(layers_in(stack, packet))), metres_cell(frame.length),
+                   degrees_cell(geometry.angle(p, is_middle))});
   }
-  table.add_row({"together", "", "", metres(depth_of(stack)), std::to_string(sheets_in(stack)),
-                 std::to_string(layers_in(stack)), "", ""});
+  table.add_row({"together", "", "", metres_cell(depth_of(stack)), count_cell(static_cast<std::size_t>(sheets_in(stack))),
+                 count_cell(static_cast<std::size_t>(layers_in(stack))), "", ""});
   out << table;
   for (const Duct& duct : stack.ducts)
     out << "  duct of " << metres(duct.width) << " behind " << metres(duct.place) << " of stack, "
@@ -135,7 +135,7 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
   const Body &body = *model.find_body(core.all_limbs()[limb]), &part = *model.find_body(core.active_part);
   const double reach = std::abs(middle_of_limb(core, body, part).x());
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
-  table.add_row({"corner", "kinds", "interfaces", "overlap, mean", "area", "capacity"});
+  table.set_head("corners", {"corner", "kinds", "interfaces", "overlap, mean", "area", "capacity"});
   double all = 0.0, capacity = 0.0;
   const std::vector<CoreCorner> corners = geometry.corners(core.is_middle(limb), side_of_limb(core, body, part), reach);
   for (const CoreCorner& corner : corners) {
@@ -149,13 +149,13 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
     const double friction = corner.is_top
                                 ? core.static_friction
                                 : core.bottom_static_friction.value_or(core.static_friction);
-    table.add_row({corner.place, std::to_string(corner.laps.size()), whole(count),
-                   metres(width / count), quantity_text(area, "m²"),
-                   quantity_text(pressed * friction, "N")});
+    table.add_row({corner.place, count_cell(corner.laps.size()), Cell(whole(count), count),
+                   metres_cell(width / count), Cell(quantity_text(area, "m²"), area, "m^2"),
+                   quantity_cell(pressed * friction, "N")});
     all += area;
     capacity += pressed * friction;
   }
-  table.add_row({"together", "", "", "", quantity_text(all, "m²"), quantity_text(capacity, "N")});
+  table.add_row({"together", "", "", "", Cell(quantity_text(all, "m²"), all, "m^2"), quantity_cell(capacity, "N")});
   out << table;
   print_compliance(out, core, geometry, all);
   print_transverse(out, core, geometry, corners.front());
@@ -166,13 +166,11 @@ void print_steel(std::ostream& out, const Core& core, const CoreGeometry& geomet
   const Body &body = *model.find_body(core.all_limbs()[limb]), &part = *model.find_body(core.active_part);
   const LimbSteel steel = geometry.limb_steel(core.is_middle(limb), side_of_limb(core, body, part));
   TextTable table({Align::left, Align::right, Align::right});
-  table.add_row({"", "of the sheets", "of the body"});
-  const std::string unknown = "-";
-  table.add_row({"mass", steel.mass > 0.0 ? quantity_text(steel.mass, "kg") : unknown, quantity_text(body.mass, "kg")});
-  table.add_row({"inertia", steel.mass > 0.0 ? quantity_text(steel.inertia, "kg m²") : unknown,
-                 quantity_text(body.inertia, "kg m²")});
-  table.add_row({"centre of gravity, off the axis", quantity_text(steel.centre.x(), "m", 1.0),
-                 quantity_text(body.cg.x(), "m", 1.0)});
+  table.set_head("steel", {"", "of the sheets", "of the body"}, {"what", "of the sheets", "of the body"});
+  const auto inertia = [](double value) { return Cell(quantity_text(value, "kg m²"), value, "kg m^2"); };
+  table.add_row({"mass", steel.mass > 0.0 ? quantity_cell(steel.mass, "kg") : Cell("-"), quantity_cell(body.mass, "kg")});
+  table.add_row({"inertia", steel.mass > 0.0 ? inertia(steel.inertia) : Cell("-"), inertia(body.inertia)});
+  table.add_row({"centre of gravity, off the axis", quantity_cell(steel.centre.x(), "m", 1.0), quantity_cell(body.cg.x(), "m", 1.0)});
   out << table;
 }
 
@@ -186,7 +184,7 @@ bool is_one_of_several(const Core& core, const Model& model) {
 
 void print_core(std::ostream& out, const Core& core, const Model& model) {
   const CoreGeometry geometry(core);
-  out << core.name << ": ";
+  out << About{core.name} << core.name << ": ";
   if (core.is_counted()) {
     out << "counted overlaps of " << metres(*core.overlap) << ", " << number_text(*core.interfaces) << " a corner; "
         << (core.has_strips() ? "strips with square ends" : "ends as limb and yoke have them") << "\n";
@@ -200,7 +198,7 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
     out << "  yokes: " << quantity_text(*steel, "kg") << " of the " << quantity_text(model.find_body(core.active_part)->mass, "kg") << " of '"
         << core.active_part << "'" << (is_one_of_several(core, model) ? ", those of all its tables together" : "") << "\n";
   for (std::size_t i = 0; i < core.all_limbs().size(); ++i) {
-    out << "\n"
+    out << About{core.joint_name(i)} << "\n"
         << core.joint_name(i) << ": '" << core.all_limbs()[i] << "'"
         << (core.is_middle(i) ? ", T-joint" : "") << "\n";
     print_corners(out, core, geometry, i, model);
@@ -255,6 +253,7 @@ differ in the sheets that overlap; "interfaces" are those that carry an overlap.
       {"--svg", &o->image, "FILE",
        "draw elevation, section, corner and book into an SVG image; of further cores FILE-2 …"},
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
+  command.prints_tables = true;
   command.run = [o](Console& console) { return core(*o, console); };
   return command;
 }

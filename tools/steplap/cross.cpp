@@ -37,14 +37,15 @@ std::string partner(const CrossRun& run) {
 
 void print_runs(std::ostream& out, const CrossCheck& check) {
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right, Align::left, Align::left});
-  table.add_row({"method", "steps", "CPU s", "own error", "known to s", "worst", "with", "where"});
+  table.set_head("runs", {"method", "steps", "CPU s", "own error", "known to s", "worst", "with", "where"});
   for (const CrossRun& run : check.runs) {
     if (!run.failure.empty()) {
-      table.add_row({run.setting.text(), "stops", small_text(run.cpu_seconds), "", "", "", "", ""});
+      table.add_row({run.setting.text(), "stops", Cell(small_text(run.cpu_seconds), run.cpu_seconds), "", "", "", "", ""});
       continue;
     }
-    table.add_row({run.setting.text(), std::to_string(run.result.statistics.steps), small_text(run.cpu_seconds), small_text(run.estimate),
-                   time_text(run.known_until), ratio_text(run.worst.ratio), partner(run), where_text(run.worst)});
+    table.add_row({run.setting.text(), count_cell(static_cast<std::size_t>(run.result.statistics.steps)), Cell(small_text(run.cpu_seconds), run.cpu_seconds),
+                   Cell(small_text(run.estimate), run.estimate), Cell(time_text(run.known_until), run.known_until),
+                   Cell(ratio_text(run.worst.ratio), run.worst.ratio), partner(run), where_text(run.worst)});
   }
   out << table;
 }
@@ -93,7 +94,7 @@ bool cross_check_one(const LoadedModel& loaded, double cpu_limit, Console& conso
   for (const CrossRun& run : check.runs)
     if (!run.failure.empty()) log_warning("'" + loaded.path + "': " + run.setting.text() + ": " + run.failure);
   if (console.verbosity == Verbosity::quiet) return is_trusted;
-  console.out << loaded.path << ": t = 0 to " << number_text(base.end) << " s\n";
+  console.out << About{loaded.path} << loaded.path << ": t = 0 to " << number_text(base.end) << " s\n";
   print_runs(console.out, check);
   print_disagreements(console.out, check);
   console.out << loaded.name << ": " << conclusion(check, base.end) << "\n";

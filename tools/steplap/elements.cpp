@@ -3,6 +3,7 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/reference.h"
 #include "run/catalogue.h"
+#include "tools/steplap/text_table.h"
 
 #include <memory>
 #include <ostream>
@@ -16,14 +17,30 @@ struct ElementsOptions {
   bool is_markdown = false;
 };
 
+// Rows whose first is the head.
+void print_rows(std::ostream& out, const std::string& name, const ReferenceRows& rows) {
+  TextTable table(std::vector<TextTable::Align>(rows.front().size(), TextTable::Align::left));
+  table.set_head(name, rows.front());
+  for (std::size_t i = 1; i < rows.size(); ++i) table.add_row(TextTable::Row(rows[i].begin(), rows[i].end()));
+  out << table;
+}
+
+void print_kind(std::ostream& out, const KindReference& kind) {
+  out << kind.heading << "\n" << kind.doc << "\n\n";
+  print_rows(out, "fields", kind.fields);
+  if (kind.channels.empty()) return;
+  out << "\n";
+  print_rows(out, "channels", kind.channels);
+}
+
 ExitCode print_reference(const ElementsOptions& options, Console& console) {
   if (options.is_markdown) {
     console.out << reference_markdown(program_catalogue());
   } else if (options.kind.empty()) {
-    console.out << kinds_text(program_catalogue());
+    print_rows(console.out, "kinds", kinds_rows(program_catalogue()));
   } else {
     try {
-      console.out << kind_text(program_catalogue(), options.kind);
+      print_kind(console.out, kind_reference(program_catalogue(), options.kind));
     } catch (const ModelError& error) {
       throw UsageError(error.diagnostics().front().message);
     }
@@ -46,6 +63,7 @@ Command elements_command() {
   command.options = {
       {"KIND", &o->kind, "KIND", "a kind of element or signal, body, marker, simulation, output, model"},
       {"--markdown", &o->is_markdown, "", "the whole reference in Markdown"}};
+  command.prints_tables = true;
   command.run = [o](Console& console) { return print_reference(*o, console); };
   return command;
 }

@@ -32,15 +32,15 @@ struct EquilibriumOptions {
 void print_poses(std::ostream& out, const System& system, const State& start, const State& found) {
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right,
                    Align::right});
-  table.add_row({"body", "x", "y", "angle", "moved x", "moved y", "turned"});
+  table.set_head("poses", {"body", "x", "y", "angle", "moved x", "moved y", "turned"});
   for (std::size_t i = 1; i < system.bodies.size(); ++i) {
     const double* q = &found.q[3 * i];
     const double* q0 = &start.q[3 * i];
-    std::vector<std::string> row{system.bodies[i].name};
+    TextTable::Row row{system.bodies[i].name};
     for (int k = 0; k < 3; ++k)
-      row.push_back(quantity_text(q[k], k < 2 ? "m" : "rad", k_unit));
+      row.push_back(quantity_cell(q[k], k < 2 ? "m" : "rad", k_unit));
     for (int k = 0; k < 3; ++k)
-      row.push_back(quantity_text(q[k] - q0[k], k < 2 ? "m" : "rad", k_unit));
+      row.push_back(quantity_cell(q[k] - q0[k], k < 2 ? "m" : "rad", k_unit));
     table.add_row(row);
   }
   out << table;
@@ -53,9 +53,10 @@ void print_reactions(std::ostream& out, const Model& model, const State& found) 
   for (std::size_t i = 0; i < values.size(); ++i)
     scale[system->channels[i].unit] = std::max(scale[system->channels[i].unit], std::abs(values[i]));
   TextTable table({Align::left, Align::right});
+  table.set_name("reactions");
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Channel& channel = system->channels[i];
-    if (is_reaction(channel)) table.add_row({channel.name, quantity_text(values[i], channel.unit, scale[channel.unit])});
+    if (is_reaction(channel)) table.add_row({channel.name, quantity_cell(values[i], channel.unit, scale[channel.unit])});
   }
   if (!table.is_empty()) out << "\nReactions\n" << table;
 }
@@ -63,16 +64,16 @@ void print_reactions(std::ostream& out, const Model& model, const State& found) 
 // How much more of the present load each friction element could bear before it slips.
 void print_margins(std::ostream& out, const System& system, const std::vector<FrictionMargin>& margins) {
   TextTable table({Align::left, Align::right, Align::right});
-  table.add_row({"friction", "used", "slips at"});
+  table.set_head("friction", {"friction", "used", "slips at"});
   for (const FrictionMargin& margin : margins)
     table.add_row({system.element_names[system.frictions[margin.friction].element],
-                   quantity_text(100.0 * margin.used, "%", 1.0),
-                   margin.used > 0.0 ? quantity_text(1.0 / margin.used, "times its load", 1.0) : "holds nothing now"});
+                   Cell(quantity_text(100.0 * margin.used, "%", 1.0), 100.0 * margin.used, "%"),
+                   margin.used > 0.0 ? Cell(quantity_text(1.0 / margin.used, "times its load", 1.0), 1.0 / margin.used, "times its load") : Cell("holds nothing now")});
   if (!margins.empty()) out << "\nDistance from slipping\n" << table;
 }
 
 void print_equilibrium(std::ostream& out, const LoadedModel& loaded, const Equilibrium& found) {
-  out << loaded.name << ": in stable equilibrium, "
+  out << About{loaded.path} << loaded.name << ": in stable equilibrium, "
       << (found.is_settled ? "where the machine settles from the pose given when it is strongly damped, after " +
                                  counted(static_cast<std::size_t>(found.settling_steps), "time step", "time steps") + " and "
                            : "the nearest downhill, after ")
@@ -117,6 +118,7 @@ Where there is no rest, what moves and why is told.
 )";
   command.options = {{"MODEL", &o->models, "FILE", "model files (TOML)", true},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
+  command.prints_tables = true;
   command.run = [o](Console& console) { return equilibrium(*o, console); };
   return command;
 }

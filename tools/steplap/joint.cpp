@@ -133,8 +133,8 @@ Vec3 parse_wrench(const std::string& text) {
 
 // --- on the screen -----------------------------------------------------------------------------------
 
-std::string area_text(double area) {
-  return area < 0.1 ? number_text(std::round(area * 1e10) / 1e4) + " mm²" : quantity_text(area, "m²");
+Cell area_cell(double area) {
+  return {area < 0.1 ? number_text(std::round(area * 1e10) / 1e4) + " mm²" : quantity_text(area, "m²"), area, "m^2"};
 }
 
 std::string point_text(const Vec2& point) {
@@ -145,16 +145,16 @@ std::string point_text(const Vec2& point) {
 
 void print_interfaces(std::ostream& out, const JointView& view) {
   TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right, Align::right});
-  table.add_row({"interface", "overlap", "number", "area", "pressure", "mu_s"});
+  table.set_head("interfaces", {"interface", "overlap", "number", "area", "pressure", "mu_s"});
   double area = 0.0, count = 0.0;
   for (std::size_t i = 0; i < view.interfaces.size(); ++i) {
     const StepLapInterface& e = *view.interfaces[i];
-    table.add_row({e.name, area_text(view.areas[i]), quantity_text(e.count, ""), area_text(view.areas[i] * e.count),
-                   quantity_text(e.pressure, "Pa"), quantity_text(e.static_friction, "")});
+    table.add_row({e.name, area_cell(view.areas[i]), quantity_cell(e.count, ""), area_cell(view.areas[i] * e.count),
+                   quantity_cell(e.pressure, "Pa"), quantity_cell(e.static_friction, "")});
     area += view.areas[i] * e.count;
     count += e.count;
   }
-  table.add_row({"together", "", quantity_text(count, ""), area_text(area), "", ""});
+  table.add_row({"together", "", quantity_cell(count, ""), area_cell(area), "", ""});
   out << table;
 }
 
@@ -163,12 +163,12 @@ void print_interfaces(std::ostream& out, const JointView& view) {
 void print_capacity(std::ostream& out, const Patch& patch) {
   static const std::array<const char*, 3> rows = {"along x", "along y", "turning"};
   TextTable table({Align::left, Align::right, Align::right});
-  table.add_row({"capacity", "sliding", "alone"});
+  table.set_head("capacity", {"capacity", "sliding", "alone"}, {"direction", "sliding", "alone"});
   for (int i = 0; i < 3; ++i) {
     const Vec3 unit = Vec3::Unit(i);
     const std::string what = i < 2 ? "N" : "N m";
-    table.add_row({rows[static_cast<std::size_t>(i)], quantity_text(evaluate_gradient(patch, unit).h, what),
-                   quantity_text(1.0 / required_pressure(patch, unit).u, what)});
+    table.add_row({rows[static_cast<std::size_t>(i)], quantity_cell(evaluate_gradient(patch, unit).h, what),
+                   quantity_cell(1.0 / required_pressure(patch, unit).u, what)});
   }
   out << table;
 }
@@ -179,13 +179,14 @@ void print_usage(std::ostream& out, const JointView& view, const Vec3& wrench) {
     throw NumericalFailure("the required pressure of '" + view.joint->name + "' was not found to the last digit; "
                            "the wrench may be out of all proportion");
   TextTable table({Align::left, Align::left});
+  table.set_name("usage");
   table.add_row({"wrench", "Fx " + quantity_text(wrench[0], "N") + ", Fy " + quantity_text(wrench[1], "N") + ", M " +
                                quantity_text(wrench[2], "N m")});
-  table.add_row({"u", quantity_text(required.u, "") + (required.u > 1.0 ? ": slides" : ": holds")});
-  table.add_row({"p_req", quantity_text(required.u * view.interfaces.front()->pressure, "Pa") + " of " +
-                              quantity_text(view.interfaces.front()->pressure, "Pa") +
-                              (view.interfaces.size() > 1 ? " at the first interface" : "")});
-  table.add_row({"margin", quantity_text(required.margin(), "")});
+  table.add_row({"u", Cell(quantity_text(required.u, "") + (required.u > 1.0 ? ": slides" : ": holds"), required.u)});
+  const double pressure = required.u * view.interfaces.front()->pressure;
+  table.add_row({"p_req", Cell(quantity_text(pressure, "Pa") + " of " + quantity_text(view.interfaces.front()->pressure, "Pa") +
+                                   (view.interfaces.size() > 1 ? " at the first interface" : ""), pressure, "Pa")});
+  table.add_row({"margin", quantity_cell(required.margin(), "")});
   table.add_row({"centre of rotation", required.centre ? point_text(*required.centre) : "at infinity"});
   out << table;
 }
@@ -204,7 +205,7 @@ void print_sharing(std::ostream& out, const JointView& view) {
 }
 
 void print_joint(std::ostream& out, const JointView& view, const std::optional<Vec3>& wrench) {
-  out << view.joint->name << ": '" << view.joint->limb << "' on '" << view.joint->active_part << "'"
+  out << About{view.joint->name} << view.joint->name << ": '" << view.joint->limb << "' on '" << view.joint->active_part << "'"
       << (view.joint->mode == "monitor" ? ", never slides (monitor)" : "") << "\n";
   if (view.interfaces.empty()) {
     out << "  no interfaces: holds whatever it takes\n";
@@ -214,8 +215,9 @@ void print_joint(std::ostream& out, const JointView& view, const std::optional<V
   out << "\n";
   print_capacity(out, view.patch);
   TextTable table({Align::left, Align::left});
+  table.set_name("friction");
   table.add_row({"centre of friction", point_text(view.patch.centroid())});
-  table.add_row({"radius of gyration", quantity_text(view.patch.gyration(), "m")});
+  table.add_row({"radius of gyration", quantity_cell(view.patch.gyration(), "m")});
   out << table;
   print_sharing(out, view);
   if (!wrench) return;
@@ -256,6 +258,7 @@ force through the limb's centre of gravity, or couple, that the joint holds. A w
       {"--joint", &o->joints, "NAME", "this joint; may be repeated (default: all)"},
       {"--wrench", &o->wrench, "FX,FY,M", "force and couple on the limb: say u, p_req, margin, centre of rotation"},
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
+  command.prints_tables = true;
   command.run = [o](Console& console) { return joint(*o, console); };
   return command;
 }

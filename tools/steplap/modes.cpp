@@ -95,15 +95,15 @@ void print_none(std::ostream& out, const VibrationModes& found) {
 }
 
 void print_modes(std::ostream& out, const LoadedModel& loaded, const VibrationModes& found, const WantedModes& wanted) {
-  out << loaded.name << ": small vibrations about equilibrium, closed contacts and sticking joints held\n\n";
+  out << About{loaded.path} << loaded.name << ": small vibrations about equilibrium, closed contacts and sticking joints held\n\n";
   TextTable table({Align::right, Align::right, Align::right, Align::right, Align::left});
-  table.add_row({"mode", "frequency", "damped", "damping", "what moves most (turning as at the radius of gyration)"});
+  table.set_head("modes", {"mode", "frequency", "damped", "damping", "what moves most (turning as at the radius of gyration)"}, {"mode", "frequency", "damped", "damping", "what moves most"});
   for (std::size_t i = 0; i < found.modes.size(); ++i) {
     const VibrationMode& mode = found.modes[i];
-    table.add_row({std::to_string(i + 1), fixed_text(mode.natural_frequency(), "%.4f Hz"),
-                   mode.oscillates() ? fixed_text(mode.frequency(), "%.4f Hz") : "-",
-                   mode.oscillates() ? fixed_text(std::round(1e5 * mode.damping_ratio()) / 1e3 + 0.0, "%.3f %%") // no "-0.000"
-                                     : fixed_text(mode.eigenvalue.real(), "%.4g /s"),
+    table.add_row({count_cell(i + 1), Cell(fixed_text(mode.natural_frequency(), "%.4f Hz"), mode.natural_frequency(), "Hz"),
+                   mode.oscillates() ? Cell(fixed_text(mode.frequency(), "%.4f Hz"), mode.frequency(), "Hz") : Cell("-"),
+                   mode.oscillates() ? Cell(fixed_text(std::round(1e5 * mode.damping_ratio()) / 1e3 + 0.0, "%.3f %%"), 100.0 * mode.damping_ratio(), "%") // no "-0.000"
+                                     : Cell(fixed_text(mode.eigenvalue.real(), "%.4g /s"), mode.eigenvalue.real(), "1/s"),
                    shape_text(*loaded.system, mode)});
   }
   if (found.modes.empty()) print_none(out, found);
@@ -185,6 +185,7 @@ A mode that does not oscillate shows its rate of decay instead of a damping rati
                      {"--near", &o->near, "HZ", "modes near this frequency instead of the slowest"},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite the file"}};
+  command.prints_tables = true;
   command.run = [o](Console& console) { return modes(*o, console); };
   return command;
 }

@@ -401,8 +401,8 @@ void print_place(std::ostream& out, const ShownRun& run) {
 
 using Tabled = std::vector<TabledRun>;
 
-std::vector<std::string> cells(std::string name, const Tabled& runs, const std::function<std::string(const TabledRun&)>& text) {
-  std::vector<std::string> row{std::move(name)};
+TextTable::Row cells(const std::string& name, const Tabled& runs, const std::function<std::string(const TabledRun&)>& text) {
+  TextTable::Row row{name};
   for (const TabledRun& run : runs) row.push_back(text(run));
   return row;
 }
@@ -419,7 +419,7 @@ template <class Predicate> std::vector<std::string> channel_names(const Tabled& 
 
 // "lowest" and "highest" of a channel for each run.
 void add_range_row(TextTable& table, const Tabled& runs, const std::string& name) {
-  std::vector<std::string> row{name};
+  TextTable::Row row{name};
   for (const TabledRun& run : runs) {
     const ShownRange* range = run.find(name);
     row.push_back(range ? value_text(*range, range->low) : "–");
@@ -433,7 +433,7 @@ void print_side_by_side(std::ostream& out, const Tabled& runs, const std::vector
   std::vector<Align> columns(2 * runs.size() + 1, Align::right);
   columns.front() = Align::left;
   TextTable table(columns);
-  std::vector<std::string> models{""}, heads{""};
+  TextTable::Row models{""}, heads{""};
   for (const TabledRun& run : runs) {
     models.insert(models.end(), {run.name, ""});
     heads.insert(heads.end(), {"lowest", "highest"});

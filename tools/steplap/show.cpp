@@ -12,6 +12,7 @@ namespace {
 ExitCode show(const std::vector<std::string>& folders, Console& console) {
   std::vector<ShownRun> runs;
   for (const std::string& folder : folders) runs.push_back(shown_run(folder));
+  if (put_runs(console.out, runs)) return ExitCode::done;
   if (console.verbosity == Verbosity::verbose) print_tables(console.out, runs);
   else if (console.verbosity == Verbosity::normal) print_overviews(console.out, runs);
   return ExitCode::done;
@@ -32,6 +33,7 @@ Folders whose files are missing or not as they were written are refused. With -q
 they are whole: 0, or 2.
 )";
   command.options = {{"RESULT", results.get(), "DIR", "folders of runs", true}};
+  command.prints_tables = true;
   command.run = [results](Console& console) { return show(*results, console); };
   return command;
 }

@@ -2,6 +2,9 @@
 
 #include "mbd/io/atomic_file.h"
 #include "run/summary.h"
+#include "tools/steplap/json_screen.h"
+
+#include <cmath>
 
 namespace steplap {
 
@@ -23,6 +26,27 @@ ShownRun shown_run(const Report& report, const std::string& folder) {
   const RunResult& result = report.run.result;
   return {summary_document(report), events_of(report), folder,
           MakingOfRun{result.statistics.cpu_seconds, report.estimate.cost, result.trajectory->size(), result.trajectory->channels().size()}};
+}
+
+bool put_runs(std::ostream& out, const std::vector<ShownRun>& runs) {
+  JsonScreen* const screen = json_screen(out);
+  if (!screen) return false;
+  for (const ShownRun& run : runs) {
+    screen->begin(About{run.summary.at("model").at("name").get<std::string>()});
+    screen->put("folder", run.folder);
+    OrderedJson events = OrderedJson::array();
+    for (const ResultEvent& event : run.events) {
+      OrderedJson entry = OrderedJson::object();
+      entry["t"] = event.t;
+      entry["element"] = event.element;
+      entry["event"] = event.words;
+      if (event.error) entry["error_t"] = std::isfinite(*event.error) ? OrderedJson(*event.error) : OrderedJson();
+      events.push_back(std::move(entry));
+    }
+    screen->put("events", std::move(events));
+    screen->put("summary", run.summary);
+  }
+  return true;
 }
 
 ShownRun shown_run(const std::string& folder) {

@@ -6,6 +6,7 @@
 #include "run/results.h"
 #include "run/shown_quantity.h"
 
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ struct ShownRun {
 /// Of a run just made; without events and all that follows the head of its summary if only the overview is shown.
 [[nodiscard]] ShownRun overview_of_run(const Report& report, const std::string& folder, ShownDigits digits);
 [[nodiscard]] ShownRun shown_run(const Report& report, const std::string& folder);
+/// For programs: each run's folder, summary and events. False if people read the stream, and nothing was written.
+bool put_runs(std::ostream& out, const std::vector<ShownRun>& runs);
 /// Of a run read back from its folder, whose files are held against their digests. Throws FileError.
 [[nodiscard]] ShownRun shown_run(const std::string& folder);
 

@@ -7,6 +7,7 @@
 #include "run/report.h"
 #include "run/result_files.h"
 #include "tools/steplap/interruption.h"
+#include "tools/steplap/json_screen.h"
 #include "tools/steplap/log.h"
 #include "tools/steplap/overview_screen.h"
 #include "tools/steplap/progress.h"
@@ -150,11 +151,12 @@ void check_step(const SimulateOptions& options, const Models& models) {
 }
 
 void show_runs(const SimulateOptions& options, const std::vector<FinishedRun>& runs, Console& console) {
-  const bool has_tables = console.verbosity == Verbosity::verbose;
+  const bool is_whole = console.verbosity == Verbosity::verbose || json_screen(console.out);
   std::vector<ShownRun> shown;
   for (const FinishedRun& run : runs)
-    shown.push_back(has_tables ? shown_run(run.report, run.folder) : overview_of_run(run.report, run.folder, options.shown_digits()));
-  if (has_tables) print_tables(console.out, shown);
+    shown.push_back(is_whole ? shown_run(run.report, run.folder) : overview_of_run(run.report, run.folder, options.shown_digits()));
+  if (put_runs(console.out, shown)) return;
+  if (is_whole) print_tables(console.out, shown);
   else print_overviews(console.out, shown, options.shown_digits().is_full);
 }
 
@@ -241,6 +243,7 @@ as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends
        "errors; see steplap elements acceptance"},
       {"-f,--force", &o->is_overwriting, "", "overwrite earlier results"}};
   command.retired = {{"--threads", "a run takes one thread: leave --threads out. Many runs side by side take all processors: steplap study, steplap assess"}};
+  command.prints_tables = true;
   command.run = [o](Console& console) { return simulate(*o, console); };
   return command;
 }

@@ -1,5 +1,8 @@
 #include "tools/steplap/text_table.h"
 
+#include "run/measured_text.h"
+#include "run/quantity_text.h"
+
 #include <algorithm>
 #include <ostream>
 
@@ -15,29 +18,54 @@ std::size_t width_of(const std::string& text) {
 
 } // namespace
 
+Cell quantity_cell(double value, const std::string& unit) { return {quantity_text(value, unit), value, unit}; }
+
+Cell quantity_cell(double value, const std::string& unit, double scale) { return {quantity_text(value, unit, scale), value, unit}; }
+
+Cell measured_cell(double value, std::optional<double> error, const std::string& unit) {
+  return {measured_text(value, error, unit), value, unit, error};
+}
+
+Cell count_cell(std::size_t count) { return {std::to_string(count), static_cast<double>(count)}; }
+
 TextTable::TextTable(std::vector<Align> columns, int indent)
     : columns_(std::move(columns)), indent_(indent) {}
 
-void TextTable::add_row(std::vector<std::string> cells) {
-  cells.resize(columns_.size());
+void TextTable::set_head(std::string name, const std::vector<std::string>& heads, std::vector<std::string> keys) {
+  name_ = std::move(name);
+  keys_ = keys.empty() ? heads : std::move(keys);
+  add_row(Row(heads.begin(), heads.end()));
+}
+
+void TextTable::add_row(Row cells) {
+  cells.resize(columns_.size(), Cell(""));
   rows_.push_back(std::move(cells));
 }
 
 std::ostream& operator<<(std::ostream& stream, const TextTable& table) {
+  if (auto* const sink = dynamic_cast<TableSink*>(&stream)) {
+    sink->take(table);
+    return stream;
+  }
   std::vector<std::size_t> widths(table.columns_.size(), 0);
   for (const auto& row : table.rows_)
     for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], width_of(row[i]));
+      widths[i] = std::max(widths[i], width_of(row[i].text));
   for (const auto& row : table.rows_) {
     std::string line(static_cast<std::size_t>(table.indent_), ' ');
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string gap(widths[i] - width_of(row[i]), ' ');
-      line += table.columns_[i] == TextTable::Align::left ? row[i] + gap : gap + row[i];
+      const std::string gap(widths[i] - width_of(row[i].text), ' ');
+      line += table.columns_[i] == TextTable::Align::left ? row[i].text + gap : gap + row[i].text;
       line += "  ";
     }
     line.erase(line.find_last_not_of(' ') + 1);
     stream << line << '\n';
   }
+  return stream;
+}
+
+std::ostream& operator<<(std::ostream& stream, const About& about) {
+  if (auto* const sink = dynamic_cast<TableSink*>(&stream)) sink->begin(about);
   return stream;
 }
 

@@ -31,14 +31,14 @@ std::string part_name(const System& system, const Tipping& t) {
 void print_tipping(std::ostream& out, const LoadedModel& loaded, const State& state) {
   using Align = TextTable::Align;
   TextTable table({Align::left, Align::left, Align::left, Align::right, Align::left, Align::right});
-  table.add_row({"what stands", "tips over", "lifts", "tilted by", "", "or accelerated by"});
+  table.set_head("tipping", {"what stands", "tips over", "lifts", "tilted by", "", "or accelerated by"}, {"what stands", "tips over", "lifts", "tilted by", "turning", "accelerated by"});
   bool is_any = false;
   for (const Tipping& t : tipping_of(loaded, state)) {
     if (t.margin < 0.0) continue;
     is_any = true;
-    table.add_row({part_name(*loaded.system, t), t.about, t.lifts, degrees(t.margin),
+    table.add_row({part_name(*loaded.system, t), t.about, t.lifts, Cell(degrees(t.margin), t.margin, "rad"),
                    t.is_clockwise ? "clockwise" : "counter-clockwise",
-                   t.acceleration > 0.0 ? quantity_text(t.acceleration, "m/s^2", 1.0) : "-"});
+                   t.acceleration > 0.0 ? quantity_cell(t.acceleration, "m/s^2", 1.0) : Cell("-")});
   }
   const std::vector<Unjudged> unjudged = not_judged_for_tipping(loaded, state);
   if (is_any || !unjudged.empty()) out << "\nDistance from tipping over\n";

@@ -8,6 +8,7 @@
 #include "study/report_page.h"
 #include "study/run_study.h"
 #include "tools/steplap/command_line.h"
+#include "tools/steplap/help.h"
 #include "tools/steplap/log.h"
 #include "tools/study/progress_line.h"
 #include "tools/study/show.h"
@@ -137,6 +138,7 @@ A study that was interrupted goes on when it is run again.
       {"--changed", &o->is_changed, "", "the study asks for something else now: keep the samples that are the same"},
       {"--report", &o->is_reported, "", "write the page of the study beside the store (see steplap study report)"},
       {"--threads", &o->threads, "N", "threads (default: all processors)"}};
+  command.prints_tables = true;
   command.run = [o, &ranks](Console& console) { return run_command_of(*o, ranks, console); };
   return command;
 }
@@ -147,6 +149,7 @@ Command show_command() {
   command.name = "show";
   command.summary = "what a study has found so far";
   command.options = {{"FILE", &o->file, "FILE", "study file or store", true}, store_option(o)};
+  command.prints_tables = true;
   command.run = [o](Console& console) {
     Store store(store_of(*o));
     show(store, "", console.out);
@@ -268,7 +271,7 @@ Command schema_command() {
 } // namespace
 
 std::vector<Command> study_commands(const Ranks& ranks) {
-  std::vector<Command> commands = {run_command(ranks), show_command(), report_command(), export_command(), replay_command(), schema_command()};
+  std::vector<Command> commands = {run_command(ranks), show_command(), report_command(), export_command(), replay_command(), schema_command(), help_command()};
   for (Command& command : commands)
     command.run = [run = std::move(command.run)](Console& console) {
       try {

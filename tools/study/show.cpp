@@ -70,10 +70,10 @@ void show(Store& store, const std::string& title, std::ostream& out) {
   }
   using Align = TextTable::Align;
   TextTable table({Align::left, Align::left, Align::left, Align::right, Align::left, Align::right, Align::left});
-  if (!findings.empty()) table.add_row({"method", "of", "quantity", "value", "interval", "samples", ""});
+  if (!findings.empty()) table.set_head("findings", {"method", "of", "quantity", "value", "interval", "samples", ""}, {"method", "of", "quantity", "value", "interval", "samples", "status"});
   for (const Finding& f : findings)
     table.add_row(
-        {f.method, f.subject, f.quantity, digits(f.value), interval_text(f), std::to_string(f.samples), f.status});
+        {f.method, f.subject, f.quantity, Cell(digits(f.value), f.value), interval_text(f), count_cell(static_cast<std::size_t>(f.samples)), f.status});
   out << table;
   for (const std::string& note : store.notes()) out << note << "\n";
   std::istringstream files(store.setting("files"));
