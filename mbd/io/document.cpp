@@ -49,6 +49,13 @@ public:
     base.column = over.column;
   }
 
+  // False: it is to be removed.
+  bool lay_over(Node& base, Node& over, const std::string& array) {
+    if (take_flag(over, "remove")) return false;
+    merge_table(base, over, array + " '" + entry_name(over) + "'");
+    return true;
+  }
+
 private:
   static Node without_children(const Node& node) {
     Node result;
@@ -174,6 +181,14 @@ public:
     return std::move(document_);
   }
 
+  static Node load_into(Document& document, std::string text, const std::string& file) {
+    Loader loader;
+    loader.document_.sources = document.sources;
+    Node root = loader.load_layer(std::move(text), file);
+    document.problems.insert(document.problems.end(), loader.document_.problems.begin(), loader.document_.problems.end());
+    return root;
+  }
+
 private:
   Node load_layer(std::string text, const std::string& file) {
     const std::string id = identity_of(file);
@@ -259,6 +274,12 @@ Document load_document(const std::string& path) {
 
 Document parse_document(std::string text, const std::string& file_name) {
   return Loader().load(std::move(text), file_name);
+}
+
+bool lay_over(Node& base, Node over, const std::string& array, std::vector<Diagnostic>& problems) { return Merger(problems).lay_over(base, over, array); }
+
+Node load_into(Document& document, const std::string& path, const Location& where) {
+  return Loader::load_into(document, read_layer(path, where), path);
 }
 
 std::string model_source_text(const std::string& path) {

@@ -13,7 +13,10 @@ namespace steplap {
 
 namespace {
 
-bool is_name(const std::string& text) {
+// Of a part's parameter, "wagon 2.wall", what is behind the names of the parts.
+bool is_name(const std::string& whole) {
+  if (whole.find_first_of("{}[]") != std::string::npos) return false;
+  const std::string text = whole.substr(whole.rfind('.') + 1);
   const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
   return !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) == 0 && std::all_of(text.begin(), text.end(), is_letter) &&
          text != "pi" && text != "t";
@@ -142,6 +145,10 @@ void ParametersReader::read_entry(const Node& entry) {
     read_value(entry, parameter, value);
   }
   is_wrong_.push_back(problems_.size() != before);
+  if (!by_name_.emplace(parameter.name, parameters_.entries.size()).second) {
+    add(entry.where_key(), "a parameter named '" + parameter.name + "' exists already: choose another name");
+    is_wrong_.back() = true;
+  }
   parameters_.entries.push_back(std::move(parameter));
   parameters_.values.push_back(value);
 }
@@ -199,13 +206,13 @@ ParameterFormula ParametersReader::formula_of(const std::string& text, const Loc
   ParameterFormula made{Formula(text, "formula", where), {}};
   if (uses_time(made.formula)) throw ModelError(where, "formula: 't' is the time, and parameters do not change with it");
   for (const std::string& name : made.formula.names()) {
-    const std::optional<std::size_t> found = parameters_.find(name);
-    if (!found) {
+    const auto found = by_name_.find(name);
+    if (found == by_name_.end()) {
       std::vector<std::string> known;
       for (const Parameter& parameter : parameters_.entries) known.push_back(parameter.name);
       throw ModelError(where, "formula: there is no parameter '" + name + "'" + did_you_mean(name, known));
     }
-    made.of.push_back(*found);
+    made.of.push_back(found->second);
   }
   return made;
 }
