@@ -4,6 +4,7 @@
 #include "mbd/io/read_input.h"
 #include "mbd/io/input_files.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <unordered_map>
 #include <unordered_set>
@@ -29,6 +30,9 @@ public:
   explicit Merger(std::vector<Diagnostic>& problems) : problems_(problems) {}
 
   void merge_root(Node& base, Node& over) {
+    part_names_.clear();
+    note_parts(base);
+    note_parts(over);
     for (Node& child : over.children) {
       Node* inherited = base.find(child.key);
       if (child.is_array_of_tables() && (!inherited || inherited->type == Node::Type::array)) {
@@ -57,6 +61,20 @@ public:
   }
 
 private:
+  // Names of parts with the point behind them; of repeated ones what stands before the index.
+  void note_parts(const Node& root) {
+    const Node* const parts = root.find("part");
+    if (!parts || !parts->is_array_of_tables()) return;
+    for (const Node& part : parts->children) {
+      const std::string name = entry_name(part);
+      part_names_.push_back(part.find("repeat") ? name.substr(0, name.find('{')) : name + ".");
+    }
+  }
+  [[nodiscard]] bool is_in_part(const std::string& name) const {
+    const std::size_t point = name.rfind('.');
+    return point != std::string::npos && std::any_of(part_names_.begin(), part_names_.end(), [&](const std::string& part) { return !part.empty() && part.size() <= point + 1 && name.starts_with(part); });
+  }
+
   static Node without_children(const Node& node) {
     Node result;
     result.type = node.type;
@@ -128,6 +146,10 @@ private:
     std::unordered_set<std::string> removed, seen;
     for (Node& entry : over.children) {
       const std::string name = entry_name(entry);
+      if (over.key != "part" && is_in_part(name)) { // laid over what the part brings, when that is known (parts.h)
+        base.children.push_back(std::move(entry));
+        continue;
+      }
       const auto found = name.empty() ? inherited.end() : inherited.find(name);
       const bool is_new = found == inherited.end() || !seen.insert(name).second;
       if (take_flag(entry, "remove")) {
@@ -171,6 +193,7 @@ private:
   }
 
   std::vector<Diagnostic>& problems_;
+  std::vector<std::string> part_names_; // of both trees
 };
 
 class Loader {

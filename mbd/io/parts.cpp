@@ -15,6 +15,7 @@
 #include <memory>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace steplap {
 
@@ -81,6 +82,12 @@ private:
     if (reported_.insert(where.file + ":" + std::to_string(where.line) + ":" + std::to_string(where.column) + message).second) problems_.push_back({where, std::move(message)});
   }
 
+  void add_too_many(const Node& at) {
+    if (is_too_many_) return;
+    is_too_many_ = true;
+    add(at.where(), "parts and repetitions make more than " + std::to_string(k_most_entries) + " entries: a model may not have so many");
+  }
+
   // [[part]] of a file, an empty array if there is none.
   Node taken_parts(const Node& root) {
     const Node* const parts = root.find("part");
@@ -127,6 +134,7 @@ private:
   std::unordered_set<std::string> removed_;                // of these, by upper files
   std::unordered_set<std::string> reported_;
   std::size_t made_ = 0;
+  bool is_too_many_ = false;
 };
 
 void PartWriter::take_parts(const Node& parts, const PartPlacement& outer) {
@@ -222,6 +230,7 @@ void PartWriter::take(const Node& part, const PartPlacement& outer) {
   place.frame = PartFrame(outer.frame, *x, *y, *angle);
   place.file = file->name;
   document_.parts.push_back({place.prefix, file->name, part.where()});
+  if (++made_ > k_most_entries) return add_too_many(part); // parts without entries count, too: two of two of two … are soon many
   write_parameters(file->root, part, outer, place);
   files_on_the_way_.push_back(identity_of(*file->name));
   write(*file, place);
@@ -281,7 +290,7 @@ void PartWriter::refuse_array(const Node& array) {
 
 void PartWriter::write_array(const Node& array, const Node& root, const PartPlacement& place) {
   made_ += array.children.size();
-  if (made_ > k_most_entries) return add(array.children.front().where(), "parts and repetitions make more than " + std::to_string(k_most_entries) + " entries: a model may not have so many");
+  if (made_ > k_most_entries) return add_too_many(array.children.front());
   Node& target = output(array);
   for (const Node& entry : array.children) {
     target.children.push_back(entries_.made(array.key, entry, root, place));
@@ -338,6 +347,7 @@ void PartWriter::write_parameters(const Node& root, const Node& part, const Part
     if (own) add(own->where_key(), std::string("'parameters' must be a table, [parameters], not ") + own->type_name());
     return;
   }
+  made_ += own->children.size();
   Node& target = output(*own);
   for (const Node& parameter : own->children) {
     const Node* const value = given ? given->find(parameter.key) : nullptr;
@@ -382,7 +392,8 @@ Node PartWriter::parameter_of(const Node& own, const Node* given, const PartPlac
 }
 
 // What messages about repetitions and parts of one file have in common: names within their parts, no numbers.
-std::string without_instance(const std::string& message) {
+std::string without_instance(const std::string& whole) {
+  const std::string message = whole.substr(0, whole.find(" (did you mean")); // of many only the first get a suggestion
   std::string result;
   bool is_quoted = false;
   std::size_t begin = 0;

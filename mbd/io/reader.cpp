@@ -30,9 +30,9 @@ TopLevelNames top_level_names(const Catalogue& catalogue) {
   return names;
 }
 
-// Lays overrides over the document, those of parts before these are written out, and writes them out.
+// Lays overrides over the document, and writes parts and repetitions out: behind those that are of parts or say how often.
 void settle(Document& document, const std::vector<std::string>& overrides, const TopLevelNames& names, const Catalogue& catalogue) {
-  const auto is_of_part = [](const std::string& change) { return change.starts_with("part."); };
+  const auto is_of_part = [](const std::string& change) { return change.starts_with("part.") || change.substr(0, change.find('=')).ends_with(".repeat"); };
   for (const std::string& change : overrides)
     if (is_of_part(change)) apply_override(document, change, names);
   write_out_parts(document, catalogue);

@@ -128,8 +128,9 @@ void write_out_repetitions(Node& root, std::size_t& made, std::vector<Diagnostic
         continue;
       }
       made += static_cast<std::size_t>(*count);
-      const std::size_t before = problems.size();
+      const std::size_t before = problems.size(), begin = entries.size();
       for (long i = 0; i < *count && problems.size() == before; ++i) entries.push_back(Repetition(i, problems).entry(entry));
+      if (problems.size() != before) entries.resize(begin);
     }
     array->children = std::move(entries);
   }
