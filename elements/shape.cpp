@@ -65,7 +65,8 @@ void check_fields(const Shape& shape) {
   if (!shape.places.empty() && shape.places.count("centre") > 0 && !shape.diameter) fail(shape, "centre", "'centre' goes with 'diameter'");
   const std::size_t centres = shape.hole_centres.size(), diameters = shape.hole_diameters.size();
   if (centres != diameters && diameters != 1)
-    fail(shape, "hole_diameters", "has " + counted(centres, "hole centre", "hole centres") + " and " + counted(diameters, "diameter", "diameters") + ": give one diameter for all, or one for each");
+    fail(shape, "hole_diameters", "has " + counted(centres, "hole centre", "hole centres") + " and " + counted(diameters, "diameter", "diameters") +
+                                       ": give one diameter for all, or one for each");
   if (centres == 0 && diameters > 0) fail(shape, "hole_diameters", "'hole_diameters' go with 'hole_centres'");
   if (shape.density.has_value() != shape.thickness.has_value())
     fail(shape, shape.density ? "density" : "thickness", "'density' and 'thickness' go together; a mass per area is 'area_density'");
@@ -126,9 +127,11 @@ double mass_of(const Shape& shape, const Area& area, double given_mass, bool is_
 }
 
 std::string unlike(const Body& body, const char* field, double given, double made, const char* unit) {
-  return "'" + std::string(field) + "' of body '" + body.name + "', " + rounded_text(given) + " " + unit + ", contradicts its shape, which makes it " + rounded_text(made) + " " + unit + ": leave '" + field +
-         "' out to take it from the shape";
+  return "'" + std::string(field) + "' of body '" + body.name + "', " + rounded_text(given) + " " + unit + ", contradicts its shape, which makes it " + rounded_text(made) +
+         " " + unit + ": leave '" + field + "' out to take it from the shape";
 }
+
+std::string point_text(const Vec2& p) { return "[" + rounded_text(p.x()) + ", " + rounded_text(p.y()) + "] m"; }
 
 void apply_shape(const Shape& shape, Model& model) {
   const auto found = std::find_if(model.bodies.begin(), model.bodies.end(), [&](const Body& body) { return body.name == shape.body; });
@@ -172,8 +175,8 @@ std::vector<ShapeRemark> contradicted_shapes(const Model& model) {
     if (std::abs(body.inertia - inertia) > k_noticeable * inertia) remarks.push_back({body.where, unlike(body, "inertia", body.inertia, inertia, "kg m²")});
     const double size = std::sqrt(made->inertia / made->mass); // radius of gyration
     if ((body.cg - made->centre).norm() > k_noticeable * size)
-      remarks.push_back({body.where, "'cg' of body '" + body.name + "', [" + rounded_text(body.cg.x()) + ", " + rounded_text(body.cg.y()) + "] m, contradicts its shape, whose centre is [" +
-                                         rounded_text(made->centre.x()) + ", " + rounded_text(made->centre.y()) + "] m: leave 'cg' out to take it from the shape"});
+      remarks.push_back({body.where, "'cg' of body '" + body.name + "', " + point_text(body.cg) + ", contradicts its shape, whose centre is " + point_text(made->centre) +
+                                         ": leave 'cg' out to take it from the shape"});
   }
   return remarks;
 }

@@ -129,7 +129,10 @@ Json parameter_value() { return {{"anyOf", {{{"type", "number"}}, {{"type", "str
 void add_writing_out(Json& properties, const std::string& array) {
   const auto& repeated = repeated_arrays();
   if (std::find(repeated.begin(), repeated.end(), array) == repeated.end()) return;
-  properties["repeat"] = {{"type", "integer"}, {"minimum", 0}, {"maximum", k_most_entries}, {"description", "so many entries, with the index i from 0 in formulas, \"= i * '0.6 m'\", and in names, \"sleeper {i+1}\""}};
+  properties["repeat"] = {{"type", "integer"},
+                          {"minimum", 0},
+                          {"maximum", k_most_entries},
+                          {"description", "so many entries, with the index i from 0 in formulas, \"= i * '0.6 m'\", and in names, \"sleeper {i+1}\""}};
   if (array == "part")
     properties["parameters"] = {{"type", "object"}, {"description", "values that the [parameters] of its file get"}, {"additionalProperties", parameter_value()}};
 }

@@ -153,7 +153,8 @@ bool PartWriter::has_usable_name(const Node& part) {
   if (!name) add(part.where(), "a part needs 'name' (unique name)");
   else if (name->text().empty()) add(name->where(), "'name' of a part: expected a name");
   else if (name->text().find_first_of("{}[]*?'\"=\n") != std::string::npos || name->text() == "ground")
-    add(name->where(), "'" + name->text() + "' is no name of a part: names have no brackets, braces, quotes, * ? or =, since formulas and patterns hold them, and 'ground' is taken");
+    add(name->where(), "'" + name->text() + "' is no name of a part: names have no brackets, braces, quotes, * ? or =, since formulas and patterns hold them, and 'ground' "
+                       "is taken");
   const FieldTable& fields = PartEntry::fields();
   for (const Node& child : part.children) {
     if (fields.find(child.key) || child.key == "parameters") continue;
@@ -175,7 +176,8 @@ std::optional<PlacedNumber> PartWriter::place_value(const Node& part, const char
   if (number) return number;
   const std::string subject = std::string("'") + key + "' of part '" + entry_name(part) + "': ";
   const Quantity quantity = given->type == Node::Type::text ? parse_quantity(given->text(), unit) : Quantity{};
-  add(given->where(), subject + (quantity.problem.empty() ? std::string("expected a number or a string with a unit like '") + unit + "', got " + given->type_name() : quantity.problem));
+  const std::string expected = std::string("expected a number or a string with a unit like '") + unit + "', got " + given->type_name();
+  add(given->where(), subject + (quantity.problem.empty() ? expected : quantity.problem));
   return std::nullopt;
 }
 
@@ -274,14 +276,16 @@ void PartWriter::refuse_overlay(const Overlay& overlay, const std::string& name)
     if (made.starts_with(overlay.array + " ")) known.push_back(made.substr(overlay.array.size() + 1));
   std::sort(known.begin(), known.end());
   const Node* const at = overlay.entry.find("name");
-  add(at->where(), "a name with the name of a part before a point is that of something in the part, but there is no " + overlay.array + " '" + name + "'" + did_you_mean(name, known));
+  add(at->where(), "a name with the name of a part before a point is that of something in the part, but there is no " +
+                       overlay.array + " '" + name + "'" + did_you_mean(name, known));
 }
 
 void PartWriter::refuse_array(const Node& array) {
   if (entries_.are_known(array.key)) return add(array.where_key(), "'" + array.key + "' must be an array of tables, each begun by [[" + array.key + "]], not " + array.type_name());
   if (entries_.are_of_model_alone(array.key)) {
     const Node& first = array.is_array_of_tables() ? array.children.front() : array;
-    return add(first.where(), "[[" + array.key + "]] is about a model as a whole and cannot stand in the file of a part: write it into the model, with the names that things of the part have there");
+    return add(first.where(), "[[" + array.key + "]] is about a model as a whole and cannot stand in the file of a part: write it into the model, "
+                              "with the names that things of the part have there");
   }
   std::vector<std::string> known = entries_.arrays();
   for (const char* name : {"part", "parameters", "simulation", "output", "title", "source", "gravity"}) known.emplace_back(name);
@@ -372,7 +376,8 @@ void PartWriter::check_given(const Node& own, const Node& given, const Node& par
     const std::string unit = unit_text(p);
     return node.type == Node::Type::text ? "'" + node.text() + "'" : unit.empty() ? std::string("a number without a unit") : unit;
   };
-  add(given.where(), subject + " is " + shown(given, *has) + ", but " + (unit_text(*wanted).empty() ? "has no unit there" : "has a unit like '" + unit_text(*wanted) + "' there, " + shown(*usual, *wanted)));
+  const std::string unit = unit_text(*wanted);
+  add(given.where(), subject + " is " + shown(given, *has) + ", but " + (unit.empty() ? "has no unit there" : "has a unit like '" + unit + "' there, " + shown(*usual, *wanted)));
 }
 
 Node PartWriter::parameter_of(const Node& own, const Node* given, const PartPlacement& outer, const PartPlacement& place) {
@@ -417,7 +422,8 @@ std::string chain_text(const Document& document, const Document::Part& part) {
   }
   const std::size_t begin = outer ? outer->prefix.size() : 0;
   const std::string name = part.prefix.substr(begin, part.prefix.size() - begin - 1);
-  return "part '" + name + "', " + part.where.file + ":" + std::to_string(part.where.line) + ":" + std::to_string(part.where.column) + (outer ? ", of " + chain_text(document, *outer) : "");
+  const std::string place = part.where.file + ":" + std::to_string(part.where.line) + ":" + std::to_string(part.where.column);
+  return "part '" + name + "', " + place + (outer ? ", of " + chain_text(document, *outer) : "");
 }
 
 // By which parts the place of a message is reached: "" if by none.

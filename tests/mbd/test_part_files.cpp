@@ -393,6 +393,26 @@ TEST_CASE("what all repetitions of a part have in common is told once") {
   CHECK(has(text, "and 39 more like it"));
 }
 
+TEST_CASE("a train of carriages of wheels: contacts, shapes, channels and criteria in parts of turned parts") {
+  const std::string path = STEPLAP_SOURCE "/tests/data/parts/train.toml";
+  const Model train = read(path);
+  CHECK(completed(train).bodies.size() == 9);
+  // A disc of 0.8 m with two holes of 0.1 m, 0.2 m off its centre.
+  const double plate = 7850.0 * 0.08, disc = std::numbers::pi * 0.16, hole = std::numbers::pi * 0.0025;
+  const Body wheel = *completed(train).find_body("car 3.wheel 2.wheel");
+  CHECK(wheel.mass == doctest::Approx(plate * (disc - 2 * hole)).epsilon(1e-13));
+  CHECK(wheel.inertia == doctest::Approx(plate * (disc * 0.08 - 2 * hole * (0.00125 + 0.04))).epsilon(1e-13)); // some roundings
+  const double slope = std::numbers::pi / 180.0;
+  // From the train's origin down the slope by two pitches, along it by half a base, up from it by a radius.
+  CHECK(wheel.position.x() == doctest::Approx(-12.0 * std::cos(slope) + 1.5 * std::cos(slope) - 0.4 * std::sin(slope)).epsilon(1e-14));
+  CHECK(wheel.position.y() == doctest::Approx(-12.0 * std::sin(slope) + 1.5 * std::sin(slope) + 0.4 * std::cos(slope)).epsilon(1e-13));
+  CHECK(number_of(train, "element.car 2.wheel 1.tread.stiffness") == 8e6);
+  CHECK(number_of(train, "element.car 2.wheel 2.tread.stiffness") == doctest::Approx(50 * 4e5).epsilon(1e-15));
+  const RunBytes bytes = run_of(train);
+  CHECK(run_of(parse_given_model(effective_model_text(path, transformer_catalog()), "text.toml", transformer_catalog())) == bytes);
+  CHECK(std::count(bytes.channels.begin(), bytes.channels.end(), "car 1.wheel 2.press ") == 1); // a number has no unit
+}
+
 TEST_CASE("what the page on models written once shows is a chain") {
   std::ifstream page(STEPLAP_SOURCE "/docs/how-to/models_written_once.md");
   std::vector<std::string> blocks;
