@@ -12,6 +12,7 @@
 #include "elements/prescribed_motion.h"
 #include "elements/rope.h"
 #include "elements/round_contacts.h"
+#include "elements/shape.h"
 #include "elements/spring_damper.h"
 #include "elements/step_lap_interface.h"
 #include "elements/step_lap_joint.h"
@@ -44,7 +45,7 @@ const Catalogue& element_catalog() {
     c.signals = signal_kinds();
     c.signals.push_back(&shunting_kind());
     c.signals.push_back(&record_signal_kind());
-    c.tables = {&channel_kind(), &plot_kind(), &acceptance_kind()};
+    c.tables = {&shape_kind(), &channel_kind(), &plot_kind(), &acceptance_kind()};
     return c;
   }();
   return catalogue;

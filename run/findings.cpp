@@ -1,5 +1,6 @@
 #include "run/findings.h"
 
+#include "elements/shape.h"
 #include "mbd/analysis/assembly.h"
 #include "mbd/analysis/freedom.h"
 #include "mbd/base/shown_text.h"
@@ -270,6 +271,7 @@ std::vector<Finding> implausible_findings(const LoadedModel& loaded) {
   for (CoreRemark& remark : implausible_cores(loaded.model))
     findings.push_back({remark.is_note ? "mitre_not_45_degrees" : "unusual_core", remark.is_note ? FindingLevel::note : FindingLevel::warning,
                         std::move(remark.text), std::move(remark.where)});
+  for (ShapeRemark& remark : contradicted_shapes(loaded.model)) findings.push_back({"unlike_shape", FindingLevel::warning, std::move(remark.text), std::move(remark.where)});
   append(findings, implausible_loads(loaded));
   append(findings, implausible_sizes(loaded));
   return findings;

@@ -1,6 +1,7 @@
 #include "mbd/io/described.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/io/parts.h"
 
 namespace steplap {
 
@@ -69,6 +70,9 @@ std::vector<Described> describe(const Catalogue& catalogue) {
                  &SimulationSettings::fields(), made<SimulationSettings>()});
   all.push_back({"settings", "output", "What the run writes.", &OutputSettings::fields(),
                  made<OutputSettings>()});
+  all.push_back({"table", "part",
+                 "Another model file as a sub-assembly (docs/how-to/models_written_once.md). `parameters`, a table, gives its [parameters] other values.",
+                 &PartEntry::fields(), made<PartEntry>()});
   all.push_back({"table", "body",
                  "A rigid body; a fixed one needs no mass and inertia, nor one that a table, such "
                  "as a core's, gives them.",

@@ -4,6 +4,7 @@
 #include "mbd/io/read_input.h"
 #include "mbd/io/input_files.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <unordered_map>
 #include <unordered_set>
@@ -29,6 +30,9 @@ public:
   explicit Merger(std::vector<Diagnostic>& problems) : problems_(problems) {}
 
   void merge_root(Node& base, Node& over) {
+    part_names_.clear();
+    note_parts(base);
+    note_parts(over);
     for (Node& child : over.children) {
       Node* inherited = base.find(child.key);
       if (child.is_array_of_tables() && (!inherited || inherited->type == Node::Type::array)) {
@@ -49,7 +53,28 @@ public:
     base.column = over.column;
   }
 
+  // False: it is to be removed.
+  bool lay_over(Node& base, Node& over, const std::string& array) {
+    if (take_flag(over, "remove")) return false;
+    merge_table(base, over, array + " '" + entry_name(over) + "'");
+    return true;
+  }
+
 private:
+  // Names of parts with the point behind them; of repeated ones what stands before the index.
+  void note_parts(const Node& root) {
+    const Node* const parts = root.find("part");
+    if (!parts || !parts->is_array_of_tables()) return;
+    for (const Node& part : parts->children) {
+      const std::string name = entry_name(part);
+      part_names_.push_back(part.find("repeat") ? name.substr(0, name.find('{')) : name + ".");
+    }
+  }
+  [[nodiscard]] bool is_in_part(const std::string& name) const {
+    const std::size_t point = name.rfind('.');
+    return point != std::string::npos && std::any_of(part_names_.begin(), part_names_.end(), [&](const std::string& part) { return !part.empty() && part.size() <= point + 1 && name.starts_with(part); });
+  }
+
   static Node without_children(const Node& node) {
     Node result;
     result.type = node.type;
@@ -121,6 +146,10 @@ private:
     std::unordered_set<std::string> removed, seen;
     for (Node& entry : over.children) {
       const std::string name = entry_name(entry);
+      if (over.key != "part" && is_in_part(name)) { // laid over what the part brings, when that is known (parts.h)
+        base.children.push_back(std::move(entry));
+        continue;
+      }
       const auto found = name.empty() ? inherited.end() : inherited.find(name);
       const bool is_new = found == inherited.end() || !seen.insert(name).second;
       if (take_flag(entry, "remove")) {
@@ -164,6 +193,7 @@ private:
   }
 
   std::vector<Diagnostic>& problems_;
+  std::vector<std::string> part_names_; // of both trees
 };
 
 class Loader {
@@ -172,6 +202,14 @@ public:
     document_.sources = std::make_shared<std::deque<Document::Source>>();
     document_.root = load_layer(std::move(text), file);
     return std::move(document_);
+  }
+
+  static Node load_into(Document& document, std::string text, const std::string& file) {
+    Loader loader;
+    loader.document_.sources = document.sources;
+    Node root = loader.load_layer(std::move(text), file);
+    document.problems.insert(document.problems.end(), loader.document_.problems.begin(), loader.document_.problems.end());
+    return root;
   }
 
 private:
@@ -259,6 +297,12 @@ Document load_document(const std::string& path) {
 
 Document parse_document(std::string text, const std::string& file_name) {
   return Loader().load(std::move(text), file_name);
+}
+
+bool lay_over(Node& base, Node over, const std::string& array, std::vector<Diagnostic>& problems) { return Merger(problems).lay_over(base, over, array); }
+
+Node load_into(Document& document, const std::string& path, const Location& where) {
+  return Loader::load_into(document, read_layer(path, where), path);
 }
 
 std::string model_source_text(const std::string& path) {

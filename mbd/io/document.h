@@ -20,9 +20,24 @@ struct Document {
     std::string text;
   };
 
+  /// A file that is a part of the model, or of a part (parts.h).
+  struct Part {
+    std::string prefix;      ///< of the names of what is in it: "wagon 2."
+    const std::string* file; ///< its file
+    Location where;          ///< of its [[part]]
+  };
+  /// A formula that says where a part stands, whose unit is to be checked.
+  struct PartPlace {
+    Node node;
+    std::string unit, subject;
+  };
+
   Node root;
-  std::shared_ptr<std::deque<Source>> sources; ///< the file itself, then those it extends
+  std::shared_ptr<std::deque<Source>> sources; ///< the file itself, then those it extends and those of its parts
   std::vector<Diagnostic> problems; ///< found while merging, to be reported with the rest
+  std::vector<Part> parts;          ///< each after that in which it is
+  std::vector<PartPlace> part_places;
+  bool is_repeated = false; ///< some of its entries are repetitions
 };
 
 /// Throws ModelError if a file cannot be read or is not TOML, or if `extends` goes round in
@@ -31,6 +46,11 @@ struct Document {
 /// The same for text at hand; `file_name` is what messages call it and what `extends` is relative
 /// to.
 [[nodiscard]] Document parse_document(std::string text, const std::string& file_name);
+/// The tree of another file, with all that it extends, for the document to take something from: its sources and problems become the
+/// document's. Throws as load_document() does, at `where` if the file cannot be read.
+[[nodiscard]] Node load_into(Document& document, const std::string& path, const Location& where);
+/// Lays the entry `over` of [[array]] over `base`, as an upper file's entry of the same name would be. False if it says `remove = true`.
+[[nodiscard]] bool lay_over(Node& base, Node over, const std::string& array, std::vector<Diagnostic>& problems);
 /// The text of the file and of all files it extends, each after a line with its name.
 [[nodiscard]] std::string model_source_text(const std::string& path);
 

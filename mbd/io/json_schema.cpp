@@ -1,10 +1,12 @@
 #include "mbd/io/json_schema.h"
 
 #include "mbd/io/described.h"
+#include "mbd/io/repetition.h"
 #include "mbd/model/field_units.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace steplap {
@@ -121,6 +123,20 @@ Json entry_schema(const Described& kind, bool has_kind) {
   return schema;
 }
 
+Json parameter_value() { return {{"anyOf", {{{"type", "number"}}, {{"type", "string"}, {"pattern", "^\\s*([-+]?[0-9.]|=)"}}}}}; }
+
+// What is written out before anything is read: parts, and entries that are repeated.
+void add_writing_out(Json& properties, const std::string& array) {
+  const auto& repeated = repeated_arrays();
+  if (std::find(repeated.begin(), repeated.end(), array) == repeated.end()) return;
+  properties["repeat"] = {{"type", "integer"},
+                          {"minimum", 0},
+                          {"maximum", k_most_entries},
+                          {"description", "so many entries, with the index i from 0 in formulas, \"= i * '0.6 m'\", and in names, \"sleeper {i+1}\""}};
+  if (array == "part")
+    properties["parameters"] = {{"type", "object"}, {"description", "values that the [parameters] of its file get"}, {"additionalProperties", parameter_value()}};
+}
+
 Json inline_marker_schema(const Described& marker) {
   Json schema = object_schema(marker);
   schema["required"] = Json::array({"body"});
@@ -128,7 +144,7 @@ Json inline_marker_schema(const Described& marker) {
 }
 
 Json parameters_schema() {
-  const Json value{{"anyOf", {{{"type", "number"}}, {{"type", "string"}, {"pattern", "^\\s*([-+]?[0-9.]|=)"}}}}};
+  const Json value = parameter_value();
   const Json full{{"type", "object"},
                   {"properties", {{"value", value}, {"range", {{"type", "array"}, {"items", value}, {"minItems", 2}, {"maxItems", 2}}}, {"meaning", text()}}},
                   {"additionalProperties", false}};
@@ -155,10 +171,14 @@ std::string json_schema(const Catalogue& catalogue) {
       properties[kind.name] = object_schema(kind);
       add_merging(properties[kind.name]["properties"]);
     } else if (kind.role == "table") {
-      properties[kind.name] = list_of(entry_schema(kind, false));
+      Json entry = entry_schema(kind, false);
+      add_writing_out(entry["properties"], kind.name);
+      properties[kind.name] = list_of(std::move(entry));
       if (kind.name == "marker") definitions["inline_marker"] = inline_marker_schema(kind);
     } else if (kind.role != "common") {
-      definitions[kind.role + "_" + kind.name] = entry_schema(kind, true);
+      Json entry = entry_schema(kind, true);
+      add_writing_out(entry["properties"], kind.role);
+      definitions[kind.role + "_" + kind.name] = std::move(entry);
       kinds[kind.role].push_back({{"$ref", "#/$defs/" + kind.role + "_" + kind.name}});
     }
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 namespace steplap {
 
@@ -81,7 +82,10 @@ private:
       path_.clear();
       return set_below(*parameter, "value");
     }
-    if (parameter) return set_below(*table, take_segment(path_));
+    if (parameter) { // its name may hold points: of a part it is "wagon 2.wall"
+      const std::string name = std::exchange(path_, "");
+      return set_below(*table, name);
+    }
     std::vector<std::string> known;
     if (table)
       for (const Node& child : table->children) known.push_back(child.key);

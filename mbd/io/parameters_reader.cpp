@@ -13,7 +13,10 @@ namespace steplap {
 
 namespace {
 
-bool is_name(const std::string& text) {
+// Of a part's parameter, "wagon 2.wall", what is behind the names of the parts.
+bool is_name(const std::string& whole) {
+  if (whole.find_first_of("{}[]") != std::string::npos) return false;
+  const std::string text = whole.substr(whole.rfind('.') + 1);
   const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
   return !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) == 0 && std::all_of(text.begin(), text.end(), is_letter) &&
          text != "pi" && text != "t";
@@ -35,35 +38,38 @@ std::string said(const std::array<double, 3>& powers) {
 
 bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
-// Calls `visit(node, path)` for every value of the document below a table or a named entry: path as model_path.h has it.
+// Calls `visit(node, path, likeness)` for every value of the document below a table or a named entry: path as model_path.h has it;
+// of entries of one kind the paths of one field are alike.
 class Walk {
 public:
-  using Visit = std::function<void(const Node&, const std::string&)>;
+  using Visit = std::function<void(const Node&, const std::string&, const std::string&)>;
   Walk(const Node& root, Visit visit) : visit_(std::move(visit)) {
     for (const Node& child : root.children) {
       if (child.is_array_of_tables())
         for (const Node& entry : child.children) in_entry(entry, child.key);
       else
-        in_value(child, child.key, "");
+        in_value(child, child.key, child.key, "");
     }
   }
 
 private:
   void in_entry(const Node& entry, const std::string& array) {
     const std::string name = entry_name(entry);
-    for (const Node& child : entry.children) in_value(child, array + "." + name + "." + child.key, array == "element" ? name + "." + child.key : "");
+    const Node* const kind = entry.find("kind");
+    const std::string alike = array + " " + (kind ? kind->text() : "") + " ";
+    for (const Node& child : entry.children) in_value(child, array + "." + name + "." + child.key, alike + child.key, array == "element" ? name + "." + child.key : "");
   }
 
   // `marker`: what the reader calls the marker that an inline table stands for, "" where none can stand.
-  void in_value(const Node& node, const std::string& path, const std::string& marker) {
+  void in_value(const Node& node, const std::string& path, const std::string& alike, const std::string& marker) {
     if (node.is_table()) {
       const std::string own = entry_name(node);
       const std::string base = marker.empty() ? path : "marker." + (own.empty() ? marker : own);
-      for (const Node& child : node.children) in_value(child, base + "." + child.key, "");
+      for (const Node& child : node.children) in_value(child, base + "." + child.key, (marker.empty() ? alike : "marker") + "." + child.key, "");
     } else if (node.type == Node::Type::array) {
-      for (std::size_t i = 0; i < node.children.size(); ++i) in_value(node.children[i], path + "." + std::to_string(i), "");
+      for (std::size_t i = 0; i < node.children.size(); ++i) in_value(node.children[i], path + "." + std::to_string(i), alike + "." + std::to_string(i), "");
     } else {
-      visit_(node, path);
+      visit_(node, path, alike);
     }
   }
 
@@ -142,6 +148,10 @@ void ParametersReader::read_entry(const Node& entry) {
     read_value(entry, parameter, value);
   }
   is_wrong_.push_back(problems_.size() != before);
+  if (!by_name_.emplace(parameter.name, parameters_.entries.size()).second) {
+    add(entry.where_key(), "a parameter named '" + parameter.name + "' exists already: choose another name");
+    is_wrong_.back() = true;
+  }
   parameters_.entries.push_back(std::move(parameter));
   parameters_.values.push_back(value);
 }
@@ -199,13 +209,13 @@ ParameterFormula ParametersReader::formula_of(const std::string& text, const Loc
   ParameterFormula made{Formula(text, "formula", where), {}};
   if (uses_time(made.formula)) throw ModelError(where, "formula: 't' is the time, and parameters do not change with it");
   for (const std::string& name : made.formula.names()) {
-    const std::optional<std::size_t> found = parameters_.find(name);
-    if (!found) {
+    const auto found = by_name_.find(name);
+    if (found == by_name_.end()) {
       std::vector<std::string> known;
       for (const Parameter& parameter : parameters_.entries) known.push_back(parameter.name);
       throw ModelError(where, "formula: there is no parameter '" + name + "'" + did_you_mean(name, known));
     }
-    made.of.push_back(*found);
+    made.of.push_back(found->second);
   }
   return made;
 }
@@ -310,12 +320,15 @@ std::string ParametersReader::text_of(const Node& node) const {
 
 Parameters ParametersReader::parameters(const Node& root, const Model& model) const {
   Parameters result = parameters_;
-  const Walk walk(root, [&](const Node& node, const std::string& path) {
+  std::unordered_map<std::string, bool> settable; // of paths that are alike: finding an entry by its name takes long where there are many
+  const Walk walk(root, [&](const Node& node, const std::string& path, const std::string& alike) {
     const auto found = found_.find(&node);
     if (found == found_.end()) return;
     ParameterUse& use = result.uses.emplace_back(found->second.use);
     use.path = path;
-    use.can_be_set = can_be_set(model, path);
+    const auto [known, is_new] = settable.emplace(alike, false);
+    if (is_new) known->second = can_be_set(model, path);
+    use.can_be_set = known->second;
   });
   return result;
 }

@@ -49,6 +49,7 @@ private:
 
   std::vector<Diagnostic>& problems_;
   Parameters parameters_;
+  std::unordered_map<std::string, std::size_t> by_name_; ///< of the entries
   enum class Turns { none, turns, radians };
   std::vector<Turns> turns_;     ///< what an entry in 1/s counts, as its unit is written
   std::vector<bool> is_wrong_, is_resolved_;

@@ -4,6 +4,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/io/field_reader.h"
 #include "mbd/io/parameters_reader.h"
+#include "mbd/io/parts.h"
 #include "mbd/io/signal_units.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/field_units.h"
@@ -23,10 +24,20 @@ TopLevelNames top_level_names(const Catalogue& catalogue) {
   TopLevelNames names;
   names.keys = ModelHeader::fields().names();
   names.tables = {"simulation", "output", "parameters"};
-  names.arrays = {"body", "marker", "signal", "element"};
+  names.arrays = {"part", "body", "marker", "signal", "element"};
   for (const TableKind* kind : catalogue.tables)
     names.arrays.push_back(kind->name);
   return names;
+}
+
+// Lays overrides over the document, and writes parts and repetitions out: behind those that are of parts or say how often.
+void settle(Document& document, const std::vector<std::string>& overrides, const TopLevelNames& names, const Catalogue& catalogue) {
+  const auto is_of_part = [](const std::string& change) { return change.starts_with("part.") || change.substr(0, change.find('=')).ends_with(".repeat"); };
+  for (const std::string& change : overrides)
+    if (is_of_part(change)) apply_override(document, change, names);
+  write_out_parts(document, catalogue);
+  for (const std::string& change : overrides)
+    if (!is_of_part(change)) apply_override(document, change, names);
 }
 
 Field named_field(const std::string& name) {
@@ -57,12 +68,12 @@ public:
 
   /// The model as it is given, and completed; its text, if asked for.
   std::pair<Model, Model> read(const std::vector<std::string>& overrides, std::string* text = nullptr) {
-    for (const std::string& change : overrides)
-      apply_override(document_, change, names_);
+    settle(document_, overrides, names_, catalogue_);
     if (text) *text = standalone_text(document_, catalogue_);
     refuse_control_characters(document_);
     problems_ = std::move(document_.problems);
     parameters_.emplace(document_.root, problems_);
+    check_part_places();
     read_header();
     read_settings("simulation", Section::simulation, SimulationSettings::fields(),
                   model_.simulation);
@@ -89,6 +100,7 @@ private:
     return given_[static_cast<std::size_t>(section)];
   }
 
+  void check_part_places();
   void read_header();
   template <class T>
   void read_settings(const std::string& name, Section section, const FieldTable& fields, T& target);
@@ -134,6 +146,18 @@ TableReading Reader::reading(std::string subject, std::string owner) {
     return add_inline_marker(table, field, owner);
   };
   return result;
+}
+
+// Before the fields that follow from them, which would only repeat it.
+void Reader::check_part_places() {
+  const std::size_t before = problems_.size();
+  for (const Document::PartPlace& place : document_.part_places) {
+    const Quantity quantity = parameters_->value(place.node, place.unit);
+    if (!quantity.problem.empty()) add(place.node.where(), place.subject + ": " + quantity.problem);
+  }
+  if (problems_.size() == before) return;
+  name_parts(problems_, document_);
+  throw ModelError(std::move(problems_));
 }
 
 void Reader::read_header() {
@@ -452,6 +476,7 @@ void Reader::finish() {
       });
   problems_.insert(problems_.end(), found.begin(), found.end());
   if (problems_.empty()) return;
+  name_parts(problems_, document_);
   std::map<std::string, std::size_t> order;
   for (const Document::Source& source : *document_.sources)
     order.emplace(source.file, order.size());
@@ -484,9 +509,7 @@ Model read_given_model(const std::string& path, const Catalogue& catalogue, cons
 std::string effective_model_text(const std::string& path, const Catalogue& catalogue,
                                  const std::vector<std::string>& overrides) {
   Document document = load_document(path);
-  const TopLevelNames names = top_level_names(catalogue);
-  for (const std::string& text : overrides)
-    apply_override(document, text, names);
+  settle(document, overrides, top_level_names(catalogue), catalogue);
   if (!document.problems.empty()) throw ModelError(std::move(document.problems));
   return write_toml(document.root);
 }

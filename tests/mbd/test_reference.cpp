@@ -52,6 +52,10 @@ TEST_CASE("the schema follows the tables") {
   CHECK(spring["additionalProperties"] == false);
   CHECK(schema["properties"]["body"]["items"]["properties"]["position"]["default"][0] == 0.0);
   CHECK(schema["properties"].contains("pair"));
+  for (const auto* entry : {&spring, &schema["properties"]["body"]["items"], &schema["properties"]["marker"]["items"], &schema["properties"]["part"]["items"]})
+    CHECK((*entry)["properties"]["repeat"]["type"] == "integer");
+  CHECK(schema["properties"]["part"]["items"]["properties"]["parameters"]["additionalProperties"]["anyOf"].size() == 2); // a number, a text
+  CHECK(!schema["properties"]["pair"]["items"]["properties"].contains("repeat"));
   CHECK(schema["properties"].contains("gravity"));
   CHECK(schema["properties"]["signal"]["items"]["anyOf"].size() ==
         small_catalogue().signals.size());

@@ -1,0 +1,139 @@
+#include "mbd/io/repetition.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/formula/formula.h"
+#include "mbd/formula/renamed_formula.h"
+#include "mbd/io/parameters_reader.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+const char* const k_index = "i";
+
+// The entry of one index.
+class Repetition {
+public:
+  Repetition(long index, std::vector<Diagnostic>& problems) : index_(index), text_(std::to_string(index)), problems_(problems) {}
+
+  [[nodiscard]] Node entry(const Node& entry) {
+    Node result = entry;
+    result.erase("repeat");
+    Node* const name = result.find("name");
+    const bool is_named_by_index = name && name->text().find('{') != std::string::npos;
+    for (Node& child : result.children) put_into(child);
+    if (name && name->type == Node::Type::text && !is_named_by_index) name->scalar = name->text() + " " + text_;
+    return result;
+  }
+
+private:
+  void put_into(Node& node) {
+    if (node.type == Node::Type::text) {
+      const std::string text = node.text();
+      node.scalar = is_formula(node) ? in_formula(text) : in_text(text, node.where());
+    }
+    for (Node& child : node.children) put_into(child);
+  }
+
+  [[nodiscard]] std::string in_formula(const std::string& text) const {
+    const std::size_t begin = text.find('=') + 1;
+    if (text.find(k_index, begin) == std::string::npos) return text;
+    return text.substr(0, begin) + with_operands(text.substr(begin), [this](const std::string& name) {
+             const bool is_plain = name.find_first_of(" {}[]") == std::string::npos;
+             return name == k_index ? text_ : is_plain ? name : "{" + name + "}";
+           });
+  }
+
+  [[nodiscard]] std::string in_text(const std::string& text, const Location& where) {
+    std::string result;
+    std::size_t done = 0;
+    for (std::size_t open = text.find('{'); open != std::string::npos; open = text.find('{', done)) {
+      const std::size_t close = text.find('}', open);
+      if (close == std::string::npos) {
+        problems_.push_back({where, "'" + text + "' lacks a '}': what stands in braces in a repeated entry is made of its index, as in \"link {i+1}\""});
+        return text;
+      }
+      result += text.substr(done, open - done) + number(text.substr(open + 1, close - open - 1), where);
+      done = close + 1;
+    }
+    return result + text.substr(done);
+  }
+
+  [[nodiscard]] std::string number(const std::string& inside, const Location& where) {
+    const std::string subject = "'{" + inside + "}'";
+    try {
+      const Formula formula(inside, subject, where);
+      for (const std::string& name : formula.names())
+        if (name != k_index) throw ModelError(where, subject + ": in a name only the index i and numbers make a number, not '" + name + "'");
+      const std::vector<double> operands(formula.names().size(), static_cast<double>(index_));
+      std::vector<double> nodes(formula.tree().size());
+      const double value = value_of(formula.tree(), operands.data(), 0.0, nodes.data());
+      if (!(std::abs(value) < 1e15) || std::nearbyint(value) != value)
+        throw ModelError(where, subject + " is " + number_text(value) + " where i is " + text_ + ": a name takes a whole number");
+      return std::to_string(static_cast<long>(value));
+    } catch (const ModelError& error) {
+      problems_.push_back(error.diagnostics().front());
+      return inside;
+    }
+  }
+
+  long index_;
+  std::string text_;
+  std::vector<Diagnostic>& problems_;
+};
+
+// How often; nothing if that is wrong.
+std::optional<long> repeats(const Node& repeat, const std::string& subject, std::vector<Diagnostic>& problems) {
+  const auto fail = [&](const std::string& message) {
+    problems.push_back({repeat.where(), "'repeat' of " + subject + ": " + message});
+    return std::nullopt;
+  };
+  if (repeat.type == Node::Type::text && is_formula(repeat))
+    return fail("a formula cannot say how many there are, since parameters may change while a model is in use: write a number, and lay another over it with --set");
+  if (repeat.type != Node::Type::integer) return fail(std::string("expected a whole number, got ") + repeat.type_name());
+  const long count = std::get<long>(repeat.scalar);
+  if (count < 0) return fail("expected a whole number, 0 or larger, got " + std::to_string(count));
+  if (static_cast<std::size_t>(count) > k_most_entries)
+    return fail(std::to_string(count) + " repetitions are more than the " + std::to_string(k_most_entries) + " entries that a model may have: is a digit too many?");
+  return count;
+}
+
+} // namespace
+
+const std::vector<std::string>& repeated_arrays() {
+  static const std::vector<std::string> names = {"part", "body", "marker", "signal", "element"};
+  return names;
+}
+
+void write_out_repetitions(Node& root, std::size_t& made, std::vector<Diagnostic>& problems) {
+  for (const std::string& name : repeated_arrays()) {
+    Node* const array = root.find(name);
+    if (!array || !array->is_array_of_tables()) continue;
+    if (std::none_of(array->children.begin(), array->children.end(), [](const Node& entry) { return entry.find("repeat"); })) continue;
+    std::vector<Node> entries;
+    for (Node& entry : array->children) {
+      const Node* const repeat = entry.find("repeat");
+      if (!repeat) {
+        entries.push_back(std::move(entry));
+        continue;
+      }
+      const std::string subject = entry_name(entry).empty() ? "the " + name : name + " '" + entry_name(entry) + "'";
+      const std::optional<long> count = repeats(*repeat, subject, problems);
+      if (!count) continue;
+      if (made + static_cast<std::size_t>(*count) > k_most_entries) {
+        problems.push_back({repeat->where(), "'repeat' of " + subject + ": with it the model has more than " + std::to_string(k_most_entries) + " entries"});
+        continue;
+      }
+      made += static_cast<std::size_t>(*count);
+      const std::size_t before = problems.size(), begin = entries.size();
+      for (long i = 0; i < *count && problems.size() == before; ++i) entries.push_back(Repetition(i, problems).entry(entry));
+      if (problems.size() != before) entries.resize(begin);
+    }
+    array->children = std::move(entries);
+  }
+}
+
+} // namespace steplap
