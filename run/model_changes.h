@@ -11,9 +11,9 @@ namespace steplap {
 
 /// A value that is another one, or an entry that only one of the models has.
 struct ModelChange {
-  enum class Kind { value, added, removed };
+  enum class Kind { value, added, removed }; ///< another value; an entry that only the second, or only the first, model has
 
-  Kind kind = Kind::value;
+  Kind kind = Kind::value;             ///< what sort of change it is
   std::string path;                    ///< "element.front foot.stiffness"; of an entry "element.front foot"
   std::string unit;                    ///< SI, of the numbers
   std::optional<double> before, after; ///< numbers; nothing where the value is no number, or not given

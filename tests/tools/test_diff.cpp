@@ -116,6 +116,17 @@ TEST_CASE("what followed from another value is told with its size: verdict, even
   CHECK(row_of(tables["extremes"], "channel", "mass.vx") == nullptr); // m v^2 / 2 is the same: largest where it began
 }
 
+TEST_CASE("what was zero has no share by which it changed") {
+  const Workbench bench;
+  const std::string still = bench.write("still.toml", put(k_oscillator, "velocity = [0.1, 0]", "velocity = [0, 0.1]")), moved = bench.write("moved.toml", k_oscillator);
+  for (const std::string& model : {still, moved}) REQUIRE(steplap_does({"simulate", model, "-o", bench.at("out"), "--estimate-error", "-q"}).code == 0);
+  const Json rows = result_of(steplap_does({"diff", bench.at("out/still"), bench.at("out/moved"), "--json"}))["tables"]["extremes"];
+  const Json* rate = row_of(rows, "channel", "mass.vx");
+  REQUIRE(rate);
+  CHECK((*rate)["change"] == "");
+  CHECK((*rate)["after"]["value"].get<double>() == doctest::Approx(0.1).epsilon(1e-6));
+}
+
 TEST_CASE("what cannot be compared is one clear error") {
   const Workbench bench;
   const std::string model = bench.write("a.toml", k_oscillator);

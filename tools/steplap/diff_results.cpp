@@ -64,7 +64,11 @@ std::pair<Cell, Cell> cells_of(const Measured& a, const Measured& b, const std::
   return {cell(a), cell(b)};
 }
 
-Cell change_of(const Measured& a, const Measured& b) { return std::isnan(a.value) || std::isnan(b.value) ? Cell("") : change_cell(a.value, b.value); }
+// What was zero within its error has no share by which it changed.
+Cell change_of(const Measured& a, const Measured& b) {
+  if (std::isnan(a.value) || std::isnan(b.value) || std::abs(a.value) <= std::max(k_rounding * std::abs(b.value), a.error.value_or(0.0))) return "";
+  return change_cell(a.value, b.value);
+}
 
 std::size_t print_outcome(std::ostream& out, const Json& a, const Json& b) {
   TextTable table({Align::left, Align::left, Align::left});
