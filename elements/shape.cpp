@@ -56,11 +56,11 @@ Ring circle(const Vec2& centre, double diameter, bool is_around) {
   return corners;
 }
 
-[[noreturn]] void fail(const Shape& shape, const std::string& field, const std::string& message) {
+[[noreturn]] void fail(const BodyShape& shape, const std::string& field, const std::string& message) {
   throw ModelError(shape.place(field), "shape '" + shape.name + "': " + message);
 }
 
-void check_fields(const Shape& shape) {
+void check_fields(const BodyShape& shape) {
   if (shape.diameter && !shape.outline.empty()) fail(shape, "diameter", "gives both 'outline' and 'diameter': give one of them");
   if (!shape.places.empty() && shape.places.count("centre") > 0 && !shape.diameter) fail(shape, "centre", "'centre' goes with 'diameter'");
   const std::size_t centres = shape.hole_centres.size(), diameters = shape.hole_diameters.size();
@@ -75,7 +75,7 @@ void check_fields(const Shape& shape) {
 }
 
 // Throws ModelError for what is no area.
-Area area_of(const Shape& shape, const Body& body) {
+Area area_of(const BodyShape& shape, const Body& body) {
   check_fields(shape);
   const std::vector<Vec2>& outline = shape.outline.empty() ? body.outline : shape.outline;
   if (!shape.diameter && outline.empty()) fail(shape, "body", "needs 'outline' or 'diameter', since body '" + body.name + "' has no outline");
@@ -110,14 +110,14 @@ Area area_of(const Shape& shape, const Body& body) {
   return rest;
 }
 
-std::vector<const Shape*> shapes_of(const Model& model, const std::string& body) {
-  std::vector<const Shape*> found;
+std::vector<const BodyShape*> shapes_of(const Model& model, const std::string& body) {
+  std::vector<const BodyShape*> found;
   for (const TableEntry& entry : model.tables)
-    if (const auto* shape = dynamic_cast<const Shape*>(entry.table.get()); shape && shape->body == body) found.push_back(shape);
+    if (const auto* shape = dynamic_cast<const BodyShape*>(entry.table.get()); shape && shape->body == body) found.push_back(shape);
   return found;
 }
 
-double mass_of(const Shape& shape, const Area& area, double given_mass, bool is_only_one) {
+double mass_of(const BodyShape& shape, const Area& area, double given_mass, bool is_only_one) {
   if (shape.density) return *shape.density * *shape.thickness * area.size;
   if (shape.area_density) return *shape.area_density * area.size;
   if (shape.mass) return *shape.mass;
@@ -133,7 +133,7 @@ std::string unlike(const Body& body, const char* field, double given, double mad
 
 std::string point_text(const Vec2& p) { return "[" + rounded_text(p.x()) + ", " + rounded_text(p.y()) + "] m"; }
 
-void apply_shape(const Shape& shape, Model& model) {
+void apply_shape(const BodyShape& shape, Model& model) {
   const auto found = std::find_if(model.bodies.begin(), model.bodies.end(), [&](const Body& body) { return body.name == shape.body; });
   if (found == model.bodies.end()) fail(shape, "body", "the ground has no mass: name a body");
   Body& body = *found;
@@ -149,12 +149,12 @@ void apply_shape(const Shape& shape, Model& model) {
 } // namespace
 
 std::optional<MassOfShapes> mass_of_shapes(const Model& model, const Body& body, double given_mass) {
-  const std::vector<const Shape*> shapes = shapes_of(model, body.name);
+  const std::vector<const BodyShape*> shapes = shapes_of(model, body.name);
   if (shapes.empty()) return std::nullopt;
   std::vector<Area> areas;
   std::vector<double> masses;
   MassOfShapes sum;
-  for (const Shape* shape : shapes) {
+  for (const BodyShape* shape : shapes) {
     areas.push_back(area_of(*shape, body));
     masses.push_back(mass_of(*shape, areas.back(), given_mass, shapes.size() == 1));
     sum.mass += masses.back();
@@ -183,7 +183,7 @@ std::vector<ShapeRemark> contradicted_shapes(const Model& model) {
 
 const TableKind& shape_kind() {
   static const TableKind kind = [] {
-    using T = Shape;
+    using T = BodyShape;
     TableKind k;
     k.name = "shape";
     k.doc = "An area of a body, from which the body gets what it does not give itself: mass, centre of gravity, inertia, outline. An outline or a disc, with holes; "

@@ -24,7 +24,7 @@
 
 namespace steplap {
 
-struct Shape : TableObject {
+struct BodyShape : TableObject {
   std::string body;
   std::vector<Vec2> outline;               ///< m, body frame; empty: the body's
   Vec2 centre = Vec2::Zero();              ///< m, of a disc

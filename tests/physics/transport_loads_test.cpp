@@ -60,7 +60,7 @@ TEST_CASE("the response of a vehicle to roads has the variance that its transfer
 
 TEST_CASE("the axles of the trailer pass one road, 7 m apart at 40 km/h") {
   const Run r = run(load_model("road_class_c"), {"dop853", 1e-8, 6.0, 0.01});
-  const std::vector<double> front = r.series("front road.surface.y"), rear = r.series("rear road.surface.y");
+  const std::vector<double> front = r.series("front road.y"), rear = r.series("rear road.y");
   const std::size_t lag = 63; // 7 m / 11.11 m/s, of samples
   double size = 0.0, apart = 0.0;
   for (std::size_t k = lag; k < front.size(); ++k) {
