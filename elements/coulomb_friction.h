@@ -25,6 +25,7 @@ public:
   bool has_two_feet = false;
   double level = 0.0; ///< θ_A − θ_B at which both feet touch, rad
   double mu_static = 0.0, mu_kinetic = 0.0;
+  bool may_pull = false; ///< a contact's law lets it pull (literal): friction ends where the sum does
   double damping = 0.0, mass = 0.0, lever = 0.0; ///< of the contacts; of the lighter body; from its centre
 
   [[nodiscard]] int dimension() const override { return 1; }
@@ -34,10 +35,11 @@ public:
   void mark_bodies(std::vector<char>& is_used) const override {
     is_used[feet[0].a] = is_used[feet[0].b] = 1;
   }
-  template <class S> [[nodiscard]] S normal_force(const Evaluated<S>& e) const {
-    S sum{0.0};
-    for (const ContactIndex& contact : contacts) sum += e.contact_force[contact.force];
-    return greatest_of(S(0.0), sum); // the paper's literal contact law may pull
+  template <class S> [[nodiscard]] S normal_force(const Evaluated<S>& e) const { return greatest_of(S(0.0), sum_of_forces(e)); }
+  /// As laws of motion have it: a step that goes beyond the end of a contact's force, where it will be cut, finds the force's law
+  /// go on below zero there. A kink at that place would make the step, and what is read inside it, as inexact as its end is known.
+  template <class S> [[nodiscard]] S smooth_normal_force(const Evaluated<S>& e) const {
+    return may_pull ? normal_force(e) : sum_of_forces(e);
   }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
     return std::any_of(contacts.begin(), contacts.end(), [&e](const ContactIndex& contact) {
@@ -100,11 +102,16 @@ public:
   }
 
 private:
+  template <class S> [[nodiscard]] S sum_of_forces(const Evaluated<S>& e) const {
+    S sum{0.0};
+    for (const ContactIndex& contact : contacts) sum += e.contact_force[contact.force];
+    return sum;
+  }
   template <class S> [[nodiscard]] S sliding_force(const Evaluated<S>& e, const FrictionState& state) const {
-    return -mu_kinetic * normal_force(e) * state.sign;
+    return -mu_kinetic * smooth_normal_force(e) * state.sign;
   }
   template <class S> void watch_bounds(const Evaluated<S>& e, const S* wrench, S* watch) const {
-    const S bound = mu_static * normal_force(e) * (1.0 + k_bound_slack);
+    const S bound = mu_static * smooth_normal_force(e) * (1.0 + k_bound_slack);
     watch[0] = bound - wrench[0];
     watch[1] = bound + wrench[0];
   }

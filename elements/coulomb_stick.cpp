@@ -74,7 +74,7 @@ bool is_claimed(const CoulombStick& e, SystemBuilder& builder) {
 
 // All contacts must lie between the same two bodies on one line, so that one coordinate serves them.
 bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactGeometry>& geometry,
-             std::vector<ContactIndex>& contacts, double& damping) {
+             std::vector<ContactIndex>& contacts, double& damping, bool& may_pull) {
   for (const std::string& name : e.contacts) {
     const ContactIndex* index = builder.contact(name);
     const ElementEntry* entry = builder.element(name);
@@ -89,6 +89,7 @@ bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactG
     }
     geometry.push_back(contact_geometry(*contact, builder));
     damping += static_cast<double>(contact->count) * contact->damping;
+    may_pull = may_pull || contact->law == "literal";
     contacts.push_back(*index);
     const ContactGeometry &first = geometry.front(), &last = geometry.back();
     if (first.a != last.a || first.b != last.b ||
@@ -212,7 +213,7 @@ void compile_coulomb(const Element& element, SystemBuilder& builder) {
   if (is_any_round(e, builder)) return compile_rolling(e, builder);
   std::vector<ContactGeometry> geometry;
   auto friction = std::make_unique<CoulombFriction>();
-  if (!collect(e, builder, geometry, friction->contacts, friction->damping)) return;
+  if (!collect(e, builder, geometry, friction->contacts, friction->damping, friction->may_pull)) return;
 
   const int memory = builder.add_memory();
   const auto slide_of = [&](const ContactGeometry& g) {

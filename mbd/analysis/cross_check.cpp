@@ -279,6 +279,8 @@ private:
     Disagreement worst{Doubt::event, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (const TimedEvent& event : x.events()) {
       if (!event.is_counted || !std::isfinite(event.shift) || event.t > until || event.alone < near) continue;
+      // A slip along several coordinates that passes through rest: steps that end before and behind see it go on.
+      if (event.kind == EventKind::slips_another_way && is_stepping(j)) continue;
       double distance = INFINITY, allowed = 0.0;
       bool is_doubted = false;
       for (const TimedEvent& other : y.events()) {

@@ -15,7 +15,8 @@
 // Two runs disagree in a channel where they differ by more than k_margin times the sum of both estimates and a
 // floor for rounding. Near events the distance is that of the two graphs, within what the event's time is uncertain by;
 // reactions jump, so theirs always is, within a sample. Samples decide, so extremes over samples are compared with them. An event disagrees that
-// one run has of a friction element, certain of it, and the other has not. Nothing is called agreed because two methods share the search
+// one run has of a friction element, certain of it, and the other has not; but that a slip passes through rest and goes on another
+// way is nothing that time stepping could have. Nothing is called agreed because two methods share the search
 // for events: `moreau` is compared with all, and an adaptive method that knows its own answer less well than
 // time stepping does is doubted for that alone.
 //

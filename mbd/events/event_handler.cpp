@@ -332,6 +332,15 @@ void EventHandler::note_changes(const State& before, const State& state, std::ve
     const EventKind kind = unit.group->transition(before.mode[u], state.mode[u]);
     if (kind != EventKind::none) events.push_back({state.t, system_.element_names[unit.element], kind});
   }
+  // What sticks at both ends may have slipped in a part of the step.
+  for (std::size_t f = 0; f < state.friction.size(); ++f) {
+    const FrictionState &old = before.friction[f], &now = state.friction[f];
+    if (old.phase != FrictionPhase::stick || now.phase != FrictionPhase::stick) continue;
+    if (old.slid == now.slid && old.has_slipped == now.has_slipped && std::equal(old.direction, old.direction + 3, now.direction)) continue;
+    const std::string& name = system_.element_names[system_.frictions[f].element];
+    events.push_back({state.t, name, slip_kind(f, old, now)});
+    events.push_back({state.t, name, EventKind::sticks});
+  }
   note_friction(before.friction, before.memory, state, events);
   clear_fresh();
 }

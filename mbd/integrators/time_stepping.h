@@ -28,9 +28,14 @@
 // that its end asks for. Where they are not (a contact's damper makes its force jump on closing:
 // within a step that is long against m/c neither mode is right) the step is halved, where both have
 // an answer, down to a millionth; a run in which that does not help stops.
+//
+// What sticks at a step's end may slip inside the step: the mean of a load leaves its peak out, and so does a clamping pressure
+// that is read at the end. A step in which that is so is halved, too (inner_slips.cpp).
 #pragma once
 
 #include "mbd/integrators/stage_system.h"
+
+#include <array>
 
 namespace steplap {
 
@@ -74,6 +79,15 @@ private:
     const char* unit = "";
   };
 
+  /// An element that sticks, at the end of a part.
+  struct Sticking {
+    double t = -1.0;       ///< s, of that end; negative: it does not stick
+    double usage = 0.0;    ///< share of what it bears
+    double change = 0.0;   ///< of that since the part before; 1 where nothing is known of it
+    bool is_near = false;  ///< inside the part usage may have been one
+  };
+  static constexpr int k_glances = 3;
+
   [[nodiscard]] bool is_rounding(double t0, double t1) const;
   void drift(Dynamics& dynamics, State& state, double t1);
   [[nodiscard]] Trouble try_part(Dynamics& dynamics, State& state, double t1, double tolerance);
@@ -85,6 +99,10 @@ private:
   [[nodiscard]] int passed_unit(const Dynamics& dynamics, const State& state, double h) const;
   void finish_phases(Dynamics& dynamics, State& state, double h);
   void book_power(Dynamics& dynamics, State& state, double h);
+  // inner_slips.cpp
+  [[nodiscard]] bool note_sticking(Dynamics& dynamics, double t1);
+  [[nodiscard]] bool slips_inside(Dynamics& dynamics, double t1, double tolerance);
+  [[nodiscard]] double usage_of(const Evaluation& e, const FrictionPart& part) const;
   // time_stepping_friction.cpp
   void collect_friction(Dynamics& dynamics, State& state);
   [[nodiscard]] bool has_held(const FrictionState& friction, int f) const;
@@ -129,6 +147,9 @@ private:
   std::vector<double> bound_at_, bound_by_; ///< per row: the wrench there; rows × rows: ∂bound/∂wrench
   std::vector<int> held_; ///< scratch of hold_together
   std::vector<double> matrix_, together_, rest_;
+  std::vector<Sticking> sticking_, sticking_now_;            ///< per friction element: of the part before, of the part made
+  std::vector<std::array<double, k_glances>> glance_usage_;  ///< per friction element
+  double glance_ = 0.0; ///< s: loads are taken by their means over so long before the part's end; 0: over the part
 };
 
 } // namespace steplap

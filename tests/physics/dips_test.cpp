@@ -2,10 +2,13 @@
 // none. Thousands are run by print_dips.cpp.
 #include "mbd/model/method.h"
 #include "tests/physics/dips.h"
+#include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
+#include "tests/random/random_number.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -54,6 +57,70 @@ TEST_CASE("a step-lap joint slips wherever a load's peak is above its capacity b
 TEST_CASE("a gap closes by a hair") { check_all(Hair::gap); }
 
 TEST_CASE("a rope becomes taut by a hair") { check_all(Hair::rope); }
+
+// Time stepping locates nothing, but halves a step that hides a slip: a peak of a load that is above what holds by less than a load
+// bends by in a step. What it sticks with is the load's mean, whatever the step, so that nothing slips below. (Where a slip ends is
+// known to the first order only, and with it whether another follows.)
+TEST_CASE("time stepping slips where a peak between the ends of its steps is above what holds, and nowhere else") {
+  int slips = 0, hidden = 0;
+  for (const Hair hair : {Hair::friction, Hair::step_lap})
+    for (int i = 0; i < k_cases; ++i) {
+      const auto seed = static_cast<std::uint64_t>(i + 1);
+      steplap::random::RandomNumber random(seed + 4444);
+      const double share = random.decades(-2.0, -1.2); // of a period, which is 0.06 to 0.4 rad
+      const double depth = random.decades(-5.0, -2.0) * (random.chance(0.3) ? -1.0 : 1.0);
+      const DipCase dip = random_dip(hair, seed, depth);
+      const Model model = scene(dip.text + "\n[simulation]\nstep = 1e-3\n");
+      const auto system = compile(model);
+      SimulationOptions options;
+      options.end = options.output_step = dip.end;
+      options.integrator = "moreau";
+      options.settings.step = share * 2.0 * std::numbers::pi / dip.fastest;
+      const RunResult result = simulate(*system, system->initial_state(), options);
+      const auto first = std::find_if(result.events.begin(), result.events.end(), [&](const Event& e) { return e.element == dip.element && e.words().starts_with(dip.begins); });
+      CAPTURE(seed);
+      CAPTURE(share);
+      CAPTURE(depth);
+      CHECK((first != result.events.end()) == !dip.begin.empty());
+      if (first == result.events.end() || dip.begin.empty()) continue;
+      // It begins in this step, in the next one, whose mean is above what holds if its end is, or in a part of that.
+      CHECK(std::abs(first->t - dip.begin.front()) <= 2.0 * options.settings.step);
+      ++slips;
+      if (depth < share * share) ++hidden; // a harmonic's top is flat to (2π share)²/8 of its size for a step
+    }
+  CHECK(slips >= k_cases);
+  CHECK(hidden >= k_cases / 2);
+}
+
+// The same of a clamping pressure 1 − ½ (1 + cos) that falls below what a constant load asks for.
+TEST_CASE("time stepping slips in a dip of the clamping pressure between the ends of its steps, and nowhere else") {
+  for (int i = 0; i < k_cases; ++i) {
+    steplap::random::RandomNumber random(static_cast<std::uint64_t>(i) + 5555);
+    const double share = random.decades(-2.0, -1.2), depth = random.decades(-5.0, -2.0) * (random.chance(0.3) ? -1.0 : 1.0);
+    const double phase = random.between(1.0, 2.0 * std::numbers::pi - 1.0);
+    // 2000 N of pressure by a friction of 0.5 hold 1000 N, of which the least is 200 N.
+    const std::string number = std::to_string(200.0 * (1.0 + depth));
+    const std::string text = k_no_gravity + body("b", "mass = 10.0; inertia = 1.0") +
+        signal_entry("harmonics", "press", "offset = 0.6; amplitudes = [0.4]; frequencies = [1.0]; phases = [" + std::to_string(phase) + "]") +
+        element("step_lap_joint", "held", "limb = 'b'; active_part = 'ground'; pressure_signal = 'press'") +
+        element("step_lap_interface", "sheets", "joint = 'held'; yoke = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]; "
+                "limb = [[-0.1, -0.05], [0.1, -0.05], [0.1, 0.05], [-0.1, 0.05]]; pressure = 1e5; static_friction = 0.5; kinetic_friction = 0.5") +
+        signal_entry("constant", "s", "value = " + number) + element("load", "pull", "at = 'b'; force_x = 's'");
+    const Model model = scene(text + "\n[simulation]\nstep = 1e-3\n");
+    const auto system = compile(model);
+    SimulationOptions options;
+    options.end = options.output_step = 1.0; // the least once
+    options.integrator = "moreau";
+    options.settings.step = share;
+    const RunResult result = simulate(*system, system->initial_state(), options);
+    const bool has_slipped = std::any_of(result.events.begin(), result.events.end(), [](const Event& e) { return e.element == "held" && e.words().starts_with("slips"); });
+    CAPTURE(i);
+    CAPTURE(share);
+    CAPTURE(depth);
+    CAPTURE(phase);
+    CHECK(has_slipped == (depth > 0.0));
+  }
+}
 
 // 30 N + 10 N cos(2π t + 2.13) on 39.9996 N: it slips where the cosine is 0.99996, before t = 1 − 2.13/2π.
 TEST_CASE("a peak of a hundred-thousandth above what holds, between the places of every step") {

@@ -135,3 +135,34 @@ TEST_CASE("a contact opens when its force has ended and its gap is gone, however
     CHECK(r.result.events.size() <= 3); // closes, its force ends, opens
   }
 }
+
+// What slides along what it strikes, all the time that this presses, loses μ times what the contact gives it across: by Δv_x = −μ Δv_y,
+// whatever the contact's spring and damper do. No step and nothing read inside one may be worse for the end of the force,
+// beyond which steps reach before they are cut. Velocities are known to their steps' tolerances, of which a bounce takes a dozen or two.
+TEST_CASE("what slides along a contact while it bounces loses friction times what the contact gives it") {
+  constexpr double k_steps = 30.0;
+  std::mt19937_64 random(24);
+  const auto between = [&](double a, double b) { return a + (b - a) * static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (int i = 0; i < 40; ++i) {
+    const double mass = std::pow(10.0, between(-1.0, 3.0)), frequency = std::pow(10.0, between(1.0, 3.0)), speed = between(0.2, 2.0);
+    const double mu = between(0.1, 0.9), along = 3.0 * speed, damping = i % 4 == 0 ? 0.0 : between(0.0, 0.6);
+    std::ostringstream out;
+    out.precision(17);
+    out << "gravity = [0.0, 0.0]\n[[body]]\nname = \"b\"\nmass = " << mass << "\ninertia = " << mass << "\nposition = [0.0, 0.1]\nvelocity = [" << along << ", "
+        << -speed << "]\n[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = \"b\"\nb = \"ground\"\nnormal = [0.0, 1.0]\nstiffness = "
+        << mass * frequency * frequency << "\ndamping = " << 2.0 * damping * mass * frequency
+        << "\n[[element]]\nkind = \"coulomb_stick\"\nname = \"sole\"\ncontacts = [\"floor\"]\nstatic_friction = " << mu << "\n";
+    const std::string text = out.str();
+    for (const char* method : {"dop853", "tsit5", "rodas5p", "auto"})
+      for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+        const Run bounce = run(text, {method, tolerance, 0.1 / speed + 20.0 / frequency});
+        CAPTURE(i);
+        CAPTURE(std::string(method));
+        CAPTURE(tolerance);
+        CAPTURE(damping);
+        const double across = bounce.last("b.vy") + speed, lost = along - bounce.last("b.vx");
+        CHECK(bounce.event_times("floor", "opens").size() == 1);
+        CHECK(std::abs(lost - mu * across) <= k_steps * tolerance * along + 1e-13);
+      }
+  }
+}

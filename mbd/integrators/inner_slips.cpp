@@ -1,0 +1,95 @@
+// Slips that begin and end inside a part of a time step, at whose end everything sticks.
+//
+// A part has the loads' means, and clamping pressures as they are at its end. What it leaves of a peak is of the size of what usages
+// (shares of what elements bear) change by from part to part. Only where that may reach one the part is looked into: made again up
+// to three places of it, with the loads' means over a thousandth of it before each. Loads have no breakpoints inside a step
+// (Simulation::next_limit_of_steps) and no harmonic turns far in it, so that usages go like the parabola through the three. A part in
+// which it reaches one, and at whose end it is below, hides a slip; one at whose end it is not leaves it to the next.
+#include "mbd/integrators/time_stepping.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+namespace {
+
+// Usages of parts are those of means: of a peak between straight lines that is as wide as a part they lack as much as they change by.
+constexpr double k_reach = 1.5;
+constexpr double k_noise = 1e-6; // of usages: wrenches are settled to this (time_stepping.cpp)
+constexpr double k_glance = 1e-3; // of a part
+constexpr double k_unlike_parabola = 0.3; // of what it bends by in a part: harmonics turn by 0.4 rad at most, but a usage may be one over them
+constexpr double k_places[] = {0.125, 0.5625, 1.0}; // of a part, the last its end
+
+// What usage may reach between 0 and 1: the largest of the parabola through three values at k_places, and a share of its bend.
+double top_of(const std::array<double, 3>& u) {
+  constexpr double a = k_places[0], b = k_places[1], c = k_places[2];
+  const double first = (u[1] - u[0]) / (b - a), second = ((u[2] - u[1]) / (c - b) - first) / (c - a);
+  const auto at = [&](double x) { return u[0] + (x - a) * (first + (x - b) * second); };
+  const double vertex = second < 0.0 ? 0.5 * (a + b) - 0.5 * first / second : -1.0;
+  const double top = std::max({at(0.0), u[0], u[1], u[2], vertex > 0.0 && vertex < 1.0 ? at(vertex) : 0.0});
+  return top + k_unlike_parabola * 0.25 * std::abs(second);
+}
+
+} // namespace
+
+// 1 where it slips.
+double TimeStepping::usage_of(const Evaluation& e, const FrictionPart& part) const {
+  if (!part.block.is_inside) return 1.0;
+  const double* const wrench = &wrench_[static_cast<std::size_t>(part.first)];
+  if (std::all_of(wrench, wrench + part.dimension, [](double w) { return w == 0.0; })) return 0.0;
+  if (part.dimension == 1) return std::abs(wrench[0]) / bound_of(e, part, false);
+  double normal[3];
+  return system_.frictions[part.friction].friction->gauge(e, e.friction[part.friction], wrench, normal);
+}
+
+// What sticks at the end of the part made, t1. True if inside it some of that may have slipped.
+bool TimeStepping::note_sticking(Dynamics& dynamics, double t1) {
+  sticking_.resize(system_.frictions.size());
+  sticking_now_.assign(system_.frictions.size(), {});
+  bool is_any_near = false;
+  for (const FrictionPart& part : parts_) {
+    if (!part.block.is_inside || part.is_driven) continue;
+    const Sticking& before = sticking_[part.friction];
+    Sticking& now = sticking_now_[part.friction];
+    now.t = t1;
+    now.usage = usage_of(dynamics.evaluation(), part);
+    if (start_.friction[part.friction].phase == FrictionPhase::slip) continue; // it has just come to rest
+    const bool is_known = before.t == start_.t;
+    now.change = is_known ? std::abs(now.usage - before.usage) : 1.0;
+    const double reach = k_reach * std::max(now.change, before.change);
+    now.is_near = now.usage < 1.0 && reach > k_noise && now.usage + reach >= 1.0;
+    is_any_near = is_any_near || now.is_near;
+  }
+  return is_any_near;
+}
+
+// Does one of those that are near slip inside the part from start_ to t1, and stick at its end? `dynamics` is left anywhere.
+bool TimeStepping::slips_inside(Dynamics& dynamics, double t1, double tolerance) {
+  const double h = t1 - start_.t;
+  const Residual residual = residual_;
+  glance_usage_.assign(system_.frictions.size(), {});
+  bool is_made = true;
+  for (int i = 0; i < k_glances && is_made; ++i) {
+    State probe = start_;
+    const double end = i + 1 == k_glances ? t1 : start_.t + k_places[i] * h;
+    glance_ = k_glance * h;
+    try {
+      is_made = try_part(dynamics, probe, end, tolerance).what == nullptr;
+    } catch (const NumericalFailure&) {
+      is_made = false; // the part itself could be made
+    }
+    glance_ = 0.0;
+    if (is_made)
+      for (const FrictionPart& part : parts_) glance_usage_[part.friction][i] = usage_of(dynamics.evaluation(), part);
+  }
+  residual_ = residual;
+  const auto slips = [&](std::size_t f) {
+    return sticking_now_[f].is_near && glance_usage_[f].back() < 1.0 && top_of(glance_usage_[f]) >= 1.0;
+  };
+  for (std::size_t f = 0; is_made && f < sticking_now_.size(); ++f)
+    if (slips(f)) return true;
+  return false;
+}
+
+} // namespace steplap
