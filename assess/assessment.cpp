@@ -66,7 +66,7 @@ void read_inputs(const std::vector<std::string>& records, const std::vector<std:
     a.records.push_back(read_events(record, options.reading));
   }
   if (options.reading.pulse && std::none_of(a.records.begin(), a.records.end(), [](const RecordEvents& r) { return r.pulse.has_value(); }))
-    throw FileError(a.records.front().file, "a pulse is assumed of lists of peaks alone, and '" + a.records.front().file + "' has waveforms: leave --pulse out");
+    throw FileError(a.records.front().file, "a pulse is assumed of lists of peaks alone, and '" + a.records.front().file + "' has waveforms: assume none");
   std::string order;
   order_records(a.records, order);
   if (!order.empty()) a.assumptions.push_back(order);

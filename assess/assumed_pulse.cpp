@@ -78,11 +78,11 @@ private:
   // The axis that gravity is subtracted from, by its index.
   static std::optional<std::size_t> gravity_axis(const EventReading& reading, const RecordEvents& record) {
     if (!reading.gravity)
-      throw FileError(record.file, "whether the peaks of '" + record.file + "' have gravity in them cannot be seen: give --gravity none, or the axis that it is in");
+      throw FileError(record.file, "whether the peaks of '" + record.file + "' have gravity in them cannot be seen: say that gravity is in none of them, or the axis that it is in");
     if (*reading.gravity == "none") return {};
     const auto axis = static_cast<std::size_t>(reading.gravity->back() - 'x');
     if (record.recording.layout.peaks.axis[axis] < 0)
-      throw FileError(record.file, "gravity along '" + *reading.gravity + "': '" + record.file + "' tells no peaks of that axis. Give --gravity none if the list is without it");
+      throw FileError(record.file, "gravity along '" + *reading.gravity + "': '" + record.file + "' tells no peaks of that axis. Say that gravity is in none if the list is without it");
     return axis;
   }
 
@@ -99,7 +99,7 @@ private:
     }
     if (!std::isfinite(entry.magnitude)) return a;
     if (!record_.pulse->axis)
-      throw FileError(record_.file, "the peak in line " + std::to_string(entry.line) + " of '" + record_.file + "' has no direction: say along which axis it is taken with --pulse-axis");
+      throw FileError(record_.file, "the peak in line " + std::to_string(entry.line) + " of '" + record_.file + "' has no direction: say along which axis the pulse is taken");
     a[static_cast<std::size_t>(*record_.pulse->axis - 'x')] = std::abs(entry.magnitude);
     return a;
   }
@@ -116,7 +116,7 @@ private:
       return *pulse_.duration;
     }
     throw FileError(record_.file, "line " + std::to_string(entry.line) + " of '" + record_.file +
-                                      "' tells neither how long the shock lasted nor how much the velocity changed: say how long it is taken to last, as in --pulse \"" +
+                                      "' tells neither how long the shock lasted nor how much the velocity changed: say how long it is taken to last, as in a pulse of \"" +
                                       shape_of(pulse_.shape).name + " 50 ms\"");
   }
 

@@ -123,7 +123,7 @@ std::string joints_unknown(const Assessment& a) {
 // Of criteria that look at runs: a record that no model was driven by; "".
 std::string waves_unknown(const Assessment& a) {
   for (const RecordEvents& record : a.records)
-    if (record.recording.layout.is_peaks && !record.pulse) return "'" + record.file + "' holds peaks without a waveform, and no model was driven by them (--pulse assumes one).";
+    if (record.recording.layout.is_peaks && !record.pulse) return "'" + record.file + "' holds peaks without a waveform, and no model was driven by them: a pulse can be assumed.";
   return a.events.empty() ? "no model was driven by a record." : "";
 }
 

@@ -130,16 +130,16 @@ TEST_CASE("what a list does not tell is asked for") {
   };
   Case gravity(k_axes_head + "2016-01-04 10:25:17;3;;1.5;100;\n");
   gravity.options.reading.gravity.reset();
-  CHECK(refusal(gravity).find("give --gravity none, or the axis that it is in") != std::string::npos);
+  CHECK(refusal(gravity).find("say that gravity is in none of them, or the axis that it is in") != std::string::npos);
   const Case duration(k_axes_head + "2016-01-04 10:25:17;3;;1.5;;\n");
   CHECK(refusal(duration).find("line 2") != std::string::npos);
-  CHECK(refusal(duration).find("--pulse \"half-sine 50 ms\"") != std::string::npos);
+  CHECK(refusal(duration).find("a pulse of \"half-sine 50 ms\"") != std::string::npos);
   Case direction("Timestamp;Max [g];Strength [m/s];Duration [ms]\n2016-01-04 10:25:17;3.12;0.970;50\n");
-  CHECK(refusal(direction).find("--pulse-axis") != std::string::npos);
+  CHECK(refusal(direction).find("along which axis") != std::string::npos);
   direction.options.reading.pulse->axis = 'x';
   CHECK(refusal(direction).empty());
   direction.options.reading.gravity = "z";
   CHECK(refusal(direction).find("no peaks of that axis") != std::string::npos);
   const Case waves(record_csv(1000.0, 2.0, [](double) { return 0.0; }));
-  CHECK(refusal(waves).find("leave --pulse out") != std::string::npos);
+  CHECK(refusal(waves).find("assume none") != std::string::npos);
 }
