@@ -38,8 +38,9 @@ public:
   template <class S> [[nodiscard]] S normal_force(const Evaluated<S>& e) const { return greatest_of(S(0.0), sum_of_forces(e)); }
   /// As laws of motion have it: a step that goes beyond the end of a contact's force, where it will be cut, finds the force's law
   /// go on below zero there. A kink at that place would make the step, and what is read inside it, as inexact as its end is known.
+  /// Not so for friction above 1, which makes of a force that is below zero by rounding a larger one.
   template <class S> [[nodiscard]] S smooth_normal_force(const Evaluated<S>& e) const {
-    return may_pull ? normal_force(e) : sum_of_forces(e);
+    return may_pull || mu_static > 1.0 ? normal_force(e) : sum_of_forces(e);
   }
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override {
     return std::any_of(contacts.begin(), contacts.end(), [&e](const ContactIndex& contact) {

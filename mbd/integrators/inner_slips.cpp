@@ -31,6 +31,12 @@ double top_of(const std::array<double, 3>& u) {
   return top + k_unlike_parabola * 0.25 * std::abs(second);
 }
 
+// Keeps its memory from part to part.
+State& probe_state() {
+  thread_local State state;
+  return state;
+}
+
 } // namespace
 
 // 1 where it slips.
@@ -45,7 +51,11 @@ double TimeStepping::usage_of(const Evaluation& e, const FrictionPart& part) con
 
 // What sticks at the end of the part made, t1. True if inside it some of that may have slipped.
 bool TimeStepping::note_sticking(Dynamics& dynamics, double t1) {
-  sticking_.resize(system_.frictions.size());
+  if (sticking_.size() < system_.frictions.size()) { // takes the memory that later steps need
+    sticking_.resize(system_.frictions.size());
+    glance_usage_.resize(system_.frictions.size());
+    probe_state() = start_;
+  }
   sticking_now_.assign(system_.frictions.size(), {});
   bool is_any_near = false;
   for (const FrictionPart& part : parts_) {
@@ -70,8 +80,9 @@ bool TimeStepping::slips_inside(Dynamics& dynamics, double t1, double tolerance)
   const Residual residual = residual_;
   glance_usage_.assign(system_.frictions.size(), {});
   bool is_made = true;
+  State& probe = probe_state();
   for (int i = 0; i < k_glances && is_made; ++i) {
-    State probe = start_;
+    probe = start_;
     const double end = i + 1 == k_glances ? t1 : start_.t + k_places[i] * h;
     glance_ = k_glance * h;
     try {
