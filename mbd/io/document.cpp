@@ -67,7 +67,8 @@ private:
     if (!parts || !parts->is_array_of_tables()) return;
     for (const Node& part : parts->children) {
       const std::string name = entry_name(part);
-      part_names_.push_back(part.find("repeat") ? name.substr(0, name.find('{')) : name + ".");
+      const std::size_t brace = name.find('{');
+      part_names_.push_back(!part.find("repeat") ? name + "." : brace == std::string::npos ? name + " " : name.substr(0, brace));
     }
   }
   [[nodiscard]] bool is_in_part(const std::string& name) const {

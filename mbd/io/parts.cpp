@@ -99,10 +99,14 @@ private:
     return none;
   }
 
-  static std::string identity_of(const std::string& file) {
+  // The same for a file, whatever it is called.
+  const std::string& identity_of(const std::string& file) {
+    const auto [known, is_new] = identities_.emplace(file, file);
+    if (!is_new) return known->second;
     std::error_code error;
     const std::filesystem::path path = std::filesystem::weakly_canonical(file, error);
-    return error ? file : path.string();
+    if (!error) known->second = path.string();
+    return known->second;
   }
   static std::string base_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -128,6 +132,7 @@ private:
   std::vector<Diagnostic>& problems_;
   PartEntries entries_;
   std::map<std::string, std::unique_ptr<PartFile>> files_; // by identity; null: it could not be read
+  std::unordered_map<std::string, std::string> identities_; // of files by their names: asking the system takes long
   std::vector<std::string> files_on_the_way_;              // identities, from the model's to that of the part being written
   std::vector<Node> added_;                                // arrays of the parts' entries, and their [parameters]
   std::unordered_map<std::string, std::size_t> made_at_;   // "body wagon 2.box": its index in the array of added_

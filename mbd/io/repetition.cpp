@@ -92,7 +92,7 @@ std::optional<long> repeats(const Node& repeat, const std::string& subject, std:
     return std::nullopt;
   };
   if (repeat.type == Node::Type::text && is_formula(repeat))
-    return fail("a formula cannot say how many there are, since parameters may change while a model is in use: write a number, and lay another over it where it shall be another");
+    return fail("a formula cannot say how many there are, since parameters may change while a model is in use: write a number, which may be overridden for one run");
   if (repeat.type != Node::Type::integer) return fail(std::string("expected a whole number, got ") + repeat.type_name());
   const long count = std::get<long>(repeat.scalar);
   if (count < 0) return fail("expected a whole number, 0 or larger, got " + std::to_string(count));
