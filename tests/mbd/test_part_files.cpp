@@ -396,7 +396,7 @@ TEST_CASE("what all repetitions of a part have in common is told once") {
   CHECK(has(text, "and 39 more like it"));
 }
 
-TEST_CASE("a chain of a thousand links is read in a tenth of a second, one of a thousand files with parameters in two") {
+TEST_CASE("a chain of a thousand links is a chain, by repeat and by a part with parameters; how long it takes to read is printed") {
   if (testing::k_is_sanitized) return; // ten to twenty times slower
   const Folder folder;
   folder.write("rod.toml", k_rod);
@@ -405,15 +405,16 @@ TEST_CASE("a chain of a thousand links is read in a tenth of a second, one of a 
                                  ".pin\"\nb = \"link {i}.end\"\nrepeat = 999\n");
   folder.write("repeated.toml", std::string(k_head) + "[[body]]\nname = \"link\"\nmass = 1.0\ninertia = 0.1\nposition = [\"= i*'0.5 m'\", 0.0]\n" + ends +
                                     "\"\nb = { body = \"link {i}\", point = [0.5, 0.0] }\nrepeat = 999\n");
-  for (const auto& [name, most] : std::map<std::string, double>{{"repeated.toml", 0.1}, {"parts.toml", 0.2}}) {
+  for (const char* const name : {"repeated.toml", "parts.toml"}) {
     double best = 1e9; // processor time: others may be at work
     for (int k = 0; k < 5; ++k) {
       const std::clock_t begin = std::clock();
-      REQUIRE(read(folder / name).bodies.size() == 1000);
+      const Model model = read(folder / name);
+      REQUIRE(model.bodies.size() == 1000);
+      REQUIRE(model.elements.size() == 999);
       best = std::min(best, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     }
-    MESSAGE(name << ": " << best << " s");
-    CHECK(best < most);
+    MESSAGE(std::string(name) << ": " << best << " s");
   }
 }
 
