@@ -105,6 +105,8 @@ void compile_interface(const Element& element, SystemBuilder& builder) {
   if (!joint) return builder.error("'joint': '" + e.joint + "' is no step_lap_joint");
   if (e.kinetic_friction.value_or(e.static_friction) > e.static_friction)
     return builder.error("'kinetic_friction' must not exceed 'static_friction'");
+  if (!std::isfinite(e.count * e.pressure * e.static_friction))
+    return builder.error("'count', 'pressure' and 'static_friction' make a traction that is no number: give a pressure as clamps have it");
   if (!(e.yoke_holes.empty() && e.limb_holes.empty()) && !(e.hole_diameter > 0.0))
     return builder.error("has holes: 'hole_diameter' must be more than 0 m");
   if (!e.part.empty() && !(e.part_share > 0.0)) return builder.error("names a 'part': give its 'part_share' of the limb's weight, too");

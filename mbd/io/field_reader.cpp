@@ -69,6 +69,8 @@ public:
       return path(node);
     case FieldType::quantity:
       return quantity(node);
+    case FieldType::choice:
+      return choice(node);
     default:
       return text(node);
     }
@@ -114,6 +116,13 @@ private:
   std::string text(const Node& node) const {
     if (node.type != Node::Type::text) unexpected(node);
     return node.text();
+  }
+
+  // "" is what a field holds that is not given; given, it would hide what was meant.
+  std::string choice(const Node& node) const {
+    std::string chosen = text(node);
+    if (chosen.empty() && !field_.is_required) throw BadValue{&node, "expected " + expected_text(field_) + ", got an empty text: leave the line out if none of them is meant"};
+    return chosen;
   }
 
   std::string quantity(const Node& node) const {

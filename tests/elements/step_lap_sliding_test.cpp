@@ -298,4 +298,5 @@ TEST_CASE("models that cannot be meant are refused with the place and the reason
         std::string::npos);
   CHECK(message(start + interface(rectangle(-1, -1, 2, 2), rectangle(0, 0, 1, 1), 1.0, 0.1, "kinetic_friction = 0.2"))
             .find("must not exceed") != std::string::npos);
+  CHECK(message(start + interface(rectangle(-1, -1, 2, 2), rectangle(0, 0, 1, 1), 1e308, 100.0)).find("traction that is no number") != std::string::npos);
 }
