@@ -9,6 +9,7 @@
 #include "mbd/base/shown_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <typeinfo>
@@ -350,8 +351,10 @@ void compile_joint(const Element& element, SystemBuilder& builder) {
   const auto interfaces = interfaces_of(e, builder);
   std::vector<SheetPair> sheets;
   try {
-    for (const StepLapInterface* i : interfaces)
+    for (const StepLapInterface* i : interfaces) {
       sheets.push_back(make_sheets(*i, e.limb, e.active_part, builder));
+      if (!std::isfinite(sheets.back().static_traction)) return; // its interface says so, as it does of polygons
+    }
   } catch (const PolygonError&) {
     return;
   }

@@ -104,7 +104,7 @@ TEST_CASE("a method that is blind in all its runs is contradicted by another one
   strict.push_back("--require-hold");
   const Outcome outcome = steplap_does(strict);
   CHECK(outcome.code == 4);
-  CHECK(has(outcome.out, "not to be trusted: a second method disagrees beyond both errors: dop853"));
+  CHECK(has(outcome.out, "not to be trusted: a second method disagrees beyond both errors: moreau and dop853"));
   const std::string summary = text_of(bench.at("out/pressed/summary.json"));
   CHECK(has(summary, "\"agrees\": false"));
   CHECK(has(summary, "\"verdict\": \"open\""));
