@@ -80,8 +80,9 @@ private:
     if (!reading.gravity)
       throw FileError(record.file, "whether the peaks of '" + record.file + "' have gravity in them cannot be seen: say that gravity is in none of them, or the axis that it is in");
     if (*reading.gravity == "none") return {};
-    const auto axis = static_cast<std::size_t>(reading.gravity->back() - 'x');
-    if (record.recording.layout.peaks.axis[axis] < 0)
+    const std::string letter = reading.gravity->substr(reading.gravity->starts_with('-') ? 1 : 0);
+    const std::size_t axis = letter.size() == 1 ? std::string(k_letters).find(letter) : std::string::npos;
+    if (axis >= k_axes || record.recording.layout.peaks.axis[axis] < 0)
       throw FileError(record.file, "gravity along '" + *reading.gravity + "': '" + record.file + "' tells no peaks of that axis. Say that gravity is in none if the list is without it");
     return axis;
   }
@@ -97,7 +98,8 @@ private:
       if (gravity_) a[*gravity_] = std::copysign(std::max(0.0, std::abs(a[*gravity_]) - k_gravity), a[*gravity_]);
       return a;
     }
-    if (!std::isfinite(entry.magnitude)) return a;
+    if (!std::isfinite(entry.magnitude))
+      throw FileError(record_.file, "line " + std::to_string(entry.line) + " of '" + record_.file + "' tells no peak: give it, or take the line out");
     if (!record_.pulse->axis)
       throw FileError(record_.file, "the peak in line " + std::to_string(entry.line) + " of '" + record_.file + "' has no direction: say along which axis the pulse is taken");
     a[static_cast<std::size_t>(*record_.pulse->axis - 'x')] = std::abs(entry.magnitude);
@@ -154,7 +156,7 @@ private:
   void say() {
     std::vector<std::string>& notes = record_.assumed;
     const std::string list = "Of '" + record_.file + "' only peaks are known: ";
-    notes.push_back(list + "each is taken for a " + shape_of(pulse_.shape).name + " along all axes at once, from rest to rest" +
+    notes.push_back(list + "each is taken for a " + shape_of(pulse_.shape).name + " along all axes at once, from rest to rest, and what it does not tell of an axis for nothing" +
                     (assumed_lengths_ > 0 ? ", " + counted(assumed_lengths_, "of them", "of them") + " for " + quantity_text(*pulse_.duration, "s") + " as assumed" : "") + ".");
     if (!is_signed_) notes.push_back(list + "no direction is told, so each is run both ways along every axis, one after the other; slid distances are sums over all of them.");
     if (record_.pulse->axis && record_.recording.layout.peaks.magnitude >= 0)

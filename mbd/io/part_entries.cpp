@@ -23,16 +23,6 @@ void prefix_texts(Node& node, const std::string& prefix) {
   for (Node& child : node.children) prefix_texts(child, prefix);
 }
 
-// Without a value, where `at` stands.
-Node node_at(const std::string& key, const Node& at) {
-  Node node;
-  node.key = key;
-  node.file = at.file;
-  node.line = at.line;
-  node.column = at.column;
-  return node;
-}
-
 Node text_at(const std::string& key, const Node& at, const std::string& text) {
   Node node = node_at(key, at);
   node.type = Node::Type::text;

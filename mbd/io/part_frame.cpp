@@ -39,15 +39,6 @@ void set(Node& node, const PlacedNumber& number) {
   else node.scalar = "= " + number.formula;
 }
 
-Node made_at(const std::string& key, const Node& where) {
-  Node node;
-  node.key = key;
-  node.file = where.file;
-  node.line = where.line;
-  node.column = where.column;
-  return node;
-}
-
 // Of a formula that hangs on nothing: its number, if it is in the unit.
 std::optional<double> value_without_operands(const Node& node, const std::string& unit) {
   try {
@@ -64,6 +55,15 @@ std::optional<double> value_without_operands(const Node& node, const std::string
 }
 
 } // namespace
+
+Node node_at(const std::string& key, const Node& at) {
+  Node node;
+  node.key = key;
+  node.file = at.file;
+  node.line = at.line;
+  node.column = at.column;
+  return node;
+}
 
 std::optional<PlacedNumber> placed_number(const Node& node, const std::string& unit) {
   if (node.type == Node::Type::integer) return PlacedNumber{static_cast<double>(std::get<long>(node.scalar)), ""};
@@ -136,16 +136,16 @@ void PartFrame::turn_angle(Node& node) const {
 }
 
 Node PartFrame::origin_node(const std::string& key, const Node& where) const {
-  Node node = made_at(key, where);
+  Node node = node_at(key, where);
   node.type = Node::Type::array;
-  node.children = {made_at("", where), made_at("", where)};
+  node.children = {node_at("", where), node_at("", where)};
   set(node.children[0], x_);
   set(node.children[1], y_);
   return node;
 }
 
 Node PartFrame::angle_node(const std::string& key, const Node& where) const {
-  Node node = made_at(key, where);
+  Node node = node_at(key, where);
   set(node, angle_);
   return node;
 }

@@ -14,6 +14,9 @@
 
 namespace steplap {
 
+/// Without a value, where `at` stands.
+[[nodiscard]] Node node_at(const std::string& key, const Node& at);
+
 /// A number, in SI, or a formula that gives it.
 struct PlacedNumber {
   double value = 0.0;

@@ -36,7 +36,7 @@
     put('hangs', bullets(A.hangs), A.uncertain.length ? table(['uncertain value', 'model', 'taken', 'range', 'law', 'share of the uncertainty', 'known by', 'source'], [...A.uncertain].sort((a, b) => (b.share || 0) - (a.share || 0)).map((u) =>
       [make('span', { title: String(u.path || '') }, u.name || u.path || ''), u.model, one(u.nominal, u.unit), `${one(u.low, u.unit)} to ${one(u.high, u.unit)}`, u.law || '', share(u), { text: String(u.source || 'not stated'), class: u.source === 'measured' ? 'met' : u.source === 'assumed' ? 'beyond' : u.source === 'specified' ? 'plain' : 'words' }, u.source_text || '']), [2]) : null);
   }
-  const warnings = (r) => [...A.list(r.faults), ...A.list(r.warnings), ...(A.list(r.peaks_only).length ? [`${A.list(r.peaks_only).length} shocks of this record are peaks without a waveform: no model was run with them.`] : [])];
+  const warnings = (r) => [...A.list(r.faults), ...A.list(r.warnings), ...(A.list(r.peaks_only).length && !r.events ? [`${A.list(r.peaks_only).length} shocks of this record are peaks without a waveform: no model was run with them.`] : [])];
   function sources() {
     const c = A.criteria;
     put('sources', c ? make('div', {}, make('h3', {}, `Criteria: ${c.name || ''}`), make('p', { class: 'note' }, [c.file, c.source].filter((t) => t).join('. Source: ')), c.text ? make('pre', {}, c.text) : '') : null,
