@@ -1,5 +1,6 @@
 #include "elements/catalog.h"
 
+#include "elements/buffer.h"
 #include "elements/bushing.h"
 #include "elements/coulomb_stick.h"
 #include "elements/gears.h"
@@ -32,7 +33,7 @@ const Catalogue& element_catalog() {
                   &bushing_kind(),           &unilateral_contact_kind(),
                   &circle_contact_kind(),    &segment_contact_kind(),
                   &polygon_contact_kind(),
-                  &tie_kind(),
+                  &buffer_kind(),            &tie_kind(),
                   &coulomb_stick_kind(),     &step_lap_joint_kind(),
                   &step_lap_interface_kind(),
                   &revolute_kind(),          &prismatic_kind(),

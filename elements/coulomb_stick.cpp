@@ -88,7 +88,7 @@ bool collect(const CoulombStick& e, SystemBuilder& builder, std::vector<ContactG
       return false;
     }
     geometry.push_back(contact_geometry(*contact, builder));
-    damping += static_cast<double>(contact->count) * contact->damping;
+    damping += damping_of(*contact, geometry.back(), builder);
     may_pull = may_pull || contact->law == "literal";
     contacts.push_back(*index);
     const ContactGeometry &first = geometry.front(), &last = geometry.back();

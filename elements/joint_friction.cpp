@@ -12,33 +12,60 @@ namespace {
 constexpr double k_bound_slack = 1e-13; // as in coulomb_stick.cpp
 constexpr double k_no_motion = 1e-12; // m/s or m/s²: rounding of a coordinate that a drive keeps at rest
 
-class ConstantFriction final : public FrictionElement {
+// Is the piece of the signal that holds t zero throughout?
+bool is_zero_at(const Signal& signal, double t) {
+  const std::vector<Signal::Piece>& pieces = signal.pieces();
+  const auto next = std::upper_bound(pieces.begin(), pieces.end(), t, [](double time, const Signal::Piece& p) { return time < p.start; });
+  if (next == pieces.begin()) return true;
+  const Signal::Piece& piece = *std::prev(next);
+  return piece.is_level && piece.c[0] == 0.0 && piece.harmonics.empty() && piece.modulated.empty();
+}
+
+// The sliding bound falls from what holds to what drags over some velocities v_s, as 1/(1 + (v/v_s)²) does: the law of Hess and
+// Soom, 1990. It is smooth in v and even, so that a step may look past the end of a slip.
+class CoordinateFriction final : public FrictionElement {
 public:
   RowSpec row;
-  double holds = 0.0, drags = 0.0;
+  double holds = 0.0, drags = 0.0, viscous = 0.0;
+  double per_stribeck_velocity = 0.0; ///< 1/v_s, s/m or s/rad; 0: the bound does not hang on the velocity
+  const Signal* signal = nullptr;     ///< multiplies all of them
 
   [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
-  [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
-  void slip_wrench(const Evaluation&, const FrictionState& state, const double*, double* wrench) const override {
-    wrench[0] = -drags * state.sign;
+  // Asked at events. So it is free over a piece of the signal that is zero throughout, which begins and ends with one; where a
+  // piece passes through zero, its bound is zero meanwhile.
+  [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override { return !signal || !is_zero_at(*signal, e.t); }
+  void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate, double* wrench) const override {
+    wrench[0] = sliding_force(rate[0], state, share(e.t));
   }
-  [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double* rate) const override {
-    return holds * std::abs(rate[0]);
+  [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
+    return holds * share(e.t) * std::abs(rate[0]);
   }
-  void watch_stick(const Evaluation&, const FrictionState&, const double* wrench, double* watch) const override {
-    const double bound = holds * (1.0 + k_bound_slack);
-    watch[0] = bound - wrench[0];
-    watch[1] = bound + wrench[0];
+  void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
+    watch_bounds(wrench[0], share(e.t), watch);
+  }
+  [[nodiscard]] bool trace_friction(const TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench,
+                                    Traced* watch) const override {
+    if (signal) return false;
+    const Traced whole(1.0);
+    if (rate) {
+      wrench[0] = sliding_force(rate[0], state, whole);
+      watch[0] = state.sign * rate[0];
+      watch[1] = 1.0;
+    } else {
+      watch_bounds(wrench[0], whole, watch);
+    }
+    watch[2] = 1.0;
+    return true;
   }
   void begin_slip(const Evaluation&, FrictionState& state, const double* wrench) const override {
     state.sign = wrench[0] > 0.0 ? -1 : 1;
   }
-  [[nodiscard]] FrictionBlock solve_block(const Evaluation&, const FrictionState&, const double* a, const double* b,
+  [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
                                           bool is_kinetic) const override {
     FrictionBlock block;
-    const double bound = is_kinetic ? drags : holds;
+    const double bound = share(e.t) * (is_kinetic ? sliding_bound(sliding_rate(e)) : holds);
     const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? -bound : bound);
     // Where a drive prescribes the coordinate no force changes its motion: it rests or it does not.
     block.is_inside = a[0] > 0.0 ? std::abs(wanted) <= bound * (1.0 + k_bound_slack) : std::abs(b[0]) <= k_no_motion;
@@ -46,25 +73,55 @@ public:
     block.direction[0] = wanted > 0.0 ? -1.0 : 1.0;
     return block;
   }
+
+private:
+  [[nodiscard]] double share(double t) const { return signal ? std::max(0.0, signal->value(t)) : 1.0; }
+  [[nodiscard]] double sliding_rate(const Evaluation& e) const {
+    if (viscous == 0.0 && per_stribeck_velocity == 0.0) return 0.0;
+    return std::abs(evaluate_row<false>(row, e.motion).rate);
+  }
+  /// Of a rate in the direction of the slip.
+  template <class S> [[nodiscard]] S sliding_bound(const S& rate) const {
+    S bound{drags};
+    if (per_stribeck_velocity != 0.0) {
+      const S relative = per_stribeck_velocity * rate;
+      bound = bound + (holds - drags) / (1.0 + relative * relative);
+    }
+    if (viscous != 0.0) bound = bound + viscous * rate;
+    return bound;
+  }
+  template <class S> [[nodiscard]] S sliding_force(const S& rate, const FrictionState& state, const S& share) const {
+    const S bound = sliding_bound<S>(state.sign * rate);
+    return -state.sign * (signal ? share * bound : bound);
+  }
+  template <class S> void watch_bounds(const S& wrench, const S& share, S* watch) const {
+    const double slack = holds * (1.0 + k_bound_slack);
+    const S bound = signal ? slack * share : S(slack);
+    watch[0] = bound - wrench;
+    watch[1] = bound + wrench;
+  }
 };
 
-void add_channels(SystemBuilder& builder, const ConstantFriction& friction, bool is_angle) {
+void add_channels(SystemBuilder& builder, const CoordinateFriction& friction, bool is_angle) {
   const int f = builder.next_friction(), slot = builder.next_friction_row();
   const auto* row = &friction.row;
   builder.add_channel("friction", is_angle ? "N m" : "N", {"friction on a along the coordinate", "positive: towards larger values"},
                       [slot](const Snapshot& s) { return s.friction_force[slot]; });
   builder.add_channel("slip_rate", is_angle ? "rad/s" : "m/s", {"rate of the coordinate", "positive: it grows"},
                       [row](const Snapshot& s) { return evaluate_row<false>(*row, s.motion).rate; });
-  builder.add_channel("mode", "", {"what the friction does", "", "1 sticks, 2 slips"},
+  builder.add_channel("mode", "", {"what the friction does", "", "0 free, 1 sticks, 2 slips"},
                       [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });
 }
 
 void compile_joint_friction(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const JointFriction&>(element);
-  if (e.drags.value_or(e.holds) > e.holds) return builder.error("'drags' must not exceed 'holds'");
+  const double drags = e.drags.value_or(e.holds);
+  if (drags > e.holds) return builder.error("'drags' must not exceed 'holds'");
+  if (e.stribeck_velocity && !(drags < e.holds))
+    return builder.error("'stribeck_velocity' says how the friction falls from 'holds' to 'drags': give 'drags', below 'holds'");
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
   if (a.body == b.body) return builder.error("holds a body against itself: name markers on two different bodies");
-  auto friction = std::make_unique<ConstantFriction>();
+  auto friction = std::make_unique<CoordinateFriction>();
   RowSpec& row = friction->row;
   row.a = a.body;
   row.b = b.body;
@@ -79,7 +136,10 @@ void compile_joint_friction(const Element& element, SystemBuilder& builder) {
   if (e.coordinate == "distance" && (builder.marker_position(a) - builder.marker_position(b)).norm() < 1e-12)
     return builder.error("its ends coincide, so its direction is undefined: move a marker");
   friction->holds = e.holds;
-  friction->drags = e.drags.value_or(e.holds);
+  friction->drags = drags;
+  friction->viscous = e.viscous;
+  friction->per_stribeck_velocity = e.stribeck_velocity ? 1.0 / *e.stribeck_velocity : 0.0;
+  friction->signal = builder.signal(e.signal);
   add_channels(builder, *friction, e.coordinate == "angle");
   builder.add_friction(std::move(friction));
 }
@@ -91,8 +151,8 @@ const ElementKind& joint_friction_kind() {
     using T = JointFriction;
     ElementKind k;
     k.name = "joint_friction";
-    k.doc = "Dry friction with a constant bound on a coordinate of a against b, as of a preloaded bearing or guide: "
-            "sticks exactly while it takes no more than 'holds'. It does not follow the joint's reaction.";
+    k.doc = "Dry friction with a bound of its own on a coordinate of a against b, as of a preloaded bearing or guide, a brake or a "
+            "clutch: sticks exactly while it takes no more than 'holds'. It does not follow the joint's reaction.";
     FieldTable& f = k.fields;
     f.add("a", &T::a).as(FieldType::marker).required().doc("marker or body that is held");
     f.add("b", &T::b).as(FieldType::marker).doc("marker whose axes count");
@@ -101,6 +161,11 @@ const ElementKind& joint_friction_kind() {
     f.add("holds", &T::holds).in("N m|N").positive().required().doc(
         "largest couple or force that it takes sticking");
     f.add("drags", &T::drags).in("N m|N").not_negative().doc("couple or force while it slides; default: as holds");
+    f.add("stribeck_velocity", &T::stribeck_velocity).in("rad/s|m/s").positive().doc(
+        "rate v_s over which it falls: drags + (holds - drags)/(1 + (rate/v_s)^2); default: at once");
+    f.add("viscous", &T::viscous).in("N m s/rad|N s/m").not_negative().doc("added while it slides, times the rate");
+    f.add("signal", &T::signal).as(FieldType::signal).doc(
+        "multiplies holds, drags and viscous, as a brake's pressure does; below zero it counts as zero");
     k.holds<T>();
     k.compile = compile_joint_friction;
     return k;

@@ -1,6 +1,7 @@
 #include "elements/limit.h"
 
 #include "elements/contact_laws.h"
+#include "elements/restitution.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -100,8 +101,9 @@ void add_stops(const Limit& e, SystemBuilder& builder, int a, int b, const Measu
   const double zero = is_absolute ? 0.0 : now;
   const double never = std::numeric_limits<double>::max(); // a stop that is not there
   StopsLaw law;
-  law.lower = {e.stiffness, e.damping, e.lower ? stop_at(zero + *e.lower, now, 1.0) : -never};
-  law.upper = {e.stiffness, e.damping, e.upper ? -stop_at(zero + *e.upper, now, -1.0) : -never};
+  const double damping = contact_damping(e.damping, e.restitution, e.stiffness, a, b, measure, builder);
+  law.lower = {e.stiffness, damping, e.lower ? stop_at(zero + *e.lower, now, 1.0) : -never};
+  law.upper = {e.stiffness, damping, e.upper ? -stop_at(zero + *e.upper, now, -1.0) : -never};
   add(builder, a, b, measure, law, is_angle);
 }
 
@@ -109,6 +111,7 @@ void compile_limit(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const Limit&>(element);
   if (!e.lower && !e.upper) return builder.error("stops nothing: give 'lower', 'upper' or both");
   if (e.lower && e.upper && !(*e.lower < *e.upper)) return builder.error("'lower' must be less than 'upper'");
+  if (e.restitution && e.damping != 0.0) return builder.error("give 'damping' or 'restitution', not both");
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
   if (a.body == b.body) return builder.error("stops a body against itself: name markers on two different bodies");
   if (e.coordinate == "angle") return add_stops(e, builder, a.body, b.body, AngleMeasure{}, false, true);
@@ -139,6 +142,8 @@ const ElementKind& limit_kind() {
     f.add("upper", &T::upper).in("rad|m").doc("upper stop");
     f.add("stiffness", &T::stiffness).in("N m/rad|N/m").positive().required().doc("of a stop");
     f.add("damping", &T::damping).in("N m s/rad|N s/m").not_negative().doc("of a stop");
+    f.add("restitution", &T::restitution).positive().at_most(1.0).doc(
+        "instead of damping: rate after a blow over that before it, of the two bodies alone in the reference pose");
     k.holds<T>();
     k.compile = compile_limit;
     return k;

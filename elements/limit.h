@@ -17,6 +17,7 @@ struct Limit : Element {
   std::string coordinate = "angle"; ///< angle, x, y (marker b's axes), distance
   std::optional<double> lower, upper; ///< from the reference pose; distance: the distance itself
   double stiffness = 0.0, damping = 0.0;
+  std::optional<double> restitution; ///< instead of damping (restitution.h)
 };
 
 [[nodiscard]] const ElementKind& limit_kind();

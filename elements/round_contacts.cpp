@@ -1,6 +1,7 @@
 #include "elements/round_contacts.h"
 
 #include "elements/contact_laws.h"
+#include "elements/restitution.h"
 #include "elements/round_measures.h"
 #include "mbd/system/system.h"
 
@@ -29,7 +30,9 @@ template <class Measure>
 void add_with_law(const RoundContact& e, int a, int b, const Measure& measure, double offset, SystemBuilder& builder) {
   if (e.law == "hunt_crossley")
     add(a, b, measure, HuntCrossleyContact{e.stiffness, e.exponent, e.dissipation, offset}, builder);
-  else add(a, b, measure, KelvinVoigtContact{e.stiffness, e.damping, offset}, builder);
+  else
+    add(a, b, measure,
+        KelvinVoigtContact{e.stiffness, contact_damping(e.damping, e.restitution, e.stiffness, a, b, measure, builder), offset}, builder);
 }
 
 bool check(const RoundContact& e, SystemBuilder& builder) {
@@ -41,6 +44,9 @@ bool check(const RoundContact& e, SystemBuilder& builder) {
   if (builder.marker(e.a).body == builder.marker(e.b).body)
     fail("touches its own body: name markers on two different bodies");
   if (e.law == "hunt_crossley" && e.damping != 0.0) fail("Hunt-Crossley takes 'dissipation' instead of 'damping'");
+  if (e.restitution && e.damping != 0.0) fail("give 'damping' or 'restitution', not both");
+  if (e.restitution && e.law != "kelvin_voigt")
+    fail("'restitution' is of law = \"kelvin_voigt\", whose rebound does not hang on the speed");
   if (e.law != "hunt_crossley" && (e.exponent != 1.0 || e.dissipation != 0.0))
     fail("'exponent' and 'dissipation' belong to law = \"hunt_crossley\"");
   return !is_bad;
@@ -119,6 +125,8 @@ template <class T> void add_fields(FieldTable& f) {
   f.add("law", &T::law).one_of({"kelvin_voigt", "hunt_crossley"}).doc("kelvin_voigt: max(0, -k d - c d'); hunt_crossley");
   f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc("k (Hunt-Crossley: per m^exponent)");
   f.add("damping", &T::damping).in("N s/m").not_negative().doc("c");
+  f.add("restitution", &T::restitution).positive().at_most(1.0).doc(
+      "instead of damping: speed after a blow over that before it, of the two bodies alone in the reference pose");
   f.add("exponent", &T::exponent).positive().doc("Hunt-Crossley: power of the depth");
   f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
 }

@@ -22,6 +22,7 @@ struct RoundContact : Element {
   std::string a, b = "ground";
   std::string law = "kelvin_voigt";
   double stiffness = 0.0, damping = 0.0;
+  std::optional<double> restitution; ///< instead of damping (restitution.h)
   double exponent = 1.0;    ///< Hunt–Crossley n
   double dissipation = 0.0; ///< Hunt–Crossley α
 };

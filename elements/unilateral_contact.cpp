@@ -2,6 +2,7 @@
 
 #include "elements/contact_laws.h"
 #include "elements/ended_contact.h"
+#include "elements/restitution.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/system/system.h"
 
@@ -66,6 +67,9 @@ bool check(const UnilateralContact& e, SystemBuilder& builder) {
   if (e.normal.norm() == 0.0) fail("'normal' has no direction");
   if (e.axis && e.axis->norm() == 0.0) fail("'axis' has no direction");
   if (e.law == "hunt_crossley" && e.damping != 0.0) fail("Hunt-Crossley takes 'dissipation' instead of 'damping'");
+  if (e.restitution && e.damping != 0.0) fail("give 'damping' or 'restitution', not both");
+  if (e.restitution && e.law != "kelvin_voigt")
+    fail("'restitution' is of law = \"kelvin_voigt\", whose rebound does not hang on the speed");
   if (e.law != "hunt_crossley" && (e.exponent != 1.0 || e.dissipation != 0.0))
     fail("'exponent' and 'dissipation' belong to law = \"hunt_crossley\"");
   if (e.ends && !(e.ends->x() < e.ends->y())) fail("'ends' are the lower and the higher end: the first must be less");
@@ -88,14 +92,15 @@ void compile_contact(const Element& element, SystemBuilder& builder) {
   if (e.gap) offset = now - *e.gap;
   if (e.interference) offset = now + *e.interference;
   if (e.preload) offset = now + portable::pow(*e.preload / k, 1.0 / e.exponent);
-  const KelvinVoigtContact kelvin_voigt{k, n * e.damping, offset};
+  const double c = damping_of(e, g, builder);
+  const KelvinVoigtContact kelvin_voigt{k, c, offset};
   if (e.ends) {
-    if (e.law == "literal") add_ended(g, *e.ends, LiteralContact{k, n * e.damping, offset}, builder);
+    if (e.law == "literal") add_ended(g, *e.ends, LiteralContact{k, c, offset}, builder);
     else if (e.law == "hunt_crossley") add_ended(g, *e.ends, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
     else add_ended(g, *e.ends, kelvin_voigt, builder);
     return;
   }
-  if (e.law == "literal") add(g, g.gap, LiteralContact{k, n * e.damping, offset}, builder);
+  if (e.law == "literal") add(g, g.gap, LiteralContact{k, c, offset}, builder);
   else if (e.law == "hunt_crossley")
     add(g, g.gap, HuntCrossleyContact{k, e.exponent, e.dissipation, offset}, builder);
   else if (g.gap.is_axis_in_a) add(g, g.gap, kelvin_voigt, builder);
@@ -119,6 +124,11 @@ ContactGeometry contact_geometry(const UnilateralContact& contact, const SystemB
   return g;
 }
 
+double damping_of(const UnilateralContact& contact, const ContactGeometry& geometry, SystemBuilder& builder) {
+  const double n = static_cast<double>(contact.count);
+  return contact_damping(n * contact.damping, contact.restitution, n * contact.stiffness, geometry.a, geometry.b, geometry.gap, builder);
+}
+
 const ElementKind& unilateral_contact_kind() {
   static const ElementKind kind = [] {
     using T = UnilateralContact;
@@ -136,6 +146,8 @@ const ElementKind& unilateral_contact_kind() {
     f.add("stiffness", &T::stiffness).in("N/m").positive().required().doc(
         "k of one element (Hunt-Crossley: per m^exponent)");
     f.add("damping", &T::damping).in("N s/m").not_negative().doc("c of one element");
+    f.add("restitution", &T::restitution).positive().at_most(1.0).doc(
+        "instead of damping: speed after a blow over that before it, of the two bodies alone in the reference pose");
     f.add("exponent", &T::exponent).positive().doc("Hunt-Crossley: power of the depth");
     f.add("dissipation", &T::dissipation).in("s/m").not_negative().doc("Hunt-Crossley: factor 1 - alpha d'");
     f.add("count", &T::count).at_least(1).doc("equal elements side by side");

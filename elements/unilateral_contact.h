@@ -21,6 +21,7 @@ struct UnilateralContact : Element {
   std::optional<Vec2> axis;       ///< contact axis in marker a's axes
   double stiffness = 0.0, damping = 0.0;
   std::string law = "kelvin_voigt";
+  std::optional<double> restitution; ///< instead of damping (restitution.h)
   double exponent = 1.0;          ///< Hunt–Crossley n
   double dissipation = 0.0;       ///< Hunt–Crossley α
   std::optional<double> preload;  ///< force in the reference pose
@@ -37,6 +38,8 @@ struct ContactGeometry {
 };
 [[nodiscard]] ContactGeometry contact_geometry(const UnilateralContact& contact,
                                                const SystemBuilder& builder);
+/// c, N s/m, of all its elements: as given, or by its restitution, of which an error is noted if it cannot be.
+[[nodiscard]] double damping_of(const UnilateralContact& contact, const ContactGeometry& geometry, SystemBuilder& builder);
 
 [[nodiscard]] const ElementKind& unilateral_contact_kind();
 

@@ -22,6 +22,8 @@ void rotational_spring_damper(Sketch& s) { s.draw({"arc", "spring", "couple", s.
 
 void bushing(Sketch& s) { s.draw({"bushing", "", "", s.places(), {}, {}}); }
 
+void buffer(Sketch& s) { s.draw({"spring", "both", "force", s.places(), s.direction("axis"), {}}); }
+
 void tie(Sketch& s) { s.draw({"spring", "tie", "force", s.places(), s.direction("axis"), {}}); }
 
 void rope(Sketch& s) {
@@ -147,7 +149,7 @@ using Symbol = void (*)(Sketch&);
 Symbol symbol_of(const std::string& kind) {
   static const std::map<std::string, Symbol> symbols{
       {"spring_damper", spring_damper}, {"rotational_spring_damper", rotational_spring_damper},
-      {"bushing", bushing}, {"tie", tie}, {"rope", rope}, {"wound_rope", wound_rope}, {"load", load},
+      {"bushing", bushing}, {"buffer", buffer}, {"tie", tie}, {"rope", rope}, {"wound_rope", wound_rope}, {"load", load},
       {"unilateral_contact", unilateral_contact}, {"polygon_contact", polygon_contact}, {"circle_contact", circle_contact},
       {"segment_contact", segment_contact}, {"coulomb_stick", friction},
       {"step_lap_joint", step_lap_joint}, {"step_lap_interface", nothing},

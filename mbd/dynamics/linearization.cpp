@@ -85,6 +85,7 @@ void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
   for (const InnerJacobian& part : inner_parts_)
     add_inner(part);
   for (std::size_t r = 0; r < layout_->active.size(); ++r) add_row(r);
+  if (!layout_->sliding.empty()) motion_.assign(dynamics_->motion().begin(), dynamics_->motion().end());
   for (const int f : layout_->sliding) add_sliding(f);
   add_transport();
   if (layout_->has_mechanisms()) reduce();
@@ -262,6 +263,7 @@ void Linearization::add_sliding(int f) {
   friction.slip_wrench(dynamics_->evaluation(), state, sliding.rate, sliding.wrench);
   differentiate_by_rate(sliding);
   if (sliding.count == 3) differentiate_by_pose(sliding);
+  else differentiate_by_value(sliding);
   add_sliding_rows(sliding);
   take_out_transport(sliding);
   add_normal_forces(sliding);
@@ -282,7 +284,6 @@ void Linearization::differentiate_by_rate(Sliding& sliding) const {
 // changed one at a time by moving a.
 void Linearization::differentiate_by_pose(Sliding& sliding) {
   const RowSpec* const specs = sliding.specs;
-  motion_.assign(dynamics_->motion().begin(), dynamics_->motion().end());
   sliding.moved.motion = motion_.data();
   Motion<double>& a = motion_[specs[0].a];
   const Motion<double>& b = motion_[specs[0].b];
@@ -309,6 +310,29 @@ void Linearization::differentiate_by_pose(Sliding& sliding) {
       for (int k = 0; k < 6; ++k)
         sliding.by_state[r][k] += (ends[0][r] - ends[1][r]) / (2.0 * k_pose_step) * sliding.rows[c].j[k].v;
   }
+  sliding.moved.motion = dynamics_->evaluation().motion;
+}
+
+// Of one row the wrench may hang on the row's own value, as that of a buffer does on its depth: a is moved along the gradient.
+void Linearization::differentiate_by_value(Sliding& sliding) {
+  const RowSpec& spec = *sliding.specs;
+  sliding.moved.motion = motion_.data();
+  Motion<double>& a = motion_[spec.a];
+  const Motion<double> start = a;
+  const RowGradient<double> gradient = row_gradient(spec, start, motion_[spec.b]);
+  const double* const j = gradient.side(0);
+  const double square = j[0] * j[0] + j[1] * j[1] + j[2] * j[2];
+  double ends[2];
+  for (int end = 0; end < 2; ++end) {
+    const double step = (end == 0 ? k_pose_step : -k_pose_step) / square;
+    a.x = start.x + step * j[0];
+    a.y = start.y + step * j[1];
+    set_angle(a, start.theta + step * j[2]);
+    sliding.friction.slip_wrench(sliding.moved, sliding.state, sliding.rate, &ends[end]);
+  }
+  a = start;
+  const double slope = (ends[0] - ends[1]) / (2.0 * k_pose_step);
+  for (int k = 0; k < 6; ++k) sliding.by_state[0][k] += slope * sliding.rows[0].j[k].v;
   sliding.moved.motion = dynamics_->evaluation().motion;
 }
 

@@ -84,6 +84,7 @@ private:
   void add_sliding(int friction);
   void differentiate_by_rate(Sliding& sliding) const;
   void differentiate_by_pose(Sliding& sliding);
+  void differentiate_by_value(Sliding& sliding);
   void put_along(const Sliding& sliding, int k, int cluster, int coordinate, double by_pose, double by_velocity);
   void add_sliding_rows(const Sliding& sliding);
   void take_out_transport(const Sliding& sliding);

@@ -210,7 +210,7 @@ void EventHandler::move_on(State& state, int f, const FrictionState& from) {
   element.aim(friction, &m.rate);
 }
 
-// Friction gains or loses its normal force with the contacts. True if any does.
+// Friction gains or loses its normal force with contacts and signals. True if any does.
 bool EventHandler::update_loading(State& state) {
   bool is_any = false;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
@@ -436,7 +436,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
       settled_ = settled;
     }
   }
-  if (is_contact_changed) {
+  if (is_contact_changed || fired.empty()) { // at a breakpoint a signal may begin or cease to press
     modes_.evaluate(state);
     if (update_loading(state)) {
       modes_.forget_evaluation();

@@ -144,9 +144,11 @@ inline std::vector<ConformanceScene> friction_scenes() {
      "static_friction = 0.3\nclearance = 0.01\n"}};
 }
 
-/// Wound ropes and ties.
+/// Wound ropes, ties and buffers.
 inline std::vector<ConformanceScene> rope_scenes() {
   return {
+    {"buffer", "a = \"A\"\nb = \"B\"\naxis = [@+0.6, 0.8]\nloading = [[0.0, 0.0], [1.0, 900.0]]\nunloading = [[0.0, 0.0], [2.0, 600.0]]\n"
+     "gap = -0.05\n"},
     {"wound_rope", "a = \"A\"\nb = \"B\"\nradius_a = @+0.12\nradius_b = @-0.2\nstiffness = 800.0\ndamping = 30.0\npretension = 9.0\n"},
     {"wound_rope", // crossed
      "a = \"A\"\nb = \"B\"\nradius_a = @+0.1\nradius_b = @+0.1\nstiffness = 800.0\ndamping = 30.0\nslack = 0.01\n", false, true},

@@ -1,0 +1,103 @@
+// `restitution` of contacts: the damper that gives it, and the rebound that follows.
+#include "elements/restitution.h"
+#include "tests/physics/scene.h"
+#include "tests/random/random_number.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+
+using namespace steplap;
+using namespace steplap::testing;
+
+namespace {
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
+std::string body(const std::string& name, double mass, double inertia, double x, double y, double vx, double vy) {
+  return "[[body]]\nname = \"" + name + "\"\nmass = " + number(mass) + "\ninertia = " + number(inertia) + "\nposition = [" + number(x) +
+         ", " + number(y) + "]\nvelocity = [" + number(vx) + ", " + number(vy) + "]\n";
+}
+
+const std::string k_no_gravity = "gravity = [0.0, 0.0]\n";
+
+} // namespace
+
+TEST_CASE("the damping ratio of a restitution: limits, and the way back") {
+  CHECK(restitution_of(0.0) == 1.0);
+  CHECK(restitution_of(1.0) == doctest::Approx(std::exp(-2.0)).epsilon(1e-14));
+  CHECK(restitution_of(1e3) == doctest::Approx(0.25e-6).epsilon(1e-5)); // 1/(4ζ²)
+  CHECK(damping_for_restitution(1.0, 1e5, 3.0) == 0.0);
+  for (double e = 0.999; e > 1e-4; e *= 0.83) {
+    const double c = damping_for_restitution(e, 2e5, 3.0);
+    CHECK(restitution_of(c / (2.0 * std::sqrt(2e5 * 3.0))) == doctest::Approx(e).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("random blows of two bodies along a contact give back what was asked") {
+  random::RandomNumber draw(71);
+  for (int i = 0; i < 200; ++i) {
+    const double e = draw.between(0.05, 1.0);
+    const double m = draw.decades(-1.0, 3.0);
+    const double j = m * draw.decades(-2.0, 1.0);
+    const double k = draw.decades(4.0, 9.0);
+    const double v = draw.decades(-2.0, 1.0);
+    const double side = draw.between(-0.5, 0.5);
+    CAPTURE(i);
+    CAPTURE(e);
+    // A blow beside the centre turns the body: the gap's rate is that of the marker. It is over before the angle counts.
+    const double effective = 1.0 / (1.0 / m + side * side / j), length = 3.2 * std::sqrt(effective / k); // half a period and more
+    const double turned = v * length * std::abs(side) / j * effective;
+    if (turned > 1e-5) continue; // a stiff blow of a heavy body, no swing
+    const Run r = run(k_no_gravity + body("ball", m, j, 0.0, 0.0, 0.0, -v) + "[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = { body = \"ball\", at = [" +
+                          number(side) + ", 0.0] }\nstiffness = " + number(k) + "\nrestitution = " + number(e) + "\n",
+                      {"dop853", 1e-11, 3.0 * length, 3.0 * length});
+    const double after = r.last("ball.vy") + side * r.last("ball.omega");
+    CHECK(after / v == doctest::Approx(e).epsilon(1e-4)); // the lever turns by up to `turned`
+  }
+}
+
+TEST_CASE("two free balls, a ball in a ring, a stop: the effective mass is that of both") {
+  const double e = 0.6;
+  const std::string balls = k_no_gravity + body("a", 1.0, 1.0, 0.0, 0.0, 2.0, 0.0) + body("b", 3.0, 1.0, 0.25, 0.0, -1.0, 0.0);
+  const auto parting = [](const Run& r) { return r.last("b.vx") - r.last("a.vx"); };
+  const Run circles = run(balls + "[[element]]\nkind = \"circle_contact\"\nname = \"c\"\na = \"a\"\nb = \"b\"\nradius_a = 0.1\nradius_b = 0.1\nstiffness = 1e6\nrestitution = 0.6\n",
+                          {"dop853", 1e-11, 0.1});
+  CHECK(parting(circles) == doctest::Approx(3.0 * e).epsilon(1e-9));
+  const Run stop = run(balls + "[[element]]\nkind = \"limit\"\nname = \"c\"\na = \"b\"\nb = \"a\"\ncoordinate = \"distance\"\nlower = 0.2\nstiffness = 1e6\nrestitution = 0.6\n",
+                       {"dop853", 1e-11, 0.1});
+  CHECK(parting(stop) == doctest::Approx(3.0 * e).epsilon(1e-9));
+  const Run plane = run(balls + "[[element]]\nkind = \"unilateral_contact\"\nname = \"c\"\na = \"b\"\nb = \"a\"\nnormal = [1.0, 0.0]\ngap = 0.05\nstiffness = 2.5e5\ncount = 4\nrestitution = 0.6\n",
+                        {"dop853", 1e-11, 0.1});
+  CHECK(parting(plane) == doctest::Approx(3.0 * e).epsilon(1e-9));
+}
+
+TEST_CASE("the stiffer the floor, the nearer the heights of a bouncing ball come to e²: the weight counts less") {
+  double before = 1.0;
+  for (const double stiffness : {1e5, 1e7, 1e9}) {
+    const Run r = run(body("ball", 1.0, 1.0, 0.0, 1.0, 0.0, 0.0) + "[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = \"ball\"\nstiffness = " +
+                          number(stiffness) + "\nrestitution = 0.7\n",
+                      {"dop853", 1e-12, 1.2});
+    const std::vector<double> closes = r.event_times("floor", "closes"), opens = r.event_times("floor", "opens");
+    REQUIRE(closes.size() >= 2);
+    const double first = std::sqrt(2.0 / 9.81), flight = closes[1] - closes[0], error = std::abs(flight / (2.0 * first) - 0.7);
+    CHECK(error < 0.2 * before);
+    before = error;
+  }
+}
+
+TEST_CASE("what cannot be is refused") {
+  const auto text = [](const std::string& fields) {
+    return body("ball", 1.0, 1.0, 0.0, 0.0, 0.0, 0.0) + "[[element]]\nkind = \"unilateral_contact\"\nname = \"floor\"\na = \"ball\"\nstiffness = 1e5\n" + fields +
+           "[simulation]\nstep = 1e-3\n";
+  };
+  CHECK_THROWS_AS((void)scene(text("restitution = 0.0\n")), ModelError);
+  CHECK_THROWS_AS((void)scene(text("restitution = 1.01\n")), ModelError);
+  CHECK_THROWS_AS((void)compile(scene(text("restitution = 0.5\ndamping = 3.0\n"))), ModelError);
+  CHECK_THROWS_AS((void)compile(scene(text("restitution = 0.5\nlaw = \"literal\"\n"))), ModelError);
+}
