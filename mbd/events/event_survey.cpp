@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <ranges>
 #include <utility>
 
 namespace steplap {
@@ -224,6 +226,12 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
     is_any_unarmed = is_any_unarmed || !armed_[i];
   }
   begin_parts(integrator, dynamics, is_any_unarmed);
+  // Values that were never positive up to low_: the mode chosen is not the one the motion takes. The event is at once; the handler
+  // decides anew a hair later. No step ends with a value below zero, nor does one that another event cuts.
+  const auto every_slot = std::views::iota(0, slots_);
+  const auto was_never_positive = [this](int slot) {
+    return low_.theta < 1.0 ? armed_[slot] == 0 && low_.watch[slot] < -slack_[slot] : low_.watch[slot] < 0.0;
+  };
   for (int parts = 0; !parts_.empty(); ++parts) {
     const Part part = parts_.back();
     parts_.pop_back();
@@ -232,13 +240,14 @@ EventFinder::Bracket EventFinder::survey(Integrator& integrator, Dynamics& dynam
       high_ = low_;
       return Bracket::at_once;
     }
-    if (look_through(integrator, dynamics, part)) return bracket_of_fall();
+    if (look_through(integrator, dynamics, part)) {
+      const bool is_any_late = low_.theta >= k_at_once && std::any_of(every_slot.begin(), every_slot.end(), was_never_positive);
+      if (!is_any_late) return bracket_of_fall();
+      break;
+    }
   }
-  // Values that were never positive: the mode chosen is not the one the motion takes. The event
-  // is at once; the handler decides anew a hair later. No step ends with a value below zero.
   fired_.clear();
-  for (int i = 0; i < slots_; ++i)
-    if (low_.watch[i] < 0.0) fired_.push_back(i);
+  std::copy_if(every_slot.begin(), every_slot.end(), std::back_inserter(fired_), was_never_positive);
   if (fired_.empty()) return Bracket::none;
   high_.theta = k_at_once;
   return Bracket::at_once;

@@ -85,6 +85,7 @@ TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
       {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"study/needs.cpp", "what is made rigid is welded"}}},
       {"limit", {{"run/report_json.cpp", "of a criterion"}, {"tools/steplap/run_screen.cpp", "of a criterion"}, {"assess/static_json.cpp", "of a criterion"}}},
       {"load", {{"assess/static_json.cpp", "an acceleration of a proof"}}},
+      {"buffer", {{"mbd/model/shunting_signal.cpp", "a field"}}},
       {"rope", {{"run/story.cpp", "what a rope does is told in words of its own: it goes slack"}}},
       {"distance", {{"elements/motor.cpp", "a coordinate"}, {"elements/prescribed_motion.cpp", "a coordinate"},
                     {"elements/limit.cpp", "a coordinate"}, {"elements/joint_friction.cpp", "a coordinate"}}},

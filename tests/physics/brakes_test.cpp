@@ -138,6 +138,27 @@ TEST_CASE("Stribeck's friction: a coasting block stops when the integral of m/f 
   }
 }
 
+TEST_CASE("load and brake that one signal begins: it slips from there on, also where another element's event cuts the first step") {
+  // Pushed by 17 s, held by 9 s and dragged by 8 s: m v = 9 ∫ s. At the beginning all are zero, and nothing holds a hair later.
+  const std::string pushed = k_block + k_guide +
+                             "holds = 9.0\ndrags = 8.0\nsignal = \"s\"\n[[signal]]\nkind = \"triangle\"\nname = \"s\"\npeak = 1.0\nstart = 0.3\nduration = 1.0\n"
+                             "[[signal]]\nkind = \"scaled\"\nname = \"f\"\nsignal = \"s\"\nfactor = 17.0\n"
+                             "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"block\"\nforce_x = \"f\"\n";
+  for (int i = 0; i < 40; ++i) {
+    // A second mass meets a spring some time after the beginning, sooner or later than the first step would have ended.
+    const double meets = 0.3 + 0.05 * std::pow(10.0, -0.1 * i);
+    const std::string other = "[[body]]\nname = \"other\"\nmass = 1.0\ninertia = 1.0\nposition = [0.0, 9.0]\nvelocity = [-1.0, 0.0]\n"
+                              "[[element]]\nkind = \"unilateral_contact\"\nname = \"stop\"\na = \"other\"\nnormal = [1.0, 0.0]\nstiffness = 1e4\ngap = " +
+                              std::to_string(meets) + "\n";
+    for (const char* method : k_methods) {
+      CAPTURE(method);
+      CAPTURE(meets);
+      const Run r = run("gravity = [0.0, 0.0]\n" + pushed + other, {method, 1e-9, 0.8});
+      CHECK(std::abs(r.last("block.vx") - 9.0 * 0.25 / 2.0) < 1e-7);
+    }
+  }
+}
+
 TEST_CASE("time stepping brakes as the methods that follow events do, with the error of its order") {
   const std::string text = wheel("wheel", 0.5, 10.0) +
                            "[[signal]]\nkind = \"trapezoid\"\nname = \"pressure\"\npeak = 1.0\nstart = 0.1\nduration = 6.0\nrise = 0.2\nfall = 1.0\n" +
