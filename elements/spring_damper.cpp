@@ -32,6 +32,8 @@ bool check(const SpringDamper& e, SystemBuilder& builder) {
                   "'gap' and tables exclude each other: put the dead band into the table");
   is_bad |= fails(std::max(e.force_table.size(), e.damping_table.size()) > PiecewiseLinear::k_most_points,
                   "a table may have at most 65536 points");
+  is_bad |= fails(e.between != "lines" && e.force_table.empty() && e.damping_table.empty(),
+                  "'between' says how the points of a table are joined: give a 'force_table' or a 'damping_table'");
   is_bad |= fails(e.stiffness == 0.0 && e.damping == 0.0 && e.force_table.empty() &&
                       e.damping_table.empty(),
                   "gives no force: set 'stiffness', 'damping' or a table");
@@ -71,8 +73,8 @@ void add_with_law(const SpringDamper& e, SystemBuilder& builder, int a, int b, c
     auto spring = e.force_table, damper = e.damping_table;
     if (spring.empty()) spring = {{-1.0, -e.stiffness}, {1.0, e.stiffness}};
     if (damper.empty()) damper = {{-1.0, -e.damping}, {1.0, e.damping}};
-    add(builder, a, b, measure,
-        TabulatedSpring{PiecewiseLinear(spring), PiecewiseLinear(damper), free, n});
+    if (e.between == "curve") add(builder, a, b, measure, SmoothSpring{SmoothCurve(spring), SmoothCurve(damper), free, n});
+    else add(builder, a, b, measure, TabulatedSpring{PiecewiseLinear(spring), PiecewiseLinear(damper), free, n});
   } else if (e.gap > 0.0) {
     add(builder, a, b, measure, GapSpring{k, c, free, 0.5 * e.gap});
   } else if constexpr (std::is_same_v<Measure, AxisMeasure>) {
@@ -133,6 +135,8 @@ const ElementKind& spring_damper_kind() {
     f.add("gap", &T::gap).in("m").not_negative().doc("width of a dead band around the free length");
     f.add("force_table", &T::force_table).in("m", "N").doc("[d, -f] pairs instead of stiffness, linear between");
     f.add("damping_table", &T::damping_table).in("m/s", "N").doc("[d', -f] pairs instead of damping");
+    f.add("between", &T::between).one_of({"lines", "curve"}).doc(
+        "how tables go from point to point: straight, each corner an event; or the cubic spline, smooth and without events");
     k.holds<T>();
     k.compile = compile_spring_damper;
     return k;

@@ -18,6 +18,7 @@ struct SpringDamper : Element {
   double gap = 0.0;                  ///< width of the dead band around the free length
   std::vector<Vec2> force_table;     ///< (δ, −f) instead of stiffness
   std::vector<Vec2> damping_table;   ///< (δ̇, −f) instead of damping
+  std::string between = "lines";     ///< points of the tables: lines, whose corners are events, or a curve
   long count = 1;
 };
 

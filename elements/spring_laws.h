@@ -1,4 +1,4 @@
-// Laws of springs and dampers for LawGroup: linear, with a dead band, and from tables.
+// Laws of springs and dampers for LawGroup: linear, with a dead band, and from tables, straight between points or smooth.
 #pragma once
 
 #include "mbd/system/law_group.h"
@@ -120,6 +120,96 @@ private:
   std::vector<Vec2> points_;
   std::vector<double> primitive_; ///< from the first point to each
   double at_zero_ = 0.0;
+};
+
+/// Smooth characteristic y(x) through points: the cubic spline that has two continuous derivatives and no curvature at its ends, beyond
+/// which it goes on straight.
+class SmoothCurve {
+public:
+  SmoothCurve() = default;
+  /// At least two points, ascending in x.
+  explicit SmoothCurve(std::vector<Vec2> points) : points_(std::move(points)) {
+    find_curvatures();
+    primitive_.resize(points_.size());
+    for (std::size_t i = 1; i < points_.size(); ++i) primitive_[i] = primitive_[i - 1] + from_left(i - 1, points_[i].x() - points_[i - 1].x());
+    at_zero_ = primitive(0.0);
+  }
+  template <class S> [[nodiscard]] S value(const S& x) const {
+    const std::size_t i = piece_at(value_of(x));
+    const Coefficients c = coefficients(i);
+    const S d = x - S(points_[i].x());
+    const double width = points_[i + 1].x() - points_[i].x();
+    if (value_of(d) < 0.0) return S(points_[i].y()) + S(c.slope) * d;
+    if (value_of(d) > width) return S(points_[i + 1].y()) + S(end_slope(c, width)) * (d - S(width));
+    return S(points_[i].y()) + d * (S(c.slope) + d * (S(0.5 * curvature_[i]) + d * S(c.cubic)));
+  }
+  /// ∫ from 0 to x.
+  [[nodiscard]] double integral(double x) const { return primitive(x) - at_zero_; }
+
+private:
+  struct Coefficients {
+    double slope = 0.0, cubic = 0.0; ///< y′ at the left end of the piece; y‴/6
+  };
+  // y″ at the points: from the continuity of y′ at each of those inside, by elimination along the diagonal.
+  void find_curvatures() {
+    const std::size_t n = points_.size();
+    curvature_.assign(n, 0.0);
+    std::vector<double> above(n, 0.0); // what is left of the upper diagonal
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+      const double left = points_[i].x() - points_[i - 1].x(), right = points_[i + 1].x() - points_[i].x();
+      const double bend = (points_[i + 1].y() - points_[i].y()) / right - (points_[i].y() - points_[i - 1].y()) / left;
+      const double pivot = 2.0 * (left + right) - left * above[i - 1];
+      above[i] = right / pivot;
+      curvature_[i] = (6.0 * bend - left * curvature_[i - 1]) / pivot;
+    }
+    for (std::size_t i = n - 1; i-- > 1;) curvature_[i] -= above[i] * curvature_[i + 1];
+  }
+  [[nodiscard]] Coefficients coefficients(std::size_t i) const {
+    const double width = points_[i + 1].x() - points_[i].x();
+    return {(points_[i + 1].y() - points_[i].y()) / width - width * (2.0 * curvature_[i] + curvature_[i + 1]) / 6.0,
+            (curvature_[i + 1] - curvature_[i]) / (6.0 * width)};
+  }
+  /// y′ at the right end of the last piece, whose curvature is zero there.
+  [[nodiscard]] double end_slope(const Coefficients& c, double width) const {
+    return c.slope + width * (curvature_[curvature_.size() - 2] + 3.0 * c.cubic * width);
+  }
+  [[nodiscard]] std::size_t piece_at(double x) const {
+    if (points_.size() < 3) return 0;
+    const auto after = std::upper_bound(points_.begin() + 1, points_.end() - 1, x, [](double value, const Vec2& p) { return value < p.x(); });
+    return static_cast<std::size_t>(after - points_.begin()) - 1;
+  }
+  /// ∫ over the first d of piece i, within it.
+  [[nodiscard]] double from_left(std::size_t i, double d) const {
+    const Coefficients c = coefficients(i);
+    return d * (points_[i].y() + d * (c.slope / 2.0 + d * (curvature_[i] / 6.0 + d * c.cubic / 4.0)));
+  }
+  [[nodiscard]] double primitive(double x) const {
+    const std::size_t i = piece_at(x);
+    const double d = x - points_[i].x(), width = points_[i + 1].x() - points_[i].x();
+    if (d < 0.0) return primitive_[i] + d * (points_[i].y() + 0.5 * coefficients(i).slope * d);
+    if (d <= width) return primitive_[i] + from_left(i, d);
+    const double beyond = d - width;
+    return primitive_[i + 1] + beyond * (points_[i + 1].y() + 0.5 * end_slope(coefficients(i), width) * beyond);
+  }
+  std::vector<Vec2> points_;
+  std::vector<double> curvature_; ///< y″ at each point
+  std::vector<double> primitive_; ///< from the first point to each
+  double at_zero_ = 0.0;
+};
+
+/// f = −T(value − free) − D(rate) with smooth curves T, D: it has one mode and makes no events.
+struct SmoothSpring {
+  static constexpr int k_watches = 0;
+  static constexpr bool k_is_contact = false;
+  SmoothCurve spring, damper;
+  double free = 0.0, count = 1.0;
+
+  template <class S> [[nodiscard]] S force(const S& value, const S& rate, UnitMode) const {
+    return S(-count) * (spring.value(value - S(free)) + damper.value(rate));
+  }
+  // Of doubles alone: which piece holds is not written down.
+  [[nodiscard]] double elastic_force(double value, UnitMode) const { return -count * spring.value(value - free); }
+  [[nodiscard]] double energy(double value) const { return count * spring.integral(value - free); }
 };
 
 /// f = −T(value − free) − D(rate) with tables T, D; the mode is the pair of segments. Only the ends of the present

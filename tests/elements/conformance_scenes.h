@@ -57,6 +57,8 @@ name = "tested"
 inline std::vector<ConformanceScene> spring_scenes() {
   return {
     {"spring_damper", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nfree_length = 0.3\n", false, true},
+    {"spring_damper", "a = \"A\"\nb = \"B\"\nforce_table = [[-0.5, -700.0], [0.0, 0.0], [0.3, 100.0], [0.8, 900.0]]\nbetween = \"curve\"\n"
+     "damping_table = [[-2.0, -50.0], [0.0, 0.0], [2.0, 90.0]]\nfree_length = 0.3\n", false, true},
     {"spring_damper", "a = \"A\"\nb = \"B\"\naxis = [@+0.6, 0.8]\nstiffness = 800.0\ndamping = 30.0\npreload = 20.0\n"},
     {"spring_damper", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\ngap = 0.06\n", false, true},
     {"spring_damper",

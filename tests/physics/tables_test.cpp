@@ -114,3 +114,55 @@ TEST_CASE("a table of more points than a mode can number is refused") {
   element.force_table = points(65537, 1.0, [](double x) { return x; });
   CHECK_THROWS_AS(static_cast<void>(compile(model)), ModelError);
 }
+
+TEST_CASE("a smooth curve meets its points, bends without jumps, goes on straight, and its integral is its own") {
+  for (const int count : {2, 3, 5, 40}) {
+    CAPTURE(count);
+    const std::vector<Vec2> table = points(count, 1.0, [](double x) { return std::sin(3.0 * x) + 0.2 * x * x; });
+    const SmoothCurve curve(table);
+    for (const Vec2& p : table) CHECK(std::abs(curve.value(p.x()) - p.y()) < 1e-14);
+    // Second differences on both sides of a point, of steps of 1e-4, agree to the third derivative times the step.
+    const auto bend = [&](double x) { return (curve.value(x + 1e-4) - 2.0 * curve.value(x) + curve.value(x - 1e-4)) / 1e-8; };
+    const auto slope = [&](double x) { return (curve.value(x + 1e-6) - curve.value(x - 1e-6)) / 2e-6; };
+    for (std::size_t i = 1; i + 1 < table.size(); ++i) {
+      CHECK(std::abs(bend(table[i].x() + 2e-4) - bend(table[i].x() - 2e-4)) < 100.0 * 4e-4);
+      const Dual<12> d = curve.value(Dual<12>::variable(table[i].x() + 0.01, 3));
+      CHECK(std::abs(d.d[3] - slope(table[i].x() + 0.01)) < 1e-8);
+    }
+    for (const double end : {-1.0, 1.0}) {
+      CHECK(std::abs(slope(end * 1.5) - slope(end * 7.0)) < 1e-8);
+      CHECK(std::abs(slope(end * 1.5) - slope(end * (1.0 - 1e-5))) < 1e-3); // its curvature is zero at the end
+    }
+    // Simpson's rule is exact for the cubics between points that lie at its nodes, and for lines.
+    for (const double x : {-2.3, -1.0, -0.37, 0.0, 0.61, 1.0, 1.9}) {
+      double sum = 0.0;
+      const int parts = 20000;
+      const double h = x / parts;
+      for (int i = 0; i < parts; ++i) sum += h / 6.0 * (curve.value(i * h) + 4.0 * curve.value((i + 0.5) * h) + curve.value((i + 1) * h));
+      CHECK(std::abs(curve.integral(x) - sum) < 1e-11);
+    }
+  }
+}
+
+TEST_CASE("a hardening spring from a smooth curve makes no events, and moves as the law does that its points are of") {
+  const double k = 500.0, reach = 0.3;
+  double before = 1.0;
+  for (const int count : {41, 81, 60001}) {
+    CAPTURE(count);
+    const std::vector<Vec2> table = points(count, 0.6, [k](double x) { return k * x * x * x; });
+    double error = 0.0;
+    for (const Settings& settings : {Settings{"dop853", 1e-11, 2.0, 0.05}, Settings{"rodas5p", 1e-10, 2.0, 0.05}}) {
+      CAPTURE(settings.integrator);
+      const Run r = run(spring("[0.0, 0.0]", "0.3", text_of("force_table", table) + "between = \"curve\"\n"), settings);
+      CHECK(r.result.events.empty());
+      CHECK(r.result.statistics.energy_residual < 1e-8 * r.result.statistics.energy_exchanged);
+      const std::vector<double> x = r.series("mass.x"), v = r.series("mass.vx");
+      for (std::size_t i = 0; i < x.size(); ++i)
+        error = std::max(error, std::abs(v[i] * v[i] + 0.25 * k * std::pow(x[i], 4.0) - 0.25 * k * std::pow(reach, 4.0)));
+    }
+    // A cubic is its own spline but for the curvature at its ends, of which each point towards the middle leaves 0.27.
+    CHECK(error < (count == 41 ? 1e-5 : 1e-9));
+    CHECK(error <= before);
+    before = std::max(error, 1e-9);
+  }
+}
