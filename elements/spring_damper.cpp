@@ -13,15 +13,16 @@ bool is_increasing(const std::vector<Vec2>& table) {
   return true;
 }
 
-bool check(const SpringDamper& e, SystemBuilder& builder) {
-  const auto fails = [&builder](bool is_wrong, const char* message) {
+// `free`, `table`: what the fields are called.
+bool check(const SpringDamper& e, SystemBuilder& builder, const std::string& free = "'free_length'", const std::string& table = "'force_table'") {
+  const auto fails = [&builder](bool is_wrong, const std::string& message) {
     if (is_wrong) builder.error(message);
     return is_wrong;
   };
-  bool is_bad = fails(e.preload && e.free_length, "give either 'preload' or 'free_length', not both");
+  bool is_bad = fails(e.preload && e.free_length, "give either 'preload' or " + free + ", not both");
   is_bad |= fails(e.preload && *e.preload != 0.0 && e.stiffness == 0.0, "'preload' needs a 'stiffness'");
   is_bad |= fails(!e.force_table.empty() && e.stiffness != 0.0,
-                  "give either 'stiffness' or 'force_table', not both");
+                  "give either 'stiffness' or " + table + ", not both");
   is_bad |= fails(!e.damping_table.empty() && e.damping != 0.0,
                   "give either 'damping' or 'damping_table', not both");
   is_bad |= fails(e.force_table.size() == 1 || e.damping_table.size() == 1,
@@ -33,12 +34,10 @@ bool check(const SpringDamper& e, SystemBuilder& builder) {
   is_bad |= fails(std::max(e.force_table.size(), e.damping_table.size()) > PiecewiseLinear::k_most_points,
                   "a table may have at most 65536 points");
   is_bad |= fails(e.between != "lines" && e.force_table.empty() && e.damping_table.empty(),
-                  "'between' says how the points of a table are joined: give a 'force_table' or a 'damping_table'");
+                  "'between' says how the points of a table are joined: give " + table + " or 'damping_table'");
   is_bad |= fails(e.stiffness == 0.0 && e.damping == 0.0 && e.force_table.empty() &&
                       e.damping_table.empty(),
                   "gives no force: set 'stiffness', 'damping' or a table");
-  is_bad |= fails(!e.axis && e.free_length.value_or(0.0) < 0.0,
-                  "'free_length' must not be negative from point to point: a distance never is");
   return !is_bad;
 }
 
@@ -87,6 +86,8 @@ void add_with_law(const SpringDamper& e, SystemBuilder& builder, int a, int b, c
 void compile_spring_damper(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const SpringDamper&>(element);
   if (!check(e, builder)) return;
+  if (!e.axis && e.free_length.value_or(0.0) < 0.0)
+    return builder.error("'free_length' must not be negative from point to point: a distance never is");
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
   if (e.axis) {
     if (e.axis->norm() == 0.0) return builder.error("'axis' has no direction");
@@ -103,14 +104,20 @@ void compile_spring_damper(const Element& element, SystemBuilder& builder) {
 
 void compile_rotational(const Element& element, SystemBuilder& builder) {
   const auto& e = static_cast<const RotationalSpringDamper&>(element);
-  if (e.preload && e.free_angle) return builder.error("give either 'preload' or 'free_angle', not both");
-  if (e.preload && e.stiffness == 0.0) return builder.error("'preload' needs a 'stiffness'");
+  SpringDamper same; // along another coordinate
+  same.stiffness = e.stiffness;
+  same.damping = e.damping;
+  same.free_length = e.free_angle;
+  same.preload = e.preload;
+  same.gap = e.gap;
+  same.force_table = e.couple_table;
+  same.damping_table = e.damping_table;
+  same.between = e.between;
+  same.count = e.count;
+  if (!check(same, builder, "'free_angle'", "'couple_table'")) return;
   const CompiledMarker a = builder.marker(e.a), b = builder.marker(e.b);
-  const double n = static_cast<double>(e.count);
   const double now = builder.reference(a.body).theta - builder.reference(b.body).theta;
-  double free = e.free_angle.value_or(now);
-  if (e.preload) free = now + *e.preload / (n * e.stiffness);
-  add(builder, a.body, b.body, AngleMeasure{}, LinearSpring{n * e.stiffness, n * e.damping, free});
+  add_with_law(same, builder, a.body, b.body, AngleMeasure{}, now);
 }
 
 } // namespace
@@ -159,6 +166,11 @@ const ElementKind& rotational_spring_damper_kind() {
     f.add("count", &T::count).at_least(1).doc("equal elements side by side");
     f.add("free_angle", &T::free_angle).in("rad").doc("default: the angle of the reference pose");
     f.add("preload", &T::preload).in("N m").doc("couple on a in the reference pose, instead of free_angle");
+    f.add("gap", &T::gap).in("rad").not_negative().doc("width of a dead band around the free angle");
+    f.add("couple_table", &T::couple_table).in("rad", "N m").doc("[d, -couple] pairs instead of stiffness");
+    f.add("damping_table", &T::damping_table).in("rad/s", "N m").doc("[d', -couple] pairs instead of damping");
+    f.add("between", &T::between).one_of({"lines", "curve"}).doc(
+        "how tables go from point to point: straight, each corner an event; or the cubic spline, smooth and without events");
     k.holds<T>();
     k.compile = compile_rotational;
     return k;

@@ -28,6 +28,10 @@ struct RotationalSpringDamper : Element {
   double stiffness = 0.0, damping = 0.0;
   std::optional<double> free_angle;
   std::optional<double> preload;
+  double gap = 0.0;                ///< width of the dead band around the free angle, rad
+  std::vector<Vec2> couple_table;  ///< (δ, −couple) instead of stiffness
+  std::vector<Vec2> damping_table; ///< (δ̇, −couple) instead of damping
+  std::string between = "lines";   ///< as of a SpringDamper
   long count = 1;
 };
 

@@ -65,6 +65,7 @@ inline std::vector<ConformanceScene> spring_scenes() {
      "a = \"A\"\nb = \"B\"\nforce_table = [[-0.1, -90.0], [-0.02, -10.0], [0.03, 20.0], [0.1, 120.0]]\n"
      "damping_table = [[-1.0, -40.0], [0.0, 0.0], [1.0, 15.0]]\ncount = 2\n", false, true},
     {"rotational_spring_damper", "a = \"A\"\nb = \"B\"\nstiffness = 70.0\ndamping = 3.0\nfree_angle = @+0.1\n", false, false},
+    {"rotational_spring_damper", "a = \"A\"\nb = \"B\"\nstiffness = 70.0\ndamping = 3.0\ngap = 0.2\nfree_angle = @+0.1\n", false, false},
     {"bushing",
      "a = \"A\"\nb = \"B\"\nstiffness = [500.0, 900.0]\ndamping = [20.0, 30.0]\nrotational_stiffness = 60.0\n"
      "rotational_damping = 2.0\n"}};

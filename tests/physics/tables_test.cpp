@@ -166,3 +166,19 @@ TEST_CASE("a hardening spring from a smooth curve makes no events, and moves as 
     before = std::max(error, 1e-9);
   }
 }
+
+TEST_CASE("a wheel between the stops of a backlash swings as a spring does, and coasts in between") {
+  // Beyond the band half an oscillation of √(J/k), across it 2 h at the speed ω₀: T = 2π √(J/k) + 4 h/ω₀, the same from tables.
+  const double inertia = 0.5, k = 200.0, half = 0.05, speed = 3.0, pi = 3.14159265358979323846;
+  const std::string wheel = "gravity = [0.0, 0.0]\n" + body("wheel", "mass = 1.0; inertia = 0.5; angular_velocity = 3.0") + element("revolute", "bearing", "a = 'wheel'");
+  const double period = 2.0 * pi * std::sqrt(inertia / k) + 4.0 * half / speed;
+  for (const char* spring : {"a = 'wheel'; stiffness = 200.0; gap = 0.1", "a = 'wheel'; couple_table = [[-1.05, -200.0], [-0.05, 0.0], [0.05, 0.0], [1.05, 200.0]]"})
+    for (const char* method : {"dop853", "rodas5p"}) {
+      CAPTURE(spring);
+      CAPTURE(method);
+      const Run r = run(wheel + element("rotational_spring_damper", "backlash", spring), {method, 1e-11, 3.0 * period});
+      CHECK(std::abs(r.last("wheel.omega") - speed) < 1e-8);
+      CHECK(std::abs(r.last("wheel.theta")) < 1e-8);
+      CHECK(r.result.events.size() == 12); // out of the band and into it, on two sides, three times
+    }
+}
