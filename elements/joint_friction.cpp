@@ -1,5 +1,6 @@
 #include "elements/joint_friction.h"
 
+#include "mbd/base/shown_text.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -21,6 +22,44 @@ bool is_zero_at(const Signal& signal, double t) {
   return piece.is_level && piece.c[0] == 0.0 && piece.harmonics.empty() && piece.modulated.empty();
 }
 
+// Where the signal is least up to `end`: between samples that resolve its fastest harmonic its least value is closed in on.
+double time_of_least(const Signal& signal, double end) {
+  constexpr int k_samples_of_a_turn = 32, k_least_samples = 64, k_halvings = 60;
+  constexpr double k_whole_turn = 6.283185307179586;
+  std::vector<double> times{0.0};
+  for (const double t : signal.breakpoints())
+    if (t > 0.0 && t < end) times.push_back(t);
+  times.push_back(end);
+  double best = 0.0, apart = end;
+  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+    const double length = times[i + 1] - times[i], turns = signal.fastest_at(times[i]) * length / k_whole_turn;
+    const double samples = std::max<double>(k_least_samples, std::ceil(k_samples_of_a_turn * turns));
+    for (double k = 0.0; k < samples; ++k) {
+      const double t = times[i] + k * length / samples;
+      if (signal.value(t) < signal.value(best)) best = t, apart = length / samples;
+    }
+  }
+  double low = std::max(0.0, best - apart), high = std::min(end, best + apart);
+  for (int n = 0; n < k_halvings; ++n) {
+    const double one = low + (high - low) / 3.0, other = high - (high - low) / 3.0;
+    if (signal.value(one) < signal.value(other)) high = other;
+    else low = one;
+  }
+  const double least = 0.5 * (low + high);
+  return signal.value(least) < signal.value(best) ? least : best;
+}
+
+// Below zero there is no pressure, and the corner where it ends would be no event.
+bool is_pressure(const JointFriction& e, const Signal* signal, SystemBuilder& builder) {
+  constexpr double k_rounding = 1e-12;
+  if (!signal) return true;
+  const double t = time_of_least(*signal, builder.model().simulation.end), least = signal->value(t);
+  if (least >= -k_rounding) return true;
+  builder.error("'signal': '" + e.signal + "' falls to " + rounded_text(least) + " at t = " + rounded_text(t) +
+                " s, and what presses is never below zero: add an offset, or make it of pulses");
+  return false;
+}
+
 // The sliding bound falls from what holds to what drags over some velocities v_s, as 1/(1 + (v/v_s)²) does: the law of Hess and
 // Soom, 1990. It is smooth in v and even, so that a step may look past the end of a slip.
 class CoordinateFriction final : public FrictionElement {
@@ -33,8 +72,7 @@ public:
   [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
-  // Asked at events. So it is free over a piece of the signal that is zero throughout, which begins and ends with one; where a
-  // piece passes through zero, its bound is zero meanwhile.
+  // Asked at events. So it is free over a piece of the signal that is zero throughout, which begins and ends with one.
   [[nodiscard]] bool is_loaded(const Evaluation& e, const FrictionState&) const override { return !signal || !is_zero_at(*signal, e.t); }
   void slip_wrench(const Evaluation& e, const FrictionState& state, const double* rate, double* wrench) const override {
     wrench[0] = sliding_force(rate[0], state, share(e.t));
@@ -140,6 +178,7 @@ void compile_joint_friction(const Element& element, SystemBuilder& builder) {
   friction->viscous = e.viscous;
   friction->per_stribeck_velocity = e.stribeck_velocity ? 1.0 / *e.stribeck_velocity : 0.0;
   friction->signal = builder.signal(e.signal);
+  if (!is_pressure(e, friction->signal, builder)) return;
   add_channels(builder, *friction, e.coordinate == "angle");
   builder.add_friction(std::move(friction));
 }
@@ -165,7 +204,7 @@ const ElementKind& joint_friction_kind() {
         "rate v_s over which it falls: drags + (holds - drags)/(1 + (rate/v_s)^2); default: at once");
     f.add("viscous", &T::viscous).in("N m s/rad|N s/m").not_negative().doc("added while it slides, times the rate");
     f.add("signal", &T::signal).as(FieldType::signal).doc(
-        "multiplies holds, drags and viscous, as a brake's pressure does; below zero it counts as zero");
+        "multiplies holds, drags and viscous, as a brake's pressure does; never below zero");
     k.holds<T>();
     k.compile = compile_joint_friction;
     return k;
