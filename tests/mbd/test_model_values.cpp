@@ -301,8 +301,10 @@ TEST_CASE("variants of a model are what instantiate makes, number by number") {
       const double before = number_of(given, path), value = before == 0.0 ? 1e-3 : 1.001 * before;
       std::unique_ptr<System> one, other;
       const std::string wrong = message_of([&] { one = instantiate(given, {{path, value}}); });
-      const std::string as_wrong = message_of([&] { other = Variants(given, {path}).make({value}); });
-      CHECK(wrong.empty() == as_wrong.empty());
+      Variants variants(given, {path});
+      static_cast<void>(message_of([&] { (void)variants.make({before == 0.0 ? 2e-3 : 0.9 * before}); })); // one made before leaves no trace
+      const std::string as_wrong = message_of([&] { other = variants.make({value}); });
+      CHECK(wrong == as_wrong);
       if (!one || !other) continue;
       const std::vector<double> a = start_values(*one), b = start_values(*other);
       REQUIRE(a.size() == b.size());
