@@ -67,7 +67,6 @@ struct TwoRows {
 template <bool WithCurvature>
 [[gnu::always_inline]] inline TwoRows sum_rows(const double* a, const Powers<WithCurvature>& power, int l, int order) {
   TwoRows rows;
-#pragma GCC unroll 4
   for (int n = l; n <= order; n += 2, a += 4) {
     Four two;
     std::memcpy(&two, a, sizeof two);
@@ -136,7 +135,43 @@ template <bool WithCurvature>
   return sums.sum();
 }
 
+/// Moments of a node at z, added to a.
+[[gnu::always_inline]] inline void add_moments(double* a, int row, const Vec2& z, double uniform, double linear) {
+  constexpr int k_order = FarField::k_order, k_rows = k_order / 2 + 1;
+  std::array<double, k_order + 1> weight{};
+  std::array<Four, k_rows> square; // |z|^2k of row l, one power less of l + 2; of the first place no more than a zero
+  std::array<Two, k_order + 4> power; // z^l
+  for (int n = 0; n <= k_order; ++n)
+    weight[n] = uniform * k_inverse[n + 2] + linear * k_inverse[n + 3];
+  const double norm = z.squaredNorm();
+  double now = 1, before = 0;
+  for (Four& s : square) {
+    s = Four{now, now, before, before};
+    before = now;
+    now *= norm;
+  }
+  power[0] = Two{1, 0};
+  for (int l = 1; l < k_order + 4; ++l)
+    power[l] = Two{power[l - 1][0] * z.x() - power[l - 1][1] * z.y(), power[l - 1][0] * z.y() + power[l - 1][1] * z.x()};
+  for (int first = 0; first <= k_order; first += 4)
+    for (int l = first; l < first + 2 && l <= k_order; ++l, a += row) {
+      const bool has_second = l + 2 <= k_order; // else no row is there
+      const Two second = has_second ? power[l + 2] : Two{};
+      const Four both{power[l][0], power[l][1], second[0], second[1]};
+      double* at = a;
+      for (int n = l; n <= k_order; n += 2, at += 4) {
+        Four moment;
+        std::memcpy(&moment, at, sizeof moment);
+        moment += weight[n] * square[(n - l) / 2] * both;
+        std::memcpy(at, &moment, sizeof moment);
+      }
+    }
+}
+
 #if defined(__x86_64__)
+[[gnu::target("avx")]] void add_moments_by_four(double* a, int row, const Vec2& z, double uniform, double linear) {
+  add_moments(a, row, z, uniform, linear);
+}
 template <bool WithCurvature> // registers of four numbers: the same operations, and the same bits
 [[gnu::target("avx")]] Polar sum_polar_by_four(const double* a, int row, double kappa, int order, double cx, double cy) {
   return sum_polar<WithCurvature>(a, row, kappa, order, cx, cy);
@@ -200,24 +235,10 @@ void FarField::finish() {
 }
 
 void FarField::add_node(const Vec2& z, double uniform, double linear) {
-  std::array<double, k_order + 1> weight{};
-  std::array<double, k_row> square{};
-  for (int n = 0; n <= k_order; ++n)
-    weight[n] = uniform * k_inverse[n + 2] + linear * k_inverse[n + 3];
-  square[0] = 1;
-  for (int k = 1; k < k_row; ++k)
-    square[k] = square[k - 1] * z.squaredNorm();
-  Two power{1, 0}; // z^l
-  for (int l = 0; l <= k_order; ++l) {
-    double* at = &a_[place(l, 0)];
-    for (int k = 0; l + 2 * k <= k_order; ++k, at += 4) {
-      Two a;
-      std::memcpy(&a, at, sizeof a);
-      a += weight[l + 2 * k] * square[k] * power;
-      std::memcpy(at, &a, sizeof a);
-    }
-    power = Two{power[0] * z.x() - power[1] * z.y(), power[0] * z.y() + power[1] * z.x()};
-  }
+#if defined(__x86_64__)
+  if (has_four) return add_moments_by_four(a_.data(), 4 * k_row, z, uniform, linear);
+#endif
+  add_moments(a_.data(), 4 * k_row, z, uniform, linear);
 }
 
 template <bool WithCurvature>
