@@ -292,7 +292,7 @@ std::vector<double> start_values(const System& system) {
 
 // Whatever number of whatever model: put into the completed model, or given and completed again, is one system.
 TEST_CASE("variants of a model are what instantiate makes, number by number") {
-  for (const char* name : {"paper/interference", "layouts/three_limb", "benchmarks/andrews", "benchmarks/robot_arm", "benchmarks/chain_10"}) {
+  for (const char* name : {"paper/interference", "layouts/three_limb", "benchmarks/andrews", "benchmarks/robot_arm", "benchmarks/chain_10", "machines/ladder", "machines/crane_arm"}) {
     const std::string file = std::string(STEPLAP_MODELS) + "/" + name + ".toml";
     if (!std::filesystem::exists(file)) FAIL(file);
     const Model given = read_given_model(file, transformer_catalog());
