@@ -17,14 +17,18 @@
 
 namespace steplap::study {
 
-/// Which ends of a channel's range anybody asks for; `low_below`: only of what is less.
+/// Which ends of a channel's range anybody asks for. `low_below`, where `low` is not asked for: of lows that are less. Of channels
+/// that a response looks at together the outermost end counts alone: they race for it.
 struct AskedEnds {
   bool low = false, high = false;
-  double low_below = std::numeric_limits<double>::infinity();
+  double low_below = -std::numeric_limits<double>::infinity();
+  std::vector<std::size_t> low_races, high_races; ///< in the runner's count
   void add(const AskedEnds& more) {
-    low_below = !low ? more.low_below : more.low ? std::max(low_below, more.low_below) : low_below;
     low = low || more.low;
     high = high || more.high;
+    low_below = std::max(low_below, more.low_below);
+    low_races.insert(low_races.end(), more.low_races.begin(), more.low_races.end());
+    high_races.insert(high_races.end(), more.high_races.begin(), more.high_races.end());
   }
 };
 
@@ -94,21 +98,64 @@ double value_of(const Response& r, const RunResult& result, const Judgement& jud
   return r.what.starts_with("time_of") && !std::isnan(e.value) ? e.t : e.value;
 }
 
-// Bounds of a value that costs much rule out the end that nobody asks for.
-void leave_out_others(Channel& channel, const AskedEnds& ends) {
-  constexpr double k_never = 1e300; // no extreme is beyond it
-  if (!channel.bounds || (ends.high && ends.low && std::isinf(ends.low_below))) return;
-  channel.bounds = [bounds = std::move(channel.bounds), ends](const Snapshot& s) {
-    ValueBounds b = bounds(s);
-    if (!ends.high) b.high = -k_never;
-    if (!ends.low || b.low >= ends.low_below) b.low = k_never;
-    return b;
+/// How far the channels of a response have come in a run.
+struct Race {
+  double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
+};
+
+using Races = std::vector<std::shared_ptr<Race>>; // channels of a run refer to them
+
+// Bounds of a value that costs much rule out the ends that nobody asks for: of a channel in a race, those that another one's is
+// beyond even if they go on as they went since they were asked for last.
+class AskedBounds {
+public:
+  AskedBounds(std::function<ValueBounds(const Snapshot&)> bounds, const AskedEnds& ends, const Races& races) : bounds_(std::move(bounds)), ends_(ends) {
+    for (const std::size_t race : ends.low_races) low_races_.push_back(races[race]);
+    for (const std::size_t race : ends.high_races) high_races_.push_back(races[race]);
+  }
+
+  ValueBounds operator()(const Snapshot& s) {
+    constexpr double k_never = 1e300; // no extreme is beyond it
+    const ValueBounds b = bounds_(s);
+    if (s.t >= t_) { // else it is a look back, between two ends of a stretch
+      reach_ = {widened(reach_.low, b.low - last_.low), widened(reach_.high, b.high - last_.high)};
+      last_ = b;
+      t_ = s.t;
+    }
+    const double down = b.low - reach_.low, up = b.high + reach_.high;
+    double low_below = ends_.low_below, high_above = std::numeric_limits<double>::infinity();
+    for (const auto& race : low_races_) low_below = std::max(low_below, race->lowest);
+    for (const auto& race : high_races_) high_above = std::min(high_above, race->highest);
+    return {ends_.low || !(down > low_below) ? b.low : k_never, ends_.high || !(up < high_above) ? b.high : -k_never};
+  }
+
+private:
+  // By how much a bound changes from one end of a stretch to the next, at least half of what it did: where it turns, ends are alike.
+  static double widened(double reach, double change) { return std::isfinite(change) ? std::max(std::abs(change), 0.5 * reach) : 0.5 * reach; }
+
+  std::function<ValueBounds(const Snapshot&)> bounds_;
+  AskedEnds ends_;
+  Races low_races_, high_races_;
+  ValueBounds last_, reach_;
+  double t_ = -std::numeric_limits<double>::infinity();
+};
+
+void leave_out_others(Channel& channel, const AskedEnds& ends, const Races& races) {
+  if (channel.bounds && !(ends.high && ends.low)) channel.bounds = AskedBounds(std::move(channel.bounds), ends, races);
+  const auto note = [&](const std::vector<std::size_t>& of, const auto& noted) {
+    for (const std::size_t race : of)
+      channel.value = [value = std::move(channel.value), noted, own = races[race]](const Snapshot& s) { return noted(*own, value(s)); };
   };
+  note(ends.low_races, [](Race& race, double value) { return race.lowest = std::min(race.lowest, value), value; });
+  note(ends.high_races, [](Race& race, double value) { return race.highest = std::max(race.highest, value), value; });
 }
 
 // A run is not trusted where a joint has less margin than it needs: beyond 1 its value tells nothing of that.
 AskedEnds ends_of_trust(const std::string& channel) {
-  return channel.ends_with(".margin") ? AskedEnds{true, false, 1.0} : AskedEnds{true, true};
+  AskedEnds ends;
+  if (channel.ends_with(".margin")) ends.low_below = 1.0;
+  else ends.low = ends.high = true;
+  return ends;
 }
 
 void worsen(Outcome& outcome, SampleStatus status, const std::string& reason) {
@@ -150,6 +197,7 @@ struct Scene::Runner {
   bool is_judged = false;             ///< a response is the verdict, for which criteria may look at any channel
   std::vector<std::string> channels;  ///< names
   std::map<std::string, AskedEnds> extremes; ///< of these, those whose extremes are asked for
+  std::size_t races = 0;
   std::vector<std::string> sampled;   ///< patterns
   Sampling sampling;                  ///< for histories
   std::vector<Setting> settings;
@@ -186,8 +234,14 @@ private:
     is_judged = is_judged || r.what == "verdict";
     if (needs_samples(r)) sampled.push_back(r.channel);
     const bool is_extreme = r.what.find("est") != std::string::npos, is_largest = r.what.ends_with("largest");
-    const AskedEnds ends{is_largest || r.what.ends_with("lowest"), is_largest || r.what.ends_with("highest")};
-    for (const Channel* c : channels_of(r, *model.system)) {
+    const bool is_low = r.what.ends_with("lowest"), is_high = r.what.ends_with("highest");
+    const auto asked = channels_of(r, *model.system);
+    AskedEnds ends;
+    ends.low = is_largest || (is_low && asked.size() < 2);
+    ends.high = is_largest || (is_high && asked.size() < 2);
+    if (asked.size() > 1 && is_low) ends.low_races.push_back(races++);
+    if (asked.size() > 1 && is_high) ends.high_races.push_back(races++);
+    for (const Channel* c : asked) {
       channels.push_back(c->name);
       if (is_extreme) extremes[c->name].add(ends);
     }
@@ -235,10 +289,12 @@ void Scene::look(const Runner& runner, const Judgement& judgement, const RunResu
 }
 
 void Scene::run_system(const Runner& runner, const Model& whole, System& system, Outcome& outcome) {
+  Races races;
+  for (std::size_t i = 0; i < runner.races; ++i) races.push_back(std::make_shared<Race>());
   for (Channel& c : system.channels) {
     const auto asked = runner.extremes.find(c.name);
     c.has_extremes = c.has_extremes && asked != runner.extremes.end();
-    if (c.has_extremes) leave_out_others(c, asked->second);
+    if (c.has_extremes) leave_out_others(c, asked->second, races);
   }
   SimulationOptions options = options_of(whole);
   options.channels = runner.sampled;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 namespace steplap {
 
@@ -34,21 +36,155 @@ constexpr auto k_root = [] {
   return b;
 }();
 
-/// 1, κ, κ² … with first and second derivatives, each twice: what they multiply are pairs. Beyond `order` nothing.
+/// Two complex numbers side by side: the operations of each double, in their order, whatever registers the processor has for them.
+using Four [[gnu::vector_size(32)]] = double;
+using Two [[gnu::vector_size(16)]] = double;
+
+/// 1, κ, κ² … with first and second derivatives, four times each. Beyond `order` nothing.
 template <bool WithCurvature> struct Powers {
-  using Pair = Eigen::Array2d;
-  std::array<Pair, FarField::k_order + 1> p, p1, p2;
-  Powers(double kappa, int order) {
-    p[0].setOnes();
-    p1[0].setZero();
-    p2[0].setZero();
+  std::array<Four, FarField::k_order + 1> p, p1, p2;
+  [[gnu::always_inline]] inline Powers(double kappa, int order) {
+    p[0] = Four{1.0, 1.0, 1.0, 1.0};
+    p1[0] = p2[0] = Four{};
     for (int n = 1; n <= order; ++n) {
       p[n] = p[n - 1] * kappa;
-      p1[n] = n * p[n - 1];
-      if constexpr (WithCurvature) p2[n] = n * p1[n - 1];
+      p1[n] = double(n) * p[n - 1];
+      if constexpr (WithCurvature) p2[n] = double(n) * p1[n - 1];
     }
   }
 };
+
+/// g and its derivatives by κ and φ.
+struct Polar {
+  double g = 0, k = 0, p = 0, kk = 0, kp = 0, pp = 0;
+};
+
+/// Rows l and l + 2 of a_, with their κ-derivatives.
+struct TwoRows {
+  Four r0{}, r1{}, r2{};
+};
+
+template <bool WithCurvature>
+[[gnu::always_inline]] inline TwoRows sum_rows(const double* a, const Powers<WithCurvature>& power, int l, int order) {
+  TwoRows rows;
+  for (int n = l; n <= order; n += 2, a += 4) {
+    Four two;
+    std::memcpy(&two, a, sizeof two);
+    rows.r0 += power.p[n] * two;
+    rows.r1 += power.p1[n] * two;
+    if constexpr (WithCurvature) rows.r2 += power.p2[n] * two;
+  }
+  return rows;
+}
+
+/// Both numbers times (x, y), given as (x, x, …) and (−y, y, …).
+[[gnu::always_inline]] inline void turn(Four& r, const Four& x, const Four& y) { r = x * r + y * __builtin_shufflevector(r, r, 1, 0, 3, 2); }
+
+/// Sums over l; beside g there is d/dφ, Re(−il e·r) = l Im(e·r).
+template <bool WithCurvature> class PolarSums {
+public:
+  /// `half`: 0 for l, 1 for l + 2.
+  template <int Half> [[gnu::always_inline]] inline void add(const TwoRows& rows, int l) {
+    const Two r0 = half<Half>(rows.r0), r1 = half<Half>(rows.r1), by_l{1.0, double(l)};
+    value_ += by_l * r0;
+    by_kappa_ += by_l * r1;
+    if constexpr (WithCurvature) {
+      twice_by_kappa_ += half<Half>(rows.r2);
+      twice_by_phi_ -= double(l * l) * r0;
+    }
+  }
+  [[nodiscard]] Polar sum() const { return {value_[0], by_kappa_[0], value_[1], twice_by_kappa_[0], by_kappa_[1], twice_by_phi_[0]}; }
+
+private:
+  template <int Half> [[gnu::always_inline]] static inline Two half(const Four& four) { return Two{four[2 * Half], four[2 * Half + 1]}; }
+
+  Two value_{}, by_kappa_{}, twice_by_kappa_{}, twice_by_phi_{};
+};
+
+/// `row` numbers of a_ for each two rows.
+template <bool WithCurvature>
+[[gnu::always_inline]] inline Polar sum_polar(const double* a, int row, double kappa, int order, double cx, double cy) {
+  const Powers<WithCurvature> power(kappa, order);
+  PolarSums<WithCurvature> sums;
+  double ex = 1, ey = 0; // e^{−ilφ}
+  const auto next = [&] {
+    const double turned = ex * cx + ey * cy;
+    ey = ey * cx - ex * cy;
+    ex = turned;
+  };
+  for (int l = 0; l <= order; l += 4, a += 2 * row) {
+    TwoRows even = sum_rows(a, power, l, order), odd = sum_rows(a + row, power, l + 1, order);
+    const double x0 = ex, y0 = ey;
+    next();
+    const double x1 = ex, y1 = ey;
+    next();
+    const double x2 = ex, y2 = ey;
+    next();
+    const double x3 = ex, y3 = ey;
+    next();
+    for (Four* r : {&even.r0, &even.r1, &even.r2}) turn(*r, Four{x0, x0, x2, x2}, Four{-y0, y0, -y2, y2});
+    for (Four* r : {&odd.r0, &odd.r1, &odd.r2}) turn(*r, Four{x1, x1, x3, x3}, Four{-y1, y1, -y3, y3});
+    sums.template add<0>(even, l);
+    if (l + 1 > order) break;
+    sums.template add<0>(odd, l + 1);
+    if (l + 2 > order) break;
+    sums.template add<1>(even, l + 2);
+    if (l + 3 > order) break;
+    sums.template add<1>(odd, l + 3);
+  }
+  return sums.sum();
+}
+
+/// Moments of a node at z, added to a.
+[[gnu::always_inline]] inline void add_moments(double* a, int row, const Vec2& z, double uniform, double linear) {
+  constexpr int k_order = FarField::k_order, k_rows = k_order / 2 + 1;
+  std::array<double, k_order + 1> weight{};
+  std::array<Four, k_rows> square; // |z|^2k of row l, one power less of l + 2; of the first place no more than a zero
+  std::array<Two, k_order + 4> power; // z^l
+  for (int n = 0; n <= k_order; ++n)
+    weight[n] = uniform * k_inverse[n + 2] + linear * k_inverse[n + 3];
+  const double norm = z.squaredNorm();
+  double now = 1, before = 0;
+  for (Four& s : square) {
+    s = Four{now, now, before, before};
+    before = now;
+    now *= norm;
+  }
+  power[0] = Two{1, 0};
+  for (int l = 1; l < k_order + 4; ++l)
+    power[l] = Two{power[l - 1][0] * z.x() - power[l - 1][1] * z.y(), power[l - 1][0] * z.y() + power[l - 1][1] * z.x()};
+  for (int first = 0; first <= k_order; first += 4)
+    for (int l = first; l < first + 2 && l <= k_order; ++l, a += row) {
+      const bool has_second = l + 2 <= k_order; // else no row is there
+      const Two second = has_second ? power[l + 2] : Two{};
+      const Four both{power[l][0], power[l][1], second[0], second[1]};
+      double* at = a;
+      for (int n = l; n <= k_order; n += 2, at += 4) {
+        Four moment;
+        std::memcpy(&moment, at, sizeof moment);
+        moment += weight[n] * square[(n - l) / 2] * both;
+        std::memcpy(at, &moment, sizeof moment);
+      }
+    }
+}
+
+#if defined(__x86_64__)
+[[gnu::target("avx")]] void add_moments_by_four(double* a, int row, const Vec2& z, double uniform, double linear) {
+  add_moments(a, row, z, uniform, linear);
+}
+template <bool WithCurvature> // registers of four numbers: the same operations, and the same bits
+[[gnu::target("avx")]] Polar sum_polar_by_four(const double* a, int row, double kappa, int order, double cx, double cy) {
+  return sum_polar<WithCurvature>(a, row, kappa, order, cx, cy);
+}
+const bool has_four = __builtin_cpu_supports("avx") != 0;
+#endif
+
+template <bool WithCurvature> Polar polar_of(const double* a, int row, double kappa, int order, double cx, double cy) {
+#if defined(__x86_64__)
+  if (has_four) return sum_polar_by_four<WithCurvature>(a, row, kappa, order, cx, cy);
+#endif
+  return sum_polar<WithCurvature>(a, row, kappa, order, cx, cy);
+}
 
 } // namespace
 
@@ -67,7 +203,7 @@ FarField::FarField(const PatchEdge* edges, std::size_t count, const Traction& tr
   finish();
 }
 
-FarField::FarField(double radius) : radius_(radius) { a_.fill(Pair::Zero()); }
+FarField::FarField(double radius) : radius_(radius) { a_.fill(0.0); }
 
 void FarField::add(const PatchEdge* edges, std::size_t count, const Traction& traction, const Vec2& shift) {
   const double at_centre = traction.at_centroid - traction.gradient.dot(shift);
@@ -88,29 +224,21 @@ void FarField::add(const PatchEdge* edges, std::size_t count, const Traction& tr
 void FarField::finish() {
   for (int l = 0; l <= k_order; ++l)
     for (int k = 0; l + 2 * k <= k_order; ++k) {
-      Pair& a = a_[l * k_row + k];
-      a *= (l > 0 ? 2 : 1) * k_root[k + l] * k_root[k];
+      double &re = a_[place(l, k)], &im = a_[place(l, k) + 1];
+      const double factor = (l > 0 ? 2 : 1) * k_root[k + l] * k_root[k];
+      re *= factor;
+      im *= factor;
       if (l % 4 >= 2) // iˡ
-        a = -a;
-      if (l % 2 == 1) a = Pair(-a[1], a[0]);
+        re = -re, im = -im;
+      if (l % 2 == 1) re = std::exchange(im, re), re = -re;
     }
 }
 
 void FarField::add_node(const Vec2& z, double uniform, double linear) {
-  std::array<double, k_order + 1> weight{};
-  std::array<double, k_row> square{};
-  for (int n = 0; n <= k_order; ++n)
-    weight[n] = uniform * k_inverse[n + 2] + linear * k_inverse[n + 3];
-  square[0] = 1;
-  for (int k = 1; k < k_row; ++k)
-    square[k] = square[k - 1] * z.squaredNorm();
-  Pair power(1, 0); // z^l
-  for (int l = 0; l <= k_order; ++l) {
-    Pair* row = &a_[l * k_row];
-    for (int k = 0; l + 2 * k <= k_order; ++k)
-      row[k] += weight[l + 2 * k] * square[k] * power;
-    power = Pair(power[0] * z.x() - power[1] * z.y(), power[0] * z.y() + power[1] * z.x());
-  }
+#if defined(__x86_64__)
+  if (has_four) return add_moments_by_four(a_.data(), 4 * k_row, z, uniform, linear);
+#endif
+  add_moments(a_.data(), 4 * k_row, z, uniform, linear);
 }
 
 template <bool WithCurvature>
@@ -120,50 +248,25 @@ PieceDissipation FarField::evaluate(const Vec2& v, double omega) const {
   const double kappa = omega * radius_ / speed;
   const int order = needed_order(std::abs(kappa));
 
-  const Powers<WithCurvature> power(kappa, order);
-
-  double g = 0, g_k = 0, g_p = 0, g_kk = 0, g_kp = 0, g_pp = 0;
-  double ex = 1, ey = 0; // e^{−ilφ}
-  for (int l = 0; l <= order; ++l) {
-    Pair r0 = Pair::Zero(), r1 = Pair::Zero(), r2 = Pair::Zero(); // row, its κ-derivatives
-    const Pair* a = &a_[l * k_row];
-    for (int n = l; n <= order; n += 2, ++a) {
-      r0 += power.p[n] * *a;
-      r1 += power.p1[n] * *a;
-      if constexpr (WithCurvature) r2 += power.p2[n] * *a;
-    }
-    // Re(e·r) and, for d/dφ, Re(−il e·r) = l Im(e·r)
-    const double im0 = ex * r0[1] + ey * r0[0], re0 = ex * r0[0] - ey * r0[1];
-    g += re0;
-    g_k += ex * r1[0] - ey * r1[1];
-    g_p += l * im0;
-    if constexpr (WithCurvature) {
-      g_kk += ex * r2[0] - ey * r2[1];
-      g_kp += l * (ex * r1[1] + ey * r1[0]);
-      g_pp -= l * l * re0;
-    }
-    const double turned = ex * cx + ey * cy;
-    ey = ey * cx - ex * cy;
-    ex = turned;
-  }
+  const Polar sum = polar_of<WithCurvature>(a_.data(), 4 * k_row, kappa, order, cx, cy);
 
   // h = s g(ωR/s, φ): polar derivatives along v̂ (s), across it (φ/s) and in ω.
   PieceDissipation out;
-  const double along = g - kappa * g_k;
-  out.value = speed * g;
-  out.fx = along * cx - g_p * cy;
-  out.fy = along * cy + g_p * cx;
-  out.m = radius_ * g_k;
+  const double along = sum.g - kappa * sum.k;
+  out.value = speed * sum.g;
+  out.fx = along * cx - sum.p * cy;
+  out.fy = along * cy + sum.p * cx;
+  out.m = radius_ * sum.k;
   if constexpr (WithCurvature) {
-    const double ss = kappa * kappa * g_kk / speed, sp = -kappa * g_kp / speed;
-    const double pp = (g_pp + along) / speed;
-    const double sw = -kappa * g_kk * radius_ / speed, pw = g_kp * radius_ / speed;
+    const double ss = kappa * kappa * sum.kk / speed, sp = -kappa * sum.kp / speed;
+    const double pp = (sum.pp + along) / speed;
+    const double sw = -kappa * sum.kk * radius_ / speed, pw = sum.kp * radius_ / speed;
     out.xx = ss * cx * cx - 2 * sp * cx * cy + pp * cy * cy;
     out.yy = ss * cy * cy + 2 * sp * cx * cy + pp * cx * cx;
     out.xy = (ss - pp) * cx * cy + sp * (cx * cx - cy * cy);
     out.xw = sw * cx - pw * cy;
     out.yw = sw * cy + pw * cx;
-    out.ww = g_kk * radius_ * radius_ / speed;
+    out.ww = sum.kk * radius_ * radius_ / speed;
   }
   return out;
 }

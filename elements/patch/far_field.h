@@ -50,14 +50,20 @@ public:
 
 private:
   static constexpr int k_row = k_order / 2 + 1; // room for one l
+  static constexpr int k_pairs = k_order / 2 + 1; // of rows, l and l + 2
 
   /// Moments of a node at z (in radii) of the rule along an edge.
   void add_node(const Vec2& z, double uniform, double linear);
 
-  using Pair = Eigen::Array2d; // real and imaginary part
+  /// Real and imaginary part of a_{n,l}, n = l + 2k. Rows l and l + 2 lie side by side, so that both are summed up at once: at each n
+  /// four numbers, zeros where l + 2 has none.
+  static constexpr int place(int l, int k) {
+    const int second = l % 4 / 2;
+    return 4 * ((l / 4 * 2 + l % 2) * k_row + k + second) + 2 * second;
+  }
 
   double radius_ = 1;
-  std::array<Pair, (k_order + 1) * k_row> a_; // row l: n = l, l+2, …
+  std::array<double, 4 * k_pairs * k_row> a_;
 };
 
 } // namespace steplap

@@ -43,6 +43,9 @@ constexpr double k_golden = 0.3819660112501051;
 // stretches of a fixed-step method become longer and shorter.
 constexpr double k_well_resolved = 0.01, k_badly_resolved = 0.05;
 
+// What has codes changes at events alone: the ends of stretches show all of it.
+bool is_mode(const Channel& channel) { return !channel.codes.empty(); }
+
 } // namespace
 
 const Extreme& ChannelRange::largest() const {
@@ -294,7 +297,7 @@ bool ExtremeFinder::suspect(double h) {
     curve.is_open = false;
     curve.error = std::numeric_limits<double>::infinity();
     if (h_last > 0.0 && a == b && a == before[c] && curvature_[c] == 0.0 && rate_of_[c] < 0) continue; // it rests
-    if (formulas_->is_formula(c) || is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
+    if (is_mode(*ranges_[c].channel) || formulas_->is_formula(c) || is_ruled_out(c) || std::isinf(a) || std::isinf(b)) continue;
     const double slope = b - a, last = h_last > 0.0 ? (a - before[c]) * share : k_unknown;
     if (!std::isnan(slope) && !std::isnan(last)) { // over the stretch, and over as long before
       const double bend_now = std::abs(slope - last) / halves;

@@ -19,35 +19,25 @@ bool starts_with_any(const std::string& path, std::initializer_list<const char*>
 
 bool may_place(const ElementEntry& entry) { return dynamic_cast<const PlacingElement*>(entry.element.get()) != nullptr; }
 
-// Does completion (completion.h) read the field? Markers get places from bodies' centres of gravity, bodies from joints,
-// elements from the tables of other rooms, which look at bodies and at what is completed before them; validation compares
-// the settings of a run with each other.
-bool is_read_by_completion(const Model& given, const std::string& path) {
-  const auto any_table = [&](bool TableKind::*reads) {
-    return std::any_of(given.tables.begin(), given.tables.end(), [&](const TableEntry& e) { return e.kind->*reads; });
-  };
-  if (starts_with_any(path, {"signal.", "gravity."})) return false;
-  if (path.starts_with("parameters.")) {
-    const std::optional<std::size_t> parameter = given.parameters.find(path.substr(std::string("parameters.").size()));
-    return std::any_of(given.parameters.uses.begin(), given.parameters.uses.end(), [&](const ParameterUse& use) {
-      return parameter && given.parameters.needs(use.formula, *parameter) && is_read_by_completion(given, use.path);
-    });
-  }
-  if (path.starts_with("element.")) {
-    const bool is_placing = std::any_of(given.elements.begin(), given.elements.end(), [&](const ElementEntry& e) {
-      return may_place(e) && path.starts_with("element." + e.element->name + ".");
-    });
-    const std::size_t last = path.find_last_not_of("0123456789");
-    const bool is_outline = last != std::string::npos && path[last] == '.' && std::isdigit(static_cast<unsigned char>(path[last - 1]));
-    return is_placing || is_outline || any_table(&TableKind::reads_elements);
-  }
-  if (path.starts_with("body.")) {
-    const bool is_mass = path.ends_with(".mass") || path.ends_with(".inertia");
-    const bool is_rate = path.ends_with(".angular_velocity") || path.ends_with(".velocity.0") || path.ends_with(".velocity.1");
-    const bool follows_joints = std::any_of(given.elements.begin(), given.elements.end(), may_place);
-    return is_mass ? any_table(&TableKind::reads_masses) : !is_rate || follows_joints;
-  }
-  return true;
+bool is_same(const FieldTable& fields, const void* a, const void* b) {
+  return std::all_of(fields.fields().begin(), fields.fields().end(), [&](const Field& field) { return field.get(a) == field.get(b); });
+}
+
+// As FieldChecker has it; what is not given is no text of its field.
+bool is_in_range(const Field& field, const void* object) {
+  const FieldValue value = field.get(object);
+  const auto* const text = std::get_if<std::string>(&value);
+  return (text && text->empty()) || range_problem(field, value).empty();
+}
+
+bool is_in_range(const ElementEntry& entry) {
+  const std::vector<Field>& fields = entry.kind->fields.fields();
+  return std::all_of(fields.begin(), fields.end(), [&](const Field& field) { return is_in_range(field, entry.element.get()); });
+}
+
+bool is_in_range(const Body& body) {
+  const std::vector<Field>& fields = Body::fields().fields();
+  return std::all_of(fields.begin(), fields.end(), [&](const Field& field) { return is_excused(body, field) || is_in_range(field, &body); });
 }
 
 } // namespace
@@ -58,23 +48,117 @@ std::unique_ptr<System> instantiate(const Model& given, const ModelValues& value
   return compile(completed(model));
 }
 
+// Which parts of completion (completion.h) read the field? Markers get places from bodies' centres of gravity, bodies from joints,
+// elements from the tables of other rooms, which look at bodies and at what is completed before them; validation compares
+// the settings of a run with each other.
+Variants::Redone Variants::redone_for(const std::string& path) const {
+  const auto if_any_table = [&](bool TableKind::*reads) {
+    const bool is_any = std::any_of(given_.tables.begin(), given_.tables.end(), [&](const TableEntry& e) { return e.kind->*reads; });
+    return is_any ? Redone::tables : Redone::nothing;
+  };
+  if (starts_with_any(path, {"signal.", "gravity."})) return Redone::nothing;
+  if (path.starts_with("parameters.")) {
+    const std::optional<std::size_t> parameter = given_.parameters.find(path.substr(std::string("parameters.").size()));
+    Redone redone = Redone::nothing;
+    for (const ParameterUse& use : given_.parameters.uses)
+      if (parameter && given_.parameters.needs(use.formula, *parameter)) redone = std::max(redone, redone_for(use.path));
+    return redone;
+  }
+  if (path.starts_with("element.")) {
+    const bool is_placing = std::any_of(given_.elements.begin(), given_.elements.end(), [&](const ElementEntry& e) {
+      return may_place(e) && path.starts_with("element." + e.element->name + ".");
+    });
+    const std::size_t last = path.find_last_not_of("0123456789");
+    const bool is_outline = last != std::string::npos && path[last] == '.' && std::isdigit(static_cast<unsigned char>(path[last - 1]));
+    if (is_placing) return Redone::all;
+    return is_outline ? Redone::tables : if_any_table(&TableKind::reads_elements);
+  }
+  if (path.starts_with("body.")) {
+    const bool is_mass = path.ends_with(".mass") || path.ends_with(".inertia");
+    const bool is_rate = path.ends_with(".angular_velocity") || path.ends_with(".velocity.0") || path.ends_with(".velocity.1");
+    if (is_mass) return if_any_table(&TableKind::reads_masses);
+    if (std::any_of(given_.elements.begin(), given_.elements.end(), may_place)) return Redone::all;
+    return is_rate ? Redone::nothing : Redone::tables;
+  }
+  const auto leads_to = [&](const TableEntry& e) { return path.starts_with(e.kind->name + "."); };
+  return std::any_of(given_.tables.begin(), given_.tables.end(), leads_to) ? Redone::tables : Redone::all;
+}
+
 Variants::Variants(const Model& given, std::vector<std::string> paths, const std::vector<std::string>* channels)
     : given_(given), completed_(completed(given)), paths_(std::move(paths)) {
   if (channels) channels_ = *channels;
   for (const std::string& path : paths_) {
     static_cast<void>(number_of(given_, path)); // it is there, and a number
-    if (is_read_by_completion(given_, path)) is_direct_ = false;
+    redone_ = std::max(redone_, redone_for(path));
   }
+  if (redone_ == Redone::tables) note_tables();
+}
+
+void Variants::note_tables() {
+  const std::size_t count = given_.elements.size();
+  for (std::size_t i = 0; i < count; ++i)
+    if (!is_same(given_.elements[i].kind->fields, given_.elements[i].element.get(), completed_.elements[i].element.get())) redone_ = Redone::all;
+  Model without = given_;
+  without.tables.clear();
+  std::vector<Diagnostic> problems; // none, as completed() has told
+  complete(without, {}, problems);
+  bodies_ = without.bodies;
+  for (std::size_t i = 0; i < given_.tables.size(); ++i) {
+    const auto count_others = [&] { return without.plots.size() + without.criteria.size() + without.channels.size(); };
+    const std::size_t before = count_others();
+    const TableEntry& entry = given_.tables[i];
+    entry.kind->apply(*entry.table, without);
+    if (count_others() == before) applied_.push_back(i);
+    else if (std::any_of(paths_.begin(), paths_.end(), [&](const std::string& path) { return path.starts_with(entry.kind->name + "."); })) redone_ = Redone::all;
+  }
+  for (std::size_t i = 0; i < completed_.markers.size(); ++i) // those that stand for bodies are behind the given ones
+    if (i >= given_.markers.size() || (!given_.markers[i].point && !given_.markers[i].at)) at_centres_.push_back(i);
+  for (std::size_t i = count; i < completed_.elements.size(); ++i)
+    added_.emplace_back(completed_.elements[i].kind, completed_.elements[i].element->name);
+}
+
+void Variants::place_at_centres() {
+  for (const std::size_t i : at_centres_) {
+    Marker& marker = completed_.markers[i];
+    const Body* const body = completed_.find_body(marker.body);
+    marker.point = body ? body->cg : Vec2(Vec2::Zero());
+  }
+}
+
+// False where that is not enough: what is wrong then, or another number of elements, is for completed().
+bool Variants::apply_tables() {
+  place_at_centres();
+  try {
+    for (const std::size_t i : applied_) completed_.tables[i].kind->apply(*completed_.tables[i].table, completed_);
+  } catch (const ModelError&) {
+    return false;
+  }
+  place_at_centres();
+  const auto first = completed_.elements.begin() + static_cast<std::ptrdiff_t>(given_.elements.size());
+  const auto is_known = [](const ElementEntry& e, const auto& known) { return e.kind == known.first && e.element->name == known.second; };
+  return std::equal(first, completed_.elements.end(), added_.begin(), added_.end(), is_known) &&
+         std::all_of(first, completed_.elements.end(), [](const ElementEntry& e) { return is_in_range(e); }) &&
+         std::all_of(completed_.bodies.begin(), completed_.bodies.end(), [](const Body& body) { return is_in_range(body); });
 }
 
 std::unique_ptr<System> Variants::make(const std::vector<double>& values) {
   if (values.size() != paths_.size())
     throw std::invalid_argument(std::to_string(values.size()) + " values for " + std::to_string(paths_.size()) + " paths of a model");
-  Model& model = is_direct_ ? completed_ : given_;
-  for (std::size_t i = 0; i < paths_.size(); ++i) set_value(model, paths_[i], values[i]);
-  const std::vector<std::string>* const wanted = channels_ ? &*channels_ : nullptr;
-  if (!is_direct_) completed_ = completed(given_);
-  return compile(completed_, wanted);
+  const auto set_all = [&](Model& model) {
+    for (std::size_t i = 0; i < paths_.size(); ++i) set_value(model, paths_[i], values[i]);
+  };
+  bool is_completed = redone_ != Redone::all;
+  if (redone_ == Redone::tables) {
+    completed_.elements.erase(completed_.elements.begin() + static_cast<std::ptrdiff_t>(given_.elements.size()), completed_.elements.end());
+    completed_.bodies = bodies_;
+  }
+  if (is_completed) set_all(completed_);
+  if (redone_ == Redone::tables) is_completed = apply_tables();
+  if (!is_completed) {
+    set_all(given_);
+    completed_ = completed(given_);
+  }
+  return compile(completed_, channels_ ? &*channels_ : nullptr);
 }
 
 } // namespace steplap
