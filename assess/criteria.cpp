@@ -149,7 +149,7 @@ DecisionCriteria read_criteria(const std::string& file_or_preset) {
     for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
     throw FileError(file_or_preset, "'" + file_or_preset + "' is neither a file of criteria nor one of those that come with the program (" + known + ")" + did_you_mean(file_or_preset, names));
   }
-  return parse_criteria(read_input(file_or_preset, {file_or_preset, 0, 0}, "the criteria "), file_or_preset);
+  return parse_criteria(read_input(file_or_preset, {shown_input(file_or_preset), 0, 0}, "the criteria "), shown_input(file_or_preset));
 }
 
 } // namespace steplap::assess

@@ -3,6 +3,7 @@
 #include "elements/prescribed_motion.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/input_files.h"
+#include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
 #include "mbd/math/portable_math.h"
 #include "mbd/model/completion.h"
@@ -194,6 +195,7 @@ DrivenModel driven_model(Model given, const std::string& name) {
 }
 
 DrivenModel read_driven_model(const std::string& path, const std::vector<std::string>& overrides) {
+  if (is_standard_input(path)) throw FileError(path, "a decision names its model: give a file, not standard input");
   DrivenModel driven = driven_model(read_given_model(path, program_catalogue(), overrides), std::filesystem::path(path).stem().string());
   driven.file = path;
   driven.sha256 = sha256_of_file(path);

@@ -59,6 +59,7 @@ if(TARGET steplap-study)
   install(TARGETS steplap-study RUNTIME DESTINATION libexec COMPONENT study)
 endif()
 install(DIRECTORY models examples DESTINATION ${CMAKE_INSTALL_DATADIR}/steplap COMPONENT program)
+install(FILES tools/editors/steplap.lua tools/editors/taplo_lsp.js DESTINATION ${CMAKE_INSTALL_DATADIR}/steplap/editors COMPONENT program)
 install(FILES LICENSE THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap COMPONENT program)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/steplap COMPONENT program
   FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")

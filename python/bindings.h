@@ -17,7 +17,11 @@ namespace py = pybind11;
 /// A model as Python holds it.
 struct PyModel {
   std::shared_ptr<const LoadedModel> loaded;
+  std::shared_ptr<const std::string> source{}; ///< the text that it was made from, where it was made from one and not from a file
 };
+
+/// The model as given, to set values in.
+[[nodiscard]] Model given_model(const PyModel& model);
 
 /// A run with its report; its samples as one block, which arrays of numpy look into and keep alive.
 struct PyRun {
@@ -43,6 +47,7 @@ private:
 /// A dictionary of such, or a list of "path=value".
 [[nodiscard]] std::vector<std::string> overrides_of(const py::object& given);
 
+void add_analysis(py::module_& module);
 void add_errors(py::module_& module);
 void add_model(py::module_& module);
 void add_run(py::module_& module);

@@ -1,6 +1,9 @@
+#include "mbd/io/reader.h"
 #include "mbd/model/model_path.h"
 #include "python/bindings.h"
+#include "run/drawing.h"
 #include "run/findings.h"
+#include "run/loaded_text.h"
 
 #include <pybind11/stl.h>
 
@@ -41,6 +44,7 @@ PyModel with_overrides(const PyModel& model, const py::object& values) {
   all.insert(all.end(), more.begin(), more.end());
   const std::string path = model.loaded->path;
   const py::gil_scoped_release unlocked;
+  if (model.source) return {load_model_text(*model.source, path, all), model.source};
   return {load_model(path, all)};
 }
 
@@ -75,6 +79,12 @@ void Interruption::raise_if_any() {
 
 std::string override_text(const std::string& path, const py::handle& value) { return path + "=" + value_text(path, value); }
 
+Model given_model(const PyModel& model) {
+  const LoadedModel& loaded = *model.loaded;
+  return model.source ? parse_given_model(*model.source, loaded.path, program_catalogue(), loaded.overrides)
+                      : read_given_model(loaded.path, program_catalogue(), loaded.overrides);
+}
+
 std::vector<std::string> overrides_of(const py::object& given) {
   std::vector<std::string> texts;
   if (given.is_none()) return texts;
@@ -98,6 +108,7 @@ void add_model(py::module_& module) {
             return all;
           },
           "names of all channels, with their SI units")
+      .def_property_readonly("drawing_text", [](const PyModel& m) { return drawing_json(m.loaded->model); }, "the text of drawing.json: docs/reference/results.md")
       .def("value", [](const PyModel& m, const std::string& path) { return number_of(m.loaded->model, path); }, py::arg("path"),
            "A number of the model by its path, in SI: value('body.tank.mass').")
       .def("unit", [](const PyModel& m, const std::string& path) { return unit_of(m.loaded->model, path); }, py::arg("path"),
@@ -115,6 +126,16 @@ void add_model(py::module_& module) {
       },
       py::arg("path"), py::arg("values") = py::none(),
       "Reads a model file. `values`: laid over it, by path. Raises ModelError with all that is wrong, FileError.");
+  module.def(
+      "loads",
+      [](const std::string& text, const py::object& values, const std::string& path) {
+        const std::vector<std::string> overrides = overrides_of(values);
+        const py::gil_scoped_release unlocked;
+        return PyModel{load_model_text(text, path, overrides), std::make_shared<const std::string>(text)};
+      },
+      py::arg("text"), py::arg("values") = py::none(), py::arg("path") = "model.toml",
+      "Reads a model from a text. `path`: what messages call it, what paths in it are relative to and what its results are named after; nothing is read from there. "
+      "Raises ModelError.");
 }
 
 } // namespace steplap::python

@@ -8,6 +8,7 @@ PYBIND11_MODULE(_steplap, module) {
   module.attr("__version__") = steplap::k_version;
   add_errors(module);
   add_model(module);
+  add_analysis(module);
   add_run(module);
   add_samples(module);
 }

@@ -125,6 +125,8 @@ void add_run(py::module_& module) {
       .def_property_readonly("caps", [](const PyRun& r) { return r.report->judgement.caps; }, "why the run cannot mean 'hold', whatever it meets")
       .def_property_readonly("criteria", [](const PyRun& r) { return r.report->judgement.criteria; })
       .def_property_readonly("findings", [](const PyRun& r) { return r.report->findings; })
+      .def_property_readonly("energy_residual", [](const PyRun& r) { return r.report->relative_energy_residual; },
+                             "what the energy account does not close by, as a share of the energy exchanged")
       .def_property_readonly("events", [](const PyRun& r) { return r.report->run.result.events; }, "ascending in time")
       .def_property_readonly("failure", [](const PyRun& r) -> std::optional<std::string> {
             if (!r.report->run.failure) return std::nullopt;

@@ -1,4 +1,3 @@
-#include "mbd/io/reader.h"
 #include "mbd/model/model_path.h"
 #include "mbd/system/instance.h"
 #include "python/bindings.h"
@@ -101,7 +100,7 @@ py::tuple samples(const PyModel& model, const std::vector<std::string>& paths, c
   const auto count = static_cast<std::size_t>(values.shape(0));
   Numbers results({count, responses.size()});
   std::vector<std::string> verdicts(count), troubles(count);
-  const Model given = read_given_model(model.loaded->path, program_catalogue(), model.loaded->overrides);
+  const Model given = given_model(model);
   for (const std::string& path : paths) static_cast<void>(number_of(given, path)); // they lead somewhere, before threads begin
   Crew crew{given, model.loaded->path, paths, responses, values.data(), count, results.mutable_data(), verdicts, troubles};
   Interruption interruption;

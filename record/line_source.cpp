@@ -47,7 +47,7 @@ void LineSource::Close::operator()(std::FILE* file) const {
 }
 
 LineSource::LineSource(const std::string& path) : name_(path) {
-  if (is_standard_input(path)) name_ = "standard input";
+  if (is_standard_input(path)) name_ = shown_input(path);
   errno = 0;
   struct ::stat status {};
   if (!is_standard_input(path)) {

@@ -6,9 +6,11 @@
 #include "mbd/io/presentation.h"
 #include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
+#include "mbd/io/text_reader.h"
 #include "mbd/model/completion.h"
 #include "mbd/simulation/trajectory.h"
 #include "run/failure.h"
+#include "run/loaded_text.h"
 #include "run/tipping.h"
 
 #include <cmath>
@@ -58,11 +60,25 @@ void put_together(LoadedModel& loaded) {
 
 std::shared_ptr<const LoadedModel> load_model(const std::string& path, const std::vector<std::string>& overrides, const Catalogue& catalogue) {
   auto loaded = std::make_shared<LoadedModel>();
-  loaded->path = path;
+  loaded->path = shown_input(path);
   loaded->name = name_of_model(path);
   loaded->overrides = overrides;
   const InputFiles read; // until its signals are built
   loaded->model = read_model(path, catalogue, overrides, &loaded->text);
+  loaded->system = compile(loaded->model);
+  loaded->inputs = read.files();
+  put_together(*loaded);
+  return loaded;
+}
+
+std::shared_ptr<const LoadedModel> load_model_text(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+  auto loaded = std::make_shared<LoadedModel>();
+  loaded->path = path;
+  loaded->name = name_of_model(path);
+  loaded->overrides = overrides;
+  const InputFiles read;
+  note_input(path, text, false);
+  loaded->model = parse_model_text(text, path, program_catalogue(), overrides, loaded->text);
   loaded->system = compile(loaded->model);
   loaded->inputs = read.files();
   put_together(*loaded);

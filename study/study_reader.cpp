@@ -6,6 +6,7 @@
 #include "mbd/io/document.h"
 #include "mbd/io/field_reader.h"
 #include "mbd/io/presentation.h"
+#include "mbd/io/read_input.h"
 #include "mbd/io/reader.h"
 #include "mbd/io/units.h"
 #include "mbd/model/completion.h"
@@ -539,6 +540,8 @@ private:
 
 LoadedStudy read_study(const std::string& path) {
   std::error_code ignored;
+  if (is_standard_input(path))
+    throw ModelError(Location{shown_input(path), 0, 0}, "cannot read the study: studies are read more than once, and their models stand beside them. Give a file");
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
     throw ModelError(Location{path, 0, 0}, "cannot read the study: it is no file. Studies are read more than once, so pipes cannot be taken");
   const InputFiles inputs;

@@ -10,6 +10,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// What a key has to be that is none of the table's: an editor then marks the key, where "false" would have it mark the table.
+const Json& no_other_keys() {
+  static const Json schema{{"const", "a field that this table has"}};
+  return schema;
+}
+
 // Keys that take a text as well as a list of texts.
 bool takes_one(const std::string& name) { return name == "model" || name == "path"; }
 
@@ -36,7 +42,7 @@ Json object_schema(const StudyTable& table) {
               {"description", table.doc},
               {"properties", properties_of(table.fields)},
               {"required", required_of(table.fields)},
-              {"additionalProperties", false}};
+              {"additionalProperties", no_other_keys()}};
   if (!table.is_array) return schema;
   return {{"type", "array"}, {"items", std::move(schema)}};
 }
@@ -57,7 +63,7 @@ std::string study_schema() {
     properties[table.name] = object_schema(table);
   }
   root["properties"] = std::move(properties);
-  root["additionalProperties"] = false;
+  root["additionalProperties"] = no_other_keys();
   return root.dump(2) + "\n";
 }
 

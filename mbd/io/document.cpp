@@ -293,7 +293,7 @@ void look_for_control_characters(const Node& node, std::vector<Diagnostic>& prob
 void refuse_control_characters(Document& document) { look_for_control_characters(document.root, document.problems); }
 
 Document load_document(const std::string& path) {
-  return Loader().load(read_layer(path, Location{}), path);
+  return Loader().load(read_layer(path, Location{}), shown_input(path));
 }
 
 Document parse_document(std::string text, const std::string& file_name) {

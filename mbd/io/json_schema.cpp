@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace steplap {
 
@@ -15,14 +16,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json quantity(const Field& field, const std::string& unit) {
-  Json number{{"type", "number"}};
+// Limits hold for numbers and the pattern for texts, so that an editor names the one that is not met; of "anyOf" it could only say that
+// nothing fits.
+Json quantity(const Field& field, const std::string& unit, const char* number = "number") {
+  Json schema{{"type", {number, "string"}}};
   if (std::isfinite(field.minimum))
-    number[field.is_minimum_excluded ? "exclusiveMinimum" : "minimum"] = field.minimum;
-  if (std::isfinite(field.maximum)) number["maximum"] = field.maximum;
-  const char* const pattern = unit.empty() ? "^\\s*=" : "^\\s*([-+]?[0-9.]|=)"; // a formula of parameters, a number with its unit
-  return {{"anyOf", {number, {{"type", "string"}, {"pattern", pattern}}}}};
+    schema[field.is_minimum_excluded ? "exclusiveMinimum" : "minimum"] = field.minimum;
+  if (std::isfinite(field.maximum)) schema["maximum"] = field.maximum;
+  schema["pattern"] = unit.empty() ? "^\\s*=" : "^\\s*([-+]?[0-9.]|=)"; // a formula of parameters, a number with its unit
+  return schema;
 }
+
+// No key but those of `properties`. An editor marks the key itself where the value it has cannot be; of "false" it marks the whole table.
+void close(Json& schema) { schema["additionalProperties"] = {{"const", "a field that this table has"}}; }
 
 Json list_of(Json items) {
   return {{"type", "array"}, {"items", std::move(items)}};
@@ -46,11 +52,8 @@ Json value_schema(const Field& field) {
     return quantity(field, field.unit);
   case FieldType::quantity:
     return quantity(field, "*");
-  case FieldType::integer: {
-    Json schema = quantity(field, "");
-    schema["anyOf"][0]["type"] = "integer";
-    return schema;
-  }
+  case FieldType::integer:
+    return quantity(field, "", "integer");
   case FieldType::boolean:
     return {{"type", "boolean"}};
   case FieldType::choice:
@@ -90,10 +93,9 @@ Json object_schema(const Described& kind) {
   Json properties = Json::object();
   for (const Field& field : kind.fields->fields())
     properties[field.name] = field_schema(kind, field);
-  return {{"type", "object"},
-          {"description", kind.doc},
-          {"properties", std::move(properties)},
-          {"additionalProperties", false}};
+  Json schema{{"type", "object"}, {"description", kind.doc}, {"properties", std::move(properties)}};
+  close(schema);
+  return schema;
 }
 
 const Described& common_fields() {
@@ -123,7 +125,7 @@ Json entry_schema(const Described& kind, bool has_kind) {
   return schema;
 }
 
-Json parameter_value() { return {{"anyOf", {{{"type", "number"}}, {{"type", "string"}, {"pattern", "^\\s*([-+]?[0-9.]|=)"}}}}}; }
+Json parameter_value() { return {{"type", {"number", "string"}}, {"pattern", "^\\s*([-+]?[0-9.]|=)"}}; }
 
 // What is written out before anything is read: parts, and entries that are repeated.
 void add_writing_out(Json& properties, const std::string& array) {
@@ -145,12 +147,65 @@ Json inline_marker_schema(const Described& marker) {
 
 Json parameters_schema() {
   const Json value = parameter_value();
-  const Json full{{"type", "object"},
-                  {"properties", {{"value", value}, {"range", {{"type", "array"}, {"items", value}, {"minItems", 2}, {"maxItems", 2}}}, {"meaning", text()}}},
-                  {"additionalProperties", false}};
+  Json full = value; // or a table
+  full["type"].push_back("object");
+  full["properties"] = {{"value", value}, {"range", {{"type", "array"}, {"items", value}, {"minItems", 2}, {"maxItems", 2}}}, {"meaning", text()}};
+  close(full);
   return {{"type", "object"},
           {"description", "numbers with a name, for formulas in fields: \"= 2*wall + bore\""},
-          {"additionalProperties", {{"anyOf", {value["anyOf"][0], value["anyOf"][1], full}}}}};
+          {"additionalProperties", std::move(full)}};
+}
+
+// What a field of several kinds means: "stiffness [N/m] (tie, bushing); stiffness, turning [N m] (gear)". Without kinds where all have it.
+std::string meanings(const std::vector<std::pair<std::string, std::string>>& docs, std::size_t all) {
+  std::string text;
+  for (std::size_t i = 0; i < docs.size(); ++i) {
+    const auto same = [&docs, i](const auto& other) { return other.second == docs[i].second; };
+    if (std::find_if(docs.begin(), docs.begin() + static_cast<std::ptrdiff_t>(i), same) != docs.begin() + static_cast<std::ptrdiff_t>(i)) continue;
+    std::string kinds;
+    for (const auto& other : docs)
+      if (same(other)) kinds += (kinds.empty() ? "" : ", ") + other.first;
+    text += (text.empty() ? "" : "; ") + docs[i].second;
+    if (static_cast<std::size_t>(std::count_if(docs.begin(), docs.end(), same)) < all) text += " (" + kinds + ")";
+  }
+  return text;
+}
+
+// Entries of several kinds. Each is held to the schema of the kind that it names, so that what is wrong is said of its own line. What an
+// editor offers is under "properties": it does not look behind conditions.
+Json entries_of_kinds(const std::string& role, const Json& definitions) {
+  const std::string prefix = role + "_";
+  std::vector<std::string> kinds;
+  std::vector<std::string> order; // of the fields
+  std::map<std::string, std::vector<std::pair<std::string, std::string>>> docs; // field: kind and meaning
+  std::map<std::string, Json> values; // field: what it may be, of any kind
+  for (const auto& [name, definition] : definitions.items()) {
+    if (!name.starts_with(prefix)) continue;
+    kinds.push_back(name.substr(prefix.size()));
+    for (const auto& [field, schema] : definition["properties"].items()) {
+      if (field == "kind") continue;
+      if (docs[field].empty()) order.push_back(field);
+      docs[field].emplace_back(kinds.back(), schema.value("description", ""));
+      Json value = schema;
+      value.erase("description");
+      value.erase("default");
+      if (std::find(values[field].begin(), values[field].end(), value) == values[field].end()) values[field].push_back(std::move(value));
+    }
+  }
+  Json offered{{"kind", {{"enum", kinds}, {"description", "what it is"}}}};
+  Json known{{"kind", Json::object()}};
+  for (const std::string& field : order) {
+    offered[field] = {{"description", meanings(docs[field], kinds.size())}};
+    known[field] = values[field].size() == 1 ? values[field].front() : Json{{"anyOf", values[field]}};
+  }
+  Json schema{{"properties", std::move(known)}}; // of an entry without a kind, which is laid over another file's
+  close(schema);
+  for (auto kind = kinds.rbegin(); kind != kinds.rend(); ++kind)
+    schema = {{"if", {{"properties", {{"kind", {{"const", *kind}}}}}, {"required", Json::array({"kind"})}}}, {"then", {{"$ref", "#/$defs/" + prefix + *kind}}}, {"else", std::move(schema)}};
+  schema["type"] = "object";
+  schema["required"] = Json::array({"name"});
+  schema["properties"] = std::move(offered);
+  return schema;
 }
 
 } // namespace
@@ -159,7 +214,6 @@ std::string json_schema(const Catalogue& catalogue) {
   Json root{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
             {"title", "steplap model"}};
   Json properties = Json::object(), definitions = Json::object();
-  Json kinds{{"signal", Json::array()}, {"element", Json::array()}};
   properties["extends"] = {{"type", "string"},
                            {"description", "model file that this one is laid over"}};
   properties["parameters"] = parameters_schema();
@@ -179,14 +233,12 @@ std::string json_schema(const Catalogue& catalogue) {
       Json entry = entry_schema(kind, true);
       add_writing_out(entry["properties"], kind.role);
       definitions[kind.role + "_" + kind.name] = std::move(entry);
-      kinds[kind.role].push_back({{"$ref", "#/$defs/" + kind.role + "_" + kind.name}});
     }
   }
-  for (const std::string role : {"signal", "element"})
-    if (!kinds[role].empty()) properties[role] = list_of({{"anyOf", kinds[role]}});
+  for (const std::string role : {"signal", "element"}) properties[role] = list_of(entries_of_kinds(role, definitions));
   root["type"] = "object";
   root["properties"] = std::move(properties);
-  root["additionalProperties"] = false;
+  close(root);
   root["$defs"] = std::move(definitions);
   return root.dump(2) + "\n";
 }

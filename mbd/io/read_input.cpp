@@ -16,6 +16,8 @@ namespace {
 // More than a week of three axes at 200 Hz as text; a device or a pipe without end would fill the memory.
 constexpr std::size_t k_most_bytes = std::size_t{4} << 30U;
 
+constexpr const char* k_standard_input = "<standard input>"; // the name of no file that anybody has
+
 // Closed with it, but for standard input, which is its caller's.
 class Descriptor {
 public:
@@ -44,7 +46,9 @@ std::string problem_with(const struct ::stat& status, const std::string& path) {
 
 } // namespace
 
-bool is_standard_input(const std::string& path) { return path == "-" || path == "/dev/stdin" || path == "/dev/fd/0"; }
+bool is_standard_input(const std::string& path) { return path == "-" || path == "/dev/stdin" || path == "/dev/fd/0" || path == k_standard_input; }
+
+std::string shown_input(const std::string& path) { return is_standard_input(path) ? k_standard_input : path; }
 
 std::string read_input(const std::string& path, const Location& where, const std::string& noun) {
   const auto fail = [&](const std::string& why) {

@@ -13,5 +13,7 @@ namespace steplap {
 [[nodiscard]] std::string read_input(const std::string& path, const Location& where, const std::string& noun = "");
 
 [[nodiscard]] bool is_standard_input(const std::string& path);
+/// What messages call the file: "<standard input>", or the path itself.
+[[nodiscard]] std::string shown_input(const std::string& path);
 
 } // namespace steplap

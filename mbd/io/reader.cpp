@@ -1,6 +1,7 @@
 #include "mbd/io/reader.h"
 
 #include "mbd/io/standalone_text.h"
+#include "mbd/io/text_reader.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/field_reader.h"
 #include "mbd/io/parameters_reader.h"
@@ -517,6 +518,11 @@ std::string effective_model_text(const std::string& path, const Catalogue& catal
 Model parse_model(std::string text, const std::string& file_name, const Catalogue& catalogue,
                   const std::vector<std::string>& overrides) {
   return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides).second;
+}
+
+Model parse_model_text(std::string text, const std::string& file_name, const Catalogue& catalogue, const std::vector<std::string>& overrides,
+                       std::string& standalone) {
+  return Reader(parse_document(std::move(text), file_name), catalogue).read(overrides, &standalone).second;
 }
 
 Model parse_given_model(std::string text, const std::string& file_name, const Catalogue& catalogue,

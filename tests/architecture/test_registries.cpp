@@ -79,7 +79,7 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
 TEST_CASE("a kind of element is a file pair and a line in the catalogue") {
   const auto sources = product_sources();
   const Reasons by_right = {{"run/symbols.cpp", "symbols: a kind without one is drawn by diamonds at its markers"},
-                            {"tools/steplap/joint.cpp", "what bears beside a joint, for a remark"}};
+                            {"run/joint_view.cpp", "what bears beside a joint, for a remark"}};
   // Names that are words of others, too, or that somebody asks for all the same.
   const std::map<std::string, Reasons> besides = {
       {"weld", {{"mbd/model/model.cpp", "a way to draw"}, {"study/needs.cpp", "what is made rigid is welded"}}},

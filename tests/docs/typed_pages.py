@@ -32,6 +32,8 @@ LEFT_OUT = {
     "tools/make_figures": "it takes minutes",
     "git ": "it needs a network",
     "cmake ": "it builds, or installs",
+    "npm ": "it needs a network",
+    "tools/editors/": "it needs taplo",
     "mpirun ": "it takes as many processors",
     "srun ": "it needs a cluster",
     "xdg-open ": "it opens a window",

@@ -43,20 +43,22 @@ TEST_CASE("the schema follows the tables") {
   const auto schema = nlohmann::json::parse(json_schema(small_catalogue()));
   const auto& spring = schema["$defs"]["element_spring"];
   CHECK(spring["properties"]["kind"]["const"] == "spring");
-  CHECK(spring["properties"]["stiffness"]["anyOf"][0]["exclusiveMinimum"] == 0.0);
+  CHECK(spring["properties"]["stiffness"]["exclusiveMinimum"] == 0.0);
   CHECK(spring["properties"]["law"]["enum"][1] == "table");
   CHECK(spring["properties"]["turns"]["default"] == 3);
-  CHECK(spring["properties"]["turns"]["anyOf"][0]["maximum"] == 20);
-  CHECK(spring["properties"]["turns"]["anyOf"][0]["type"] == "integer");
-  CHECK(schema["properties"]["parameters"]["additionalProperties"]["anyOf"].size() == 3); // a number, a text, a table with range and meaning
-  CHECK(spring["additionalProperties"] == false);
+  CHECK(spring["properties"]["turns"]["maximum"] == 20);
+  CHECK(spring["properties"]["turns"]["type"] == nlohmann::json{"integer", "string"});
+  CHECK(schema["properties"]["parameters"]["additionalProperties"]["type"].size() == 3); // a number, a text, a table with range and meaning
+  CHECK(spring["additionalProperties"].contains("const")); // no other keys
   CHECK(schema["properties"]["body"]["items"]["properties"]["position"]["default"][0] == 0.0);
   CHECK(schema["properties"].contains("pair"));
   for (const auto* entry : {&spring, &schema["properties"]["body"]["items"], &schema["properties"]["marker"]["items"], &schema["properties"]["part"]["items"]})
     CHECK((*entry)["properties"]["repeat"]["type"] == "integer");
-  CHECK(schema["properties"]["part"]["items"]["properties"]["parameters"]["additionalProperties"]["anyOf"].size() == 2); // a number, a text
+  CHECK(schema["properties"]["part"]["items"]["properties"]["parameters"]["additionalProperties"]["type"].size() == 2); // a number, a text
   CHECK(!schema["properties"]["pair"]["items"]["properties"].contains("repeat"));
   CHECK(schema["properties"].contains("gravity"));
-  CHECK(schema["properties"]["signal"]["items"]["anyOf"].size() ==
-        small_catalogue().signals.size());
+  CHECK(schema["properties"]["signal"]["items"]["properties"]["kind"]["enum"].size() == small_catalogue().signals.size());
+  const auto& elements = schema["properties"]["element"]["items"];
+  CHECK(elements["properties"].contains("stiffness")); // what an editor offers
+  CHECK(elements["then"]["$ref"] == "#/$defs/element_" + elements["if"]["properties"]["kind"]["const"].get<std::string>());
 }

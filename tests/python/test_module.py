@@ -134,6 +134,67 @@ def test_page_summary_and_equilibrium():
     assert all(len(pose) == 3 for pose in poses.values())
 
 
+def test_a_model_from_a_text_is_that_of_its_file(tmp_path):
+    path = MODELS / "machines/ladder.toml"
+    by_file, by_text = steplap.load(str(path)), steplap.loads(path.read_text(), path=str(path))
+    assert by_text.text == by_file.text and by_text.path == by_file.path
+    by_file.run().write(str(tmp_path / "file"))
+    by_text.run().write(str(tmp_path / "text"))
+    for file in ("trajectory.csv", "events.csv", "summary.json", "model.toml"):
+        assert (tmp_path / "file" / file).read_bytes() == (tmp_path / "text" / file).read_bytes(), file
+    changed = {"simulation.end": 0.01}
+    assert by_text.with_values(changed).text == by_file.with_values(changed).text
+    values, verdicts, troubles = by_text.with_values(changed).samples(["gravity.1"], [[-9.81]], [("ladder.y", "final")])
+    assert troubles == [""] and values[0, 0] == by_file.with_values(changed).run(estimate="never").extremes("ladder.y")["final"]
+    with pytest.raises(steplap.ModelError) as caught:
+        steplap.loads('[[body]]\nname = "a"\nmass = -1\ninertia = 1\n', path="made.toml")
+    assert [(d.file, d.line, d.column) for d in caught.value.diagnostics] == [("made.toml", 3, 8)]
+
+
+# A mass on a spring swings with sqrt(k/m) by the damping ratio c/(2 sqrt(k m)), from the elongation it is given.
+def test_a_model_is_built_from_dictionaries_and_its_modes_are_known():
+    k, m, c = 800.0, 2.0, 3.0
+    oscillator = steplap.build({
+        "title": 'a mass "on" a spring', "gravity": np.array([0.0, 0.0]),
+        "simulation": {"end": 1.0, "tolerance": 1e-10},
+        "body": [{"name": "mass", "mass": "2 kg", "inertia": 1, "velocity": [0.1, 0.0]}],
+        "element": [{"name": "spring", "kind": "spring_damper", "a": "mass", "b": {"body": "ground", "at": [0.0, 0.0]}, "axis": [1, 0], "stiffness": k, "damping": c},
+                    {"name": "guide", "kind": "prismatic", "a": "ground", "b": "mass", "axis": [1, 0]}]})
+    assert oscillator.title == 'a mass "on" a spring' and oscillator.value("element.spring.damping") == c
+    (mode,) = oscillator.modes()
+    omega, zeta = np.sqrt(k / m), c / (2.0 * np.sqrt(k * m))
+    assert abs(2.0 * np.pi * mode.natural_frequency / omega - 1.0) < 1e-10  # rounding of an eigenvalue
+    assert abs(mode.damping_ratio / zeta - 1.0) < 1e-8
+    assert abs(mode.eigenvalue - omega * complex(-zeta, np.sqrt(1.0 - zeta**2))) < 1e-8 * omega
+    assert abs(mode.shape["mass"][0] - 1.0) < 1e-12 and abs(mode.shape["mass"][1]) < 1e-12
+    run = oscillator.run()
+    damped = omega * np.sqrt(1.0 - zeta**2)
+    assert np.allclose(run["mass.x"], 0.1 / damped * np.exp(-zeta * omega * run.t) * np.sin(damped * run.t), atol=1e-9)  # tolerance 1e-10 a step
+    assert abs(run.energy_residual) < 1e-6
+    with pytest.raises(TypeError, match="body.mass"):
+        steplap.build({"body": [{"name": "a", "mass": object()}]})
+
+
+def test_joints_are_those_of_the_command_line():
+    path = str(MODELS / "layouts/three_limb.toml")
+    wrench = (53e3, -88e3, 0.0)
+    said = json.loads(subprocess.run([PROGRAM, "joint", path, "--wrench", "53 kN,-88 kN,0", "--json"], check=True, capture_output=True, text=True).stdout)
+    tables = {result["about"]: result["tables"] for result in said["results"] if "tables" in result}
+    joints = steplap.load(path).joints()  # the model goes, they keep it
+    assert [joint.name for joint in joints] == list(tables) and len(joints) == 3
+    gc.collect()
+    for joint in joints:
+        table, required = tables[joint.name], joint.required(*wrench)
+        assert [row["sliding"]["value"] for row in table["capacity"]] == list(joint.sliding)
+        assert [row["alone"]["value"] for row in table["capacity"]] == list(joint.alone)
+        assert required["usage"] == table["usage"]["u"] and required["pressure"] == table["usage"]["p_req"]["value"]
+        assert required["margin"] == 1.0 / required["usage"]
+        # Along x alone the joint bears its capacity, and what it takes grows with the wrench.
+        assert abs(joint.required(joint.alone[0], 0.0, 0.0)["usage"] - 1.0) < 1e-9
+        assert abs(joint.required(2.0 * wrench[0], 2.0 * wrench[1], 0.0)["usage"] / required["usage"] - 2.0) < 1e-9  # a solution to 1e-10
+        assert all(row["overlap"] > 0.0 for row in joint.interfaces)
+
+
 def test_the_page_about_python_says_what_is_true(tmp_path, monkeypatch):
     page = (MODELS.parent / "docs/how-to/use_from_python.md").read_text()
     blocks = [part.split("```")[0] for part in page.split("```python\n")[1:]]

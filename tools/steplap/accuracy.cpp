@@ -182,7 +182,7 @@ the budget is spent. Each model gets DIR/<name>/accuracy.csv and
 work_precision.svg.
 )";
   command.options = {
-      {"MODEL", &o->models, "FILE", "model files (TOML)", true},
+      {"MODEL", &o->models, "FILE", "model files (TOML); - is the standard input", true},
       {"-o,--output", &o->output, "DIR", "folder for the results (default: out/accuracy)"},
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
       {"--end", &o->end, "T", "end of the runs, s"},

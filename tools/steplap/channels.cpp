@@ -1,9 +1,9 @@
 #include "tools/steplap/channels.h"
 
 #include "mbd/base/name_pattern.h"
-#include "mbd/io/atomic_file.h"
 #include "mbd/io/csv.h"
 #include "run/run.h"
+#include "tools/steplap/output_files.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
@@ -77,6 +77,7 @@ void print_channels(std::ostream& out, const LoadedModel& loaded, const std::vec
 }
 
 ExitCode channels(const ChannelsOptions& options, Console& console) {
+  const OutputFiles files(console, {{"-o", options.output}}, options.is_overwriting);
   const auto loaded = load_model(options.model, options.overrides);
   const std::unique_ptr<System> all = with_all_channels(loaded->model);
   const std::vector<Listed> list = list_channels(*loaded, *all, options.patterns);
@@ -85,8 +86,8 @@ ExitCode channels(const ChannelsOptions& options, Console& console) {
     for (const Channel& channel : all->channels) known.push_back(channel.name);
     throw UsageError("no channel matches '" + options.patterns.front() + "'" + did_you_mean(options.patterns.front(), known));
   }
-  if (options.output) write_file(*options.output, table_csv(list), options.is_overwriting ? IfExists::replace : IfExists::refuse);
-  if (console.verbosity != Verbosity::quiet) print_channels(console.out, *loaded, list);
+  files.write(options.output, table_csv(list));
+  if (files.has_words()) print_channels(console.out, *loaded, list);
   return ExitCode::done;
 }
 
@@ -102,9 +103,9 @@ Command channels_command() {
   steplap channels my.toml -o channels.csv
 What formulas of channels may hold, and how to ask for channels: docs/reference/channels.md.
 )";
-  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML)", true},
+  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
                      {"--only", &o->patterns, "PATTERN", "those that match, * and ?; may be repeated"},
-                     {"-o,--output", &o->output, "FILE", "also write the list as CSV"},
+                     {"-o,--output", &o->output, "FILE", "also write the list as CSV; - is the standard output, which then holds nothing else"},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite the file"}};
   command.prints_tables = true;

@@ -258,7 +258,7 @@ Without --cross nothing is run. With it each model is run by explicit, implicit 
 two or three settings, and what they differ by is compared with their own error estimates: exit code 4 if anything
 disagrees beyond these.
 )";
-  command.options = {{"MODEL", &o->models, "FILE", "model files (TOML)", true},
+  command.options = {{"MODEL", &o->models, "FILE", "model files (TOML); - is the standard input", true},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
                      {"--uses", &o->parameter, "NAME", "show all that follows from this parameter, instead of the counts"},
                      {"--cross", &o->is_crossed, "", "run each model by methods that share little, and compare"},

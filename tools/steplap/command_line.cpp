@@ -8,6 +8,7 @@
 #include "tools/steplap/json_screen.h"
 #include "tools/steplap/licences.h"
 #include "tools/steplap/log.h"
+#include "tools/steplap/output_files.h"
 
 #include <CLI/CLI.hpp>
 
@@ -121,6 +122,7 @@ std::string advice_on_retired(const std::vector<std::string>& arguments, const s
 
 ExitCode run_command(const Program& program, const Command& command, const CommonFlags& flags, Console console) {
   try {
+    refuse_wrong_streams(command);
     if (!flags.is_json) return command.run(console);
     JsonScreen screen;
     Console recorded{screen, console.err, console.is_terminal, Verbosity::normal};

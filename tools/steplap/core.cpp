@@ -5,6 +5,7 @@
 #include "run/findings.h"
 #include "run/quantity_text.h"
 #include "run/run.h"
+#include "tools/steplap/output_files.h"
 #include "tools/steplap/text_table.h"
 #include "transformer/core_builder.h"
 #include "transformer/core_geometry.h"
@@ -220,14 +221,18 @@ void write_image(const std::string& path, std::size_t index, const Core& core, c
 }
 
 ExitCode core(const CoreOptions& options, Console& console) {
+  const OutputFiles files(console, {{"--svg", options.image}});
   const auto loaded = load_model(options.model, options.overrides);
   const std::vector<const Core*> cores = chosen_cores(options, *loaded);
   std::ostream silent(nullptr);
-  std::ostream& out = console.verbosity == Verbosity::quiet ? silent : console.out;
+  std::ostream& out = files.has_words() ? console.out : silent;
+  const bool is_drawn_there = options.image && is_standard_output(*options.image);
+  if (is_drawn_there && cores.size() > 1) throw UsageError("--svg -: there are " + std::to_string(cores.size()) + " cores, each with a drawing of its own: choose one with --core");
   for (std::size_t i = 0; i < cores.size(); ++i) {
     if (i > 0) out << "\n";
     print_core(out, *cores[i], loaded->model);
-    if (options.image) write_image(*options.image, i, *cores[i], loaded->model, out);
+    if (is_drawn_there) files.write(options.image, core_svg(*cores[i], loaded->model));
+    else if (options.image) write_image(*options.image, i, *cores[i], loaded->model, out);
   }
   for (const CoreRemark& remark : implausible_cores(loaded->model))
     out << (remark.is_note ? "\n  note: " : "\n  warning: ") << text_with_place({"", FindingLevel::warning, remark.text, remark.where}) << "\n";
@@ -248,10 +253,10 @@ Capacity is the friction of a corner in translation, mu_s p times the area of al
 differ in the sheets that overlap; "interfaces" are those that carry an overlap. More on a joint: steplap joint.
 )";
   command.options = {
-      {"MODEL", &o->model, "FILE", "model file (TOML)", true},
+      {"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
       {"--core", &o->cores, "NAME", "this core; may be repeated (default: all)"},
       {"--svg", &o->image, "FILE",
-       "draw elevation, section, corner and book into an SVG image; of further cores FILE-2 …"},
+       "draw elevation, section, corner and book into an SVG image; of further cores FILE-2 …; - is the standard output, which then holds nothing else"},
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return core(*o, console); };

@@ -118,7 +118,7 @@ Models are compared value by value, in SI, with what they extend and with defaul
 the models are compared, then verdict, criteria, joints, events and extremes: what differs by more than both error estimates together.
 Exit code 0, whether anything differs or not; with --require-same 5 if anything does.
 )";
-  command.options = {{"BEFORE", &o->before, "FILE|DIR", "a model file, or the folder of a run", true},
+  command.options = {{"BEFORE", &o->before, "FILE|DIR", "a model file, - for the standard input, or the folder of a run", true},
                      {"AFTER", &o->after, "FILE|DIR", "another one of the same sort", true},
                      {"--require-same", &o->is_sameness_required, "", "exit code 5 if anything differs"}};
   command.prints_tables = true;

@@ -116,7 +116,7 @@ Command equilibrium_command() {
 From the poses given the machine gives way downhill along its joints; friction that is loaded holds where it is.
 Where there is no rest, what moves and why is told.
 )";
-  command.options = {{"MODEL", &o->models, "FILE", "model files (TOML)", true},
+  command.options = {{"MODEL", &o->models, "FILE", "model files (TOML); - is the standard input", true},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};
   command.prints_tables = true;
   command.run = [o](Console& console) { return equilibrium(*o, console); };

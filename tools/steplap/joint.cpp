@@ -1,9 +1,8 @@
 #include "tools/steplap/joint.h"
 
-#include "elements/step_lap_friction.h"
-#include "elements/step_lap_joint.h"
 #include "mbd/base/number_text.h"
 #include "mbd/io/units.h"
+#include "run/joint_view.h"
 #include "run/quantity_text.h"
 #include "run/run.h"
 #include "tools/steplap/text_table.h"
@@ -28,75 +27,8 @@ struct JointOptions {
   std::optional<std::string> wrench;
 };
 
-/// A joint of the model as it lies in the reference pose.
-struct JointView {
-  const StepLapJoint* joint = nullptr;
-  std::vector<const StepLapInterface*> interfaces;
-  Patch patch;               ///< by the static coefficients; reference: the limb's centre of gravity
-  std::vector<std::string> beside; ///< springs and ties between the same two bodies: "'tie plate' (tie)"
-  std::vector<double> areas; ///< of one interface of each kind, m²
-};
-
-// The bodies that an element's markers sit on.
-std::vector<std::string> bodies_of(const ElementEntry& entry, const Model& model) {
-  std::vector<std::string> bodies;
-  for (const Field& field : entry.kind->fields.fields()) {
-    if (field.type != FieldType::marker) continue;
-    const auto name = std::get<std::string>(field.get(entry.element.get()));
-    const auto marker = std::find_if(model.markers.begin(), model.markers.end(), [&](const Marker& m) { return m.name == name; });
-    bodies.push_back(marker == model.markers.end() ? name : marker->body);
-  }
-  return bodies;
-}
-
-std::vector<std::string> beside(const StepLapJoint& joint, const Model& model) {
-  static const std::array<const char*, 4> springs = {"tie", "spring_damper", "rotational_spring_damper", "bushing"};
-  std::vector<std::string> found;
-  for (const ElementEntry& entry : model.elements) {
-    if (std::find(springs.begin(), springs.end(), entry.kind->name) == springs.end()) continue;
-    const std::vector<std::string> bodies = bodies_of(entry, model);
-    const auto joins = [&](const std::string& body) { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); };
-    if (joins(joint.limb) && joins(joint.active_part)) found.push_back("'" + entry.element->name + "' (" + entry.kind->name + ")");
-  }
-  return found;
-}
-
-JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, const LoadedModel& loaded) {
-  JointView view;
-  view.joint = &joint;
-  for (const ElementEntry& entry : loaded.model.elements)
-    if (const auto* e = dynamic_cast<const StepLapInterface*>(entry.element.get()); e && e->joint == joint.name)
-      view.interfaces.push_back(e);
-  view.beside = beside(joint, loaded.model);
-  const State state = loaded.system->initial_state();
-  std::vector<Motion<double>> motion(static_cast<std::size_t>(loaded.system->body_count()));
-  place_bodies(state.q, state.v, motion);
-  const Pose pose = friction.pose_of(motion.data());
-  view.patch = friction.patch_at(pose, GripLaw::holding);
-  OverlapWorkspace workspace;
-  Region region;
-  for (const SheetPair& sheets : friction.sheets()) {
-    intersect(sheets.yoke, sheets.limb, pose, workspace, region);
-    view.areas.push_back(area(region));
-  }
-  return view;
-}
-
-std::vector<JointView> joints_of(const LoadedModel& loaded) {
-  const System& system = *loaded.system;
-  std::vector<JointView> views;
-  for (const FrictionUnit& unit : system.frictions) {
-    const auto* friction = dynamic_cast<const StepLapFriction*>(unit.friction.get());
-    if (!friction) continue;
-    for (const ElementEntry& entry : loaded.model.elements)
-      if (entry.element->name == system.element_names[static_cast<std::size_t>(unit.element)])
-        views.push_back(look_at(dynamic_cast<const StepLapJoint&>(*entry.element), *friction, loaded));
-  }
-  return views;
-}
-
 std::vector<JointView> chosen_joints(const JointOptions& options, const LoadedModel& loaded) {
-  std::vector<JointView> all = joints_of(loaded), chosen;
+  std::vector<JointView> all = joint_views(loaded), chosen;
   if (all.empty()) throw UsageError("'" + loaded.path + "' has no step-lap joint");
   if (options.joints.empty()) return all;
   std::vector<std::string> known;
@@ -158,26 +90,19 @@ void print_interfaces(std::ostream& out, const JointView& view) {
   out << table;
 }
 
-// Sliding that way: h of the unit twist. Alone: the longest wrench of that direction inside the limit
-// surface, less where the friction's centre is not the limb's.
-void print_capacity(std::ostream& out, const Patch& patch) {
+void print_capacity(std::ostream& out, const JointView& view) {
   static const std::array<const char*, 3> rows = {"along x", "along y", "turning"};
   TextTable table({Align::left, Align::right, Align::right});
   table.set_head("capacity", {"capacity", "sliding", "alone"}, {"direction", "sliding", "alone"});
   for (int i = 0; i < 3; ++i) {
-    const Vec3 unit = Vec3::Unit(i);
     const std::string what = i < 2 ? "N" : "N m";
-    table.add_row({rows[static_cast<std::size_t>(i)], quantity_cell(evaluate_gradient(patch, unit).h, what),
-                   quantity_cell(1.0 / required_pressure(patch, unit).u, what)});
+    table.add_row({rows[static_cast<std::size_t>(i)], quantity_cell(view.sliding(i), what), quantity_cell(view.alone(i), what)});
   }
   out << table;
 }
 
 void print_usage(std::ostream& out, const JointView& view, const Vec3& wrench) {
-  const RequiredPressure required = required_pressure(view.patch, wrench);
-  if (!required.converged)
-    throw NumericalFailure("the required pressure of '" + view.joint->name + "' was not found to the last digit; "
-                           "the wrench may be out of all proportion");
+  const RequiredPressure required = view.required(wrench);
   TextTable table({Align::left, Align::left});
   table.set_name("usage");
   table.add_row({"wrench", "Fx " + quantity_text(wrench[0], "N") + ", Fy " + quantity_text(wrench[1], "N") + ", M " +
@@ -213,7 +138,7 @@ void print_joint(std::ostream& out, const JointView& view, const std::optional<V
   }
   print_interfaces(out, view);
   out << "\n";
-  print_capacity(out, view.patch);
+  print_capacity(out, view);
   TextTable table({Align::left, Align::left});
   table.set_name("friction");
   table.add_row({"centre of friction", point_text(view.patch.centroid())});
@@ -254,7 +179,7 @@ Capacity "sliding": the friction while the limb slides that way and no other; "a
 force through the limb's centre of gravity, or couple, that the joint holds. A wrench is the one on the limb.
 )";
   command.options = {
-      {"MODEL", &o->model, "FILE", "model file (TOML)", true},
+      {"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
       {"--joint", &o->joints, "NAME", "this joint; may be repeated (default: all)"},
       {"--wrench", &o->wrench, "FX,FY,M", "force and couple on the limb: say u, p_req, margin, centre of rotation"},
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"}};

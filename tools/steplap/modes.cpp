@@ -1,11 +1,11 @@
 #include "tools/steplap/modes.h"
 
 #include "mbd/analysis/modes.h"
-#include "mbd/io/atomic_file.h"
 #include "mbd/io/csv.h"
 #include "report/modes_page.h"
 #include "run/run.h"
 #include "tools/steplap/log.h"
+#include "tools/steplap/output_files.h"
 #include "tools/steplap/text_table.h"
 
 #include <algorithm>
@@ -145,16 +145,16 @@ std::string page_of(const LoadedModel& loaded, const Equilibrium& rest, const Vi
 
 ExitCode modes(const ModesOptions& options, Console& console) {
   const WantedModes wanted = wanted_modes(options);
+  const OutputFiles files(console, {{"-o", options.output}, {"--report", options.page}}, options.is_overwriting);
   const auto loaded = load_model(options.model, options.overrides);
   try {
     const Equilibrium rest = equilibrium_of(*loaded);
     State state = rest.state;
     std::fill(state.v.begin(), state.v.end(), 0.0);
     const VibrationModes found = vibration_modes(*loaded->system, state, wanted);
-    const IfExists if_exists = options.is_overwriting ? IfExists::replace : IfExists::refuse;
-    if (options.output) write_file(*options.output, modes_csv(*loaded->system, found), if_exists);
-    if (options.page) write_file(*options.page, page_of(*loaded, rest, found, wanted), if_exists);
-    if (console.verbosity != Verbosity::quiet) print_modes(console.out, *loaded, found, wanted);
+    if (options.output) files.write(options.output, modes_csv(*loaded->system, found));
+    if (options.page) files.write(options.page, page_of(*loaded, rest, found, wanted));
+    if (files.has_words()) print_modes(console.out, *loaded, found, wanted);
     for (const std::string& remark : remarks_on(*loaded->system, rest))
       log_warning("'" + loaded->path + "': " + remark);
   } catch (const NumericalFailure& failure) {
@@ -178,9 +178,9 @@ Command modes_command() {
 Of more than 1500 coordinates (three a body) the slowest 20 modes are found, or as many as --count says; of fewer all, unless asked otherwise.
 A mode that does not oscillate shows its rate of decay instead of a damping ratio.
 )";
-  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML)", true},
-                     {"-o,--output", &o->output, "FILE", "also write frequencies and shapes as CSV"},
-                     {"--report", &o->page, "FILE", "also write a page that shows each mode in motion"},
+  command.options = {{"MODEL", &o->model, "FILE", "model file (TOML); - is the standard input", true},
+                     {"-o,--output", &o->output, "FILE", "also write frequencies and shapes as CSV; - is the standard output, which then holds nothing else"},
+                     {"--report", &o->page, "FILE", "also write a page that shows each mode in motion; or -"},
                      {"--count", &o->count, "N", "only so many modes: the slowest, or the nearest to --near"},
                      {"--near", &o->near, "HZ", "modes near this frequency instead of the slowest"},
                      {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},

@@ -1,11 +1,11 @@
 #include "tools/steplap/new.h"
 
-#include "mbd/io/atomic_file.h"
 #include "mbd/io/reader.h"
 #include "run/catalogue.h"
 #include "run/findings.h"
 #include "run/run.h"
 #include "tools/steplap/log.h"
+#include "tools/steplap/output_files.h"
 
 #include <algorithm>
 #include <map>
@@ -100,13 +100,10 @@ ExitCode write_model(const NewOptions& options, Console& console) {
   const auto loaded = load_given(parse_given_model(text, one.name + ".toml", program_catalogue()), one.name);
   for (const Finding& finding : findings_of(*loaded))
     if (finding.level == FindingLevel::warning) log_warning(finding.text);
-  if (!options.output || *options.output == "-") {
-    console.out << text;
-    return ExitCode::done;
-  }
-  write_file(*options.output, text, options.is_overwriting ? IfExists::replace : IfExists::refuse);
-  if (console.verbosity != Verbosity::quiet)
-    console.out << "Written to " << *options.output << ". Look at it, then: steplap simulate " << *options.output << " --report\n";
+  const std::string output = options.output.value_or("-");
+  const OutputFiles files(console, {{"-o", output}}, options.is_overwriting);
+  files.write(output, text);
+  if (files.has_words()) console.out << "Written to " << output << ". Look at it, then: steplap simulate " << output << " --report\n";
   return ExitCode::done;
 }
 

@@ -3,6 +3,7 @@
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/atomic_file.h"
 #include "report/figure.h"
+#include "tools/steplap/output_files.h"
 
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
@@ -120,7 +121,7 @@ private:
   fs::path path_;
 };
 
-void draw(const Figure& figure, const std::string& ending, const std::string& output, bool is_overwriting) {
+std::string drawn(const Figure& figure, const std::string& ending, const std::string& output) {
   const Scratch scratch;
   const std::string image = scratch.at("image"), script = scratch.at("script");
   write_file(script, gnuplot_script(figure, ending, image));
@@ -129,13 +130,14 @@ void draw(const Figure& figure, const std::string& ending, const std::string& ou
   if (code == 127) throw UsageError("gnuplot is not there: install it (Debian: apt-get install gnuplot-nox)");
   if (code != 0 || !fs::exists(image))
     throw FileError(output, "gnuplot could not draw '" + output + "': " + read_text(scratch.at("said")));
-  write_file(output, read_text(image), is_overwriting ? IfExists::replace : IfExists::refuse);
+  return read_text(image);
 }
 
 ExitCode plot(const PlotOptions& options, Console& console) {
-  const std::string ending = fs::path(options.output).extension().string();
+  const OutputFiles files(console, {{"-o", options.output}}, options.is_overwriting);
+  const std::string ending = is_standard_output(options.output) ? ".svg" : fs::path(options.output).extension().string();
   if (ending != ".svg" && ending != ".png" && ending != ".pdf")
-    throw UsageError("-o '" + options.output + "': the file must end in .svg, .png or .pdf");
+    throw UsageError("-o '" + options.output + "': the file must end in .svg, .png or .pdf, or be -, the standard output");
   if (options.channels.empty() == options.plots.empty())
     throw UsageError("say what to plot: either --channels or --plot");
   std::vector<Results> runs;
@@ -143,8 +145,8 @@ ExitCode plot(const PlotOptions& options, Console& console) {
     runs.push_back(read_results(folder));
   std::vector<Wanted> figures{{"", options.channels, {}}};
   if (!options.plots.empty()) figures = plots_of_model(runs.front(), options.plots);
-  draw(figure_of(runs, figures, options.is_beside), ending.substr(1), options.output, options.is_overwriting);
-  if (console.verbosity != Verbosity::quiet) console.out << "Written to " << options.output << "\n";
+  files.write(options.output, drawn(figure_of(runs, figures, options.is_beside), ending.substr(1), options.output));
+  if (files.has_words()) console.out << "Written to " << options.output << "\n";
   return ExitCode::done;
 }
 
@@ -163,7 +165,7 @@ the other.
   command.options = {{"RESULT", &o->results, "DIR", "folders of runs", true},
                      {"--channels", &o->channels, "PATTERN", "channels to plot"},
                      {"--plot", &o->plots, "NAME", "a [[plot]] of the model; may be repeated"},
-                     {"-o,--output", &o->output, "FILE", "the image: .svg, .png or .pdf", true},
+                     {"-o,--output", &o->output, "FILE", "the image: .svg, .png or .pdf; - is the standard output, as SVG", true},
                      {"--beside", &o->is_beside, "", "runs side by side instead of in one panel"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite an earlier image"}};
   command.run = [o](Console& console) { return plot(*o, console); };

@@ -12,6 +12,7 @@
 #include "record/result_folder.h"
 #include "record/synthetic.h"
 #include "record/time_text.h"
+#include "tools/steplap/output_files.h"
 #include "tools/steplap/record_options.h"
 #include "tools/steplap/text_table.h"
 
@@ -313,8 +314,9 @@ ExitCode make(const RecordOptions& options, Console& console) {
   }
   if (!is_known) throw UsageError("--make '" + *options.make + "': give one of " + known);
   if (options.files.size() != 1) throw UsageError("--make: name one file to write");
-  write_file(options.files.front(), make_record(*options.make), options.is_overwriting ? IfExists::replace : IfExists::refuse);
-  if (console.verbosity != Verbosity::quiet) console.out << "Written to " << options.files.front() << "\n";
+  const OutputFiles files(console, {{"FILE", options.files.front()}}, options.is_overwriting);
+  files.write(options.files.front(), make_record(*options.make));
+  if (files.has_words()) console.out << "Written to " << options.files.front() << "\n";
   return ExitCode::done;
 }
 

@@ -3,6 +3,7 @@
 #include "mbd/io/atomic_file.h"
 #include "report/assessment_page.h"
 #include "report/report_page.h"
+#include "tools/steplap/output_files.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -19,6 +20,18 @@ struct ReportOptions {
   bool is_overwriting = false;
 };
 
+std::string page_of_results(const std::vector<std::string>& folders) {
+  const auto assessment = std::find_if(folders.begin(), folders.end(), is_assessment);
+  if (assessment != folders.end()) {
+    if (folders.size() > 1)
+      throw FileError(*assessment, "'" + *assessment + "' holds an assessment, which has a page of its own: name its folder alone");
+    return assessment_page(folders.front());
+  }
+  std::vector<Results> runs;
+  for (const std::string& folder : folders) runs.push_back(read_results(folder));
+  return report_page(runs);
+}
+
 // Into the folder of a single run; beside the folders of several.
 std::string usual_place(const std::vector<std::string>& folders) {
   std::filesystem::path place = folders.front();
@@ -28,25 +41,16 @@ std::string usual_place(const std::vector<std::string>& folders) {
 
 ExitCode report(const ReportOptions& options, Console& console) {
   const std::string file = options.output.value_or(usual_place(options.results));
-  write_report(options.results, file, options.is_overwriting);
-  if (console.verbosity != Verbosity::quiet) console.out << "Written to " << file << "\n";
+  const OutputFiles files(console, {{"-o", file}}, options.is_overwriting);
+  files.write(file, page_of_results(options.results));
+  if (files.has_words()) console.out << "Written to " << file << "\n";
   return ExitCode::done;
 }
 
 } // namespace
 
 void write_report(const std::vector<std::string>& folders, const std::string& file, bool is_overwriting) {
-  const IfExists if_exists = is_overwriting ? IfExists::replace : IfExists::refuse;
-  const auto assessment = std::find_if(folders.begin(), folders.end(), is_assessment);
-  if (assessment != folders.end()) {
-    if (folders.size() > 1)
-      throw FileError(*assessment, "'" + *assessment + "' holds an assessment, which has a page of its own: name its folder alone");
-    return write_file(file, assessment_page(folders.front()), if_exists);
-  }
-  std::vector<Results> runs;
-  for (const std::string& folder : folders)
-    runs.push_back(read_results(folder));
-  write_file(file, report_page(runs), if_exists);
+  write_file(file, page_of_results(folders), is_overwriting ? IfExists::replace : IfExists::refuse);
 }
 
 Command report_command() {
@@ -62,7 +66,7 @@ report.html into the folder of the run, or beside the folders of several. The fo
 gets a page whose first printed sheet holds the decision and has room for two signatures.
 )";
   command.options = {{"RESULT", &o->results, "DIR", "folders of runs, or that of an assessment", true},
-                     {"-o,--output", &o->output, "FILE", "the page"},
+                     {"-o,--output", &o->output, "FILE", "the page; - is the standard output"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite an earlier page"}};
   command.run = [o](Console& console) { return report(*o, console); };
   return command;

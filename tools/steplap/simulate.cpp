@@ -9,6 +9,7 @@
 #include "tools/steplap/interruption.h"
 #include "tools/steplap/json_screen.h"
 #include "tools/steplap/log.h"
+#include "tools/steplap/output_files.h"
 #include "tools/steplap/overview_screen.h"
 #include "tools/steplap/progress.h"
 #include "tools/steplap/report.h"
@@ -62,6 +63,8 @@ struct SimulateOptions {
     return {.most = count + 1}; // of numbers that begin with 1
   }
 
+  /// The trajectory alone, to the standard output.
+  [[nodiscard]] bool is_streamed() const { return is_standard_output(output); }
   [[nodiscard]] std::string folder_of(const LoadedModel& loaded) const {
     return (std::filesystem::path(output) / loaded.name).string();
   }
@@ -82,6 +85,11 @@ std::string page_of(const SimulateOptions& options, const Models& models) {
 }
 
 void check_folders(const SimulateOptions& options, const Models& models) {
+  if (options.is_streamed()) {
+    if (models.size() > 1) throw UsageError("-o -: the standard output can hold the trajectory of one model only, not of " + std::to_string(models.size()));
+    if (options.is_reported) throw UsageError("-o - writes no folder that --report could make its page of: name a folder");
+    return;
+  }
   std::set<std::string> folders;
   for (const auto& loaded : models) {
     const std::string folder = options.folder_of(*loaded);
@@ -133,11 +141,16 @@ FinishedRun run_one(const SimulateOptions& options, const std::shared_ptr<const 
   FinishedRun finished{report_on(std::move(run), std::move(before), asked), ""};
   const Report& report = finished.report;
   log_run(report);
-  finished.folder = options.folder_of(*loaded);
-  report.write(finished.folder, options.is_overwriting);
+  if (options.is_streamed()) {
+    result_files(report).front().parts([&console](std::string_view part) { console.out << part; });
+    log_info("'" + loaded->path + "': the verdict is " + name_of(report.judgement.verdict));
+  } else {
+    finished.folder = options.folder_of(*loaded);
+    report.write(finished.folder, options.is_overwriting);
+  }
   if (const std::optional<Failure>& failure = report.run.failure)
-    log_error("'" + loaded->path + "': " + failure->text + (failure->text.ends_with('.') ? "" : ".") + " What was computed up to there is in '" +
-              finished.folder + "' as partial_*");
+    log_error("'" + loaded->path + "': " + failure->text + (failure->text.ends_with('.') ? "" : ".") +
+              (options.is_streamed() ? " What was computed up to there has been written" : " What was computed up to there is in '" + finished.folder + "' as partial_*"));
   return finished;
 }
 
@@ -164,6 +177,7 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
   if (options.is_error_estimated && options.is_estimate_left_out)
     throw UsageError("--estimate-error and --no-estimate exclude each other");
   (void)options.shown_digits();
+  const OutputFiles files(console, {{"-o", options.output}});
   const Models models = load_models(options.models, options.all_overrides());
   check_step(options, models);
   check_folders(options, models);
@@ -195,7 +209,7 @@ ExitCode simulate(const SimulateOptions& options, Console& console) {
       folders.push_back(run.folder);
     write_report(folders, page_of(options, models), options.is_overwriting);
   }
-  if (console.verbosity == Verbosity::quiet) return code;
+  if (!files.has_words()) return code;
   show_runs(options, runs, console);
   if (options.is_reported) console.out << "Report: " << page_of(options, models) << "\n";
   return code;
@@ -210,6 +224,7 @@ Command simulate_command() {
   command.summary = "run models, write their time histories, say what happened";
   command.examples = R"(  steplap simulate models/paper/no_interference.toml
   steplap simulate models/paper/*.toml -o out/paper --force
+  make_model | steplap simulate - -o - | head
   steplap simulate my.toml --end "2 s" --integrator dop853 --tolerance 1e-9
   steplap simulate my.toml --set "element.front foot.stiffness=2 GN/m" --set body.tank.mass="48 t"
 Each model gets a folder of its own, DIR/<name of the model file>, with trajectory.csv, events.csv,
@@ -219,8 +234,8 @@ or a few; else it is said what it would take, or when it was given up. If the co
 as partial_* and the exit code is 4, or that of the signal. A second Ctrl-C ends it at once.
 )";
   command.options = {
-      {"MODEL", &o->models, "FILE", "model files (TOML)", true},
-      {"-o,--output", &o->output, "DIR", "folder for the results (default: out)"},
+      {"MODEL", &o->models, "FILE", "model files (TOML); - is the standard input", true},
+      {"-o,--output", &o->output, "DIR|-", "folder for the results (default: out); - writes the trajectory of one model to the standard output, as CSV, and nothing else"},
       {"--set", &o->overrides, "PATH=VALUE", "lay a value over the model; may be repeated"},
       {"--end", &o->end, "T", "end of the run, s; short for --set simulation.end=T"},
       {"--output-step", &o->output_step, "H", "time between two rows of the trajectory, s; short for --set output.step=H"},

@@ -156,7 +156,7 @@ ExitCode prove_statically(const StaticProofArguments& arguments, Console& consol
   for (const auto& loaded : load_models(arguments.models, arguments.overrides)) {
     try {
       proofs.push_back(assess::prove_statically(*loaded, preset, options));
-      digests.push_back(sha256_of_file(loaded->path));
+      digests.push_back(loaded->inputs.front().sha256); // the model itself is read first
     } catch (const NumericalFailure& failure) {
       log_error("'" + loaded->path + "': " + failure.what());
       code = ExitCode::numerical_failure;

@@ -10,6 +10,7 @@
 #include "tools/steplap/command_line.h"
 #include "tools/steplap/help.h"
 #include "tools/steplap/log.h"
+#include "tools/steplap/output_files.h"
 #include "tools/study/progress_line.h"
 #include "tools/study/show.h"
 
@@ -50,6 +51,7 @@ FileError with_options(const StoreError& error) {
 
 // What is given is the study file or the store itself.
 std::string store_of(const Options& o) {
+  if (is_standard_output(o.file)) throw UsageError("FILE '-': a study is known by its file, or by the store of its results, which the standard input cannot be: name one of them");
   return o.store ? *o.store : is_database(o.file) ? o.file : default_store(o.file);
 }
 
@@ -66,9 +68,9 @@ std::string page_of(const std::string& store) {
   return std::filesystem::path(store).replace_extension(".html").string();
 }
 
-void write_page(const std::string& path, const std::string& page, IfExists if_exists) {
+std::string page_text(const std::string& path) {
   Store store(path);
-  write_file(page, report_page(store, path), if_exists);
+  return report_page(store, path);
 }
 
 ExitCode code_of(Standing standing) {
@@ -95,7 +97,7 @@ ExitCode tell(const Options& o, const LoadedStudy& loaded, const Answer& answer,
     console.out << "Store: " << path << "\n";
   }
   if (o.is_reported) {
-    write_page(path, page_of(path), IfExists::replace);
+    write_file(page_of(path), page_text(path), IfExists::replace);
     if (is_told) console.out << "Page: " << page_of(path) << "\n";
   }
   return code_of(answer.standing);
@@ -170,12 +172,13 @@ has not ended is shown as far as it is. Without -o it is written beside the stor
 )";
   command.options = {{"FILE", &o->file, "FILE", "study file or store", true},
                      {"--store", &o->store, "STORE", "file of the results (default: out/<name of the study>.sqlite)"},
-                     {"-o,--output", &o->output, "PAGE", "the page (default: beside the store)"},
+                     {"-o,--output", &o->output, "PAGE", "the page (default: beside the store); - is the standard output"},
                      {"-f,--force", &o->is_overwriting, "", "overwrite an earlier page"}};
   command.run = [o](Console& console) {
     const std::string store = store_of(*o), page = o->output.value_or(page_of(store));
-    write_page(store, page, o->is_overwriting ? IfExists::replace : IfExists::refuse);
-    if (console.verbosity != Verbosity::quiet) console.out << "Written to " << page << "\n";
+    const OutputFiles files(console, {{"-o", page}}, o->is_overwriting);
+    files.write(page, page_text(store));
+    if (files.has_words()) console.out << "Written to " << page << "\n";
     return ExitCode::done;
   };
   return command;
