@@ -86,7 +86,7 @@ steplap.Sliders = class Sliders {
   show(path) {
     const row = this.rows.get(path), slider = this.given.get(path);
     if (!row) return;
-    const value = this.value(path), plain = (v) => String(Number(v.toPrecision(6)));
+    const value = this.value(path), plain = (v) => { const known = Number(v.toPrecision(6)); return Math.abs(known) >= 1e6 ? known.toExponential().replace('e+', 'e') : String(known); };
     if (value < Number(row.range.min)) row.range.min = String(value);
     if (value > Number(row.range.max)) row.range.max = String(value);
     row.range.value = String(value);
