@@ -190,7 +190,7 @@ void Explorer::tick() {
   std::erase_if(waiting_, is_due);
 }
 
-void Explorer::answer_state(const std::string& query, SendReply send) {
+void Explorer::answer_state(const std::string& query, const SendReply& send) {
   long since = 0;
   if (query.starts_with("since=")) since = std::atol(query.c_str() + 6);
   bool is_new = false;
@@ -199,18 +199,18 @@ void Explorer::answer_state(const std::string& query, SendReply send) {
     is_new = since != version_;
   }
   if (is_new || waiting_.size() >= 32) return send(json_reply(state_text()));
-  waiting_.push_back({since, Clock::now() + std::chrono::seconds(k_longest_wait), std::move(send)});
+  waiting_.push_back({since, Clock::now() + std::chrono::seconds(k_longest_wait), send});
 }
 
-void Explorer::do_later(WorkQueue::Urgency urgency, const std::string& owner, SendReply send, std::function<PageReply(const WorkQueue::IsStale&)> work) {
+void Explorer::do_later(WorkQueue::Urgency urgency, const std::string& owner, const SendReply& send, std::function<PageReply(const WorkQueue::IsStale&)> work) {
   const bool is_taken = queue_->add(urgency, owner, [send, work = std::move(work)](const WorkQueue::IsStale& is_stale) { send(guarded([&] { return work(is_stale); })); });
   if (!is_taken) send(plain_reply(503, "Too much is waiting."));
 }
 
-void Explorer::answer_post(const PageRequest& request, SendReply send) {
+void Explorer::answer_post(const PageRequest& request, const SendReply& send) {
   if (request.path == "run") {
     const RunRequest asked = run_request(request.body, models_.size());
-    return do_later(WorkQueue::Urgency::drag, asked.page, std::move(send), [this, asked](const WorkQueue::IsStale& is_stale) {
+    return do_later(WorkQueue::Urgency::drag, asked.page, send, [this, asked](const WorkQueue::IsStale& is_stale) {
       long version = 0;
       {
         const std::lock_guard lock(mutex_);
@@ -221,35 +221,37 @@ void Explorer::answer_post(const PageRequest& request, SendReply send) {
   }
   if (request.path == "map") {
     const MapRequest asked = map_request(request.body, models_.size(), k_most_cells);
-    return do_later(WorkQueue::Urgency::background, "", std::move(send),
+    return do_later(WorkQueue::Urgency::background, "", send,
                     [this, asked](const WorkQueue::IsStale& is_stale) { return map_reply(models_[asked.model]->model, asked, is_stale); });
   }
   if (request.path == "save") {
     const RunRequest asked = run_request(request.body, models_.size());
-    return do_later(WorkQueue::Urgency::page, "", std::move(send),
+    return do_later(WorkQueue::Urgency::page, "", send,
                     [this, asked](const WorkQueue::IsStale&) { return json_reply(saved_json(save_changes(models_[asked.model]->model, asked.values, asked.name))); });
   }
   send(plain_reply(404, "There is nothing of that name."));
 }
 
-void Explorer::answer_report(const std::string& query, SendReply send) {
+void Explorer::answer_report(const std::string& query, const SendReply& send) {
   const RunRequest asked = report_request(query, models_.size());
-  do_later(WorkQueue::Urgency::page, "", std::move(send),
+  do_later(WorkQueue::Urgency::page, "", send,
            [this, asked](const WorkQueue::IsStale& is_stale) { return report_reply(models_[asked.model]->model, asked, is_stale); });
 }
 
-void Explorer::answer(PageRequest request, SendReply send) {
+void Explorer::answer(const PageRequest& request, const SendReply& send) {
   if (!queue_) return;
   try {
-    if (request.is_post) return answer_post(request, std::move(send));
+    if (request.is_post) return answer_post(request, send);
     if (request.path.empty()) return send(asset_reply("text/html; charset=utf-8", explore_assets::k_explore_html));
     if (request.path == "page.js") return send(asset_reply("text/javascript; charset=utf-8", explore_assets::k_explore_js));
     if (request.path == "page.css") return send(asset_reply("text/css; charset=utf-8", explore_assets::k_explore_css));
-    if (request.path == "state") return answer_state(request.query, std::move(send));
-    if (request.path == "report") return answer_report(request.query, std::move(send));
+    if (request.path == "state") return answer_state(request.query, send);
+    if (request.path == "report") return answer_report(request.query, send);
     send(plain_reply(404, "There is nothing of that name."));
   } catch (const std::invalid_argument& error) {
     send(plain_reply(400, error.what()));
+  } catch (const std::exception& error) {
+    send(plain_reply(500, error.what()));
   }
 }
 

@@ -41,7 +41,7 @@ public:
   Explorer& operator=(const Explorer&) = delete;
 
   /// For LocalServer. To be called on one thread, together with tick().
-  void answer(PageRequest request, SendReply send);
+  void answer(const PageRequest& request, const SendReply& send);
   /// Looks at the files, and answers whoever has waited long. To be called now and then.
   void tick();
   /// Stops what runs and lets go of all that waits: after that nothing is answered.
@@ -64,10 +64,10 @@ private:
   };
 
   void read_again(std::size_t k);
-  void answer_state(const std::string& query, SendReply send);
-  void answer_post(const PageRequest& request, SendReply send);
-  void answer_report(const std::string& query, SendReply send);
-  void do_later(WorkQueue::Urgency urgency, const std::string& owner, SendReply send, std::function<PageReply(const WorkQueue::IsStale&)> work);
+  void answer_state(const std::string& query, const SendReply& send);
+  void answer_post(const PageRequest& request, const SendReply& send);
+  void answer_report(const std::string& query, const SendReply& send);
+  void do_later(WorkQueue::Urgency urgency, const std::string& owner, const SendReply& send, std::function<PageReply(const WorkQueue::IsStale&)> work);
   [[nodiscard]] std::string state_text();
 
   std::vector<std::unique_ptr<Watched>> models_;

@@ -15,13 +15,14 @@ std::string look_at(const std::string& file) {
 } // namespace
 
 void FileWatch::watch(const std::vector<std::string>& files) {
-  std::map<std::string, std::string> looks;
+  std::map<std::string, std::string> known, before;
   for (const std::string& file : files) {
-    const auto before = known_.find(file);
-    looks[file] = before == known_.end() ? look_at(file) : before->second;
+    const bool is_new = !known_.contains(file);
+    known[file] = is_new ? look_at(file) : known_[file];
+    before[file] = is_new ? known[file] : before_[file];
   }
-  known_ = std::move(looks);
-  before_ = known_;
+  known_ = std::move(known);
+  before_ = std::move(before);
 }
 
 bool FileWatch::has_changed() {

@@ -1,6 +1,7 @@
 #include "explore/run_results.h"
 
 #include "run/drawing.h"
+#include "run/result_files.h"
 
 namespace steplap {
 
@@ -26,7 +27,7 @@ Results results_of(const Report& report) {
     const Event& event = result.events[i];
     results.events.push_back({event.t, event.element, event.words(), event.kind, report.event_error(i)});
   }
-  results.model = report.run.loaded->text;
+  results.model = model_file_text(*report.run.loaded);
   results.drawing = drawing_json(report.run.loaded->model);
   results.summary = report.json();
   return results;

@@ -106,6 +106,8 @@ private:
 
   void add_number(const std::string& path, double number, const std::string& unit, const Field& field) {
     if (!std::isfinite(number) || follows_.contains(path)) return;
+    // What is not given of a fixed body, and the like.
+    if (number < field.minimum || number > field.maximum || (field.is_minimum_excluded && number == field.minimum)) return;
     Slider slider{path, group_of(field.name), unit == "*" ? "" : unit, field.doc, number};
     slider.is_whole = field.type == FieldType::integer;
     if (number == 0.0) slider.group.clear(); // what is not there is found by search

@@ -40,6 +40,7 @@
     if (answer.errors) return;
     const old = now;
     now = runOf(answer, 'new');
+    if (!asked.request.is_settled) Object.assign(now.summary.overview.trust, { text: 'Errors are estimated as soon as the values rest.' });
     if (!before) before = runOf(answer, 'old');
     const isSettled = asked.request.is_settled;
     draw(old, isSettled);

@@ -65,7 +65,7 @@ ExitCode explore(const ExploreOptions& options, Console& console) {
   const unsigned short port = port_of(options);
   Explorer explorer(options.models, options.overrides);
   const InterruptionGuard guard;
-  LocalServer server(port, [&explorer](PageRequest request, SendReply send) { explorer.answer(std::move(request), std::move(send)); });
+  LocalServer server(port, [&explorer](const PageRequest& request, const SendReply& send) { explorer.answer(request, send); });
   console.out << server.address() << "\n" << std::flush;
   const bool has_screen = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
   if (!options.is_without_browser && (!has_screen || !open_browser(server.first_address()))) log_info("No browser could be opened: open the address in one");
