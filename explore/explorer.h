@@ -31,7 +31,7 @@ class Explorer {
 public:
   static constexpr double k_map_seconds = 0.2;        ///< computing for one request for a map
   static constexpr std::size_t k_most_cells = 400;    ///< of one request for a map
-  static constexpr std::size_t k_drag_budget = 600000; ///< bytes of curves in the answer to a run
+  static constexpr std::size_t k_drag_budget = 300000; ///< bytes of curves in the answer to a run
   static constexpr int k_longest_wait = 20;           ///< s, of a request for the state
 
   /// Reads the models. Throws ModelError with all that is wrong with any of them.

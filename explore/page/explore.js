@@ -97,6 +97,7 @@
     steplap.data.runs = runs;
     end = Math.max(...runs.map((r) => r.end));
     if (t > end) t = end;
+    const like = scenes[0] && scenes[0].run === before && scenes[1] && scenes[1].width ? scenes[1] : null;
     for (const [k, run] of runs.entries()) if (!scenes[k] || scenes[k].run !== run) scenes[k] = sceneOf(run, k);
     const largestForce = Math.max(...scenes.map((scene) => scene.ownLargestForce()));
     for (const scene of scenes) scene.largestForce = largestForce;
@@ -107,11 +108,14 @@
     steplap.story.build(at('story'), runs, go);
     at('time').max = String(end);
     at('worst').hidden = steplap.overview.worstOf(runs) === null;
-    fit();
+    // While one drags the new machine takes the place of the last one; once it rests both are fitted to the picture.
+    if (isSettled || !like) fit();
+    else { scenes[1].fitLike(like); buildTimeline(); }
     if (isWhole) plots.setRuns(null, now);
     else plots.setRuns(old, now);
     if (isSettled && plots.isOutdated) plots.renew();
-    show(t);
+    if (isSettled || !like) show(t);
+    else { scenes[1].show(t); timeline.show(t); tellTime(); }
     document.body.setAttribute('data-ready', 'true');
   }
   function begin() {
@@ -130,6 +134,9 @@
   function fit() {
     const widths = scenes.map((s) => Math.max(220, s.svg.parentNode.clientWidth));
     steplap.Scene.fitAll(scenes, at('seen-from').value, Number(at('magnification').value), widths, Math.max(220, Math.min(0.42 * window.innerHeight, 520)));
+    buildTimeline();
+  }
+  function buildTimeline() {
     // A new place for the lanes: what listened to the old one goes with it.
     const lanes = make('div', { id: 'lanes' });
     at('lanes').replaceWith(lanes);
@@ -140,9 +147,10 @@
   // --- time ---------------------------------------------------------------------------------------------------
   let lastFrame = null;
   const isPlaying = () => at('play').getAttribute('aria-pressed') === 'true';
+  const tellTime = () => { at('now').textContent = `t = ${steplap.numbers.instant(t, end)}`; };
   function show(time) {
     t = Math.min(Math.max(time, 0), end);
-    at('now').textContent = `t = ${steplap.numbers.instant(t, end)}`;
+    tellTime();
     for (const scene of scenes) scene.show(t);
     timeline.show(t);
     plots.show(t);
