@@ -128,6 +128,7 @@
     at('speed').replaceChildren(...speeds.map((s) => make('option', { value: s }, s >= 1 ? `${s} ×` : `1/${Math.round(1 / s)}`)));
     at('speed').value = String(speeds.reduce((best, s) => (Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best)));
     view = new steplap.View(scenes, () => show(t));
+    if (plots) plots.end();
     plots = new steplap.LivePlots(at('plot-grid'), go);
     t = steplap.overview.worstOf([before, now]) ?? 0;
   }

@@ -25,6 +25,11 @@ steplap.LivePlots = class LivePlots extends steplap.Plots {
     super.build();
     for (const plot of this.plots) this.watcher.observe(plot.box);
   }
+  // Another takes its place.
+  end() {
+    this.watcher.disconnect();
+    for (const plot of this.plots) if (plot.graph) plot.graph.destroy();
+  }
   // What is to be drawn of the runs of the page; anew where figures or channels are others.
   setRuns(from, to) {
     const runs = steplap.data.runs, full = [0, Math.max(...runs.map((r) => r.end))];

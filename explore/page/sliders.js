@@ -7,7 +7,7 @@ steplap.Sliders = class Sliders {
     search.addEventListener('keydown', (event) => { if (event.key === 'Enter') { event.preventDefault(); const first = this.foundBox.querySelector('button'); if (first) first.click(); } });
   }
   static get first() { return 12; } // sliders that are there from the beginning, of models with many values
-  static label(slider) { return slider.path.replace(/^(parameters|element|body|signal|marker)\./, '').replace(/\.([a-z_0-9]+)((\.\d+)*)$/, (_, field, items) => `: ${field.replace(/_/g, ' ')}${items.replace(/\.(\d+)/g, (__, i) => ` ${Number(i) + 1}`)}`); }
+  static label(slider) { return slider.path.replace(/^(?!simulation\.|output\.|gravity)[a-z_]+\.(?=.+\.|[^.]+$)/, '').replace(/\.([a-z_0-9]+)((\.\d+)*)$/, (_, field, items) => `: ${field.replace(/_/g, ' ')}${items.replace(/\.(\d+)/g, (__, i) => ` ${Number(i) + 1}`)}`); }
 
   // What can be varied, of a model just read: sliders that are shown stay, and so do values that were changed.
   set(sliders) {

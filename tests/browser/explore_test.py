@@ -218,6 +218,40 @@ class ExploreTest(base.Page):
         self.until(lambda: not self.find("#troubles").is_displayed())
         self.until(lambda: self.way() != way)
 
+    def test_of_several_models_one_is_chosen(self):
+        self.write("fast.toml", SLED.replace("A sled", "A fast sled").replace("[2.0, 0.0]", "[3.0, 0.0]"))
+        self.server.end()
+        self.server = Server("sled.toml", "fast.toml", folder=self.folder)
+        self.load()
+        self.assertEqual(self.badges(), ["HOLD", "HOLD"])
+        self.slide("parameters.grip", 0.2)
+        self.until(lambda: self.badges() == ["HOLD", "REJECT"])
+        self.find("#model").send_keys("fast")
+        self.until(lambda: self.badges() == ["REJECT", "REJECT"])
+        self.assertEqual(self.find("#title").text, "A fast sled")
+        self.slide("parameters.grip", 0.85)  # 3^2 / (2 * 0.85 * g) = 0.54 m
+        self.until(lambda: self.badges() == ["REJECT", "HOLD"])
+
+    def test_a_run_that_takes_long_gives_way_to_newer_values(self):
+        import threading
+
+        late = {}
+        self.server.end()
+        self.server = Server(os.path.join(MODELS, "benchmarks/double_pendulum.toml"), folder=self.folder)  # which never comes to rest
+        waiting = threading.Thread(target=lambda: late.update(reply=self.server.run({"simulation.end": 1e5, "output.step": 10})))
+        waiting.start()
+        time.sleep(0.5)
+        status, answer = self.server.run({"simulation.end": 0.5})
+        self.assertEqual((status, "data" in answer), (200, True))
+        waiting.join(20)
+        self.assertEqual(late["reply"], (200, {"is_superseded": True}))
+        # The run of another page is not disturbed; it waits for its turn.
+        other = threading.Thread(target=lambda: late.update(reply=self.server.run({"simulation.end": 0.4}, page="other")))
+        other.start()
+        self.assertIn("data", self.server.run({"simulation.end": 0.5})[1])
+        other.join(20)
+        self.assertIn("data", late["reply"][1])
+
     def test_keep_makes_the_new_state_the_old_one(self):
         self.load()
         self.slide("parameters.grip", 0.2)

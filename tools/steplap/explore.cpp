@@ -25,6 +25,11 @@ struct ExploreOptions {
   bool is_without_browser = false;
 };
 
+struct Ending {
+  Explorer& explorer;
+  ~Ending() { explorer.end(); }
+};
+
 unsigned short port_of(const ExploreOptions& options) {
   if (!options.port) return 0;
   unsigned short port = 0;
@@ -66,6 +71,7 @@ ExitCode explore(const ExploreOptions& options, Console& console) {
   Explorer explorer(options.models, options.overrides);
   const InterruptionGuard guard;
   LocalServer server(port, [&explorer](const PageRequest& request, const SendReply& send) { explorer.answer(request, send); });
+  const Ending ending{explorer}; // before the server's: what waits holds connections
   console.out << server.address() << "\n" << std::flush;
   const bool has_screen = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
   if (!options.is_without_browser && (!has_screen || !open_browser(server.first_address()))) log_info("No browser could be opened: open the address in one");
@@ -75,7 +81,6 @@ ExitCode explore(const ExploreOptions& options, Console& console) {
     explorer.tick();
     return true;
   });
-  explorer.end();
   return ExitCode::done;
 }
 
