@@ -1,6 +1,8 @@
 #include "explore/explore_json.h"
 
+#include "explore/run_results.h"
 #include "report/report_data.h"
+#include "run/summary.h"
 #include "run/version.h"
 
 #include <nlohmann/json.hpp>
@@ -124,8 +126,8 @@ std::string errors_json(const std::vector<Diagnostic>& problems) {
 
 std::string superseded_json() { return dumped({{"is_superseded", true}}); }
 
-std::string run_json(const Results& run, long version, std::size_t budget) {
-  return "{\"version\":" + std::to_string(version) + ",\"data\":" + report_data({run}, budget) + "}";
+std::string run_json(const Report& report, long version, std::size_t budget) {
+  return "{\"version\":" + std::to_string(version) + ",\"data\":" + report_data(results_of(report, SummaryText::left_out), summary_document(report), budget) + "}";
 }
 
 std::string map_json(const std::vector<MapCell>& cells) {

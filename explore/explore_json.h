@@ -2,7 +2,7 @@
 #pragma once
 
 #include "explore/explored_model.h"
-#include "run/results.h"
+#include "run/report.h"
 
 #include <cstddef>
 #include <string>
@@ -46,7 +46,7 @@ struct MapCell {
 /// {"is_superseded": true}
 [[nodiscard]] std::string superseded_json();
 /// {"version", "data"}: curves take about `budget` bytes.
-[[nodiscard]] std::string run_json(const Results& run, long version, std::size_t budget);
+[[nodiscard]] std::string run_json(const Report& report, long version, std::size_t budget);
 /// {"cells"}
 [[nodiscard]] std::string map_json(const std::vector<MapCell>& cells);
 /// {"file"}

@@ -55,7 +55,7 @@ PageReply run_reply(ExploredModel& model, const RunRequest& asked, const WorkQue
   if (is_stale()) return json_reply(superseded_json());
   const Report report = model.run(asked.values, options_for(is_stale, asked.is_settled ? Estimating::cheap : Estimating::never));
   if (is_stale()) return json_reply(superseded_json());
-  return json_reply(run_json(results_of(report), version, Explorer::k_drag_budget));
+  return json_reply(run_json(report, version, Explorer::k_drag_budget));
 }
 
 // What of the cells can be done in a moment, in their order.

@@ -5,7 +5,7 @@
 
 namespace steplap {
 
-Results results_of(const Report& report) {
+Results results_of(const Report& report, SummaryText summary) {
   const RunResult& result = report.run.result;
   const Trajectory& trajectory = *result.trajectory;
   Results results;
@@ -29,7 +29,7 @@ Results results_of(const Report& report) {
   }
   results.model = model_file_text(*report.run.loaded);
   results.drawing = drawing_json(report.run.loaded->model);
-  results.summary = report.json();
+  if (summary == SummaryText::made) results.summary = report.json();
   return results;
 }
 
