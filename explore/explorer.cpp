@@ -219,7 +219,7 @@ void Explorer::answer_post(const PageRequest& request, const SendReply& send) {
       return run_reply(models_[asked.model]->model, asked, is_stale, version);
     });
   }
-  if (request.path == "map") {
+  if (request.path == "cells") {
     const MapRequest asked = map_request(request.body, models_.size(), k_most_cells);
     return do_later(WorkQueue::Urgency::background, "", send,
                     [this, asked](const WorkQueue::IsStale& is_stale) { return map_reply(models_[asked.model]->model, asked, is_stale); });

@@ -6,7 +6,7 @@
 //   state?since=N    GET   the models with their sliders and errors, at once if the version is not N, else when it changes or after a while
 //   run              POST  {"model", "values": {path: number}, "page", "is_settled"}: {"version", "data": what report_data() gives of the run}
 //                          or {"errors"} or {"is_superseded": true}
-//   map              POST  {"model", "values", "x", "y", "cells": [[x, y], …]}: {"cells": [{"verdict", "shares": {name: share}} or {"error"}, …]},
+//   cells            POST  {"model", "values", "x", "y", "cells": [[x, y], …]}: {"cells": [{"verdict", "shares": {name: share}} or {"error"}, …]},
 //                          fewer than asked for if something more urgent came, or time is up
 //   save             POST  {"model", "values", "name"}: {"file"} or {"errors"}
 //   report?model=K&values={…}  GET  the page of that run

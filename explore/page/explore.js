@@ -25,8 +25,15 @@
   function onChange() {
     isUntouched = false;
     answers.want(request(false));
+    tellWaiting();
     settleLater();
     showMapHere();
+  }
+  // A run that takes long is told of, so that nobody takes the last picture for its own.
+  let waiting = null;
+  function tellWaiting() {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => { if (!answers.isIdle) at('pace').textContent = 'computing …'; }, 300);
   }
   function settleLater() {
     clearTimeout(settled);
@@ -54,7 +61,8 @@
         channel.port1.close();
         latencies.push(performance.now() - since);
         if (latencies.length > 5000) latencies.shift();
-        at('pace').textContent = `${Math.round(latencies[latencies.length - 1])} ms to the picture`;
+        const last = latencies[latencies.length - 1];
+        at('pace').textContent = `${last < 1000 ? `${Math.round(last)} ms` : `${(last / 1000).toFixed(1)} s`} to the picture`;
       };
       channel.port2.postMessage(0);
     });
@@ -195,7 +203,7 @@
     ask: async (x, y, cells) => {
       const values = sliders.changed();
       if (!answers.isIdle) return { cells: [] }; // runs first
-      try { return await answers.post('map', { model, values, x, y, cells }); } catch { return null; }
+      try { return await answers.post('cells', { model, values, x, y, cells }); } catch { return null; }
     } });
   const isMapping = () => at('map-start').getAttribute('aria-pressed') === 'true';
   // A map is that of the other values: where one of them is changed, it begins anew.

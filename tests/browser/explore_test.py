@@ -205,6 +205,30 @@ class ExploreTest(base.Page):
             self.idle()
             self.assertAlmostEqual(self.way(), 2.0**2 / (2 * grip * 9.80665), delta=2e-3)
 
+    def test_of_what_is_asked_the_newest_is_always_answered_and_never_an_older_one_after_it(self):
+        """What asks, by itself: a server that answers early, late and out of order, and gives up what is no longer wanted."""
+        self.load()
+        seen = self.run_js("""return new Promise((done) => {
+            const seen = [], counts = [], underway = new Set();
+            let k = 0, seed = 1;
+            const answers = new steplap.Answers((answer, asked) => seen.push(asked.request.k));
+            answers.post = (path, body) => new Promise((answer) => {
+              for (const older of underway) older.isOld = true;
+              const own = { isOld: false };
+              underway.add(own);
+              counts.push(underway.size);
+              seed = (seed * 16807) % 2147483647;
+              const late = seed % 7 === 0 ? 400 : seed % 40; // ms: some beyond the page's patience
+              setTimeout(() => { underway.delete(own); answer(own.isOld && seed % 2 ? { is_superseded: true } : {}); }, late);
+            });
+            const timer = setInterval(() => { answers.want({ k: ++k }); if (k === 200) { clearInterval(timer); wait(); } }, 5);
+            const wait = () => { if (answers.isIdle) setTimeout(() => done([seen, Math.max(...counts)]), 500); else setTimeout(wait, 20); };
+        })""")
+        self.assertEqual(seen[0][-1], 200)
+        self.assertEqual(seen[0], sorted(set(seen[0])))
+        self.assertGreater(len(seen[0]), 10)
+        self.assertLessEqual(seen[1], 2)
+
     def test_a_value_that_makes_no_model_is_told_and_the_last_state_stays(self):
         self.load()
         way = self.way()
@@ -461,9 +485,9 @@ class ExploreTest(base.Page):
             self.assertTrue(status == 400 or "errors" in text, (values, status, text[:200]))
         for query in ("", "?", "?model=0", "?model=9&values=%7B%7D", "?model=0&values=%7", "?model=0&values=%zz", "?model=99999999999999999999&values=%7B%7D"):
             self.assertEqual(server.ask("GET", server.token + "report" + query)[0], 400, query)
-        status, text = server.post("map", {"model": 0, "values": {}, "x": "parameters.grip", "y": "nothing", "cells": [[0.1, 1]]})
+        status, text = server.post("cells", {"model": 0, "values": {}, "x": "parameters.grip", "y": "nothing", "cells": [[0.1, 1]]})
         self.assertIn("error", json.loads(text)["cells"][0])
-        self.assertEqual(server.post("map", {"model": 0, "values": {}, "x": "a", "y": "b", "cells": [[0, 0]] * 401})[0], 400)
+        self.assertEqual(server.post("cells", {"model": 0, "values": {}, "x": "a", "y": "b", "cells": [[0, 0]] * 401})[0], 400)
         for raw in (b"\r\n\r\n", b"GET\r\n\r\n", b"\x16\x03\x01\x02\x00\x01", b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", b"GET " + b"a" * 100000, b"POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n",
                     b"POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nffffffffffffffff\r\n"):
             with socket.create_connection(("127.0.0.1", server.port), timeout=5) as connection:

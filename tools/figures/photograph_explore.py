@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """A screenshot of `steplap explore` for the docs: photograph_explore.py STEPLAP MODEL IMAGE.
 
-The pressure on the joints of the paper's transformer is lowered to a fifth, and a map of pressure and friction filled in.
+The pressure on the joints of the paper's transformer is lowered to a third, and a map of pressure and friction filled in.
 """
 import subprocess
 import sys
@@ -34,7 +34,7 @@ def main(program, model, image):
         pressure, friction = run("""const sliders = steplap.page.sliders, path = (ending) => [...sliders.given.keys()].find((p) => p.startsWith('core.') && p.endsWith(ending));
             const found = [path('.pressure'), path('.static_friction')];
             sliders.shown = []; found.forEach((p) => sliders.add(p)); return found""")
-        run("steplap.page.sliders.put(arguments[0], 0.22 * steplap.page.sliders.value(arguments[0]))", pressure)
+        run("steplap.page.sliders.put(arguments[0], 0.3 * steplap.page.sliders.value(arguments[0]))", pressure)
         run("""for (const [id, path] of [['map-x', arguments[0]], ['map-y', arguments[1]]]) document.getElementById(id).value = path;
             document.getElementById('map-start').click()""", pressure, friction)
         until("steplap.page.map.isWhole")
