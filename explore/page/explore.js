@@ -41,6 +41,8 @@
   }
   const runOf = (answer, name) => { const run = new steplap.data.Run(answer.data.runs[0]); run.name = name; return run; };
   function onAnswer(answer, asked) {
+    clearTimeout(waiting);
+    at('pace').textContent = '';
     troubles.server = [];
     troubles.run = answer.errors || [];
     showTroubles();

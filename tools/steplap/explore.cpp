@@ -73,6 +73,7 @@ ExitCode explore(const ExploreOptions& options, Console& console) {
   LocalServer server(port, [&explorer](const PageRequest& request, const SendReply& send) { explorer.answer(request, send); });
   const Ending ending{explorer}; // before the server's: what waits holds connections
   console.out << server.address() << "\n" << std::flush;
+  if (!console.out) return ExitCode::done; // nobody knows the address, which is told as an error of the output
   const bool has_screen = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
   if (!options.is_without_browser && (!has_screen || !open_browser(server.first_address()))) log_info("No browser could be opened: open the address in one");
   if (console.verbosity != Verbosity::quiet) console.out << "The page is served on this computer alone, to whoever has this address. Ctrl-C ends it.\n" << std::flush;
