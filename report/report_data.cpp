@@ -185,8 +185,7 @@ std::string shortened(const std::string& model) {
   return model.substr(0, k_most_model_text) + "\n# … the rest is in model.toml\n";
 }
 
-Json run_json(const Results& run, Json drawing, const std::vector<std::size_t>& kept, std::size_t stretches) {
-  Json summary = parsed(run, run.summary, "summary.json");
+Json run_json(const Results& run, Json summary, Json drawing, const std::vector<std::size_t>& kept, std::size_t stretches) {
   keep_extremes(summary, run, kept);
   add_texts(summary);
   const std::size_t bodies = drawing["bodies"].size();
@@ -215,17 +214,29 @@ Json run_json(const Results& run, Json drawing, const std::vector<std::size_t>& 
           {"channels", std::move(channels)}};
 }
 
-} // namespace
-
-std::string report_data(const std::vector<Results>& runs, std::size_t budget) {
+std::string data_of(const std::vector<Results>& runs, std::vector<Json> summaries, std::size_t budget) {
   std::vector<Json> drawings;
   for (const Results& run : runs)
     drawings.push_back(parsed(run, run.drawing, "drawing.json"));
   const Plan plan = plan_for(runs, drawings, budget);
   Json json{{"program", std::string("steplap ") + k_version}, {"runs", Json::array()}};
   for (std::size_t r = 0; r < runs.size(); ++r)
-    json["runs"].push_back(run_json(runs[r], std::move(drawings[r]), plan.kept[r], plan.stretches));
+    json["runs"].push_back(run_json(runs[r], std::move(summaries[r]), std::move(drawings[r]), plan.kept[r], plan.stretches));
   return in_script(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+} // namespace
+
+std::string report_data(const std::vector<Results>& runs, std::size_t budget) {
+  std::vector<Json> summaries;
+  for (const Results& run : runs) summaries.push_back(parsed(run, run.summary, "summary.json"));
+  return data_of(runs, std::move(summaries), budget);
+}
+
+std::string report_data(const Results& run, OrderedJson summary, std::size_t budget) {
+  std::vector<Json> summaries;
+  summaries.push_back(std::move(summary));
+  return data_of({run}, std::move(summaries), budget);
 }
 
 std::string in_script(const std::string& json) {

@@ -2,6 +2,7 @@
 // the histories thinned so that the page stays small.
 #pragma once
 
+#include "run/ordered_json.h"
 #include "run/results.h"
 
 #include <cstddef>
@@ -16,6 +17,9 @@ namespace steplap {
 /// drawings and reactions last.
 /// Throws FileError for a summary.json or drawing.json that is not as steplap wrote it.
 [[nodiscard]] std::string report_data(const std::vector<Results>& runs, std::size_t budget = 3500000);
+
+/// The same of one run whose summary is at hand as a document (run/summary.h); its text in `run` is not looked at.
+[[nodiscard]] std::string report_data(const Results& run, OrderedJson summary, std::size_t budget);
 
 /// JSON without '<', which stands in strings only, where JSON has another way to write it.
 [[nodiscard]] std::string in_script(const std::string& json);

@@ -3,6 +3,7 @@
 #include "mbd/base/number_text.h"
 #include "mbd/formula/unit_dimension.h"
 #include "mbd/model/field_units.h"
+#include "run/model_entries.h"
 
 #include <filesystem>
 #include <unordered_map>
@@ -10,29 +11,6 @@
 namespace steplap {
 
 namespace {
-
-// Something with fields, and how paths begin that lead to them.
-struct Entry {
-  std::string path; ///< "body.tank"; "" of the top level
-  std::string kind; ///< of an element or a signal; "" of others
-  const FieldTable* fields = nullptr;
-  const FieldTable* common = nullptr; ///< fields that all entries of the array have besides, or null
-  const void* object = nullptr;
-};
-
-// Markers that references to bodies made are named in the fields that made them.
-std::vector<Entry> entries_of(const Model& model) {
-  std::vector<Entry> entries{{"", "", &ModelHeader::fields(), nullptr, &model.header},
-                             {"simulation", "", &SimulationSettings::fields(), nullptr, &model.simulation},
-                             {"output", "", &OutputSettings::fields(), nullptr, &model.output}};
-  for (const Body& body : model.bodies) entries.push_back({"body." + body.name, "", &Body::fields(), nullptr, &body});
-  for (const Marker& marker : model.markers) entries.push_back({"marker." + marker.name, "", &Marker::fields(), nullptr, &marker});
-  for (const SignalEntry& e : model.signals) entries.push_back({"signal." + e.definition->name, e.kind->name, &e.kind->fields, nullptr, e.definition.get()});
-  for (const ElementEntry& e : model.elements)
-    entries.push_back({"element." + e.element->name, e.kind->name, &e.kind->fields, &Element::common_fields(), e.element.get()});
-  for (const TableEntry& e : model.tables) entries.push_back({e.kind->name + "." + e.table->name, "", &e.kind->fields, nullptr, e.table.get()});
-  return entries;
-}
 
 std::string text_of(const FieldValue& value) {
   const auto listed = [](const auto& list, const auto& text) {
@@ -73,25 +51,25 @@ public:
 
   std::vector<ModelChange> changes() {
     compare_parameters();
-    const std::vector<Entry> before = entries_of(a_), after = entries_of(b_);
-    const auto by_path = [](const std::vector<Entry>& list) {
-      std::unordered_map<std::string, const Entry*> found;
-      for (const Entry& entry : list) found.emplace(entry.path, &entry);
+    const std::vector<ModelEntry> before = entries_of(a_), after = entries_of(b_);
+    const auto by_path = [](const std::vector<ModelEntry>& list) {
+      std::unordered_map<std::string, const ModelEntry*> found;
+      for (const ModelEntry& entry : list) found.emplace(entry.path, &entry);
       return found;
     };
     const auto first = by_path(before), second = by_path(after);
-    for (const Entry& entry : before) {
+    for (const ModelEntry& entry : before) {
       const auto other = second.find(entry.path);
       if (other == second.end()) add(ModelChange::Kind::removed, entry);
       else compare(entry, *other->second);
     }
-    for (const Entry& entry : after)
+    for (const ModelEntry& entry : after)
       if (!first.contains(entry.path)) add(ModelChange::Kind::added, entry);
     return std::move(changes_);
   }
 
 private:
-  void add(ModelChange::Kind kind, const Entry& entry) {
+  void add(ModelChange::Kind kind, const ModelEntry& entry) {
     ModelChange change;
     change.kind = kind;
     change.path = entry.path;
@@ -133,7 +111,7 @@ private:
     }
   }
 
-  void compare(const Entry& before, const Entry& after) {
+  void compare(const ModelEntry& before, const ModelEntry& after) {
     if (before.kind != after.kind) {
       ModelChange change;
       change.path = before.path + ".kind";
@@ -147,7 +125,7 @@ private:
         for (const Field& field : table->fields()) compare_field(before, after, *table, field);
   }
 
-  void compare_field(const Entry& before, const Entry& after, const FieldTable& table, const Field& field) {
+  void compare_field(const ModelEntry& before, const ModelEntry& after, const FieldTable& table, const Field& field) {
     const FieldValue a = field.get(before.object), b = field.get(after.object);
     if (is_same(field, a, b)) return;
     const std::string path = before.path.empty() ? field.name : before.path + "." + field.name;

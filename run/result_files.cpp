@@ -185,13 +185,16 @@ FileContent whole(std::string text) {
 
 } // namespace
 
+std::string model_file_text(const LoadedModel& loaded) {
+  if (loaded.text.empty()) return "";
+  return "# Effective model of '" + loaded.path + "', written by steplap " + k_version + ".\n\n" + loaded.text;
+}
+
 std::vector<ResultFile> result_files(const Report& report) {
   const Run& run = report.run;
   if (run.loaded->text.empty())
     throw FileError(run.loaded->path, "results of '" + run.loaded->name + "' cannot be written: it was made in code, and model.toml has to hold a model that can be run again");
   const std::string prefix = run.failure ? k_partial : "";
-  const std::string head = "# Effective model of '" + run.loaded->path + "', written by steplap " +
-                           k_version + ".\n\n";
   const auto rows = [&run, errors = column_errors(report)](const FileSink& put) {
     write_trajectory_csv(*run.result.trajectory, errors, put);
   };
@@ -199,7 +202,7 @@ std::vector<ResultFile> result_files(const Report& report) {
   const auto events = events_csv(run.result.events, report.estimate.errors ? &report.estimate.errors->event_times : nullptr);
   return {noted(prefix + "trajectory.csv", rows, records),
           noted(prefix + "events.csv", whole(events), records),
-          noted(prefix + "model.toml", whole(head + run.loaded->text), records),
+          noted(prefix + "model.toml", whole(model_file_text(*run.loaded)), records),
           noted(prefix + "drawing.json", whole(drawing_json(run.loaded->model)), records),
           {prefix + "summary.json", "", [&report, records](const FileSink& put) { put(summary_json(report, *records)); }}};
 }

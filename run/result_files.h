@@ -33,6 +33,8 @@ void write_trajectory_csv(const Trajectory& trajectory, const std::vector<double
 [[nodiscard]] std::string trajectory_csv(const Trajectory& trajectory, const std::vector<double>& errors = {});
 /// The text of events.csv. `errors`: of the times, s, one per event; nullptr if they were not estimated.
 [[nodiscard]] std::string events_csv(const std::vector<Event>& events, const std::vector<double>* errors = nullptr);
+/// The text of model.toml: "" of a model that has no text.
+[[nodiscard]] std::string model_file_text(const LoadedModel& loaded);
 /// A file that was written, as summary.json lists it.
 struct FileRecord {
   std::string name;      ///< in the folder of the run

@@ -134,7 +134,7 @@ steplap.data = (() => {
   const unique = (lists) => [...new Set(lists.flat())];
 
   const raw = JSON.parse(document.getElementById('data').textContent);
-  return { program: raw.program, modes: raw.modes, runs: raw.runs.map((r) => new Run(r)), indexBefore, scaleFor, quantity, plain, pretty, corners, unique };
+  return { program: raw.program, modes: raw.modes, runs: raw.runs.map((r) => new Run(r)), Run, indexBefore, scaleFor, quantity, plain, pretty, corners, unique };
 })();
 
 // Elements of the page; texts only ever as text.

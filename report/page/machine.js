@@ -116,6 +116,18 @@ steplap.Scene = (() => {
       this.fitSymbols();
       this.spreadMarks();
     }
+    // As another picture of the same machine stands: the same part of the plane, numbers of bodies at the same places.
+    fitLike(other) {
+      this.choose(other.seenFrom, other.magnification);
+      for (const name of ['width', 'u', 'height', 'middle', 'fittedScale']) this[name] = other[name];
+      this.svg.setAttribute('viewBox', `0 0 ${this.width} ${this.height}`);
+      this.setView(other.view);
+      this.fitSymbols();
+      for (const [name, mark] of this.marks) {
+        const same = other.marks.get(name);
+        if (same) Object.assign(mark, { shift: same.shift, places: same.places });
+      }
+    }
     setView(view) {
       this.view = view;
       this.scale = this.fittedScale * view.zoom;

@@ -54,7 +54,7 @@ steplap.Plots = (() => {
       });
       const range = this.valueRange();
       this.graph = new Dygraph(this.area, this.rows(this.scale.factor), {
-        labels, series: options, legend: 'never', xlabel: 't [s]', ylabel: `${this.scale.unit ? '[' + this.escaped(this.scale.unit) + ']' : '[–]'}`,
+        labels, series: options, legend: 'never', xlabel: 't [s]', ylabel: this.unitLabel(),
         dateWindow: this.owner.window, valueRange: range, gridLineColor: resolved('grid'), axisLineColor: resolved('axis'), axisLabelFontSize: 12, xLabelHeight: 17, yLabelWidth: 17, highlightCircleSize: 0,
         axes: { y: { axisLabelWidth: this.labelWidth(range), ticker: (a, b, pixels) => this.ticker(a, b, Math.max(3, Math.floor(pixels / 34))) }, x: { ticker: (a, b, pixels) => this.ticker(a, b, Math.max(3, Math.floor(pixels / 70))) } },
         drawCallback: (g, isInitial) => { if (!isInitial) this.owner.follow(this, g.xAxisRange()); this.graph = g; this.place(); this.mark(); },
@@ -65,6 +65,25 @@ steplap.Plots = (() => {
       this.mark();
       this.show(this.owner.t);
     }
+    // Shows the run `to` where `from` was shown. False if it lacks a channel: then the figure has to be made anew.
+    replaceRun(from, to) {
+      if (!this.series.every((s) => s.run !== from || to.channel(s.name))) return false;
+      this.runs = this.runs.map((r) => (r === from ? to : r));
+      for (const s of this.series) if (s.run === from) Object.assign(s, { run: to, channel: to.channel(s.name) });
+      this.limits = steplap.marks.limitsOf(this.drawn);
+      return true;
+    }
+    // Draws what the series hold now.
+    refresh() {
+      if (!this.graph) return;
+      const [low, high] = this.owner.rangeOf(this.figure, this.owner.full);
+      this.scale = steplap.data.scaleFor(this.series[0].channel.unit, Math.max(Math.abs(low), Math.abs(high)));
+      this.keys();
+      const valueRange = this.valueRange();
+      this.graph.updateOptions({ file: this.rows(this.scale.factor), dateWindow: this.owner.window, valueRange, ylabel: this.unitLabel(), axes: { y: { axisLabelWidth: this.labelWidth(valueRange) } } });
+      this.show(this.owner.t);
+    }
+    unitLabel() { return `${this.scale.unit ? '[' + this.escaped(this.scale.unit) + ']' : '[–]'}`; }
     ticker(low, high, most) {
       const { values, step } = steplap.axes.ticks(low, high, most);
       return values.map((v) => ({ v, label: steplap.axes.label(v, step) }));

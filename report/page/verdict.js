@@ -50,9 +50,12 @@ steplap.verdict = (() => {
       ['events', (r) => String(r.summary.statistics.events)],
       ['warnings', (r) => list((r.summary.findings || []).filter((f) => f.level === 'warning').map((f) => f.text))]];
   }
+  function buildCards(runs) {
+    document.getElementById('verdict-cards').replaceChildren(...runs.map((run) => card(run, runs.length === 1)));
+  }
   function build(runs) {
-    const isOne = runs.length === 1, cards = document.getElementById('verdict-cards');
-    for (const run of runs) cards.append(card(run, isOne));
+    const isOne = runs.length === 1;
+    buildCards(runs);
     const summary = isOne ? make('summary', {}, ...trustLine(runs[0])) : make('summary', {}, 'How far these can be trusted');
     document.getElementById('trust').append(summary);
   }
@@ -61,5 +64,5 @@ steplap.verdict = (() => {
     const heads = ['', ...runs.map((r) => r.name)];
     document.getElementById('trust').append(table(runs.length > 1 ? heads : null, rows().map(([name, text]) => [name, ...runs.map(text)])));
   }
-  return { build, buildTrust };
+  return { build, buildCards, buildTrust };
 })();

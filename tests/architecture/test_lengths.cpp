@@ -18,7 +18,7 @@ namespace {
 
 constexpr int k_most_lines = 70, k_most_lines_of_file = 600;
 
-const std::vector<std::string> k_library = {"mbd", "elements", "transformer", "run", "report", "python", "study", "assess"};
+const std::vector<std::string> k_library = {"mbd", "elements", "transformer", "run", "report", "explore", "python", "study", "assess"};
 
 // A peer that is measured against: written by hand in one piece, as its measurement says.
 const std::string k_left_out = "tools/bench/peers/transformer_minimal.cpp";

@@ -28,7 +28,7 @@ namespace {
 std::map<std::string, std::string> product_sources() {
   const fs::path root = STEPLAP_SOURCE;
   std::map<std::string, std::string> sources;
-  for (const char* top : {"mbd", "elements", "transformer", "run", "report", "study", "assess", "tools/steplap", "tools/study"})
+  for (const char* top : {"mbd", "elements", "transformer", "run", "report", "explore", "study", "assess", "tools/steplap", "tools/study"})
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
       std::string& text = sources[fs::relative(entry.path(), root).generic_string()];

@@ -18,10 +18,10 @@ namespace {
 const std::vector<std::string> k_rooms = {
     "mbd/math",   "mbd/base",       "mbd/formula",  "mbd/algebra",  "mbd/tape",       "mbd/model",  "mbd/system", "mbd/dynamics", "mbd/friction", "mbd/integrators",
     "mbd/events", "mbd/simulation", "mbd/analysis", "mbd/acceptance", "mbd/io", "record", "elements/patch", "elements", "transformer",
-    "run", "report", "python", "study", "assess", "tools"};
+    "run", "report", "explore/page", "explore", "python", "study", "assess", "tools"};
 
 // Headers of libraries, of which one file of the product knows.
-const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/", "fmt/", "unsupported/Eigen/FFT"};
+const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/", "fmt/", "boost/beast", "unsupported/Eigen/FFT"};
 
 struct Source {
   std::string path;
@@ -44,14 +44,14 @@ Source source_of(const fs::path& root, const fs::path& file) {
 std::vector<Source> all_sources() {
   const fs::path root = STEPLAP_SOURCE;
   std::vector<Source> sources;
-  for (const char* top : {"mbd", "record", "elements", "transformer", "run", "report", "python", "study", "assess", "tools"})
+  for (const char* top : {"mbd", "record", "elements", "transformer", "run", "report", "explore", "python", "study", "assess", "tools"})
     for (const auto& entry : fs::recursive_directory_iterator(root / top))
       if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h") sources.push_back(source_of(root, entry.path()));
   return sources;
 }
 
 // What cmake/install.cmake leaves out.
-const std::vector<std::string> k_not_installed = {"record/", "tools/", "study/", "report/", "python/", "assess/", "run/ordered_json.h", "run/summary.h"};
+const std::vector<std::string> k_not_installed = {"record/", "tools/", "study/", "report/", "explore/", "python/", "assess/", "run/ordered_json.h", "run/summary.h"};
 
 // The longest room that the path lies in; −1: none.
 int room_of(const std::string& path) {

@@ -77,7 +77,7 @@ TEST_CASE("every command that prints a table has --json, with the same numbers t
       {"show", {{bench.at("ran") + "/b"}, ""}},
       {"help", {{}, ""}}};
   // Of others: no table, or a document of their own.
-  const std::map<std::string, std::string> others = {{"new", "a model"}, {"report", "a page"}, {"plot", "an image"}, {"schema", "is JSON"},
+  const std::map<std::string, std::string> others = {{"new", "a model"}, {"explore", "a page"}, {"report", "a page"}, {"plot", "an image"}, {"schema", "is JSON"},
                                                      {"study", "a program of its own"}, {"record", "record.json"}, {"assess", "assessment.json"}};
   for (const Command& command : all_commands()) {
     CAPTURE(command.name);

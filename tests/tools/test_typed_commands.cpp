@@ -31,6 +31,7 @@ TEST_CASE("what cannot be said is an error, of every command") {
   REQUIRE(steplap_does({"record", "--make", "endaq", bench.at("shock.csv")}).code == 0);
   const std::vector<std::pair<std::string, std::string>> all = {
       {"simulate", model + " -o " + bench.at("s") + quick},
+      {"explore", model + " --no-browser"},
       {"show", bench.at("ran") + "/a"},
       {"report", bench.at("ran") + "/a -o " + bench.at("r.html")},
       {"plot", bench.at("ran") + "/a --channels ball.y -o " + bench.at("p.svg")},

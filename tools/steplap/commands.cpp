@@ -8,6 +8,7 @@
 #include "tools/steplap/diff.h"
 #include "tools/steplap/elements.h"
 #include "tools/steplap/equilibrium.h"
+#include "tools/steplap/explore.h"
 #include "tools/steplap/help.h"
 #include "tools/steplap/joint.h"
 #include "tools/steplap/modes.h"
@@ -26,6 +27,7 @@ std::vector<Command> all_commands() {
   std::vector<Command> commands;
   commands.push_back(new_command());
   commands.push_back(simulate_command());
+  commands.push_back(explore_command());
   commands.push_back(show_command());
   commands.push_back(report_command());
   commands.push_back(plot_command());

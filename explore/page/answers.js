@@ -1,0 +1,48 @@
+// What the page asks of its server. Of runs one is under way at a time, and the next one that is asked for is that of the newest values:
+// nothing that was wanted in between is computed, and what was wanted last always comes.
+steplap.Answers = class Answers {
+  constructor(onAnswer, onSilence) {
+    Object.assign(this, { onAnswer, onSilence, page: Math.random().toString(36).slice(2), last: 0, shown: 0, wanted: null, underway: new Set(), sentAt: 0 });
+  }
+  // Patience with a run that takes long, ms: then the newer values are sent, and the server gives the older run up.
+  static get patience() { return 150; }
+  async post(path, body) {
+    const reply = await fetch(path, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body), credentials: 'omit', redirect: 'error' });
+    if (!reply.ok) throw new Error(await reply.text());
+    return reply.json();
+  }
+  async state(since) {
+    const reply = await fetch(`state?since=${since}`, { credentials: 'omit', redirect: 'error' });
+    if (!reply.ok) throw new Error(await reply.text());
+    return reply.json();
+  }
+  // `request`: { model, values, is_settled }; `since`: when somebody asked for it, ms of performance.now().
+  want(request, since = performance.now()) {
+    this.wanted = { request, since, number: ++this.last };
+    this.next();
+  }
+  get isIdle() { return !this.wanted && !this.underway.size; }
+  next() {
+    if (!this.wanted || this.underway.size > 1) return;
+    const age = performance.now() - this.sentAt;
+    if (this.underway.size && age < Answers.patience) {
+      clearTimeout(this.timer);
+      this.timer = setTimeout(() => this.next(), Answers.patience - age + 1);
+      return;
+    }
+    const asked = this.wanted;
+    this.wanted = null;
+    this.underway.add(asked);
+    this.sentAt = performance.now();
+    this.post('run', { ...asked.request, page: this.page }).then((answer) => {
+      this.underway.delete(asked);
+      if (!answer.is_superseded && asked.number > this.shown) {
+        this.shown = asked.number;
+        this.onAnswer(answer, asked);
+      }
+    }, (error) => {
+      this.underway.delete(asked);
+      this.onSilence(error);
+    }).finally(() => this.next());
+  }
+};

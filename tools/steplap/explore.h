@@ -1,0 +1,10 @@
+// The sub-command `explore`.
+#pragma once
+
+#include "tools/steplap/command.h"
+
+namespace steplap {
+
+[[nodiscard]] Command explore_command();
+
+} // namespace steplap
