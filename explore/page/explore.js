@@ -19,7 +19,11 @@
   }
 
   // --- asking -----------------------------------------------------------------------------------------------
-  const answers = new steplap.Answers(onAnswer, () => { troubles.server = [{ message: 'steplap does not answer: it has ended, or is being stopped.' }]; showTroubles(); });
+  function onSilence() {
+    troubles.server = [{ message: 'steplap does not answer: it has ended, or is being stopped.' }];
+    showTroubles();
+  }
+  const answers = new steplap.Answers(onAnswer, onSilence);
   const sliders = new steplap.Sliders(at('sliders'), { search: at('search'), found: at('found'), onChange: onChange });
   const request = (isSettled) => ({ model, values: sliders.changed(), is_settled: isSettled });
   function onChange() {
@@ -41,6 +45,7 @@
   }
   const runOf = (answer, name) => { const run = new steplap.data.Run(answer.data.runs[0]); run.name = name; return run; };
   function onAnswer(answer, asked) {
+    if (asked.request.model !== model) return;
     clearTimeout(waiting);
     at('pace').textContent = '';
     troubles.server = [];
@@ -75,20 +80,16 @@
     const asked = model, answer = await answers.post('run', { model, values: {}, is_settled: true, page: `${answers.page} old` });
     if (asked !== model || answer.is_superseded) return;
     if (answer.errors) { troubles.run = answer.errors; showTroubles(); return; }
-    if (!isKept) {
-      before = runOf(answer, 'old');
-      scenes[0] = null;
-    }
-    if (!Object.keys(sliders.changed()).length) { const old = now; now = runOf(answer, 'new'); draw(old, true, true); }
+    if (!isKept) before = runOf(answer, 'old');
+    if (!Object.keys(sliders.changed()).length) { const old = now; now = runOf(answer, 'new'); draw(old, true); }
     else answers.want(request(true));
   }
   function keep() {
     isKept = !isKept;
     at('keep').setAttribute('aria-pressed', String(isKept));
-    if (!isKept) return askOld();
+    if (!isKept) { askOld().catch(onSilence); return; }
     before = Object.assign(Object.create(Object.getPrototypeOf(now)), now, { name: 'old' });
-    scenes[0] = null;
-    draw(now, true, true);
+    draw(now, true);
   }
   function sceneOf(run, k) {
     const scene = new steplap.Scene(run), { moved, story } = steplap.overview.of(run);
@@ -101,9 +102,11 @@
     if (view) view.listen(scene);
     return scene;
   }
-  // `isWhole`: the old state is another one as well.
-  function draw(old, isSettled, isWhole = false) {
-    const runs = [before, now];
+  // `old`: the run that was drawn as the new state before.
+  let drawnBefore = null;
+  function draw(old, isSettled) {
+    const runs = [before, now], isWhole = drawnBefore !== before;
+    drawnBefore = before;
     steplap.data.runs = runs;
     end = Math.max(...runs.map((r) => r.end));
     if (t > end) t = end;
@@ -285,9 +288,8 @@
         }
         showModel();
         if (!models[model].errors.length) await askOld();
-      } catch (error) {
-        troubles.server = [{ message: 'steplap does not answer: it has ended, or is being stopped.' }];
-        showTroubles();
+      } catch {
+        onSilence();
         await new Promise((resolve) => setTimeout(resolve, 2000));
       }
     }
@@ -306,7 +308,7 @@
     at('map-start').setAttribute('aria-pressed', 'false');
     at('map-start').textContent = 'Fill in';
     showModel();
-    askOld();
+    askOld().catch(onSilence);
   }
 
   for (const [id, action] of [['closer', () => view.zoomAt(scenes[0], 1.5)], ['further', () => view.zoomAt(scenes[0], 1 / 1.5)], ['whole', () => view.reset()]]) {

@@ -410,6 +410,19 @@ class ExploreTest(base.Page):
             self.browser.close()
             self.browser.switch_to.window(tabs[0])
 
+    def test_a_file_that_changes_while_values_are_changed_keeps_them(self):
+        self.load()
+        self.slide("parameters.grip", 0.2)
+        self.until(lambda: self.badges() == ["HOLD", "REJECT"])
+        self.write("sled.toml", SLED.replace("[2.0, 0.0]", "[1.0, 0.0]"))
+        self.until(lambda: self.badges() == ["HOLD", "HOLD"])
+        self.idle()
+        ways = self.run_js("""return [steplap.page.runs().map((r) => r.summary.extremes['sled.x'].max),
+            steplap.page.plots.plots.find((p) => p.series.some((s) => s.name === 'sled.x')).series.filter((s) => s.name === 'sled.x').map((s) => s.channel.at(1))]""")
+        for shown in ways:
+            for way, grip in zip(shown, (0.4, 0.2)):
+                self.assertAlmostEqual(way, 1.0 / (2 * grip * 9.80665), delta=2e-3)
+
     # --- visitors who were not invited ------------------------------------------------------------
 
     def test_who_lacks_the_token_or_comes_from_elsewhere_is_refused(self):

@@ -3,6 +3,7 @@
 #include "explore/explored_model.h"
 #include "explore/run_results.h"
 #include "explore/saved_changes.h"
+#include "run/overview.h"
 #include "tests/tools/workbench.h"
 
 #include <doctest/doctest.h>
@@ -52,8 +53,13 @@ TEST_CASE("values set in memory, in the file and in a saved file give the same r
     CHECK(values.size() >= 1);
     RunOptions options;
     options.estimating = Estimating::never;
-    const Results in_memory = results_of(model.run(values, options));
-    check_alike(in_memory, results_of(model.run_from_file(values, options)));
+    const Report first = model.run(values, options), second = model.run_from_file(values, options);
+    const Results in_memory = results_of(first);
+    check_alike(in_memory, results_of(second));
+    CHECK(first.judgement.verdict == second.judgement.verdict);
+    CHECK(overview_of(first).reason == overview_of(second).reason);
+    REQUIRE(first.findings.size() == second.findings.size());
+    for (std::size_t i = 0; i < first.findings.size(); ++i) CHECK(text_with_place(first.findings[i]) == text_with_place(second.findings[i]));
     // The file of the changes stands beside the model's in use; here in a copy of its folder.
     const std::string folder = bench.at("copy");
     fs::copy(fs::path(STEPLAP_MODELS), folder, fs::copy_options::recursive);

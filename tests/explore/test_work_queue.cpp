@@ -20,15 +20,19 @@ namespace {
 
 // Keeps the thread of a queue busy until it is let go.
 struct Busy {
-  std::promise<void> began, may_end;
+  struct Signals {
+    std::promise<void> began, may_end;
+    std::future<void> has_begun = began.get_future(), is_released = may_end.get_future();
+  };
+  std::shared_ptr<Signals> signals = std::make_shared<Signals>(); ///< the task may still look at them when this object is gone
   explicit Busy(WorkQueue& queue) {
-    REQUIRE(queue.add(Urgency::page, "", [this](const WorkQueue::IsStale&) {
-      began.set_value();
-      may_end.get_future().wait();
+    REQUIRE(queue.add(Urgency::page, "", [shared = signals](const WorkQueue::IsStale&) {
+      shared->began.set_value();
+      shared->is_released.wait();
     }));
-    began.get_future().wait();
+    signals->has_begun.wait();
   }
-  void end() { may_end.set_value(); }
+  void end() const { signals->may_end.set_value(); }
 };
 
 } // namespace
