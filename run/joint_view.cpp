@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace steplap {
 
@@ -53,11 +54,16 @@ JointView look_at(const StepLapJoint& joint, const StepLapFriction& friction, co
 
 } // namespace
 
-double JointView::sliding(int direction) const { return evaluate_gradient(patch, Vec3::Unit(direction)).h; } // h of the unit twist
+double JointView::sliding(int direction) const { // h of the unit twist
+  return interfaces.empty() ? std::numeric_limits<double>::infinity() : evaluate_gradient(patch, Vec3::Unit(direction)).h;
+}
 
-double JointView::alone(int direction) const { return 1.0 / required_pressure(patch, Vec3::Unit(direction)).u; } // the longest wrench that way inside the limit surface
+double JointView::alone(int direction) const { // the longest wrench that way inside the limit surface
+  return interfaces.empty() ? std::numeric_limits<double>::infinity() : 1.0 / required_pressure(patch, Vec3::Unit(direction)).u;
+}
 
 RequiredPressure JointView::required(const Vec3& wrench) const {
+  if (interfaces.empty()) return {};
   RequiredPressure found = required_pressure(patch, wrench);
   if (!found.converged)
     throw NumericalFailure("the required pressure of '" + joint->name + "' was not found to the last digit; the wrench may be out of all proportion");

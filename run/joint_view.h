@@ -10,7 +10,8 @@
 
 namespace steplap {
 
-/// One joint. It refers to the model that it is of, which has to outlive it.
+/// One joint. It refers to the model that it is of, which has to outlive it. Without interfaces its capacities are infinite, and no wrench uses
+/// any of them.
 struct JointView {
   const StepLapJoint* joint = nullptr;             ///< never nullptr
   std::vector<const StepLapInterface*> interfaces; ///< in the order of the model; none: it holds whatever it takes

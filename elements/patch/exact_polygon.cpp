@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <variant>
 
 namespace steplap {
 
@@ -95,13 +96,19 @@ struct ExactEdge {
   }
 };
 
+#if CGAL_VERSION_NR >= 1060000000 // 6.0 gives a variant of the standard library, 5 one of Boost
+template <class Alternative, class Meeting> const Alternative* as(const Meeting& meeting) { return std::get_if<Alternative>(&meeting); }
+#else
+template <class Alternative, class Meeting> const Alternative* as(const Meeting& meeting) { return boost::get<Alternative>(&meeting); }
+#endif
+
 /// The ends of what two edges have in common, if there is anything.
 void add_meeting(const ExactEdge& a, const ExactEdge& b, std::vector<ExactPoint>& out) {
   const auto meeting = CGAL::intersection(Exact::Segment_2(a.from, a.to), Exact::Segment_2(b.from, b.to));
   if (!meeting) return;
-  if (const auto* p = boost::get<ExactPoint>(&*meeting)) {
+  if (const auto* p = as<ExactPoint>(*meeting)) {
     out.push_back(*p);
-  } else if (const auto* s = boost::get<Exact::Segment_2>(&*meeting)) {
+  } else if (const auto* s = as<Exact::Segment_2>(*meeting)) {
     out.push_back(s->source());
     out.push_back(s->target());
   }

@@ -195,6 +195,13 @@ def test_joints_are_those_of_the_command_line():
         assert all(row["overlap"] > 0.0 for row in joint.interfaces)
 
 
+def test_a_joint_without_interfaces_holds_whatever_it_takes():
+    bodies = [{"name": name, "mass": 1, "inertia": 1} for name in ("part", "limb")]
+    (joint,) = steplap.build({"body": bodies, "element": [{"name": "joint", "kind": "step_lap_joint", "limb": "limb", "active_part": "part"}]}).joints()
+    assert joint.interfaces == [] and list(joint.sliding) == list(joint.alone) == [np.inf] * 3
+    assert joint.required(1e9, 0.0, 0.0) == {"usage": 0.0, "margin": np.inf, "pressure": None, "centre": None}
+
+
 def test_the_page_about_python_says_what_is_true(tmp_path, monkeypatch):
     page = (MODELS.parent / "docs/how-to/use_from_python.md").read_text()
     blocks = [part.split("```")[0] for part in page.split("```python\n")[1:]]
