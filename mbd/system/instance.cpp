@@ -94,6 +94,16 @@ Variants::Variants(const Model& given, std::vector<std::string> paths, const std
   if (redone_ == Redone::tables) note_tables();
 }
 
+// Does the path lead there, or a field that follows from it as a parameter?
+bool Variants::is_set_by(const std::string& path, const std::string& head) const {
+  if (path.starts_with(head)) return true;
+  if (!path.starts_with("parameters.")) return false;
+  const std::optional<std::size_t> parameter = given_.parameters.find(path.substr(std::string("parameters.").size()));
+  return std::any_of(given_.parameters.uses.begin(), given_.parameters.uses.end(), [&](const ParameterUse& use) {
+    return use.path.starts_with(head) && parameter && given_.parameters.needs(use.formula, *parameter);
+  });
+}
+
 void Variants::note_tables() {
   const std::size_t count = given_.elements.size();
   for (std::size_t i = 0; i < count; ++i)
@@ -103,13 +113,14 @@ void Variants::note_tables() {
   std::vector<Diagnostic> problems; // none, as completed() has told
   complete(without, {}, problems);
   bodies_ = without.bodies;
+  without.tables = given_.tables; // they look at each other
   for (std::size_t i = 0; i < given_.tables.size(); ++i) {
     const auto count_others = [&] { return without.plots.size() + without.criteria.size() + without.channels.size(); };
     const std::size_t before = count_others();
     const TableEntry& entry = given_.tables[i];
     entry.kind->apply(*entry.table, without);
     if (count_others() == before) applied_.push_back(i);
-    else if (std::any_of(paths_.begin(), paths_.end(), [&](const std::string& path) { return path.starts_with(entry.kind->name + "."); })) redone_ = Redone::all;
+    else if (std::any_of(paths_.begin(), paths_.end(), [&](const std::string& path) { return is_set_by(path, entry.kind->name + "."); })) redone_ = Redone::all;
   }
   for (std::size_t i = 0; i < completed_.markers.size(); ++i) // those that stand for bodies are behind the given ones
     if (i >= given_.markers.size() || (!given_.markers[i].point && !given_.markers[i].at)) at_centres_.push_back(i);

@@ -36,6 +36,7 @@ private:
   /// What has to be done anew for other values.
   enum class Redone { nothing, tables, all };
   [[nodiscard]] Redone redone_for(const std::string& path) const;
+  [[nodiscard]] bool is_set_by(const std::string& path, const std::string& head) const;
   void note_tables();
   void place_at_centres();
   [[nodiscard]] bool apply_tables();

@@ -15,6 +15,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <numbers>
 #include <thread>
 
 using namespace steplap;
@@ -310,6 +311,44 @@ TEST_CASE("variants of a model are what instantiate makes, number by number") {
       REQUIRE(a.size() == b.size());
       CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
     }
+  }
+}
+
+// Of a body whose shapes give it its mass and its centre of gravity, at which a spring acts.
+TEST_CASE("variants of a body follow its shapes") {
+  const Model given = parse_given_model(R"(
+[[body]]
+name = "plate"
+position = [0.0, 1.0]
+[[shape]]
+name = "sheet"
+body = "plate"
+outline = [[-1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [-1.0, 1.0]]
+area_density = 100.0
+[[shape]]
+name = "disc"
+body = "plate"
+centre = [0.5, 0.5]
+diameter = 0.6
+area_density = 200.0
+[[element]]
+kind = "spring_damper"
+name = "spring"
+a = "plate"
+b = { body = "ground", at = [0.2, 3.0] }
+stiffness = 1000.0
+)",
+                                        "m.toml", transformer_catalog());
+  const std::vector<std::string> paths = {"shape.disc.diameter", "shape.sheet.area_density", "shape.sheet.outline.2.1", "body.plate.position.1"};
+  Variants variants(given, paths);
+  for (const double share : {1.0, 0.9, 1.1, 1.0}) {
+    const std::vector<double> values = {0.6 * share, 100.0 * share, 1.0 / share, 1.0 * share};
+    const auto one = instantiate(given, {{paths[0], values[0]}, {paths[1], values[1]}, {paths[2], values[2]}, {paths[3], values[3]}}), other = variants.make(values);
+    CHECK(one->bodies[1].mass == other->bodies[1].mass);
+    CHECK(one->bodies[1].mass == doctest::Approx(100.0 * share * 0.5 * (1.0 + 1.0 / share) + 200.0 * 0.25 * std::numbers::pi * 0.36 * share * share));
+    const std::vector<double> a = start_values(*one), b = start_values(*other);
+    REQUIRE(a.size() == b.size());
+    CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
   }
 }
 

@@ -155,6 +155,28 @@ TEST_CASE("variants by parameters run as models that are read anew, to the bit")
   }
 }
 
+TEST_CASE("criteria of variants follow parameters") {
+  const Model given = parse_given_model(R"(
+[parameters]
+far = "1 m"
+[[body]]
+name = "box"
+mass = 1.0
+inertia = 1.0
+[[acceptance]]
+name = "not too far"
+channel = "box.x"
+at_most = "= 3*far"
+)",
+                                        "box.toml", transformer_catalog());
+  Variants variants(given, {"parameters.far"});
+  for (const char* const limit : {"1.5 m", "6 m"}) {
+    static_cast<void>(variants.make({limit[0] == '6' ? 2.0 : 0.5}));
+    REQUIRE(variants.model().criteria.size() == 1);
+    CHECK(variants.model().criteria.front().at_most_text == limit);
+  }
+}
+
 TEST_CASE("what makes no sense is refused with place and remedy") {
   struct Case {
     const char *part, *other, *message;
