@@ -2,6 +2,7 @@
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 
+#include "mbd/dynamics/linearization.h"
 #include "mbd/system/instance.h"
 
 #include <doctest/doctest.h>
@@ -213,4 +214,42 @@ TEST_CASE("studies vary what formulas name, also where they want a few channels 
   varied.result = simulate(*varied.system, varied.system->initial_state(), options({"dop853", 1e-10, 1.0, 0.1}));
   CHECK(varied.system->channels.size() == 1);
   CHECK(varied.series("a.x") == written.series("a.x"));
+}
+
+TEST_CASE("derivatives of states and by states are those of differences") {
+  const std::string text = k_no_gravity + body("a", "mass = 2; inertia = 0.5; position = [0.3, 0.2]; angle = 0.4; velocity = [0.5, -0.7]; angular_velocity = 1.1") +
+                           state("one", "unit = \"m\"; start = 0.3;" + rate("(tip.x * tip.vy / '1 m/s' - one * two) / '0.2 s'")) + state("two", "start = 0.7;" + rate("(sin(a.theta) - two^2 * one / '1 m') / '0.5 s'")) +
+                           table_text("marker", "name = \"tip\"\n", "body = \"a\"; point = [0.2, -0.3]") + element("force", "pull", "a = \"tip\"; coordinate = \"y\";" + formula("-'5 N/m' * value * two - '3 N/m' * one * two"));
+  const std::unique_ptr<System> system = compile(scene(text + "[simulation]\nstep = 1e-3\n"));
+  Dynamics dynamics(*system);
+  const State state = system->initial_state();
+  dynamics.set_state(state);
+  const auto size = static_cast<std::size_t>(system->largest_dimension());
+  std::vector<double> y(size), ahead(size), behind(size);
+  dynamics.pack(state, y.data());
+  Linearization linear;
+  linear.evaluate(dynamics, 0.1, y.data());
+  const int n = dynamics.coordinate_count();
+  REQUIRE(n == 3);
+  const auto sum = [](const std::vector<Linearization::Triplet>& entries, int row, int column) {
+    double total = 0.0;
+    for (const auto& e : entries)
+      if (e.row() == row && e.col() == column) total += e.value();
+    return total;
+  };
+  constexpr double k_step = 1e-6; // central differences: 1e-12 of third derivatives of the order of 10, rounding 1e-10
+  for (int c = 0; c < 2 * n + 2; ++c) {
+    std::vector<double> moved = y;
+    moved[static_cast<std::size_t>(c)] += k_step;
+    dynamics.rates(0.1, moved.data(), ahead.data());
+    moved[static_cast<std::size_t>(c)] -= 2.0 * k_step;
+    dynamics.rates(0.1, moved.data(), behind.data());
+    const auto slope = [&](int i) { return (ahead[static_cast<std::size_t>(i)] - behind[static_cast<std::size_t>(i)]) / (2.0 * k_step); };
+    const auto& parts = linear.states();
+    for (int z = 0; z < 2; ++z) {
+      const double expected = c < n ? sum(parts.by_pose, z, c) : c < 2 * n ? sum(parts.by_velocity, z, c - n) : sum(parts.by_state, z, c - 2 * n);
+      CHECK(std::abs(slope(2 * n + z) - expected) < 1e-8);
+    }
+    for (int i = 0; i < n && c >= 2 * n; ++i) CHECK(std::abs(slope(n + i) - linear.inverse_mass()[static_cast<std::size_t>(i)] * sum(parts.forces, i, c - 2 * n)) < 1e-8);
+  }
 }
