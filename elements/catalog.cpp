@@ -3,12 +3,14 @@
 #include "elements/buffer.h"
 #include "elements/bushing.h"
 #include "elements/coulomb_stick.h"
+#include "elements/formula_force.h"
 #include "elements/gears.h"
 #include "elements/joint_friction.h"
 #include "elements/joints.h"
 #include "elements/limit.h"
 #include "elements/load.h"
 #include "elements/motor.h"
+#include "elements/own_state.h"
 #include "elements/polygon_contact.h"
 #include "elements/prescribed_motion.h"
 #include "elements/rope.h"
@@ -42,11 +44,12 @@ const Catalogue& element_catalog() {
                   &gear_kind(),              &rack_kind(),
                   &motor_kind(),             &limit_kind(),
                   &joint_friction_kind(),    &rope_kind(),
-                  &wound_rope_kind(),        &load_kind()};
+                  &wound_rope_kind(),        &load_kind(),
+                  &formula_force_kind()};
     c.signals = signal_kinds();
     c.signals.push_back(&shunting_kind());
     c.signals.push_back(&record_signal_kind());
-    c.tables = {&shape_kind(), &channel_kind(), &plot_kind(), &acceptance_kind()};
+    c.tables = {&shape_kind(), &own_state_kind(), &channel_kind(), &plot_kind(), &acceptance_kind()};
     return c;
   }();
   return catalogue;

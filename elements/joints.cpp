@@ -1,5 +1,6 @@
 #include "elements/joints.h"
 
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -69,20 +70,22 @@ void add(SystemBuilder& builder, std::vector<RowSpec> rows, bool is_rigid = fals
 }
 
 void offer_angle(const Ends& ends, SystemBuilder& builder) {
+  const RowSpec row = row_of(ends.a.body, ends.b.body, AngleMeasure{});
   builder.offer_channel("angle", "rad", {"of marker a's axes against marker b's", "positive: a turned counter-clockwise"},
-                        [a = ends.a, b = ends.b](const Snapshot& s) {
-                          return relative_angle(s.motion[a.body], s.motion[b.body]) + (a.angle - b.angle);
-                        });
-  builder.offer_channel("rate", "rad/s", {"of the angle", "positive: a turns counter-clockwise"}, [a = ends.a.body, b = ends.b.body](const Snapshot& s) {
-    return relative_spin(s.motion[a], s.motion[b]);
-  });
+                        MeasuredValue{[a = ends.a, b = ends.b](const Snapshot& s) {
+                                        return relative_angle(s.motion[a.body], s.motion[b.body]) + (a.angle - b.angle);
+                                      },
+                                      row, ends.b.angle - ends.a.angle});
+  builder.offer_channel("rate", "rad/s", {"of the angle", "positive: a turns counter-clockwise"},
+                        MeasuredValue{[a = ends.a.body, b = ends.b.body](const Snapshot& s) { return relative_spin(s.motion[a], s.motion[b]); }, row, 0.0, true});
 }
 
 void offer_displacement(const Ends& ends, const Vec2& axis, SystemBuilder& builder) {
   const AxisMeasure along{ends.a.point, ends.b.point, builder.direction(ends.b, axis)};
   const auto measured = [along, a = ends.a.body, b = ends.b.body](const Snapshot& s) { return along.at<false>(s.motion[a], s.motion[b]); };
-  builder.offer_channel("displacement", "m", {"of marker a from marker b", "along the free axis"}, [measured](const Snapshot& s) { return measured(s).value; });
-  builder.offer_channel("rate", "m/s", {"of the displacement", "along the free axis"}, [measured](const Snapshot& s) { return measured(s).rate; });
+  const RowSpec row = row_of(ends.a.body, ends.b.body, along);
+  builder.offer_channel("displacement", "m", {"of marker a from marker b", "along the free axis"}, MeasuredValue{[measured](const Snapshot& s) { return measured(s).value; }, row});
+  builder.offer_channel("rate", "m/s", {"of the displacement", "along the free axis"}, MeasuredValue{[measured](const Snapshot& s) { return measured(s).rate; }, row, 0.0, true});
 }
 
 void compile_revolute(const Element& element, SystemBuilder& builder) {

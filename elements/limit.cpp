@@ -2,6 +2,7 @@
 
 #include "elements/contact_laws.h"
 #include "elements/restitution.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -79,7 +80,7 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Sto
   builder.add_unit(group, StopsLaw::k_watches);
   const int i = static_cast<int>(group.entries.size()) - 1;
   builder.add_channel("value", is_angle ? "rad" : "m", {"of the coordinate that is limited", "as the coordinate counts"},
-                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value; });
+                      MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value; }, row_of(a, b, measure)});
   builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", {"what the stop acts with on a along the coordinate, zero between the stops", "positive: towards larger values"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }

@@ -1,6 +1,7 @@
 #include "elements/motor.h"
 
 #include "mbd/system/law_group.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 
 namespace steplap {
@@ -103,10 +104,11 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, MotorLaw 
     const auto m = group.measured(i, *s.evaluation);
     return m.rate * group.entries[i].law.force(m.value, m.rate, *s.evaluation);
   });
+  const RowSpec row = row_of(a, b, measure);
   builder.offer_channel(is_angle ? "angle" : "displacement", is_angle ? "rad" : "m", {"its coordinate, since the reference pose", "as the coordinate counts"},
-                        [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.start; });
+                        MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).value - group.entries[i].law.start; }, row, law.start});
   builder.offer_channel("rate", is_angle ? "rad/s" : "m/s", {"of its coordinate", "positive: it grows"},
-                        [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
+                        MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; }, row, 0.0, true});
 }
 
 bool check(const Motor& e, const Signal* target, SystemBuilder& builder) {

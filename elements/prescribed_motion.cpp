@@ -1,6 +1,7 @@
 #include "elements/prescribed_motion.h"
 
 #include "mbd/base/number_text.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -84,9 +85,9 @@ void compile_prescribed(const Element& element, SystemBuilder& builder) {
                       [r](const Snapshot& s) { return s.row_force[r]; });
   const bool is_angle = row.kind == MeasureKind::angle;
   builder.offer_channel(is_angle ? "angle" : "displacement", is_angle ? "rad" : "m", {"its coordinate, since the reference pose", "as the coordinate counts"},
-                        [row, now](const Snapshot& s) { return evaluate_row<false>(row, s.motion).value - now; });
+                        MeasuredValue{[row, now](const Snapshot& s) { return evaluate_row<false>(row, s.motion).value - now; }, row, now});
   builder.offer_channel("rate", is_angle ? "rad/s" : "m/s", {"of its coordinate", "positive: it grows"},
-                        [row](const Snapshot& s) { return evaluate_row<false>(row, s.motion).rate; });
+                        MeasuredValue{[row](const Snapshot& s) { return evaluate_row<false>(row, s.motion).rate; }, row, 0.0, true});
   builder.offer_channel("power", "W", {"power that it gives", "negative while it brakes"},
                         [row, r](const Snapshot& s) { return s.row_force[r] * evaluate_row<false>(row, s.motion).rate; });
   builder.add_rows({row}, false, lockable_coordinate(row, a));

@@ -1,6 +1,7 @@
 #include "elements/spring_damper.h"
 
 #include "elements/spring_laws.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/system.h"
 
 namespace steplap {
@@ -49,12 +50,14 @@ void add(SystemBuilder& builder, int a, int b, const Measure& measure, const Law
   if constexpr (Law::k_watches > 0) builder.add_unit(group, Law::k_watches);
   const int i = static_cast<int>(group.entries.size()) - 1;
   const bool is_angle = std::is_same_v<Measure, AngleMeasure>;
+  const RowSpec row = row_of(a, b, measure);
   builder.add_channel("elongation", is_angle ? "rad" : "m", {"its length or angle less the free one", "positive: stretched"},
-                      [&group, i](const Snapshot& s) {
-                        return group.measured(i, *s.evaluation).value - group.entries[i].law.free;
-                      });
+                      MeasuredValue{[&group, i](const Snapshot& s) {
+                                      return group.measured(i, *s.evaluation).value - group.entries[i].law.free;
+                                    },
+                                    row, law.free});
   builder.add_channel("rate", is_angle ? "rad/s" : "m/s", {"of the elongation", "positive: it grows"},
-                      [&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; });
+                      MeasuredValue{[&group, i](const Snapshot& s) { return group.measured(i, *s.evaluation).rate; }, row, 0.0, true});
   builder.add_channel(is_angle ? "couple" : "force", is_angle ? "N m" : "N", {"what it acts with on a along its axis, away from b", "negative: it pulls a towards b"},
                       [&group, i](const Snapshot& s) { return group.force_of(i, *s.evaluation); });
 }

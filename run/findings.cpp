@@ -6,6 +6,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/events/event_handler.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/model/formula_fields.h"
 #include "mbd/model/signal_network.h"
 #include "mbd/model/validate.h"
 #include "mbd/simulation/simulation.h"
@@ -54,6 +55,11 @@ References references_of(const Model& model) {
         const auto over = std::get<std::vector<std::string>>(field.get(entry.element.get()));
         found.markers.insert(over.begin(), over.end());
       }
+    }
+  for (const ElementEntry& entry : model.elements)
+    for (const std::string& name : names_in_formulas(entry)) {
+      found.signals.insert(name);
+      if (const std::size_t point = name.rfind('.'); point != std::string::npos) found.markers.insert(name.substr(0, point));
     }
   for (const TableEntry& entry : model.tables) // of other rooms: where a recorder sits
     for (const Field& field : entry.kind->fields.fields())
@@ -114,11 +120,15 @@ void warn_of_idle_elements(const Model& model, Findings& findings) {
 }
 
 // A parameter that nothing follows from: its value is without effect, and a name is perhaps misspelt where it should stand.
-void warn_of_unused_parameters(const Parameters& parameters, Findings& findings) {
+void warn_of_unused_parameters(const Model& model, Findings& findings) {
+  const Parameters& parameters = model.parameters;
+  Names in_formulas; // of forces and states
+  for (const ElementEntry& entry : model.elements)
+    for (const std::string& name : names_in_formulas(entry)) in_formulas.insert(name);
   for (std::size_t i = 0; i < parameters.entries.size(); ++i) {
     const Parameter& parameter = parameters.entries[i];
     const auto needs_it = [&](const ParameterFormula& formula) { return std::find(formula.of.begin(), formula.of.end(), i) != formula.of.end(); };
-    const bool is_used = std::any_of(parameters.uses.begin(), parameters.uses.end(), [&](const ParameterUse& use) { return needs_it(use.formula); }) ||
+    const bool is_used = in_formulas.count(parameter.name) > 0 || std::any_of(parameters.uses.begin(), parameters.uses.end(), [&](const ParameterUse& use) { return needs_it(use.formula); }) ||
                          std::any_of(parameters.entries.begin(), parameters.entries.end(), [&](const Parameter& p) { return p.formula && needs_it(*p.formula); });
     if (!is_used) warn(findings, "unused_parameter", "nothing follows from parameter '" + parameter.name + "'", parameter.where);
   }
@@ -328,7 +338,7 @@ std::vector<Finding> findings_of(const LoadedModel& loaded) {
   if (s.step && !s.tolerance && !has_fixed_step(s.integrator))
     warn(findings, "unused_step",
          "'step' of [simulation] is not used: '" + s.integrator + "' chooses its steps by 'tolerance'; for steps of a fixed size choose \"rk4\"", s.where);
-  warn_of_unused_parameters(model.parameters, findings);
+  warn_of_unused_parameters(model, findings);
   warn_of_idle_elements(model, findings);
   append(findings, far_joints(loaded));
   append(findings, stepped_feet(loaded));

@@ -2,7 +2,9 @@
 #include "elements/contact_depth.h"
 #include "elements/limit.h"
 #include "elements/unilateral_contact.h"
+#include "mbd/dynamics/dynamics.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/system/own_states.h"
 #include "run/findings.h"
 #include "run/places.h"
 #include "run/quantity_text.h"
@@ -26,6 +28,7 @@ constexpr double k_typed = 1e-6;      // of the bodies' size: digits of poses th
 constexpr double k_through = 0.5;     // of the depth at which a law loses its meaning
 constexpr double k_off = 1e-3;        // of the bodies' size: from there on places differ, and not by digits
 constexpr double k_light = 0.01;      // of a homogeneous plate's moment of inertia: a tenth of its radius of gyration
+constexpr double k_changes = 1e-3; // of a state's scale, within the run
 // Of the largest moment that the mass could have within its outline, all of it at the farthest corner; outlines are drawn roughly.
 constexpr double k_heavy = 2.0;
 
@@ -56,6 +59,7 @@ public:
         if (const auto* const limit = dynamic_cast<const Limit*>(entry.element.get())) look_at_stops(*limit);
     }
     for (const Body& body : loaded_.model.bodies) look_at_inertia(body);
+    if (loaded_.model.simulation.initial == "equilibrium") look_at_states();
     return std::move(found_);
   }
 
@@ -65,6 +69,28 @@ private:
   }
   [[nodiscard]] bool springs_apart(const StartBalance::Opening& opening) const {
     return opening.acceleration > k_unanswered * std::max(opening.by_loads, k_felt * system_.gravity.norm());
+  }
+
+  // An equilibrium is sought with own states as they start: what changes from there on moves the machine out of it.
+  void look_at_states() {
+    const std::vector<const OwnState*> states = own_states(loaded_.model);
+    const auto* group = states.empty() ? nullptr : own_state_group(system_);
+    if (!group) return;
+    Dynamics dynamics(system_);
+    dynamics.set_state(start_);
+    std::vector<double> y(static_cast<std::size_t>(system_.largest_dimension())), dy(y.size());
+    dynamics.pack(start_, y.data());
+    dynamics.rates(start_.t, y.data(), dy.data());
+    for (const OwnStateGroup::Entry& entry : group->entries) {
+      const OwnState& state = *states[static_cast<std::size_t>(entry.place.inner - group->first_inner)];
+      const double rate = dy[static_cast<std::size_t>(2 * dynamics.coordinate_count() + entry.place.inner)] * entry.place.unit / state.factor();
+      const double scale = state.scale.value_or(state.start != 0.0 ? std::abs(state.start) : 1.0);
+      if (!(std::abs(rate) * loaded_.model.simulation.end > k_changes * scale)) continue;
+      const std::string unit = state.unit.empty() ? "" : " " + state.unit;
+      add("state_leaves_equilibrium", state.where,
+          "state '" + state.name + "' starts at " + rounded(state.start) + unit + " and changes by " + rounded(rate) + unit + " per second from there: the machine is at rest with it for a moment only. " +
+              "If it is to stay at rest, give it the start at which its rate is zero");
+    }
   }
 
   // A gap, an interference or a preload moves the contact's line to where that holds, wherever marker b is.

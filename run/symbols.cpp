@@ -136,6 +136,12 @@ void limit(Sketch& s) {
   coordinate(s, "limit", "force", "couple");
   s.size_last({s.given_number("lower").value_or(-HUGE_VAL), s.given_number("upper").value_or(HUGE_VAL)});
 }
+void formula_force(Sketch& s) {
+  const std::string which = s.text("coordinate");
+  const auto a = s.place("a");
+  if (which.starts_with("own_") && a) s.draw({"arrow", "motor", "force", s.places(), a->turned(which == "own_y" ? Vec2(0.0, 1.0) : Vec2(1.0, 0.0)), {}});
+  else coordinate(s, "motor", "force", "couple");
+}
 void brake(Sketch& s) { coordinate(s, "brake", "friction", "friction"); }
 
 // --- the table ------------------------------------------------------------------------------------
@@ -155,7 +161,8 @@ Symbol symbol_of(const std::string& kind) {
       {"step_lap_joint", step_lap_joint}, {"step_lap_interface", nothing},
       {"revolute", pin}, {"prismatic", rail}, {"weld", weld}, {"distance", rod}, {"point_on_line", rail},
       {"gear", gear}, {"rack", rack},
-      {"prescribed_motion", drive}, {"motor", motor}, {"limit", limit}, {"joint_friction", brake}};
+      {"prescribed_motion", drive}, {"motor", motor}, {"limit", limit}, {"joint_friction", brake},
+      {"force", formula_force}, {"state", nothing}};
   const auto found = symbols.find(kind);
   return found == symbols.end() ? neutral : found->second;
 }

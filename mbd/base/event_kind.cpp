@@ -25,7 +25,7 @@ constexpr std::array<Entry, k_event_kinds> k_table{{
     {EventKind::leaves_stop, "leaves its stop", "a coordinate is between its limits again"},
     {EventKind::enters_gap, "enters its gap", "a spring with a gap acts no more, a rope goes slack"},
     {EventKind::closes_gap, "closes its gap", "a spring with a gap begins to act, a rope becomes taut; of an inextensible one with the impulse of the blow and the energy lost"},
-    {EventKind::passes_kink, "passes a kink of its table", "a tabulated spring or damper goes on to the next line of its table; one end of a line of sheet edges begins or ceases to bear"},
+    {EventKind::passes_kink, "passes a kink", "a tabulated spring or damper goes on to the next line of its table; a formula of a force or a state goes on to its next smooth piece; one end of a line of sheet edges begins or ceases to bear"},
     {EventKind::slips, "slips", "a step-lap joint slides; at the start of a run if it slides from there"},
     {EventKind::slips_forward, "slips forward", "friction along a line slides to its positive side; at the start of a run if it slides from there"},
     {EventKind::slips_backward, "slips backward", "the same to its negative side"},

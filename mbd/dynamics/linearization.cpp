@@ -84,6 +84,7 @@ void Linearization::evaluate(Dynamics& dynamics, double t, const double* y) {
     group->add_inner_jacobian(dynamics.evaluation(), inner_parts_);
   for (const InnerJacobian& part : inner_parts_)
     add_inner(part);
+  if (dynamics.inner_count() > 0) add_states();
   for (std::size_t r = 0; r < layout_->active.size(); ++r) add_row(r);
   if (!layout_->sliding.empty()) motion_.assign(dynamics_->motion().begin(), dynamics_->motion().end());
   for (const int f : layout_->sliding) add_sliding(f);
@@ -155,6 +156,40 @@ void Linearization::add_inner(const InnerJacobian& part) {
     block.force.middleRows<3>(3 * side) = f;
     block.by_pose.middleCols<3>(3 * side) = p;
     block.by_velocity.middleCols<3>(3 * side) = v;
+  }
+}
+
+void Linearization::add_states() {
+  state_jacobian_.clear();
+  for (auto* const entries : {&states_.by_pose, &states_.by_velocity, &states_.by_state, &states_.forces}) entries->clear();
+  for (const auto& group : dynamics_->system().groups)
+    if (const auto* const reader = dynamic_cast<const StateReader*>(group.get())) reader->add_state_jacobian(dynamics_->evaluation(), state_jacobian_);
+  const std::vector<Motion<double>>& motion = dynamics_->motion();
+  for (const StateJacobian::ByMotion& part : state_jacobian_.by_motion) { // as in add_body_block
+    const Placement& place = layout_->placements[part.body];
+    if (place.cluster < 0) continue;
+    Vec3 p = part.pose, v = part.velocity;
+    if (!place.is_trivial) {
+      const Motion<double>& centre = motion[layout_->clusters[place.cluster].motion];
+      const double x = motion[part.body].x - centre.x, y = motion[part.body].y - centre.y;
+      p[2] += -y * part.pose[0] + x * part.pose[1] - centre.omega * (x * part.velocity[0] + y * part.velocity[1]);
+      v[2] += -y * part.velocity[0] + x * part.velocity[1];
+    }
+    for (int c = 0; c < 3; ++c) {
+      put(states_.by_pose, part.inner, 3 * place.cluster + c, p[c]);
+      put(states_.by_velocity, part.inner, 3 * place.cluster + c, v[c]);
+    }
+  }
+  for (const StateJacobian::ByState& part : state_jacobian_.by_state) states_.by_state.emplace_back(part.inner, part.by, part.value);
+  for (const StateJacobian::Force& part : state_jacobian_.forces) {
+    const Placement& place = layout_->placements[part.body];
+    if (place.cluster < 0) continue;
+    Vec3 f = part.value;
+    if (!place.is_trivial) {
+      const Motion<double>& centre = motion[layout_->clusters[place.cluster].motion];
+      f[2] += (motion[part.body].x - centre.x) * f[1] - (motion[part.body].y - centre.y) * f[0];
+    }
+    for (int c = 0; c < 3; ++c) states_.forces.emplace_back(3 * place.cluster + c, part.inner, f[c]);
   }
 }
 

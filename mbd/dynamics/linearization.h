@@ -18,13 +18,15 @@
 //
 // Inner states of force elements (roles.h) bring forces of their own and follow rates of their own,
 //   δQ += F_z δz,   δż = P δq + V δv + Z δz,
-// each between one pair of clusters: kept as small blocks (InnerBlock), for methods that eliminate them.
+// each between one pair of clusters: kept as small blocks (InnerBlock), for methods that eliminate them. Own states of the model may
+// follow any motion and each other, and act anywhere: kept as lists (StateParts).
 //
 // Locked coordinates (drives) do not follow the state: their columns are left out, their rows have zero
 // inverse mass. Modes are those of the state; the linearisation holds while no watch value crosses zero.
 #pragma once
 
 #include "mbd/dynamics/dynamics.h"
+#include "mbd/system/state_jacobian.h"
 
 #include <Eigen/SparseCore>
 
@@ -61,6 +63,12 @@ public:
     Mat3 by_inner;
   };
   [[nodiscard]] const std::vector<InnerBlock>& inner() const { return inner_; }
+  /// Own states (own_states.h), which are no part of such blocks: columns are coordinates or, by_state, inner states; rows are inner
+  /// states or, forces, coordinates. Locked columns are left out.
+  struct StateParts {
+    std::vector<Triplet> by_pose, by_velocity, by_state, forces;
+  };
+  [[nodiscard]] const StateParts& states() const { return states_; }
   [[nodiscard]] int inner_count() const { return dynamics_->inner_count(); }
 
   /// Any of them as a dense matrix of `rows` rows.
@@ -71,6 +79,7 @@ public:
 private:
   void add_forces(const PairJacobian& part);
   void add_inner(const InnerJacobian& part);
+  void add_states();
   void add_transport();
   void add_row(std::size_t r);
   void add_part(std::size_t r, const RowSpec& part);
@@ -102,6 +111,8 @@ private:
   std::vector<PairJacobian> parts_;
   std::vector<InnerJacobian> inner_parts_;
   std::vector<InnerBlock> inner_;
+  StateJacobian state_jacobian_;
+  StateParts states_;
   std::vector<Triplet> stiffness_, damping_, gradient_, bias_q_, bias_v_, response_;
   /// A coordinate of a mechanism that moves a cluster.
   struct Lever {

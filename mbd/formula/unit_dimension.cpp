@@ -35,6 +35,15 @@ constexpr Symbol k_symbols[] = {
     {"min", 60.0, {0, 0, 1}, false},
     {"h", 3600.0, {0, 0, 1}, false},
     {"gravity", 9.80665, {0, 1, -2}, false},
+    // Amperes and kelvins count as numbers, as radians do: what volts times amperes are is watts all the same.
+    {"A", 1.0, {0, 0, 0}, true},
+    {"K", 1.0, {0, 0, 0}, true},
+    {"C", 1.0, {0, 0, 1}, true},
+    {"V", 1.0, {1, 2, -3}, true},
+    {"ohm", 1.0, {1, 2, -3}, true},
+    {"F", 1.0, {-1, -2, 4}, true},
+    {"H", 1.0, {1, 2, -2}, true},
+    {"Wb", 1.0, {1, 2, -2}, true},
 };
 
 struct Prefix {

@@ -1,6 +1,8 @@
 #include "mbd/integrators/stage_system.h"
 
-#include <Eigen/LU> // of three rows
+#include <Eigen/LU> // of three rows, and of as many as there are own states
+
+#include <algorithm>
 
 namespace steplap {
 
@@ -16,6 +18,70 @@ void StageSystem::set(const Linearization& linearization, const Layout& layout) 
   solution_.resize(n_ + m_);
   moved_.resize(n_);
   inner_.resize(linearization.inner().size());
+  set_states();
+}
+
+// The lists come in the same order for every state of a layout, so the places of what they hold stay.
+void StageSystem::set_states() {
+  const Linearization::StateParts& parts = linearization_->states();
+  const auto place_in = [](std::vector<int>& list, int number) {
+    const auto at = std::find(list.begin(), list.end(), number);
+    const auto place = static_cast<Eigen::Index>(at - list.begin());
+    if (at == list.end()) list.push_back(number);
+    return place;
+  };
+  states_.clear();
+  state_columns_.clear();
+  state_rows_.clear();
+  for (const auto* list : {&parts.by_pose, &parts.by_velocity})
+    for (const auto& e : *list) {
+      (void)place_in(states_, e.row());
+      (void)place_in(state_columns_, e.col());
+    }
+  for (const auto& e : parts.by_state) {
+    (void)place_in(states_, e.row());
+    (void)place_in(states_, e.col());
+  }
+  for (const auto& e : parts.forces) {
+    (void)place_in(states_, e.col());
+    (void)place_in(state_rows_, e.row());
+  }
+  const auto k = static_cast<Eigen::Index>(states_.size());
+  state_pose_.setZero(k, static_cast<Eigen::Index>(state_columns_.size()));
+  state_velocity_.setZero(k, static_cast<Eigen::Index>(state_columns_.size()));
+  state_force_.setZero(static_cast<Eigen::Index>(state_rows_.size()), k);
+  state_by_state_.setZero(k, k);
+  for (const auto& e : parts.by_pose) state_pose_(place_in(states_, e.row()), place_in(state_columns_, e.col())) += e.value();
+  for (const auto& e : parts.by_velocity) state_velocity_(place_in(states_, e.row()), place_in(state_columns_, e.col())) += e.value();
+  for (const auto& e : parts.by_state) state_by_state_(place_in(states_, e.row()), place_in(states_, e.col())) += e.value();
+  for (const auto& e : parts.forces) state_force_(place_in(state_rows_, e.row()), place_in(states_, e.col())) += e.value();
+}
+
+void StageSystem::factor_states() {
+  const auto k = static_cast<Eigen::Index>(states_.size());
+  if (k == 0) return;
+  state_answer_ = (MatX::Identity(k, k) / g_ - state_by_state_).inverse();
+  state_damping_ = state_force_ * state_answer_ * (g_ * state_pose_ + state_velocity_);
+}
+
+void StageSystem::add_state_forces(const double* r) {
+  if (states_.empty()) return;
+  state_right_.resize(static_cast<Eigen::Index>(states_.size()));
+  for (std::size_t k = 0; k < states_.size(); ++k) state_right_[static_cast<Eigen::Index>(k)] = r[2 * n_ + states_[k]];
+  for (std::size_t c = 0; c < state_columns_.size(); ++c) state_right_ += g_ * r[state_columns_[c]] * state_pose_.col(static_cast<Eigen::Index>(c));
+  const VecX force = state_force_ * (state_answer_ * state_right_);
+  for (std::size_t i = 0; i < state_rows_.size(); ++i) moved_[state_rows_[i]] += force[static_cast<Eigen::Index>(i)] / g_;
+}
+
+void StageSystem::solve_states(const double* r, double* u) {
+  if (states_.empty()) return;
+  for (std::size_t k = 0; k < states_.size(); ++k) state_right_[static_cast<Eigen::Index>(k)] = r[2 * n_ + states_[k]];
+  for (std::size_t c = 0; c < state_columns_.size(); ++c) {
+    const auto at = static_cast<Eigen::Index>(c);
+    state_right_ += u[state_columns_[c]] * state_pose_.col(at) + u[n_ + state_columns_[c]] * state_velocity_.col(at);
+  }
+  const VecX z = state_answer_ * state_right_;
+  for (std::size_t k = 0; k < states_.size(); ++k) u[2 * n_ + states_[k]] = z[static_cast<Eigen::Index>(k)];
 }
 
 void StageSystem::factor_inner() {
@@ -72,6 +138,9 @@ template <class Put> void StageSystem::assemble(double g, const Put& put) const 
         if (row >= 0 && column >= 0) put(row, column, -g * w[row] * inner_[b].damping(i, j));
       }
   }
+  for (std::size_t i = 0; i < state_rows_.size(); ++i)
+    for (std::size_t c = 0; c < state_columns_.size(); ++c)
+      put(state_rows_[i], state_columns_[c], -g * w[state_rows_[i]] * state_damping_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)));
   const auto put_row = [&](const Linearization::Triplet& e, double value) {
     put(n_ + e.row(), e.col(), is_redundant_[e.row()] ? 0.0 : value);
   };
@@ -90,6 +159,7 @@ template <class Put> void StageSystem::assemble(double g, const Put& put) const 
 bool StageSystem::factor(double g) {
   g_ = g;
   factor_inner();
+  factor_states();
   if (is_dense_) {
     matrix_.setZero(n_ + m_, n_ + m_);
     assemble(g, [this](int i, int j, double value) { matrix_(i, j) += value; });
@@ -108,6 +178,7 @@ void StageSystem::solve(const double* r, double* u) {
   moved_.setZero();
   for (const auto& e : linearization_->stiffness()) moved_[e.row()] += e.value() * r[e.col()];
   add_inner_forces(r);
+  add_state_forces(r);
   for (int i = 0; i < n_; ++i) right_[i] = g_ * (r_v[i] + g_ * w[i] * moved_[i]);
   right_.tail(m_).setZero();
   for (const auto& e : linearization_->gradient()) right_[n_ + e.row()] += g_ * e.value() * r_v[e.col()];
@@ -121,6 +192,7 @@ void StageSystem::solve(const double* r, double* u) {
     u[i] = g_ * (r[i] + (w[i] > 0.0 ? solution_[i] : 0.0)); // a locked coordinate has a rate of its own
   }
   solve_inner(r, u);
+  solve_states(r, u);
 }
 
 void StageSystem::solve_unknowns() {

@@ -7,6 +7,7 @@
 //   ⎣ J − g G_v − g² G_q       0   ⎦ ⎣ w ⎦ = ⎣ g (J r_v + g G_q r_q)     ⎦,   u_q = g (r_q + u_v).
 // Inner states z of force elements are eliminated, each from its own small block (linearization.h):
 //   u_z = A (r_z + P u_q + V u_v), A = (1/g − Z)⁻¹, which adds F_z A (g P + V) to D and F_z A (r_z + g P r_q) to the forces.
+// Own states of the model, which may hang on all coordinates and on each other, are eliminated together in the same way.
 // Locked coordinates have W = 0: their rows say u_v = g r_v. Rows of redundant constraints, as the
 // Schur complement's factorisation has found them, are left out.
 //
@@ -57,6 +58,17 @@ private:
     Eigen::Matrix<double, 6, 6> damping;               ///< F_z A (g P + V)
   };
   std::vector<Inner> inner_;
+  // Own states: u_z = A (r_z + P u_q + V u_v), of those coordinates alone that they hang on or act at.
+  void set_states();
+  void factor_states();
+  void add_state_forces(const double* r);
+  void solve_states(const double* r, double* u);
+  std::vector<int> states_;        ///< as inner states
+  std::vector<int> state_columns_; ///< coordinates that they follow
+  std::vector<int> state_rows_;    ///< coordinates that they act at
+  MatX state_pose_, state_velocity_, state_force_; ///< P, V, F_z
+  MatX state_by_state_, state_answer_, state_damping_; ///< Z, A, F_z A (g P + V)
+  VecX state_right_;
 };
 
 } // namespace steplap

@@ -140,8 +140,9 @@ void TimeStepping::evaluate(Dynamics& dynamics, double t, const double* y) {
 
 // The step's end with the wrenches as they are, on the constraints.
 void TimeStepping::move(Dynamics& dynamics, double t1, double tolerance) {
-  std::copy(y0_.begin(), y0_.begin() + 2 * n_ + 2, y1_.begin());
-  for (int i = 0; i < 2 * n_; ++i)
+  const int numbers = 2 * n_ + dynamics.inner_count(); // own states follow the free motion
+  std::copy(y0_.begin(), y0_.begin() + numbers + 2, y1_.begin());
+  for (int i = 0; i < numbers; ++i)
     y1_[i] += free_[i];
   for (int r = 0; r < rows_; ++r)
     if (const double* const response = &response_[static_cast<std::size_t>(r) * 2 * n_];
@@ -241,12 +242,12 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
       if (!stages_.factor(h)) return {"its equations are singular"};
       evaluate(dynamics, t1, y0_.data());
     }
-    std::copy(dy_.begin(), dy_.begin() + 2 * n_, right_.begin());
+    std::copy(dy_.begin(), dy_.begin() + 2 * n_ + dynamics.inner_count(), right_.begin());
     stages_.solve(right_.data(), free_.data());
     respond(dynamics, h);
     trouble = settle_forces(dynamics, t1, tolerance);
     if (!trouble.what)
-      for (int i = 0; i < 2 * n_; ++i)
+      for (int i = 0; i < 2 * n_ + dynamics.inner_count(); ++i)
         if (!std::isfinite(y1_[i])) trouble.what = "the motion became infinite";
     if (trouble.what) return trouble;
     const int unit = changed_unit(dynamics, state);

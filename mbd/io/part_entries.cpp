@@ -3,6 +3,7 @@
 #include "mbd/formula/renamed_formula.h"
 #include "mbd/io/parameters_reader.h"
 #include "mbd/io/presentation.h"
+#include "mbd/model/formula_fields.h"
 #include "mbd/model/placement.h"
 
 #include <algorithm>
@@ -42,9 +43,9 @@ struct PartEntries::KindFacts {
   bool has_ground_axes = false;             // where `frame` does not say otherwise
 };
 
-std::string with_prefixed_names(const std::string& formula, const std::string& prefix) {
+std::string with_prefixed_names(const std::string& formula, const std::string& prefix, bool (*stays)(const std::string& name)) {
   if (prefix.empty()) return formula;
-  return with_operands(formula, [&prefix](const std::string& name) { return "{" + prefix + name + "}"; });
+  return with_operands(formula, [&](const std::string& name) { return stays && stays(name) ? name : "{" + prefix + name + "}"; });
 }
 
 void prefix_formulas(Node& node, const std::string& prefix) {
@@ -209,6 +210,7 @@ void PartEntries::put_field(Node& child, const Field& field, const KindFacts& fa
   case FieldType::marker: put_reference(child, part); break;
   default: break;
   }
+  if (is_formula_field(field) && child.type == Node::Type::text) child.scalar = with_prefixed_names(child.text(), part.prefix, is_own_name);
   const PartTreatment treatment = part_treatment(*facts.fields, field);
   if (treatment == PartTreatment::name) prefix_texts(child, part.prefix);
   if (!is_in_ground) return;

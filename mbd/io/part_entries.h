@@ -17,8 +17,8 @@ struct PartPlacement {
   const std::string* file = nullptr; ///< its file
 };
 
-/// The formula with the names of a part's parameters as the model has them.
-[[nodiscard]] std::string with_prefixed_names(const std::string& formula, const std::string& prefix);
+/// The formula with the names of a part's entries as the model has them; those for which `stays` is true stay as they are.
+[[nodiscard]] std::string with_prefixed_names(const std::string& formula, const std::string& prefix, bool (*stays)(const std::string& name) = nullptr);
 /// The same for all formulas in a node.
 void prefix_formulas(Node& node, const std::string& prefix);
 

@@ -4,6 +4,7 @@
 #include "mbd/io/parameters_reader.h"
 #include "mbd/io/part_entries.h"
 #include "mbd/io/presentation.h"
+#include "mbd/model/formula_fields.h"
 #include "mbd/io/repetition.h"
 #include "mbd/io/standalone_text.h"
 #include "mbd/io/units.h"
@@ -474,7 +475,7 @@ PartTreatment part_treatment(const FieldTable& kind, const Field& field) {
 bool can_stand_in_part(const TableKind& kind) {
   if (&kind == &channel_kind() || &kind == &plot_kind() || &kind == &acceptance_kind()) return true;
   const auto& fields = kind.fields.fields();
-  return std::any_of(fields.begin(), fields.end(), [](const Field& field) { return field.type == FieldType::body; });
+  return std::any_of(fields.begin(), fields.end(), [](const Field& field) { return field.type == FieldType::body || is_formula_field(field); });
 }
 
 void write_out_parts(Document& document, const Catalogue& catalogue) {

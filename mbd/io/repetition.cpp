@@ -4,9 +4,11 @@
 #include "mbd/formula/formula.h"
 #include "mbd/formula/renamed_formula.h"
 #include "mbd/io/parameters_reader.h"
+#include "mbd/model/formula_fields.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace steplap {
 
@@ -33,18 +35,48 @@ private:
   void put_into(Node& node) {
     if (node.type == Node::Type::text) {
       const std::string text = node.text();
-      node.scalar = is_formula(node) ? in_formula(text) : in_text(text, node.where());
+      if (is_formula(node)) node.scalar = in_formula(text, text.find('=') + 1);
+      else node.scalar = is_formula_key(node.key) ? in_formula(with_numbered_names(text), 0) : in_text(text, node.where());
     }
     for (Node& child : node.children) put_into(child);
   }
 
-  [[nodiscard]] std::string in_formula(const std::string& text) const {
-    const std::size_t begin = text.find('=') + 1;
+  [[nodiscard]] std::string in_formula(const std::string& text, std::size_t begin) const {
     if (text.find(k_index, begin) == std::string::npos) return text;
     return text.substr(0, begin) + with_operands(text.substr(begin), [this](const std::string& name) {
              const bool is_plain = name.find_first_of(" {}[]") == std::string::npos;
              return name == k_index ? text_ : is_plain ? name : "{" + name + "}";
            });
+  }
+
+  // Of a formula that is a text: numbers in names, {link {i+1}.x}; other braces hold names.
+  [[nodiscard]] std::string with_numbered_names(std::string text) const {
+    for (std::size_t close = text.find('}'); close != std::string::npos; close = text.find('}', close)) {
+      const std::size_t open = text.rfind('{', close);
+      const std::optional<std::string> number = open == std::string::npos ? std::nullopt : index_number(text.substr(open + 1, close - open - 1));
+      if (!number) {
+        ++close;
+        continue;
+      }
+      text.replace(open, close + 1 - open, *number);
+      close = open;
+    }
+    return text;
+  }
+
+  // Of a formula of the index alone that comes to a whole number.
+  [[nodiscard]] std::optional<std::string> index_number(const std::string& inside) const {
+    try {
+      const Formula formula(inside, "", {});
+      if (std::any_of(formula.names().begin(), formula.names().end(), [](const std::string& name) { return name != k_index; })) return std::nullopt;
+      const std::vector<double> operands(formula.names().size(), static_cast<double>(index_));
+      std::vector<double> nodes(formula.tree().size());
+      const double value = value_of(formula.tree(), operands.data(), 0.0, nodes.data());
+      if (!(std::abs(value) < 1e15) || std::nearbyint(value) != value) return std::nullopt;
+      return std::to_string(static_cast<long>(value));
+    } catch (const ModelError&) {
+      return std::nullopt;
+    }
   }
 
   [[nodiscard]] std::string in_text(const std::string& text, const Location& where) {

@@ -1,6 +1,7 @@
 #include "mbd/io/units.h"
 
 #include "mbd/base/diagnostics.h"
+#include "mbd/formula/unit_dimension.h"
 
 #include <udunits2.h>
 
@@ -257,7 +258,9 @@ std::optional<std::array<double, 3>> powers_in(const std::string& original) {
   const std::string given = trimmed(std::string(rest, end));
   if (given.empty()) return std::array<double, 3>{};
   const std::lock_guard lock(unit_system_mutex());
-  return unit_system().powers(given);
+  if (const auto powers = unit_system().powers(given)) return powers;
+  const std::optional<UnitDimension> counted = dimension_of(given); // amperes and kelvins count as numbers
+  return counted ? std::optional(counted->powers) : std::nullopt;
 }
 
 std::vector<std::pair<std::string, std::string>> usual_units() {

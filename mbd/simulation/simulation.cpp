@@ -4,6 +4,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
+#include "mbd/system/own_states.h"
 #include "mbd/system/slip_scratch.h"
 #include "mbd/base/number_text.h"
 #include "mbd/integrators/explicit_pair.h"
@@ -114,7 +115,8 @@ void Simulation::refuse_time_stepping() const {
     throw NumericalFailure("'" + options_.integrator + "' does not locate where the inextensible rope '" +
                            system_.element_names[rope->row.element] +
                            "' becomes taut or slack: choose another integrator, auto for one, or give the rope a stiffness");
-  if (system_.inner_count() == 0) return;
+  const auto is_own_state = [](const ForceGroup* group) { return dynamic_cast<const OwnStateGroup*>(group) != nullptr; };
+  if (std::all_of(system_.inner_groups.begin(), system_.inner_groups.end(), is_own_state)) return;
   throw NumericalFailure("'" + options_.integrator + "' does not follow what '" + system_.element_names[system_.inner_elements[0]] +
                          "' remembers (the slid distance of an elastic joint, whether a tie has broken): choose another "
                          "integrator, auto for one");

@@ -1,8 +1,11 @@
 #include "mbd/system/requested_channels.h"
 
 #include "mbd/base/name_pattern.h"
+#include "mbd/model/formula_fields.h"
 #include "mbd/system/formula_channel.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/one_sided_row.h"
+#include "mbd/system/own_states.h"
 
 #include <algorithm>
 #include <memory>
@@ -84,9 +87,31 @@ RequestedChannels::RequestedChannels(SystemBuilder& builder)
     for (const std::string& name : formula.expression->names())
       for (const std::string& each : {name, without_unit(name)}) builder_.operand_names_.push_back(each);
   }
+  note_operands_of_elements();
   auto& names = builder_.operand_names_;
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
+}
+
+// Channels that formulas of elements read have to be there, too.
+void RequestedChannels::note_operands_of_elements() {
+  for (const ElementEntry& entry : model_.elements)
+    for (const std::string& name : names_in_formulas(entry)) builder_.operand_names_.push_back(name);
+}
+
+const Channel* RequestedChannels::made_channel(const SystemBuilder& builder, const std::string& name) {
+  for (const Channel& channel : builder.system_->channels)
+    if (channel.name == name) return &channel;
+  for (const auto& channel : builder.system_->operands)
+    if (channel->name == name) return channel.get();
+  return nullptr;
+}
+
+std::vector<std::string> RequestedChannels::measured_names(const SystemBuilder& builder) {
+  std::vector<std::string> names;
+  for (const Channel& channel : builder.system_->channels)
+    if (measured_by(channel)) names.push_back(channel.name);
+  return names;
 }
 
 void RequestedChannels::note(const Location& where, const std::string& message) { builder_.errors_.push_back({where, message}); }
@@ -123,7 +148,7 @@ void RequestedChannels::end_element() {
   share.element = builder_.element_;
   for (std::size_t g = 0; g < system.groups.size(); ++g) {
     const std::size_t before = g < counts_.size() ? counts_[g] : 0, now = builder_.group_types_[g].count(*system.groups[g]);
-    if (now == before) continue;
+    if (now == before || dynamic_cast<const OwnStateGroup*>(system.groups[g].get()) != nullptr) continue; // states have no energy
     share.groups.push_back(system.groups[g].get());
     share.first.push_back(before);
     share.count.push_back(now - before);
@@ -262,13 +287,7 @@ void RequestedChannels::add_whole() {
 
 // --- formulas -------------------------------------------------------------------------------------
 
-const Channel* RequestedChannels::find(const std::string& name) const {
-  for (const Channel& channel : builder_.system_->channels)
-    if (channel.name == name) return &channel;
-  for (const auto& channel : builder_.system_->operands)
-    if (channel->name == name) return channel.get();
-  return nullptr;
-}
+const Channel* RequestedChannels::find(const std::string& name) const { return made_channel(builder_, name); }
 
 // By its name, or as trajectory.csv heads it: then its unit has to be the one.
 const Channel& RequestedChannels::operand(const DefinedChannel& d, const std::string& name) const {

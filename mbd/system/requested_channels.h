@@ -27,6 +27,11 @@ public:
   /// When the system is complete but for these.
   void add();
 
+  /// A channel that elements before this one have made, or nullptr.
+  [[nodiscard]] static const Channel* made_channel(const SystemBuilder& builder, const std::string& name);
+  /// Names of those that are measures (measured_channel.h).
+  [[nodiscard]] static std::vector<std::string> measured_names(const SystemBuilder& builder);
+
 private:
   struct Defined {
     const DefinedChannel* definition;
@@ -44,6 +49,7 @@ private:
   void note(const Location& where, const std::string& message);
   Channel* make(bool is_on_request, std::string_view owner, std::string_view name, std::string_view unit, const ChannelText& text,
                 std::function<double(const Snapshot&)> value);
+  void note_operands_of_elements();
   void add_markers();
   void add_whole();
   void add_share(const Share& share);

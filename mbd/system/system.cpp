@@ -2,6 +2,7 @@
 
 #include "mbd/base/name_pattern.h"
 #include "mbd/model/method.h"
+#include "mbd/system/own_states.h"
 #include "mbd/system/requested_channels.h"
 
 #include <algorithm>
@@ -317,7 +318,8 @@ int SystemBuilder::add_inner(const ForceGroup& group, double start) {
   const std::string& integrator = model_.simulation.integrator;
   const bool is_first = system_->inner_elements.empty() || system_->inner_elements.back() != element_; // said once an element
   const auto cannot = [&](const Method& m) { return m.name == integrator && m.is_time_stepping; };
-  if (is_first && std::any_of(methods().begin(), methods().end(), cannot))
+  const bool is_stepped = dynamic_cast<const OwnStateGroup*>(&group) != nullptr; // a differential equation, and no more
+  if (is_first && !is_stepped && std::any_of(methods().begin(), methods().end(), cannot))
     error("'" + integrator + "' does not follow what it remembers (the slid distance of an elastic joint, whether a tie has "
           "broken): choose another 'integrator', auto for one");
   if (std::find(system_->inner_groups.begin(), system_->inner_groups.end(), &group) == system_->inner_groups.end())

@@ -189,10 +189,22 @@ inline std::vector<ConformanceScene> joint_scenes() {
     {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @-0.7\nforce_y = \"wave\"\nframe = \"body\"\n", true}};
 }
 
+/// Forces by formula: along every coordinate, of kinks and jumps, of motions of other bodies.
+inline std::vector<ConformanceScene> formula_scenes() {
+  return {
+    {"force", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\nformula = \"'90 N/m' * value - '3 N s2/m2' * abs(rate) * rate\"\n"},
+    {"force", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nformula = \"-'9 N m2' / value^2 - min('40 N s/m' * rate, '8 N')\"\n", false, true},
+    {"force", "a = \"A\"\nb = \"B\"\ncoordinate = \"angle\"\nformula = \"'7 N m' * sin(3 * value) - '2 N m s' * rate\"\n"},
+    {"force", "a = \"A\"\nb = \"B\"\ncoordinate = \"own_y\"\nformula = \"'5 N' - '4 N s/m' * rate\"\n"},
+    {"force", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nenergy = \"dissipated\"\n"
+              "formula = \"value > '0.8 m' ? -'6 N s/m' * rate : -'2 N s/m' * rate\"\n", false, true},
+    {"force", "a = \"A\"\nb = \"B\"\ncoordinate = \"y\"\nformula = \"'3 N/m' * a.y + '2 N' * cos(b.theta) * exp(a.vy / '1 m/s') - '4 N s/m' * hypot(b.vx, b.vy)\"\n", true}};
+}
+
 inline const std::vector<ConformanceScene>& conformance_scenes() {
   static const std::vector<ConformanceScene> list = [] {
     std::vector<ConformanceScene> all;
-    for (const auto& part : {spring_scenes(), contact_scenes(), friction_scenes(), rope_scenes(), joint_scenes()})
+    for (const auto& part : {spring_scenes(), contact_scenes(), friction_scenes(), rope_scenes(), joint_scenes(), formula_scenes()})
       all.insert(all.end(), part.begin(), part.end());
     return all;
   }();

@@ -42,7 +42,7 @@ bool has_rest(const LoadedModel& loaded) {
 } // namespace
 
 TEST_CASE("every machine of the gallery runs to its end, and its energy balances") {
-  for (const std::string name : {"ball_on_incline", "cradle", "crane_arm", "forklift", "hoist", "ladder", "stacked_blocks", "tank_with_lid",
+  for (const std::string name : {"balanced_pendulum", "ball_on_incline", "cradle", "crane_arm", "forklift", "hoist", "ladder", "parachute", "stacked_blocks", "tank_with_lid",
                                  "watt_linkage"}) {
     CAPTURE(name);
     const MachineRun r(name);

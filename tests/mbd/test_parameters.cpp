@@ -194,7 +194,7 @@ TEST_CASE("what makes no sense is refused with place and remedy") {
       {"\"= mass\"", "\"= mass*\"", "ends where a value should be"},
       {"\"= mass\"", "\"= mass*t/'1 s'\"", "'t' is the time"},
       {"bore = \"0.3 m\"", "bore = \"0.3 furlongs per fortnight squared\"", "parameter 'bore'"},
-      {"bore = \"0.3 m\"", "bore = \"3 K\"", "has a unit that is not made of kg, m and s"},
+      {"bore = \"0.3 m\"", "bore = \"3 mol\"", "has a unit that is not made of kg, m and s"},
       {"bore = \"0.3 m\"", "bore = true", "expected a number"},
       {"bore = \"0.3 m\"", "\"2b\" = 1.0", "a parameter's name has letters"},
       {"value = \"12 mm\"", "value = \"40 mm\"", "parameter 'wall' is 0.04 m, above its range, which ends at 0.03 m"},

@@ -49,7 +49,7 @@ TEST_CASE("a mass that runs against straight curves comes back with the root of 
     CAPTURE(method);
     const Run r = run(text, {method, 1e-11, 1.0});
     CHECK(r.last("mass.vx") == doctest::Approx(v * std::sqrt(q / k)).epsilon(1e-8));
-    const std::vector<double> kinks = r.event_times("buffer", "passes a kink of its table");
+    const std::vector<double> kinks = r.event_times("buffer", "passes a kink");
     REQUIRE(kinks.size() == 2); // touches and parts
     CHECK(std::abs(kinks[0] - touch) < 1e-9);
     CHECK(std::abs(kinks[1] - parts) < 1e-8);

@@ -107,6 +107,7 @@ TEST_CASE("every channel of every model has a meaning, and is listed for its kin
   std::map<std::string, std::set<std::string>> listed;
   for (const ElementKind* kind : catalogue.elements)
     for (const KindChannel& c : channels_of_kind(catalogue, *kind)) listed[kind->name].insert(c.name);
+  listed["state"] = {"value"}; // what `[[state]]` becomes is no kind that a file may name
   int models = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(STEPLAP_MODELS)) {
     if (entry.path().extension() != ".toml") continue;
@@ -155,6 +156,14 @@ TEST_CASE("units that formulas know are those of UDUNITS") {
     const std::string si = unit_text(mine->powers);
     CHECK(parse_quantity("1 " + std::string(unit), si, UnitSource::database).problem.empty());
   }
+  // Amperes and kelvins count as numbers: the factors are UDUNITS', and circuits close, V A = W, V/A = ohm, V s/A = H, A s/V = F.
+  for (const char* unit : {"A", "mA", "K", "C", "V", "kV", "ohm", "H", "mH", "uF", "Wb"}) {
+    CAPTURE(unit);
+    REQUIRE(dimension_of(unit));
+    CHECK(dimension_of(unit)->factor == doctest::Approx(parse_quantity("1 " + std::string(unit), "*", UnitSource::database).value).epsilon(1e-14));
+  }
+  for (const auto& [one, other] : {std::pair("V A", "W"), std::pair("V/A", "ohm"), std::pair("V s/A", "H"), std::pair("A s/V", "F"), std::pair("A s", "C"), std::pair("N m/A", "Wb")})
+    CHECK(dimension_of(one)->powers == dimension_of(other)->powers);
   for (const char* unit : {"Hz", "rpm", "g", "stone", "m/", "/s", "m^", "kkg", "m//s", "furlong", "m^123", "k"}) CHECK_MESSAGE(!dimension_of(unit), unit);
 }
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,11 +56,14 @@ const std::map<std::string, std::string> k_not_yet_by_length = {
     {"machines/stacked_blocks.toml", k_rest},
 };
 
+// Formulas of forces and states hold numbers with units of their own, which are no fields: scaling does not reach them.
+const std::set<std::string> k_of_formulas = {"machines/balanced_pendulum.toml", "machines/parachute.toml"};
+
 std::vector<std::string> models() {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(STEPLAP_MODELS)) {
     const std::string file = std::filesystem::relative(entry.path(), STEPLAP_MODELS).string();
-    if (entry.path().extension() == ".toml" && !file.starts_with("studies/")) files.push_back(file);
+    if (entry.path().extension() == ".toml" && !file.starts_with("studies/") && !k_of_formulas.contains(file)) files.push_back(file);
   }
   std::sort(files.begin(), files.end());
   return files;

@@ -28,6 +28,7 @@ MACHINES = {
     "pile": (3600.0, True, []),
     "jamming_slide": (0.1, True, []),
     "hoist": (0.02, True, []),
+    "balanced_pendulum": (0.02, True, []),
 }
 
 

@@ -5,6 +5,7 @@
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/formula/unit_dimension.h"
+#include "mbd/model/formula_fields.h"
 #include "mbd/model/validate.h"
 #include "mbd/system/one_sided_row.h"
 #include "run/findings.h"
@@ -181,6 +182,29 @@ void print_parameters(std::ostream& out, const Parameters& parameters) {
   out << table;
 }
 
+// Formulas of forces and states that name a parameter, or one that follows from it; how many.
+std::size_t add_formulas(TextTable& table, const Model& model, std::size_t asked) {
+  const Parameters& parameters = model.parameters;
+  const auto follows = [&](const std::string& name) {
+    const std::optional<std::size_t> found = parameters.find(name);
+    if (!found) return false;
+    const Parameter& parameter = parameters.entries[*found];
+    return *found == asked || (parameter.formula && parameters.needs(*parameter.formula, asked));
+  };
+  std::size_t count = 0;
+  for (const ElementEntry& entry : model.elements) {
+    const std::vector<std::string> names = names_in_formulas(entry);
+    if (std::none_of(names.begin(), names.end(), follows)) continue;
+    for (const Field& field : entry.kind->fields.fields()) {
+      if (!is_formula_field(field)) continue;
+      ++count;
+      const Location& where = entry.element->where;
+      table.add_row({entry.element->name + "." + field.name, std::get<std::string>(field.get(entry.element.get())), "", where.file + ":" + std::to_string(where.line)});
+    }
+  }
+  return count;
+}
+
 // All that follows from a parameter: other parameters, then fields, with what they come to.
 void print_uses(std::ostream& out, const LoadedModel& loaded, const std::string& name) {
   const Parameters& parameters = loaded.model.parameters;
@@ -204,6 +228,7 @@ void print_uses(std::ostream& out, const LoadedModel& loaded, const std::string&
     const double value = use.formula.value(parameters.values);
     table.add_row({use.path, use.text, Cell(with_unit(value, use.unit), value, use.unit), place(use.where)});
   }
+  uses += add_formulas(table, loaded.model, *asked);
   out << About{loaded.path} << loaded.path << ": '" << name << "' is " << parameter_value(parameters, *asked).text << "; " << counted(uses, "field follows", "fields follow") << " from it\n" << table;
 }
 

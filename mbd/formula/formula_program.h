@@ -1,0 +1,213 @@
+// A formula as the equations of motion need it: in smooth pieces, on numbers of any kind.
+//
+// A formula is smooth but for its switches: |a|, min, max and comparisons. Each switch has a bit that says which of its two
+// pieces holds, and a quantity whose sign tells when that ends:
+//   |a|        a             1: a          0: −a
+//   min(a, b)  b − a         1: a          0: b
+//   max(a, b)  a − b         1: a          0: b
+//   a < b      b − a         1: true       0: false      (a ≤ b as well; they differ where a run begins with a = b)
+// With the bits given, evaluate() makes the same operations whatever the numbers are: doubles, Dual (mbd/math/dual.h), Traced (mbd/tape).
+// What stands behind `?` and `:` is evaluated where it is chosen, and only there. A step that passes a switch goes a little beyond the
+// end of a piece before that is known, and sqrt(max(x, 0)) is asked for the root of what is negative there. So roots and powers with
+// fractions of what is negative are 0 here, and asin and acos of more than 1 as of 1. Powers with whole exponents are products;
+// sqrt(0) has the derivative 0, so that hypot(0, 0) has one.
+#pragma once
+
+#include "mbd/formula/formula_tree.h"
+#include "mbd/math/dual.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace steplap {
+
+/// Bits of the switches of a formula, or of several.
+using SwitchBits = std::uint32_t;
+inline constexpr int k_most_switches = 32;
+
+namespace formula_math {
+
+/// Has a power of a negative number with this exponent no value?
+inline bool is_fraction(double exponent) { return exponent != std::floor(exponent); }
+inline double power(double a, double b) { return a < 0.0 && is_fraction(b) ? 0.0 : portable::pow(a, b); }
+inline double exponential(double a) { return portable::pow(std::numbers::e, a); }
+inline double logarithm(double a) { return portable::log10(a) * std::numbers::ln10; }
+inline double root(double a) { return std::sqrt(a < 0.0 ? 0.0 : a); }
+inline double arc(double y, double x) { return portable::atan2(y, x); }
+inline void turn(double a, double& sine, double& cosine) {
+  const portable::SinCos both = portable::sin_cos(a);
+  sine = both.sin;
+  cosine = both.cos;
+}
+
+template <int N> Dual<N> exponential(const Dual<N>& a) {
+  const double value = exponential(a.v);
+  return {value, value * a.d};
+}
+template <int N> Dual<N> logarithm(const Dual<N>& a) { return {logarithm(a.v), a.d / a.v}; }
+template <int N> Dual<N> root(const Dual<N>& a) {
+  if (a.v <= 0.0) return {0.0};
+  return sqrt(a);
+}
+template <int N> Dual<N> power(const Dual<N>& a, const Dual<N>& b) {
+  if (a.v < 0.0 && is_fraction(b.v)) return {0.0};
+  if ((b.d == 0.0).all()) return pow(a, b.v);
+  const double value = power(a.v, b.v);
+  return {value, value * (b.d * logarithm(a.v) + b.v / a.v * a.d)};
+}
+template <int N> Dual<N> arc(const Dual<N>& y, const Dual<N>& x) { return atan2(y, x); }
+template <int N> void turn(const Dual<N>& a, Dual<N>& sine, Dual<N>& cosine) {
+  sine = sin(a);
+  cosine = cos(a);
+}
+
+// What a tape has no operation for is never asked of it (FormulaProgram::is_traceable).
+template <class S> S power(const S& a, const S&) { return a; }
+template <class S> S exponential(const S& a) { return a; }
+template <class S> S logarithm(const S& a) { return a; }
+template <class S> S root(const S& a) { return sqrt(greatest_of(a, S(0.0))); }
+template <class S> S arc(const S& y, const S&) { return y; }
+template <class S> void turn(const S& a, S& sine, S& cosine) { find_sin_cos(a, sine, cosine); }
+
+} // namespace formula_math
+
+class FormulaProgram {
+public:
+  struct Step {
+    FormulaOp op = FormulaOp::number;
+    std::array<int, 3> of{-1, -1, -1}; ///< steps that it is made from
+    double number = 0.0;
+    int index = -1; ///< of an operand; of a switch
+    int guard = -1; ///< it is needed only where this one's condition has come out as it says
+  };
+  struct Guard {
+    int condition = -1; ///< a step
+    bool is_wanted = true;
+    int outer = -1; ///< another guard that has to hold, too
+  };
+  /// Where switches have their bits from: those given, those given for some and found for others, or all found.
+  struct Bits {
+    SwitchBits values = 0;
+    SwitchBits are_given = ~SwitchBits{0};
+  };
+
+  /// Throws std::invalid_argument with what is wrong, in a few words that follow "the formula".
+  explicit FormulaProgram(const FormulaTree& tree);
+
+  [[nodiscard]] int size() const { return static_cast<int>(steps_.size()); }
+  [[nodiscard]] int operand_count() const { return operand_count_; }
+  [[nodiscard]] int switch_count() const { return switch_count_; }
+  /// Has the value a jump where switch `s` changes? False of |a|, min and max.
+  [[nodiscard]] bool is_comparison(int s) const { return comparisons_[static_cast<std::size_t>(s)] != 0; }
+  [[nodiscard]] bool has_comparisons() const;
+  /// All its operations are those of a tape.
+  [[nodiscard]] bool is_traceable() const { return is_traceable_; }
+  [[nodiscard]] bool uses_time() const { return uses_time_; }
+
+  /// Its value with the bits given. `values` has room for size() numbers. `quantity`: one per switch, what its bit hangs on; untouched
+  /// where that switch does not count now. Null: nobody asks.
+  template <class S> S evaluate(const S* operands, const S& t, SwitchBits bits, S* values, S* quantity) const {
+    Bits given{bits};
+    return run<false>(operands, t, given, values, quantity);
+  }
+  /// The same with bits that are found, but for those given; afterwards `bits.values` holds all that count.
+  double find_bits(const double* operands, double t, Bits& bits, double* values) const { return run<true>(operands, t, bits, values, static_cast<double*>(nullptr)); }
+  /// Which switches count with these bits.
+  [[nodiscard]] SwitchBits counting(SwitchBits bits) const;
+
+private:
+  [[nodiscard]] bool is_boolean(int node) const;
+  void require_condition(int node) const;
+  int add(FormulaOp op, int a = -1, int b = -1, int c = -1);
+  int add_number(double number);
+  int add_power(int base, int exponent);
+  void add_node(const FormulaNode& node, std::vector<int>& place);
+  void set_guards();
+  [[nodiscard]] int known_before(int guard, int step) const;
+  template <class S> [[nodiscard]] bool holds(int guard, const S* values) const {
+    for (; guard >= 0; guard = guards_[static_cast<std::size_t>(guard)].outer) {
+      const Guard& g = guards_[static_cast<std::size_t>(guard)];
+      if ((value_of(values[g.condition]) != 0.0) != g.is_wanted) return false;
+    }
+    return true;
+  }
+  // Whether a switch's bit is set, which has the quantity `q`; `is_strict`: it has to be found above zero.
+  template <bool Finds, class S> static bool bit_of(int s, const S& q, Bits& bits, S* quantity, bool is_strict = false) {
+    const SwitchBits mask = SwitchBits{1} << static_cast<unsigned>(s);
+    if constexpr (Finds) {
+      const bool is_set = is_strict ? value_of(q) > 0.0 : value_of(q) >= 0.0;
+      if ((bits.are_given & mask) == 0) bits.values = is_set ? bits.values | mask : bits.values & ~mask;
+    }
+    if (quantity) quantity[s] = q;
+    return (bits.values & mask) != 0;
+  }
+  template <bool Finds, class S> S run(const S* operands, const S& t, Bits& bits, S* values, S* quantity) const;
+
+  std::vector<Step> steps_;
+  std::vector<Guard> guards_;
+  std::vector<char> comparisons_; ///< per switch
+  int operand_count_ = 0, switch_count_ = 0;
+  bool is_traceable_ = true, uses_time_ = false;
+};
+
+// ---------------------------------------------------------------------------------------------
+
+template <bool Finds, class S> S FormulaProgram::run(const S* operands, const S& t, Bits& bits, S* values, S* quantity) const {
+  using namespace formula_math;
+  const auto is_true = [&](int step) { return value_of(values[step]) != 0.0; };
+  S* value = values;
+  for (const Step& step : steps_) {
+    if (step.guard >= 0 && !holds(step.guard, values)) {
+      ++value;
+      continue;
+    }
+    const auto of = [&](std::size_t k) -> const S& { return values[step.of[k]]; };
+    S sine, cosine;
+    switch (step.op) {
+    case FormulaOp::number: *value = S(step.number); break;
+    case FormulaOp::operand: *value = operands[step.index]; break;
+    case FormulaOp::time: *value = t; break;
+    case FormulaOp::add: *value = of(0) + of(1); break;
+    case FormulaOp::subtract: *value = of(0) - of(1); break;
+    case FormulaOp::multiply: *value = of(0) * of(1); break;
+    case FormulaOp::divide: *value = of(0) / of(1); break;
+    case FormulaOp::power: *value = power(of(0), of(1)); break;
+    case FormulaOp::negate: *value = -of(0); break;
+    case FormulaOp::sqrt: *value = root(of(0)); break;
+    case FormulaOp::hypot: *value = root(of(0) * of(0) + of(1) * of(1)); break;
+    case FormulaOp::sin: turn(of(0), *value, cosine); break;
+    case FormulaOp::cos: turn(of(0), sine, *value); break;
+    case FormulaOp::tan:
+      turn(of(0), sine, cosine);
+      *value = sine / cosine;
+      break;
+    case FormulaOp::asin: *value = arc(of(0), root((S(1.0) - of(0)) * (S(1.0) + of(0)))); break;
+    case FormulaOp::acos: *value = arc(root((S(1.0) - of(0)) * (S(1.0) + of(0))), of(0)); break;
+    case FormulaOp::atan: *value = arc(of(0), S(1.0)); break;
+    case FormulaOp::atan2: *value = arc(of(0), of(1)); break;
+    case FormulaOp::exp: *value = exponential(of(0)); break;
+    case FormulaOp::ln: *value = logarithm(of(0)); break;
+    case FormulaOp::log10: *value = logarithm(of(0)) * S(1.0 / std::numbers::ln10); break;
+    case FormulaOp::abs: *value = bit_of<Finds>(step.index, of(0), bits, quantity) ? of(0) : -of(0); break;
+    case FormulaOp::min: *value = bit_of<Finds>(step.index, S(of(1) - of(0)), bits, quantity) ? of(0) : of(1); break;
+    case FormulaOp::max: *value = bit_of<Finds>(step.index, S(of(0) - of(1)), bits, quantity) ? of(0) : of(1); break;
+    case FormulaOp::less:
+    case FormulaOp::less_or_equal: *value = S(bit_of<Finds>(step.index, S(of(1) - of(0)), bits, quantity, step.op == FormulaOp::less) ? 1.0 : 0.0); break;
+    case FormulaOp::both: *value = S(is_true(step.of[0]) && is_true(step.of[1]) ? 1.0 : 0.0); break;
+    case FormulaOp::either: *value = S(is_true(step.of[0]) || is_true(step.of[1]) ? 1.0 : 0.0); break;
+    case FormulaOp::negation: *value = S(is_true(step.of[0]) ? 0.0 : 1.0); break;
+    case FormulaOp::choice: *value = is_true(step.of[0]) ? of(1) : of(2); break;
+    case FormulaOp::equal: break; // refused
+    case FormulaOp::finite: *value = of(0); break;
+    }
+    ++value;
+  }
+  return values[steps_.size() - 1];
+}
+
+} // namespace steplap

@@ -1,0 +1,42 @@
+// Derivatives of and by own states of the model (own_states.h), for implicit methods.
+#pragma once
+
+#include "mbd/system/roles.h"
+
+#include <vector>
+
+namespace steplap {
+
+/// What own states do to the motion, and what they follow. SI per what is kept in State::inner, as sparse lists.
+struct StateJacobian {
+  struct ByMotion { ///< ∂ż/∂(pose of a body), ∂ż/∂(its velocity)
+    int inner = 0, body = k_ground;
+    Vec3 pose = Vec3::Zero(), velocity = Vec3::Zero();
+  };
+  struct ByState { ///< ∂ż/∂(another state)
+    int inner = 0, by = 0;
+    double value = 0.0;
+  };
+  struct Force { ///< ∂(force on a body)/∂z
+    int body = k_ground, inner = 0;
+    Vec3 value = Vec3::Zero();
+  };
+  std::vector<ByMotion> by_motion;
+  std::vector<ByState> by_state;
+  std::vector<Force> forces;
+
+  void clear() {
+    by_motion.clear();
+    by_state.clear();
+    forces.clear();
+  }
+};
+
+/// A role of force groups that read own states. Entries come in the same order for all states of a run.
+class StateReader {
+public:
+  virtual ~StateReader() = default;
+  virtual void add_state_jacobian(const Evaluation& e, StateJacobian& out) const = 0;
+};
+
+} // namespace steplap
