@@ -14,8 +14,9 @@ namespace {
 constexpr double k_onset_share = 2.5e-4, k_most_onset_time = 2.5e-6;
 constexpr double k_start_reach = 4.0; // |ν|/δ at which a slip no longer counts as starting
 // |ν|/δ from which on it moves: up to there, backward motion is an error of the first steps unless it is this share
-// of δ.
-constexpr double k_moving = 0.2, k_backward = 0.2;
+// of δ, four times what a step's velocities are known to beside |ν| (Integrator). A slip that never gets that far, in a dip of the
+// clamping pressure, ends there.
+constexpr double k_moving = 0.2, k_backward = 2e-3;
 constexpr double k_cone = 0.5;        // cosine of the cone about the direction last looked at
 // |ν| over grip acceleration from which on a slip ends, s: k_end_time, or this times the tolerance, at most the other. What that
 // misses is this time, times what the direction had still to turn by.
@@ -128,7 +129,7 @@ void StepLapFriction::watch_slip(const Evaluation& e, const FrictionState& state
   if (state.is_starting) {
     const double delta = onset_speed(e);
     watch[0] = (is_moving(state) ? k_start_reach : k_moving) * delta - speed;
-    watch[1] = along + (is_moving(state) ? end_speed(e) : k_backward * delta);
+    watch[1] = along + (is_moving(state) ? end_speed(e) : std::max(end_speed(e), k_backward * delta));
   } else if (is_ending(state)) {
     watch[0] = along;
     watch[1] = k_no_end * end_speed(e) - speed;

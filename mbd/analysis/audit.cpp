@@ -16,6 +16,8 @@ constexpr double k_still = 1e-6;
 const char* const k_pushes = ".pushes";
 const char* const k_overload = ".overload";
 const char* const k_shares = ".shares";
+const char* const k_unknown = ".unknown";
+constexpr double k_velocity = 1e-12; // m/s: to which constraints are met, and velocities known (Integrator::rate_accuracy)
 constexpr double k_one_line = 1e-9; // of the bodies' size, rad
 
 double pushing_power(const Snapshot& s, const System& system, std::size_t f) {
@@ -47,6 +49,25 @@ double overload_of(const Snapshot& s, const System& system, std::size_t f) {
   double normal[3], forward[3] = {1.0, 0.0, 0.0};
   if (!(unit.friction->support(*s.evaluation, state, forward) > 0.0)) return 0.0; // as good as unloaded
   return unit.friction->gauge(*s.evaluation, state, wrench, normal) - 1.0;
+}
+
+// Of friction whose wrench turns with its slip: wrench over speed is what it changes by with a change of that.
+bool may_turn(const FrictionUnit& unit) { return unit.friction->dimension() == 3 && unit.friction->is_rigid() && !unit.friction->never_slips(); }
+
+double unknown_force(const Snapshot& s, const System& system) {
+  double sum = 0.0;
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    const FrictionUnit& unit = system.frictions[f];
+    const FrictionState& state = s.evaluation->friction[f];
+    if (!may_turn(unit) || state.phase != FrictionPhase::slip) continue;
+    double rate[3];
+    for (int i = 0; i < 3; ++i) rate[i] = evaluate_row<false>(unit.friction->rows(state)[i], s.motion).rate;
+    const SlipScale scale = unit.friction->slip_scale(*s.evaluation, state, rate);
+    const double* const wrench = s.friction_force + unit.row;
+    const double force = portable::hypot(portable::hypot(wrench[0], wrench[1]), wrench[2] / scale.lever);
+    if (std::isfinite(scale.speed) && scale.speed > 0.0) sum += force * k_velocity / scale.speed;
+  }
+  return sum;
 }
 
 double largest_pull(const Snapshot& s, int count) {
@@ -190,6 +211,9 @@ void add_audit_channels(System& system, const Model& model) {
                                [self, f](const Snapshot& s) { return overload_of(s, *self, f); }});
   }
   add_shared_channels(system);
+  if (std::any_of(system.frictions.begin(), system.frictions.end(), may_turn))
+    system.channels.push_back({k_prefix + "slips" + k_unknown, "", "what forces change by where velocities do by rounding, N",
+                               [self](const Snapshot& s) { return unknown_force(s, *self); }});
   if (may_pull(model)) return;
   system.channels.push_back({k_prefix + "contacts.pull", "", "largest tension in a contact, N", [self](const Snapshot& s) {
                                return largest_pull(s, self->contact_count);
@@ -198,6 +222,12 @@ void add_audit_channels(System& system, const Model& model) {
 
 std::string pushes_channel(const std::string& element) { return k_prefix + element + k_pushes; }
 std::string shares_channel(const std::string& element) { return k_prefix + element + k_shares; }
+
+int unknown_force_column(const Trajectory& trajectory) {
+  const std::vector<const Channel*>& channels = trajectory.channels();
+  const auto found = std::find_if(channels.begin(), channels.end(), [](const Channel* c) { return is_audit_channel(*c) && ends_with(c->name, k_unknown); });
+  return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+}
 
 bool is_audit_channel(const Channel& channel) { return channel.name.compare(0, k_prefix.size(), k_prefix) == 0; }
 
@@ -233,7 +263,7 @@ std::vector<AuditFinding> audit(const System& system, const RunResult& run, doub
   const double power = energy_scale(system, run) / duration + 1e-300, force = largest_force(run) + 1e-300;
   for (std::size_t c = 0; c < t.channels().size(); ++c) {
     const Channel& channel = *t.channels()[c];
-    if (!is_audit_channel(channel) || ends_with(channel.name, k_shares)) continue;
+    if (!is_audit_channel(channel) || ends_with(channel.name, k_shares) || ends_with(channel.name, k_unknown)) continue;
     AuditFinding finding{"a contact pulls", element_of(channel), 0.0, 0.0, share * force};
     if (ends_with(channel.name, k_pushes)) finding = {"friction does positive work", element_of(channel), 0.0, 0.0, share * power};
     if (ends_with(channel.name, k_overload)) finding = {"friction exceeds its bound", element_of(channel), 0.0, 0.0, share};

@@ -8,6 +8,8 @@
 //   shares     1 where several frictions act on the same two bodies along one line (feet on a floor) and some of them
 //              hold, or slide against each other: then the laws of friction say what they bear together, and not who
 //              bears what of it
+//   unknown    N: what forces change by where velocities do by what rounding and constraints leave of them, 1e-12 m/s: a joint's slip that
+//              has just begun turns by that, and its wrench with it. It bounds nothing, but no method knows forces better
 //
 // With these goes a channel of what such frictions bear together, "shared: one + other", a force like others.
 #pragma once
@@ -27,6 +29,8 @@ void add_audit_channels(System& system, const Model& model);
 [[nodiscard]] std::string pushes_channel(const std::string& element);
 /// Of the channel that tells whether it shares what it bears.
 [[nodiscard]] std::string shares_channel(const std::string& element);
+/// Column of what forces are unknown by; -1: no friction turns with its slip.
+[[nodiscard]] int unknown_force_column(const Trajectory& trajectory);
 
 struct AuditFinding {
   std::string what;   ///< "friction does positive work"

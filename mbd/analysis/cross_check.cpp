@@ -240,6 +240,10 @@ private:
     const MethodCurves &x = *curves_[i], &y = *curves_[j];
     const std::size_t rows = std::min(x.rows(), y.rows());
     const double until = std::min(x.known_until(), y.known_until()); // beyond it nothing can be told
+    const int unknown_column = unknown_force_column(*x.run().trajectory); // the same in all runs
+    const auto unknown_force = [&](const MethodCurves& curves, std::size_t row) {
+      return unknown_column < 0 ? 0.0 : curves.run().trajectory->value(row, static_cast<std::size_t>(unknown_column));
+    };
     Disagreement worst{Doubt::channel, name_of_run(i), name_of_run(j), "", 0.0, 0.0, ""};
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const ComparedChannel& channel = channels_[c];
@@ -253,7 +257,8 @@ private:
         if (is_share(channel, *x.run().trajectory, row) || is_share(channel, *y.run().trajectory, row)) continue;
         const double distance = distance_at(channel, *x.run().trajectory, *y.run().trajectory, row,
                                             k_margin * (x.slack(row) + y.slack(row)));
-        const double allowed = k_margin * (x.estimate(c, row) + y.estimate(c, row)) + floor;
+        const double unknown = channel.kind == ErrorKind::reaction ? std::max(unknown_force(x, row), unknown_force(y, row)) / channel.arm : 0.0;
+        const double allowed = k_margin * (x.estimate(c, row) + y.estimate(c, row)) + floor + unknown;
         ratio = distance > 0.0 ? distance / allowed : 0.0;
         const bool is_near_event = x.slack(row) > 2.0 * x.step() || y.slack(row) > 2.0 * y.step();
         const double lasting = may_be_brief && is_near_event ? *std::min_element(recent.begin(), recent.end()) : ratio;

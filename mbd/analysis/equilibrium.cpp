@@ -508,9 +508,10 @@ std::vector<std::string> remarks_on(const System& system, const Equilibrium& fou
   std::vector<std::string> remarks;
   if (found.hangs_on_way && found.is_settled)
     remarks.push_back("friction holds it where it came to when it was let go from the pose given, strongly damped: this rest is one of many, "
-                      "and which one hangs on the way to it");
+                      "need not be the nearest, and which one hangs on the way to it");
   else if (found.hangs_on_way)
-    remarks.push_back("friction holds it where it slid to: this rest is one of many, and which one hangs on the way to it");
+    remarks.push_back("friction holds it where it slid to: this rest is one of many, need not be the nearest, and "
+                      "which one hangs on the way to it");
   for (const MotionPart& nudge : found.left)
     remarks.push_back(unstable_text(system, nudge) + ", and so did the search");
   for (std::string& text : indifference_texts(system, found.indifferent)) remarks.push_back(std::move(text));

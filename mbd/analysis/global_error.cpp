@@ -55,6 +55,12 @@ double difference(const std::optional<double>& a, const std::optional<double>& b
   return a ? difference(*a, *b) : 0.0;
 }
 
+// Beside its pole a number without a unit, as the margin of what bears nothing, is one over rounding: it may be infinite.
+double difference(const Channel& channel, double a, double b) {
+  const bool is_at_pole = channel.unit.empty() && std::max(std::abs(a), std::abs(b)) > ExtremeFinder::k_at_pole;
+  return is_at_pole && a != b ? k_unknown_error : difference(a, b);
+}
+
 void keep_larger(double& error, double other) { error = larger_error(error, other); }
 
 // Do values of the unit jump at events? Places do not; velocities do where contacts are blows.
@@ -77,9 +83,9 @@ public:
 private:
   void add_range(std::size_t c, ChannelError& error) const {
     const ChannelRange &mine = run_.ranges[c], &fine = fine_.ranges[c];
-    keep_larger(error.low, factor_ * difference(mine.low.value, fine.low.value));
-    keep_larger(error.high, factor_ * difference(mine.high.value, fine.high.value));
-    keep_larger(error.final, factor_ * difference(mine.final, fine.final));
+    keep_larger(error.low, factor_ * difference(*mine.channel, mine.low.value, fine.low.value));
+    keep_larger(error.high, factor_ * difference(*mine.channel, mine.high.value, fine.high.value));
+    keep_larger(error.final, factor_ * difference(*mine.channel, mine.final, fine.final));
     keep_larger(error.t_low, factor_ * difference(mine.low.t, fine.low.t));
     keep_larger(error.t_high, factor_ * difference(mine.high.t, fine.high.t));
     keep_larger(error.first_above_one, factor_ * difference(mine.first_above_one, fine.first_above_one));
@@ -99,7 +105,7 @@ private:
       const std::span<const double> a = mine.row(row), b = fine.row(row);
       const bool is_jump = between.holds(a[0]);
       for (std::size_t c = 0; c < channels.size(); ++c)
-        if (!jumps[c] || !is_jump) worst[c] = larger_error(worst[c], difference(a[c + 1], b[c + 1]));
+        if (!jumps[c] || !is_jump) worst[c] = larger_error(worst[c], difference(*channels[c], a[c + 1], b[c + 1]));
     }
     for (std::size_t c = 0; c < channels.size(); ++c) {
       ChannelError& error = errors[static_cast<std::size_t>(channels[c] - system_.channels.data())];
@@ -125,6 +131,7 @@ double spread_of(const ChannelRange& range) { return range.high.value - range.lo
 // Of channels in the same unit.
 struct Kind {
   double range = 0.0, largest = 0.0; ///< the largest range, the largest value
+  double scale = 0.0;                ///< what forces could come to: rounding of theirs is what is left where nothing moves
   double typical_error = 0.0;        ///< of extremes, of their ranges: half of the channels have less
 };
 
@@ -148,6 +155,31 @@ std::map<std::string, Kind> kinds_of(const std::vector<ChannelRange>& ranges, co
   }
   for (auto& [unit, kind] : kinds) kind.typical_error = median(std::move(relative[unit]));
   return kinds;
+}
+
+// What the largest force could accelerate, and what that could come to over the scene's length, as in extreme_scales.cpp; about a
+// body's centre what accelerates its centre does so at its radius of gyration.
+void set_scales(const System& system, const RunResult& run, std::map<std::string, Kind>& kinds) {
+  const auto largest = [&](const char* unit) {
+    const auto found = kinds.find(unit);
+    return found == kinds.end() ? 0.0 : found->second.largest;
+  };
+  double mass = 0.0, turned = 0.0;
+  std::map<std::string, double> acceleration; // by body, m/s²
+  for (const ChannelRange& range : run.ranges)
+    if (const std::string& name = range.channel->name; range.channel->unit == "m/s^2" && std::isfinite(range.largest().value))
+      acceleration[name.substr(0, name.rfind('.'))] += std::abs(range.largest().value);
+  for (const BodyData& body : system.bodies) {
+    mass += body.mass;
+    if (body.mass > 0.0 && body.inertia > 0.0)
+      turned = std::max(turned, (system.gravity.norm() + acceleration[body.name]) / std::sqrt(body.inertia / body.mass));
+  }
+  const double length = largest("m") > 0.0 ? largest("m") : 1.0;
+  const double force = std::max(largest("N"), mass * system.gravity.norm()), a = mass > 0.0 ? force / mass : 0.0, v = std::sqrt(a * length);
+  const std::pair<const char*, double> scales[] = {{"m/s", v}, {"rad/s", v / length}, {"m/s^2", a}, {"rad/s^2", std::max(turned, a / length)},
+                                                   {"N", force}, {"N m", force * length}, {"W", force * v}, {"J", force * length}};
+  for (const auto& [unit, scale] : scales)
+    if (const auto found = kinds.find(unit); found != kinds.end()) found->second.scale = scale;
 }
 
 bool is_exact(const ChannelRange& a, const ChannelRange& b) {
@@ -174,18 +206,19 @@ void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate&
   const double end = run.final_state.t;
   const double time = (tolerance + k_rounding) * end + (has_located_events ? 0.0 : settings.step);
   std::map<std::string, Kind> kinds = kinds_of(run.ranges, estimate.channels);
+  set_scales(system, run, kinds);
   for (std::size_t c = 0; c < run.ranges.size(); ++c) {
     const ChannelRange& range = run.ranges[c];
     const Kind& kind = kinds[range.channel->unit];
     if (is_located(range, kind) && is_exact(range, estimate.finest.ranges[c])) continue;
     ChannelError& error = estimate.channels[c];
-    const double floor = tolerance * kind.range + k_rounding * kind.largest;
+    const double floor = tolerance * kind.range + k_rounding * std::max(kind.largest, kind.scale);
     const double spread = spread_of(range);
     // Where blows fall in a step is chance, and so is what one extreme shows of it.
     const double least = !has_located_events && std::isfinite(spread) ? kind.typical_error * spread : 0.0;
     const double resolution = std::isinf(range.resolution) ? k_unknown_error : range.resolution;
-    error.low = larger_error(error.low, least) + floor + resolution;
-    error.high = larger_error(error.high, least) + floor + resolution;
+    error.low = larger_error(larger_error(error.low, least), range.unsure_low) + floor + resolution;
+    error.high = larger_error(larger_error(error.high, least), range.unsure_high) + floor + resolution;
     if (range.is_low_singular && diverges(range, range.low, error.low)) error.low = k_unknown_error;
     if (range.is_high_singular && diverges(range, range.high, error.high)) error.high = k_unknown_error;
     error.final += floor;

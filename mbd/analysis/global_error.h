@@ -14,13 +14,14 @@
 // tenths, or that took no more steps than the run, is no estimate; without another one all errors are unknown.
 //
 // To this comes what the finer runs themselves do not know: their tolerance, of the largest range of channels in the
-// same unit; rounding; the resolution of located extremes (mbd/simulation/extremes.h); the step, of times that a method without
-// located events tells. What is the same throughout both runs, and in both, is exact.
+// same unit; rounding; the resolution of located extremes and what slips that nobody knows the way of add to them
+// (mbd/simulation/extremes.h); the step, of times that a method without located events tells. What is the same throughout both runs, and in both, is exact.
 //
 // The time of an extreme is *a* time at which it was reached: where another peak comes within the error, it may be that.
 //
 // A number that only one of the runs has (an event without partner, a channel that had no value in one of them) has an
-// unknown error: not-a-number, never a small one; so has the extreme of a reaction that diverges at a singular position. Not seen: an error that all runs share.
+// unknown error: not-a-number, never a small one; so has the extreme of a reaction that diverges at a singular position, and a
+// number without a unit beside its pole (1e9). Not seen: an error that all runs share.
 #pragma once
 
 #include "mbd/analysis/run_comparison.h"

@@ -32,6 +32,7 @@ public:
     const auto limit = std::upper_bound(system.breakpoints.begin(), system.breakpoints.end(), start.t);
     dynamics_.set_time_limit(limit == system.breakpoints.end() ? system.drives_end : *limit);
     dynamics_.use_coordinates(Coordinates::absolute);
+    stepping_.hold_time(start.t);
   }
 
   Settling run() {
@@ -71,7 +72,6 @@ public:
   }
 
 private:
-  // Ends where loads and drives are those of the state.
   [[nodiscard]] bool can_step(State& next, double h) {
     const double t = state_.t;
     next.t = t - h;

@@ -3,7 +3,7 @@
 // Implicit time steps (time_stepping.h), each begun with nothing moving:
 //   M Δq = h² (Q(q₁) + Jᵀλ + Hᵀw),   w in the friction's sets and at their borders where it slides.
 // So the machine gives way along its forces as a strongly damped one does, contacts close and open, and friction holds or
-// slides as the load comes. Time stands still: loads and drives are those of the state. Steps grow as long as they move bodies
+// slides as the load comes. Time stands still: loads, drives and clamping pressures are those of the state. Steps grow as long as they move bodies
 // a little, and become Newton's towards the end. A step passes no gap unseen (clearance.h).
 //
 // Where friction holds at the end, other ways there would have ended in other rests.

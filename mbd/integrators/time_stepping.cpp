@@ -77,8 +77,8 @@ void TimeStepping::drift(Dynamics& dynamics, State& state, double t1) {
   const double h = t1 - state.t;
   dynamics.set_state(state);
   dynamics.pack(state, y1_.data());
-  const Means means(dynamics, state.t);
-  dynamics.rates(t1, y1_.data(), dy_.data());
+  const Means means(dynamics, time_of_loads(state.t));
+  dynamics.rates(time_of_loads(t1), y1_.data(), dy_.data());
   for (int i = 0; i < dynamics.dimension(); ++i)
     y1_[i] += h * dy_[i];
   dynamics.unpack(t1, y1_.data(), state);
@@ -105,7 +105,7 @@ void TimeStepping::step(Dynamics& dynamics, State& state, double t1, double tole
     if (!trouble.what) {
       const bool is_near = note_sticking(dynamics, end);
       finish_phases(dynamics, state, h);
-      if (is_near && h > k_shortest_looked_into * longest_ && slips_inside(dynamics, end, tolerance)) trouble.what = "a slip inside it";
+      if (is_near && std::isnan(held_time_) && h > k_shortest_looked_into * longest_ && slips_inside(dynamics, end, tolerance)) trouble.what = "a slip inside it";
       if (is_near) dynamics.set_state(state);
     }
     if (!trouble.what) {
@@ -134,7 +134,7 @@ void TimeStepping::fail(const Trouble& trouble, double t, double h) const {
 }
 
 void TimeStepping::evaluate(Dynamics& dynamics, double t, const double* y) {
-  dynamics.rates(t, y, dy_.data());
+  dynamics.rates(time_of_loads(t), y, dy_.data());
   (void)dynamics.snapshot(dy_.data()); // places bodies that only friction refers to
 }
 
@@ -149,7 +149,7 @@ void TimeStepping::move(Dynamics& dynamics, double t1, double tolerance) {
         wrench_[r] != 0.0)
       for (int i = 0; i < 2 * n_; ++i)
         y1_[i] += response[i] * wrench_[r];
-  const Residual found = dynamics.project(t1, y1_.data(), tolerance);
+  const Residual found = dynamics.project(time_of_loads(t1), y1_.data(), tolerance);
   residual_.position = std::max(residual_.position, found.position);
   residual_.velocity = std::max(residual_.velocity, found.velocity);
   evaluate(dynamics, t1, y1_.data());
@@ -236,8 +236,8 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
   Trouble trouble;
   for (int pass = 0; pass < k_max_mode_passes; ++pass) {
     {
-      const Means means(dynamics, glance_ > 0.0 ? t1 - glance_ : start_.t);
-      linearization_.evaluate(dynamics, t1, y0_.data());
+      const Means means(dynamics, time_of_loads(glance_ > 0.0 ? t1 - glance_ : start_.t));
+      linearization_.evaluate(dynamics, time_of_loads(t1), y0_.data());
       stages_.set(linearization_, dynamics.layout());
       if (!stages_.factor(h)) return {"its equations are singular"};
       evaluate(dynamics, t1, y0_.data());
@@ -270,13 +270,13 @@ TimeStepping::Trouble TimeStepping::try_part(Dynamics& dynamics, State& state, d
 // impulse a step takes as it is. What is dissipated is that of the step's end, as laws are met there.
 void TimeStepping::book_power(Dynamics& dynamics, State& state, double h) {
   const int n = dynamics.dimension(), m = dynamics.coordinate_count();
-  dynamics.rates(state.t, y1_.data(), dy_.data());
+  dynamics.rates(time_of_loads(state.t), y1_.data(), dy_.data());
   state.dissipated += h * dy_[n - 2];
   if (!system_.has_work) return;
   dynamics.pack(start_, y0_.data());
   for (int i = m; i < 2 * m; ++i) y1_[i] = 0.5 * (y0_[i] + y1_[i]);
-  const Means means(dynamics, start_.t);
-  dynamics.rates(state.t, y1_.data(), dy_.data());
+  const Means means(dynamics, time_of_loads(start_.t));
+  dynamics.rates(time_of_loads(state.t), y1_.data(), dy_.data());
   state.work += h * dy_[n - 1];
 }
 

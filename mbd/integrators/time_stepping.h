@@ -36,6 +36,8 @@
 #include "mbd/integrators/stage_system.h"
 
 #include <array>
+#include <cmath>
+#include <limits>
 
 namespace steplap {
 
@@ -49,6 +51,8 @@ public:
   /// then being that before the part of the step that cannot be made.
   void step(Dynamics& dynamics, State& state, double t1, double tolerance);
 
+  /// Time stands still (settling.h): in steps that follow loads, drives and clamping pressures are those of `t`, whatever the step's times.
+  void hold_time(double t) { held_time_ = t; }
   /// Largest residuals met before projection in the last step.
   [[nodiscard]] const Residual& residual() const { return residual_; }
   /// Parts into which steps were halved so far, beyond one for each step.
@@ -88,6 +92,8 @@ private:
   };
   static constexpr int k_glances = 3;
 
+  /// At which loads, drives and pressures are taken, at t of a step.
+  [[nodiscard]] double time_of_loads(double t) const { return std::isnan(held_time_) ? t : held_time_; }
   [[nodiscard]] bool is_rounding(double t0, double t1) const;
   void drift(Dynamics& dynamics, State& state, double t1);
   [[nodiscard]] Trouble try_part(Dynamics& dynamics, State& state, double t1, double tolerance);
@@ -149,6 +155,7 @@ private:
   std::vector<double> matrix_, together_, rest_;
   std::vector<Sticking> sticking_, sticking_now_;            ///< per friction element: of the part before, of the part made
   std::vector<std::array<double, k_glances>> glance_usage_;  ///< per friction element
+  double held_time_ = std::numeric_limits<double>::quiet_NaN(); ///< s; not-a-number: time goes on
   double glance_ = 0.0; ///< s: loads are taken by their means over so long before the part's end; 0: over the part
 };
 

@@ -72,6 +72,7 @@ ExtremeFinder::ExtremeFinder(const System& system, int max_dimension)
     screened_slot_[c] = static_cast<int>(bounds_.size());
     bounds_.emplace_back();
   }
+  sure_.reserve(count_);
   rate_of_ = rates_of(system);
   formulas_ = std::make_unique<FormulaExtremes>(system, rate_of_);
   bounds_before_ = bounds_;
@@ -102,6 +103,7 @@ void ExtremeFinder::take(std::size_t c, double t, const Snapshot& snapshot, doub
 }
 
 void ExtremeFinder::take(std::size_t c, double t, double value) {
+  if (!sure_.empty()) note_sure(c, value);
   const bool is_new = !(value >= ranges_[c].low.value && value <= ranges_[c].high.value);
   if (!is_new) return;
   note(c, value, t);
@@ -182,6 +184,11 @@ void ExtremeFinder::finish(const Snapshot& snapshot) {
     ranges_[c].final = ranges_[c].channel->value(snapshot);
     ranges_[c].resolution = std::max(tolerance(c), formulas_->unclosed(c, ranges_[c]));
   }
+  const auto beyond = [](double extreme, double sure) { return extreme == sure || std::isnan(extreme) ? 0.0 : std::abs(extreme - sure); };
+  for (std::size_t c = 0; c < sure_.size(); ++c) {
+    ranges_[c].unsure_low = beyond(ranges_[c].low.value, sure_[c].low);
+    ranges_[c].unsure_high = beyond(ranges_[c].high.value, sure_[c].high);
+  }
 }
 
 // --- along the steps --------------------------------------------------------------------------------------------
@@ -230,10 +237,15 @@ void ExtremeFinder::end_stretch(double t, const double* dy, Integrator& integrat
 
 void ExtremeFinder::arrive(double t, const Snapshot& snapshot, Integrator& integrator, Dynamics& dynamics) {
   is_singular_ = dynamics.smallest_pivot() < k_singular_pivot;
+  const bool was_unsure = is_unsure_;
+  look_at_slips(integrator, dynamics, false);
   screen(snapshot);
   evaluate(t, snapshot, node_[k_last].data(), false);
   formulas_->arrive(snapshot);
+  const bool is_unsure = is_unsure_;
+  is_unsure_ = was_unsure; // in between
   close(t, integrator, dynamics);
+  is_unsure_ = is_unsure;
 }
 
 void ExtremeFinder::state_at(double t, Integrator& integrator, Dynamics& dynamics) {
@@ -366,7 +378,9 @@ bool ExtremeFinder::settle(std::size_t c, int level) {
     if (ranges_[c].channel->unit.empty() && std::abs(best) > k_at_pole) continue;
     const double bit = k_bit_of_slack * slack; // the top is looked for in all gaps between nodes
     const auto top = through_nodes(node_, c, level, sign).top_above(record + slack - bit - error, bit);
-    if (top && top->value + bit + error > record + slack) note(c, sign * top->value, t_ + top->theta * (t1_ - t_));
+    if (!top || !(top->value + bit + error > record + slack)) continue;
+    if (!sure_.empty()) note_sure(c, sign * top->value);
+    note(c, sign * top->value, t_ + top->theta * (t1_ - t_));
   }
   return true;
 }

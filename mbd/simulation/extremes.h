@@ -11,6 +11,9 @@
 //
 // Channels that are formulas of others are bounded instead (formula_extremes.h): kinks and peaks of theirs may be anywhere.
 //
+// Where a slip that ends is slower than rates are known to, nobody knows which way it goes, nor its wrench and what hangs on that. What is
+// met there counts, and by how much it goes beyond all that was met elsewhere is told (ChannelRange::unsure_low).
+//
 // What is looked at depends on the steps alone: not on the samples written. Limits: a peak that rises and
 // falls within one step of which neither the ends nor the curve before show anything is not seen, nor is it
 // by the integrator's own error control; of methods that decide contact modes themselves (moreau, storms) the
@@ -41,6 +44,8 @@ struct ChannelRange {
   double final = 0.0;               ///< at the end
   /// Extremes are located to within this; smaller ones were not looked for. Infinite: they may be anywhere beyond.
   double resolution = 0.0;
+  /// By how much they go beyond what was met where each slip was known to go its way; not-a-number: nothing was.
+  double unsure_low = 0.0, unsure_high = 0.0;
   bool had_no_value = false;                              ///< it was not-a-number at some time
   bool is_low_singular = false, is_high_singular = false; ///< met beside a singular position of the joints, where reactions may diverge
   std::optional<double> first_above_one;                  ///< s; of channels without a unit: the first time they passed 1
@@ -57,6 +62,8 @@ public:
 
   /// A state from which the motion goes on anew: the start, the far side of an event. `snapshot` is there.
   void begin(double t, const Snapshot& snapshot);
+  /// The same of a method that finds events; `dynamics` was last evaluated there.
+  void begin(double t, const Snapshot& snapshot, const Integrator& integrator, Dynamics& dynamics);
   /// After a step. `is_at_end`: `dynamics` was last evaluated at the step's end. `is_last`: of its stretch.
   void add_step(Integrator& integrator, Dynamics& dynamics, bool is_at_end, bool is_last);
   /// The stretch ends at t, inside the step made.
@@ -89,7 +96,13 @@ private:
     double scale = 0.0; ///< size of what moves, where nothing moves yet
   };
 
+  struct Sure { ///< met where each slip was known to go its way
+    double low = std::numeric_limits<double>::quiet_NaN(), high = low;
+  };
+
   void set_scales();
+  void look_at_slips(const Integrator& integrator, Dynamics& dynamics, bool is_new);
+  void note_sure(std::size_t c, double value);
   void note(std::size_t c, double value, double t);
   void evaluate(double t, const Snapshot& snapshot, double* values, bool is_everything);
   void take(std::size_t c, double t, const Snapshot& snapshot, double* values);
@@ -143,6 +156,9 @@ private:
   std::size_t stride_;
   std::vector<double> y_, dy_, scratch_;
   bool is_begun_ = false;
+  double slip_ = std::numeric_limits<double>::infinity(); ///< speed of the slowest slip that may turn at the last end, m/s
+  bool is_unsure_ = false;                    ///< that is less than it is known to
+  std::vector<Sure> sure_;                    ///< per channel; empty as long as that is all
   bool is_singular_ = false;                  ///< what was looked at last lies beside a singular position of the joints
   std::unique_ptr<FormulaExtremes> formulas_; ///< of channels that are formulas
 };

@@ -166,7 +166,7 @@ void Simulation::restart(bool is_evaluated) {
   }
   if (!integrator_->stepped_state()) check_holding(state_.t, integrator_->watch0());
   if (ledger_) ledger_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
-  if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
+  if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()), *integrator_, dynamics_);
   is_between_events_ = true;
 }
 

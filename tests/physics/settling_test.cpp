@@ -1,5 +1,6 @@
 // Machines that have a rest by construction, at all scales: it is found, it is stationary, and where there is a closed form it
 // is right.
+#include "mbd/analysis/settling.h"
 #include "tests/physics/rest_scene.h"
 #include "tests/random/random_number.h"
 
@@ -122,5 +123,24 @@ TEST_CASE("a load falls into its rope") {
                                element("rope", "rope", "a = 'load'; b = 'ground'; length = " + number(length) + "; stiffness = " + number(10.0 * k_g / (1e-6 * length))));
     CHECK(std::abs(found.q(1, 0)) < 1e-9 * length);
     CHECK(std::abs(found.q(1, 1) + length * (1.0 + 1e-6)) < 1e-9 * length);
+  }
+}
+
+// Time stands still while a machine settles: what a load that changes presses against a spring is its value at that time over the
+// stiffness, and not its mean over the steps by which the machine creeps there.
+TEST_CASE("what settles under a load that changes does so under its value") {
+  random::RandomNumber random(28);
+  for (int i = 0; i < 60; ++i) {
+    CAPTURE(i);
+    const double mass = random.between(1.0, 50.0), k = random.decades(2.0, 6.0), amplitude = random.decades(0.0, 3.0);
+    const double frequency = random.decades(-2.0, 3.0), phase = random.between(0.0, 2.0 * k_pi);
+    const auto system = compile(scene(k_no_gravity + k_head + body("block", "mass = " + number(mass) + "; inertia = 1.0") +
+                                      element("prismatic", "guide", "a = 'block'; axis = [1.0, 0.0]") +
+                                      element("spring_damper", "spring", "a = 'block'; b = 'ground'; axis = [1.0, 0.0]; free_length = 0.0; stiffness = " + number(k)) +
+                                      signal_entry("harmonics", "push", "amplitudes = [" + number(amplitude) + "]; frequencies = [" + number(frequency) + "]; phases = [" + number(phase) + "]") +
+                                      element("load", "pushed", "at = 'block'; force_x = 'push'")));
+    const Settling settling = settle_in_time(*system, system->initial_state());
+    REQUIRE(settling.rest);
+    CHECK(std::abs(settling.rest->q[3] - amplitude * std::cos(phase) / k) < 1e-6 * amplitude / k); // it stops at 1e-9 of the load's acceleration
   }
 }

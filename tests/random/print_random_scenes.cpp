@@ -1,4 +1,4 @@
-// Runs random scenes and prints what disagrees, or writes their model files.
+// Runs random scenes and prints what disagrees or stops, or writes their model files.
 //
 //   random_scenes run FIRST LAST [--shrink DIR] [--all] [--friction]   seeds FIRST to LAST
 //   random_scenes write SEED FILE                                      the scene as a model file
@@ -67,13 +67,13 @@ int run(std::uint64_t first, std::uint64_t last, const Options& options) {
     const Scene scene = random_scene(seed);
     const SceneResult result = check_scene(scene, folder);
     seconds += result.seconds;
-    for (const CrossRun& r : result.check.runs)
-      stopped += r.failure.empty() ? 0 : 1;
+    const auto stops = std::count_if(result.check.runs.begin(), result.check.runs.end(), [](const CrossRun& r) { return !r.failure.empty(); });
+    stopped += stops;
     if (result.is_bad()) ++bad;
     else if (result.check.outcome == CrossOutcome::vague) ++vague;
     else ++agreed;
     if (!result.is_bad()) worst_agreed = std::max(worst_agreed, result.check.worst_ratio);
-    if (options.is_all || result.is_bad()) print_one(scene, result);
+    if (options.is_all || result.is_bad() || stops > 0) print_one(scene, result);
     if (result.is_bad() && !options.shrink_to.empty()) keep_shrunk(scene, result, options.shrink_to, folder);
   }
   std::filesystem::remove_all(folder);

@@ -1,0 +1,55 @@
+// What a slip that all but rests adds to extremes: the slower a joint slides, the less is known of which way, and with that of its wrench.
+#include "mbd/simulation/extremes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace steplap {
+
+namespace {
+
+// Times what a step lets through: steps' errors add up, and a slip that is so much faster knows its way to some thousandths.
+constexpr double k_unsure = 300.0;
+
+// Places and velocities do not turn with the way that a slip goes.
+bool turns_with_slips(const Channel& channel) {
+  const std::string_view unit = channel.unit;
+  return unit != "m" && unit != "rad" && unit != "m/s" && unit != "rad/s" && unit != "J";
+}
+
+// A slip that is as slow as its law tells no directions any more.
+bool is_slip_ending(const State& state) {
+  return std::any_of(state.friction.begin(), state.friction.end(), [](const FrictionState& friction) {
+    return friction.phase == FrictionPhase::slip && !friction.is_starting && friction.stage != 0;
+  });
+}
+
+} // namespace
+
+// At the last evaluation of `dynamics`. A slip that begins knows its way, however slow it is: its velocity grows from nothing.
+// `is_new`: behind an event, where what was unsure before it may have ended, but nothing becomes unsure.
+void ExtremeFinder::look_at_slips(const Integrator& integrator, Dynamics& dynamics, bool is_new) {
+  const double before = slip_;
+  slip_ = std::numeric_limits<double>::infinity();
+  if (integrator.is_adaptive() && dynamics.slip_scales(y_.data())) slip_ = *std::min_element(y_.begin(), y_.begin() + dynamics.coordinate_count());
+  const bool is_known = slip_ >= k_unsure * integrator.rate_accuracy(dynamics) && !is_slip_ending(dynamics.state());
+  is_unsure_ = !is_known && (is_unsure_ || (!is_new && slip_ <= before));
+  if (!is_unsure_ || !sure_.empty()) return;
+  sure_.resize(count_);
+  for (std::size_t c = 0; c < count_; ++c) sure_[c] = {ranges_[c].low.value, ranges_[c].high.value};
+}
+
+void ExtremeFinder::begin(double t, const Snapshot& snapshot, const Integrator& integrator, Dynamics& dynamics) {
+  look_at_slips(integrator, dynamics, true);
+  begin(t, snapshot);
+}
+
+void ExtremeFinder::note_sure(std::size_t c, double value) {
+  if ((is_unsure_ && turns_with_slips(*ranges_[c].channel)) || std::isnan(value)) return;
+  Sure& sure = sure_[c];
+  if (!(value >= sure.low)) sure.low = value;
+  if (!(value <= sure.high)) sure.high = value;
+}
+
+} // namespace steplap
