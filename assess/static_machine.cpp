@@ -1,9 +1,9 @@
 #include "assess/static_machine.h"
 
 #include "elements/step_lap_joint.h"
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/ramped_rest.h"
-#include "mbd/analysis/start.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/ramped_rest.h"
+#include "mbd/rest/start.h"
 #include "run/failure.h"
 #include "run/rest_values.h"
 

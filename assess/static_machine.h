@@ -9,7 +9,7 @@
 // is, so that the margin of a joint that would slip is known, too.
 #pragma once
 
-#include "mbd/analysis/equilibrium.h"
+#include "mbd/rest/equilibrium.h"
 #include "run/loaded_model.h"
 
 #include <optional>

@@ -4,7 +4,7 @@
 #include "elements/step_lap_assessment.h"
 #include "elements/step_lap_joint.h"
 #include "mbd/acceptance/judge.h"
-#include "mbd/analysis/start.h"
+#include "mbd/rest/start.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/io/presentation.h"

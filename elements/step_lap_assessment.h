@@ -3,7 +3,7 @@
 #pragma once
 
 #include "mbd/acceptance/judgement.h"
-#include "mbd/analysis/global_error.h"
+#include "mbd/trust/global_error.h"
 #include "mbd/model/model.h"
 #include "mbd/simulation/simulation.h"
 

@@ -1,7 +1,7 @@
 // How far does the block slide on the vehicle that brakes, if the deck holds better or worse? One model, many values,
 // on all processors:
 //   friction_study braked_block.toml
-#include <steplap/mbd/analysis/start.h>
+#include <steplap/mbd/rest/start.h>
 #include <steplap/mbd/io/reader.h>
 #include <steplap/mbd/model/completion.h>
 #include <steplap/mbd/simulation/simulation.h>

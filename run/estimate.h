@@ -1,7 +1,7 @@
-// How far the numbers of a run are known: from finer runs (mbd/analysis/global_error.h), where these are worth their cost.
+// How far the numbers of a run are known: from finer runs (mbd/trust/global_error.h), where these are worth their cost.
 #pragma once
 
-#include "mbd/analysis/global_error.h"
+#include "mbd/trust/global_error.h"
 #include "run/run.h"
 
 namespace steplap {

@@ -1,8 +1,8 @@
 #include "run/findings.h"
 
 #include "elements/shape.h"
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/freedom.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/freedom.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/events/event_handler.h"
 #include "mbd/math/portable_math.h"

@@ -1,7 +1,7 @@
 #include "run/loaded_model.h"
 
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/start.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/start.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/read_input.h"

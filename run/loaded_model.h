@@ -1,7 +1,7 @@
 // A model read, compiled and put together, with what the files of its results need to know about it.
 #pragma once
 
-#include "mbd/analysis/equilibrium.h"
+#include "mbd/rest/equilibrium.h"
 #include "mbd/io/input_files.h"
 #include "mbd/model/model.h"
 #include "mbd/system/system.h"

@@ -125,7 +125,7 @@ Json method_json(const SimulationOptions& options) {
   return {{"integrator", options.integrator}, {"step", options.settings.step}, {"tolerance", options.settings.tolerance}};
 }
 
-// Errors scaled as in mbd/analysis/run_comparison.h.
+// Errors scaled as in mbd/trust/run_comparison.h.
 Json global_error_json(const Report& report) {
   const GlobalErrorEstimate& estimate = *report.estimate.errors;
   Json json;

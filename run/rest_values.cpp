@@ -1,6 +1,6 @@
 #include "run/rest_values.h"
 
-#include "mbd/analysis/statics.h"
+#include "mbd/rest/statics.h"
 #include "mbd/dynamics/dynamics.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include "run/second_opinion.h"
 
 #include "mbd/acceptance/judge.h"
-#include "mbd/analysis/audit.h"
-#include "mbd/analysis/cross_check.h"
-#include "mbd/analysis/global_error.h"
+#include "mbd/trust/audit.h"
+#include "mbd/trust/cross_check.h"
+#include "mbd/trust/global_error.h"
 #include "mbd/base/number_text.h"
 #include "mbd/model/method.h"
 #include "run/prominence.h"

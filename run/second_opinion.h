@@ -1,7 +1,7 @@
 // What a method that shares little with the one used makes of the same run: asked for where a verdict has to hold.
 //
 // Beside moreau, which locates no events, stands the method that was used; a run by moreau is compared with dop853. Both are
-// made at two or three settings and compared as `steplap check --cross` does (mbd/analysis/cross_check.h): every channel,
+// made at two or three settings and compared as `steplap check --cross` does (mbd/trust/cross_check.h): every channel,
 // event and energy, beyond the errors that both methods tell of themselves. Whether it had time is counted in evaluations,
 // not seconds, for an exit code hangs on it.
 #pragma once

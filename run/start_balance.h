@@ -6,7 +6,7 @@
 // (a clamp) answer each other.
 #pragma once
 
-#include "mbd/analysis/tangent.h"
+#include "mbd/rest/tangent.h"
 #include "mbd/system/system.h"
 
 namespace steplap {

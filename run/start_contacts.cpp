@@ -3,8 +3,8 @@
 #include "elements/polygon_contact.h"
 #include "elements/round_contacts.h"
 #include "elements/unilateral_contact.h"
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/statics.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/statics.h"
 #include "run/places.h"
 
 #include <algorithm>

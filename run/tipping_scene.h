@@ -1,7 +1,7 @@
 // What there is to tip over in a pose: bodies that joints hold together, feet, ropes, loads and what hangs.
 #pragma once
 
-#include "mbd/analysis/statics.h"
+#include "mbd/rest/statics.h"
 #include "mbd/system/one_sided_row.h"
 #include "run/tipping.h"
 #include "run/tipping_feet.h"

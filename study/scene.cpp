@@ -1,7 +1,7 @@
 #include "study/scene.h"
 
 #include "mbd/acceptance/judge.h"
-#include "mbd/analysis/start.h"
+#include "mbd/rest/start.h"
 #include "mbd/base/event_kind.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/model/completion.h"

@@ -2,7 +2,7 @@
 
 #include "mbd/acceptance/element_judgement.h"
 #include "mbd/acceptance/judge.h"
-#include "mbd/analysis/event_match.h"
+#include "mbd/trust/event_match.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// A judgement weighed by the errors of its numbers (mbd/analysis/global_error.h): what a criterion is worth whose value is known
+// A judgement weighed by the errors of its numbers (mbd/trust/global_error.h): what a criterion is worth whose value is known
 // to so many digits only.
 //
 // A criterion that is met, but whose error reaches the limit, is not: nor is it one to inspect the machine for, since
@@ -8,7 +8,7 @@
 #pragma once
 
 #include "mbd/acceptance/judgement.h"
-#include "mbd/analysis/global_error.h"
+#include "mbd/trust/global_error.h"
 #include "mbd/model/model.h"
 
 namespace steplap {

@@ -167,7 +167,7 @@ std::vector<fs::path> public_headers() {
   for (const char* room : {"run", "mbd/acceptance", "mbd/model", "mbd/simulation"})
     for (const auto& entry : fs::directory_iterator(root / room))
       if (entry.path().extension() == ".h") headers.push_back(entry.path());
-  for (const char* header : {"mbd/io/reader.h", "mbd/analysis/equilibrium.h", "mbd/analysis/modes.h", "mbd/analysis/start.h", "mbd/analysis/global_error.h",
+  for (const char* header : {"mbd/io/reader.h", "mbd/rest/equilibrium.h", "mbd/vibration/modes.h", "mbd/rest/start.h", "mbd/trust/global_error.h",
                              "mbd/system/system.h", "mbd/system/instance.h"})
     headers.push_back(root / header);
   return headers;

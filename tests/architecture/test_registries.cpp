@@ -61,8 +61,8 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
   const Reasons by_right = {
       {"mbd/model/model.h", "what a file that names none has"},
       {"mbd/simulation/simulation.h", "what a program that names none has"},
-      {"mbd/analysis/accuracy_study.h", "the two that make references"},
-      {"mbd/analysis/cross_check.cpp", "the plan of a cross check, method by method"},
+      {"mbd/trust/accuracy_study.h", "the two that make references"},
+      {"mbd/trust/cross_check.cpp", "the plan of a cross check, method by method"},
       {"mbd/acceptance/trust.cpp", "what to try instead"},
       {"run/second_opinion.cpp", "the two that share least: which one is asked hangs on which one ran"},
   };

@@ -17,7 +17,7 @@ namespace {
 // In the order of the data: a model is read, compiled, moved, asked.
 const std::vector<std::string> k_rooms = {
     "mbd/math",   "mbd/base",       "mbd/formula",  "mbd/algebra",  "mbd/tape",       "mbd/model",  "mbd/system", "mbd/dynamics", "mbd/friction", "mbd/integrators",
-    "mbd/events", "mbd/simulation", "mbd/analysis", "mbd/acceptance", "mbd/io", "record", "elements/patch", "elements", "transformer",
+    "mbd/events", "mbd/simulation", "mbd/rest", "mbd/vibration", "mbd/trust", "mbd/acceptance", "mbd/io", "record", "elements/patch", "elements", "transformer",
     "run", "report", "explore/page", "explore", "python", "study", "assess", "tools"};
 
 // Headers of libraries, of which one file of the product knows.

@@ -1,6 +1,6 @@
 // Model files: read, compiled, joints closed, run for a short while and judged.
 #include "mbd/acceptance/judge.h"
-#include "mbd/analysis/assembly.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"

@@ -8,8 +8,8 @@
 // An answer is a run, an error of the model or a numerical failure; everything else is a finding: signals, other exceptions, memory
 // beyond 4 GB, and more than 10 s of a processor. Exit code 1 if there was a crash; hangs are printed to be explained.
 #include "mbd/acceptance/judge.h"
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/equilibrium.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/equilibrium.h"
 #include "mbd/base/diagnostics.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"

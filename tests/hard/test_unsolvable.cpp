@@ -1,6 +1,6 @@
 // Problems that have no solution, or none in a lifetime: a clear stop, with what there is saved,
 // never a hang.
-#include "mbd/analysis/accuracy_study.h"
+#include "mbd/trust/accuracy_study.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "tests/tools/workbench.h"

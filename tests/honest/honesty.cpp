@@ -1,8 +1,8 @@
 #include "tests/honest/honesty.h"
 
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/equilibrium.h"
-#include "mbd/analysis/event_match.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/equilibrium.h"
+#include "mbd/trust/event_match.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/validate.h"
 #include "transformer/catalog.h"

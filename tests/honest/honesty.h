@@ -4,7 +4,7 @@
 // taken off the error, for it may be the truth's own.
 #pragma once
 
-#include "mbd/analysis/global_error.h"
+#include "mbd/trust/global_error.h"
 
 #include <memory>
 #include <string>

@@ -1,7 +1,7 @@
 // Estimated errors where something else than tolerance or step cuts the steps: the samples of a record, what a harmonic may
 // turn within a step, breakpoints of pulses, and samples of the output, which must not matter. An undamped oscillator under
 // such loads has a closed form.
-#include "mbd/analysis/global_error.h"
+#include "mbd/trust/global_error.h"
 #include "mbd/io/reader.h"
 #include "tests/random/random_number.h"
 #include "transformer/catalog.h"

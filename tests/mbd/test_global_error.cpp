@@ -1,8 +1,8 @@
 // Global error estimates against problems whose solution is known: an estimate has to be neither
 // smaller than the error nor much larger.
-#include "mbd/analysis/accuracy_study.h"
-#include "mbd/analysis/event_match.h"
-#include "mbd/analysis/global_error.h"
+#include "mbd/trust/accuracy_study.h"
+#include "mbd/trust/event_match.h"
+#include "mbd/trust/global_error.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

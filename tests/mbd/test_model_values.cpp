@@ -2,7 +2,7 @@
 // values, side by side.
 #include "elements/load.h"
 #include "elements/spring_damper.h"
-#include "mbd/analysis/assembly.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/model/completion.h"
 #include "mbd/system/instance.h"
 #include "mbd/io/reader.h"

@@ -1,7 +1,7 @@
 // What channels are called and mean: every one that any kind of element or any model can make has a unit that formulas
 // know, a meaning, and a sign or codes where its value has any; and formulas of channels.
 #include "elements/catalog.h"
-#include "mbd/analysis/start.h"
+#include "mbd/rest/start.h"
 #include "mbd/io/kind_channels.h"
 #include "mbd/io/units.h"
 #include "mbd/model/completion.h"

@@ -1,7 +1,7 @@
 // One scene in absolute and in joint coordinates: two ways to the same motion.
 #pragma once
 
-#include "mbd/analysis/assembly.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/dynamics/dynamics.h"
 #include "tests/physics/scene.h"
 

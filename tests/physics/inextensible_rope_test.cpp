@@ -2,8 +2,8 @@
 //
 // Tolerances: runs at 1e-11 over some hundred steps leave 1e-9 of values near 1; what a blow does is exact to rounding for
 // the velocities that the run brings to it.
-#include "mbd/analysis/equilibrium.h"
-#include "mbd/analysis/modes.h"
+#include "mbd/rest/equilibrium.h"
+#include "mbd/vibration/modes.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 

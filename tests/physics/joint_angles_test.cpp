@@ -1,7 +1,7 @@
 // Poses given by joint angles: forward kinematics, and the same motion as from the poses themselves.
 #include "tests/physics/scene.h"
 
-#include "mbd/analysis/assembly.h"
+#include "mbd/rest/assembly.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Rest of scenes beyond some tens of bodies, which sparse algebra finds: closed forms from poses far off, the same rests as
 // by dense algebra, what has no rest.
-#include "mbd/analysis/bordered_system.h"
+#include "mbd/rest/bordered_system.h"
 #include "tests/physics/rest_scene.h"
 
 #include <cmath>

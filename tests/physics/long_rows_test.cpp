@@ -1,7 +1,7 @@
 // Rows over several bodies in random poses: gradients and second rates against differences, whatever their bodies are merged
 // into, driven by or held by, and the rows that are counted.
-#include "mbd/analysis/freedom.h"
-#include "mbd/analysis/statics.h"
+#include "mbd/rest/freedom.h"
+#include "mbd/rest/statics.h"
 #include "mbd/dynamics/linearization.h"
 #include "mbd/system/one_sided_row.h"
 #include "tests/physics/model_text.h"

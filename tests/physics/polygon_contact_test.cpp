@@ -1,6 +1,6 @@
 // Boxes and other convex outlines that press on each other: against closed forms, conservation, other ways to say the same.
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/equilibrium.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/equilibrium.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 

@@ -2,9 +2,9 @@
 //
 // Tolerances: runs at 1e-11 over some hundred steps leave 1e-9 of values near 1; accelerations and tensions of the first
 // instant, and what a blow does to given velocities, are exact to rounding.
-#include "mbd/analysis/equilibrium.h"
-#include "mbd/analysis/freedom.h"
-#include "mbd/analysis/modes.h"
+#include "mbd/rest/equilibrium.h"
+#include "mbd/rest/freedom.h"
+#include "mbd/vibration/modes.h"
 #include "mbd/base/diagnostics.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"

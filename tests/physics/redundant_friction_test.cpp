@@ -1,7 +1,7 @@
 // Friction that holds what is held anyway: several frictions of one rigid pair, friction across a guide, welded bodies with kinks
 // between them. Each scene is run beside the same one with the redundancy taken out by hand: the motion is the same, and the
 // number of steps is that of the motion.
-#include "mbd/analysis/equilibrium.h"
+#include "mbd/rest/equilibrium.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

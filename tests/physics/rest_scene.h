@@ -1,8 +1,8 @@
 // Scenes brought to rest from the poses in which they are written.
 #pragma once
 
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/equilibrium.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/equilibrium.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 

@@ -1,7 +1,7 @@
 // Static equilibrium and assembly: closed forms, contacts to be fallen upon, poses that would run away,
 // joints that cannot be met.
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/equilibrium.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/equilibrium.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 

@@ -1,5 +1,5 @@
 // Ropes: slack and taut, over pulleys, against closed forms.
-#include "mbd/analysis/equilibrium.h"
+#include "mbd/rest/equilibrium.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 

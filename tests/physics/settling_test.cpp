@@ -1,6 +1,6 @@
 // Machines that have a rest by construction, at all scales: it is found, it is stationary, and where there is a closed form it
 // is right.
-#include "mbd/analysis/settling.h"
+#include "mbd/rest/settling.h"
 #include "tests/physics/rest_scene.h"
 #include "tests/random/random_number.h"
 

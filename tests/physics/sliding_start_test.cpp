@@ -1,6 +1,6 @@
 // What slides from the start says so: the first slip of a run is an event, whenever it is.
-#include "mbd/analysis/event_match.h"
-#include "mbd/analysis/global_error.h"
+#include "mbd/trust/event_match.h"
+#include "mbd/trust/global_error.h"
 #include "tests/physics/model_text.h"
 #include "tests/physics/scene.h"
 

@@ -1,9 +1,9 @@
 // Every model of models/ by methods that share little, over its first fifth of a second: whole runs, which take minutes,
 // are those of `steplap check --cross`.
 #include "mbd/acceptance/judge.h"
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/cross_check.h"
-#include "mbd/analysis/equilibrium.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/trust/cross_check.h"
+#include "mbd/rest/equilibrium.h"
 #include "mbd/io/reader.h"
 #include "transformer/catalog.h"
 

@@ -1,7 +1,7 @@
 // sampled_runs COUNT METHOD TOLERANCE FIRST LAST: random scenes, sampled COUNT times and not at all; a line for each that differs, or of
 // which a sample lies beyond its channel's extremes.
 // sampled_runs COUNT METHOD TOLERANCE MODEL...: model files.
-#include "mbd/analysis/assembly.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/base/number_text.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/validate.h"

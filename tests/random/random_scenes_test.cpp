@@ -1,8 +1,8 @@
 // Random scenes: all methods agree on them, and with an integration that shares nothing with them; and what looks at
 // them sees what is wrong where something is.
 #include "tests/sanitized.h"
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/cross_check.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/trust/cross_check.h"
 #include "mbd/io/reader.h"
 #include "tests/random/random_scene.h"
 #include "tests/random/scene_check.h"

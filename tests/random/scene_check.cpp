@@ -1,6 +1,6 @@
 #include "tests/random/scene_check.h"
 
-#include "mbd/analysis/assembly.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/base/number_text.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // and momentum balance, friction does no work and stays within its bound, contacts do not pull.
 #pragma once
 
-#include "mbd/analysis/cross_check.h"
+#include "mbd/trust/cross_check.h"
 #include "tests/random/scene.h"
 
 namespace steplap::random {

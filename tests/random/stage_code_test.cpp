@@ -3,7 +3,7 @@
 // the final state, of the events and counts. Random scenes, scenes on rails, and every model of models/, with each explicit method:
 // whatever an element's template does in another order, a branch that is no condition of the tape, a by-product that somebody
 // reads behind a stage shows in the last bits, which steps and events then amplify.
-#include "mbd/analysis/assembly.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "mbd/tape/machine_code.h"

@@ -1,8 +1,8 @@
 #include "tests/scales/alike.h"
 
 #include "mbd/acceptance/judge.h"
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/equilibrium.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/equilibrium.h"
 #include "mbd/io/presentation.h"
 #include "mbd/io/reader.h"
 #include "transformer/catalog.h"

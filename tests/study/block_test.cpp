@@ -1,6 +1,6 @@
 // A block on a deck that is accelerated for a while: everything is known in closed form.
 //   D(A, t, mu) = (A t)²/(2 mu g) (1 − mu g/A), if A > mu g
-#include "mbd/analysis/start.h"
+#include "mbd/rest/start.h"
 #include "mbd/model/completion.h"
 #include "study/law.h"
 #include "tests/study/block_scene.h"

@@ -1,6 +1,6 @@
 // A study follows only those extremes that it is asked for, and of channels that one response looks at together only the outermost.
 // What it says is held against runs by themselves, which follow all ends of all channels.
-#include "mbd/analysis/start.h"
+#include "mbd/rest/start.h"
 #include "mbd/base/name_pattern.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/completion.h"

@@ -2,7 +2,7 @@
 // is bad, whatever the rest of the joint makes good in a sum.
 #include "elements/step_lap_assessment.h"
 #include "mbd/acceptance/judge.h"
-#include "mbd/analysis/assembly.h"
+#include "mbd/rest/assembly.h"
 #include "mbd/io/reader.h"
 #include "mbd/simulation/simulation.h"
 #include "tests/random/random_number.h"

@@ -3,7 +3,7 @@
 //
 //   steplap study export STORE > samples.csv      of models/studies/slip_probability.toml
 //   bench_study samples.csv
-#include "mbd/analysis/start.h"
+#include "mbd/rest/start.h"
 #include "mbd/io/csv.h"
 #include "mbd/io/reader.h"
 #include "mbd/model/model_path.h"

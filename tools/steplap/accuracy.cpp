@@ -1,7 +1,7 @@
 #include "tools/steplap/accuracy.h"
 
-#include "mbd/analysis/accuracy_study.h"
-#include "mbd/analysis/global_error.h"
+#include "mbd/trust/accuracy_study.h"
+#include "mbd/trust/global_error.h"
 #include "mbd/base/number_text.h"
 #include "mbd/io/atomic_file.h"
 #include "run/prominence.h"

@@ -1,7 +1,7 @@
 // What an accuracy study tells: a table for the screen, the same as CSV, a work–precision diagram.
 #pragma once
 
-#include "mbd/analysis/accuracy_study.h"
+#include "mbd/trust/accuracy_study.h"
 
 #include <iosfwd>
 #include <string>

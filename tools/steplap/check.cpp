@@ -1,7 +1,7 @@
 #include "tools/steplap/check.h"
 
-#include "mbd/analysis/assembly.h"
-#include "mbd/analysis/freedom.h"
+#include "mbd/rest/assembly.h"
+#include "mbd/rest/freedom.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/formula/unit_dimension.h"

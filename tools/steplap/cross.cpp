@@ -1,7 +1,7 @@
 #include "tools/steplap/cross.h"
 
 #include "mbd/acceptance/judge.h"
-#include "mbd/analysis/cross_check.h"
+#include "mbd/trust/cross_check.h"
 #include "mbd/base/number_text.h"
 #include "run/prominence.h"
 #include "run/quantity_text.h"

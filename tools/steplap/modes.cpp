@@ -1,6 +1,6 @@
 #include "tools/steplap/modes.h"
 
-#include "mbd/analysis/modes.h"
+#include "mbd/vibration/modes.h"
 #include "mbd/io/csv.h"
 #include "report/modes_page.h"
 #include "run/run.h"

@@ -1,6 +1,6 @@
 #include "tools/steplap/run_screen.h"
 
-#include "mbd/analysis/global_error.h"
+#include "mbd/trust/global_error.h"
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/math/portable_math.h"

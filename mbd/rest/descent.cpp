@@ -1,0 +1,482 @@
+#include "mbd/rest/descent.h"
+
+#include "mbd/rest/finite_forces.h"
+#include "mbd/rest/landing.h"
+#include "mbd/dynamics/dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_no_share = 1e-6; // of the work: what acts on a body itself and is rounding beside it
+constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
+constexpr double k_first_radius = 0.1, k_first_turn = 0.3; // of the trust region: of the scene's length; rad
+// rad: poses half a turn apart are not to be taken for each other
+constexpr double k_small_turn = 0.4, k_largest_turn = 1.5;
+constexpr double k_balanced = 1e-11;  // Newton steps below this share of the length are the pose's rounding
+constexpr double k_nearly_balanced = 1e-8;
+constexpr double k_nudge = 1e-3;      // of the length, rad
+constexpr double k_turned_against = 0.5; // of the work along the tangent
+constexpr double k_far = 1e4;         // lengths of the scene
+constexpr double k_many_turns = 40.0 * std::numbers::pi;
+constexpr int k_most_looks = 1000; // along a step
+constexpr int k_most_halved_looks = 40;
+constexpr double k_touch = 64.0; // roundings of the largest coordinate, by which a body that lands presses
+constexpr int k_most_trials = 44, k_most_corrections = 4, k_most_projections = 25, k_most_polishing = 4;
+constexpr int k_most_dense = 90; // coordinates: beyond, sparse algebra is faster
+
+// Of a sparse projection: what does not get there fast is too far, and half as far costs less than more rounds.
+constexpr int k_most_sparse_projections = 12;
+constexpr double k_slow = 0.5;
+
+int most_iterations(int n) { return n <= 1000 ? 3000 : 1000; }
+
+} // namespace
+
+Descent::Descent(const System& system, State& state, RestAlgebra algebra)
+    : system_(system), state_(state), statics_(system), n_(statics_.coordinates()), start_(state.q),
+      hold_(system.frictions.size(), Hold::none) {
+  std::fill(state_.v.begin(), state_.v.end(), 0.0);
+  for (std::size_t f = 0; f < hold_.size(); ++f) {
+    const FrictionPhase phase = state.friction[f].phase;
+    hold_[f] = phase == FrictionPhase::stick ? Hold::sticks : phase == FrictionPhase::slip ? Hold::slides : Hold::none;
+  }
+  measure_scene();
+  is_sparse_ = algebra == RestAlgebra::sparse || (algebra == RestAlgebra::by_size && n_ > k_most_dense);
+  const Landscape::Scene scene{system_, statics_, scale_, mass_, length_};
+  landscape_ = is_sparse_ ? sparse_landscape(scene) : dense_landscape(scene);
+  clearance_ = std::make_unique<Clearance>(system_, k_touch * k_epsilon * reach_);
+  radius_ = k_first_radius * length_;
+  turn_ = k_first_turn;
+}
+
+void Descent::measure_scene() {
+  const SceneScale scene = scale_of(system_, state_);
+  length_ = scene.length;
+  reach_ = scene.reach;
+  scale_ = scene.scale;
+  mass_ = VecX(n_);
+  for (int k = 0; k < n_; ++k) {
+    const BodyData& body = system_.bodies[k / 3 + 1];
+    mass_[k] = k % 3 < 2 ? body.mass : body.inertia * scale_[k] * scale_[k];
+  }
+}
+
+void Descent::linearise() {
+  statics_.evaluate(state_);
+  statics_.collect_rows(state_, left_out_);
+  landscape_->linearise(state_);
+  if (!landscape_->acceleration().allFinite()) throw no_direction(system_, statics_);
+}
+
+double Descent::step_size(const VecX& step) const {
+  double size = 0.0;
+  for (int i = 0; i < n_; ++i)
+    size = std::max(size, i % 3 < 2 ? std::abs(step[i]) / radius_ : std::abs(step[i]) * scale_[i] / turn_);
+  return size;
+}
+
+// Onto the rows, the nearest way.
+bool Descent::project() {
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0;; ++i) {
+    statics_.evaluate(state_);
+    const VecX off = statics_.off();
+    VecX way;
+    const double size = landscape_->way_to_rows(off, way);
+    if (statics_.rows().empty()) return true;
+    const double close = 8.0 * k_epsilon * reach_;
+    if (!std::isfinite(size) || size > length_) return false;
+    // Rows that depend on others are met with them, or not at all.
+    if (size <= close || (size >= 0.5 * before && size <= 64.0 * close)) {
+      for (int r = 0; r < statics_.bilateral_count(); ++r)
+        if (!(std::abs(off[r]) <= 1e-7 * length_ * std::max(1.0, landscape_->row_size()[r]))) return false;
+      return true;
+    }
+    if (i == (is_sparse_ ? k_most_sparse_projections : k_most_projections)) return false;
+    if (i > 4 && size > (is_sparse_ ? k_slow : 0.9) * before) return false;
+    before = size;
+    for (int k = 0; k < n_; ++k) state_.q[k + 3] -= scale_[k] * way[k];
+  }
+}
+
+bool Descent::move_to(const std::vector<double>& from, const VecX& step) {
+  for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * step[k];
+  return project();
+}
+
+// Work against the step's tangent at its end.
+double Descent::slope_along(const VecX& step) const {
+  return -landscape_->along_rows(step).dot(scale_.cwiseProduct(statics_.force()));
+}
+
+// A step that bends away from a stiff contact's or spring's way is brought back to it; the slope there.
+double Descent::correct(const VecX& step, const std::vector<double>& from, double slope) {
+  const std::vector<double> first = state_.q;
+  VecX moved = step;
+  double before = 0.0, after = 0.0;
+  VecX back = landscape_->stiff_imbalance(before);
+  if (before == 0.0) return slope;
+  double now = slope;
+  bool is_better = false;
+  for (int round = 0; round < k_most_corrections; ++round) {
+    moved += back;
+    if (!(step_size(moved) < 2.0) || !move_to(from, moved)) {
+      is_better = false;
+      break;
+    }
+    back = landscape_->stiff_imbalance(after);
+    now = slope_along(step);
+    if (!(after < 0.5 * before)) break;
+    is_better = true;
+    before = after;
+  }
+  clearance_->look(first);
+  clearance_->look(state_.q);
+  if (is_better && (now < slope || now < 0.0) && clearance_->keeps_sides(way_from(first))) return now;
+  state_.q = first;
+  statics_.evaluate(state_);
+  return slope;
+}
+
+// Quarters of a body's size, and tenths of a radian, that a step passes over: contacts may close and open between them.
+int Descent::looks_along(const VecX& step) const {
+  double parts = 0.0;
+  for (int k = 0; k < n_; ++k) {
+    const double inverse_size = scale_[k - k % 3 + 2];
+    parts = std::max(parts, (k % 3 < 2 ? 4.0 : 10.0) * std::abs(step[k]) * inverse_size);
+  }
+  return static_cast<int>(std::clamp(std::ceil(parts), 1.0, 1.0 * k_most_looks));
+}
+
+// In a large scene what lands does so at once, each body where it touches. False if nothing lands.
+bool Descent::land(const std::vector<double>& from, VecX& step) {
+  if (!is_sparse_ || system_.contact_count == 0) return false;
+  std::vector<double> looks(system_.bodies.size(), 0.0);
+  for (int k = 0; k < n_; ++k) {
+    const double parts = (k % 3 < 2 ? 4.0 : 10.0) * std::abs(step[k]) * scale_[k - k % 3 + 2];
+    looks[k / 3 + 1] = std::max(looks[k / 3 + 1], std::min(std::ceil(parts), 1.0 * k_most_looks));
+  }
+  const auto look = [&](const VecX& way) {
+    for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * way[k];
+    statics_.evaluate(state_);
+  };
+  const auto room = [&](const VecX& way) {
+    clearance_->look(state_.q);
+    return clearance_->share(scale_.cwiseProduct(way));
+  };
+  const bool is_cut = Landing(system_, statics_).cut(step, looks, k_touch * k_epsilon * reach_, {look, room});
+  state_.q = from;
+  statics_.evaluate(state_);
+  return is_cut;
+}
+
+VecX Descent::way_from(const std::vector<double>& from) const {
+  VecX way(n_);
+  for (int k = 0; k < n_; ++k) way[k] = state_.q[k + 3] - from[k + 3];
+  return way;
+}
+
+// To `share` of a step on the rows, or so much less that the way from `before`, looked at last, has no room for a contact that
+// closes and opens again.
+void Descent::look_on(const std::vector<double>& from, const VecX& step, double before, double& share) {
+  const std::vector<double> last = state_.q;
+  const bool is_on_rows = !is_sparse_ && !statics_.rows().empty();
+  for (int i = 0; i < k_most_halved_looks; ++i) {
+    if (!is_on_rows || !move_to(from, share * step))
+      for (int k = 0; k < n_; ++k) state_.q[k + 3] = from[k + 3] + scale_[k] * step[k] * share;
+    clearance_->look(state_.q, i > 0);
+    if (clearance_->keeps_sides(way_from(last))) return;
+    share = 0.5 * (before + share);
+  }
+}
+
+// The share of a step at which a contact first closes that its end may have passed through.
+double Descent::first_contact(const std::vector<double>& from, const VecX& step) {
+  if (clearance_->is_endless()) return 1.0;
+  const double look = 1.0 / looks_along(step);
+  const VecX way = scale_.cwiseProduct(step);
+  clearance_->look(from);
+  double share = 0.0;
+  for (int i = 0; i < k_most_looks && share < 1.0; ++i) {
+    const double before = share;
+    share = std::min(1.0, before + std::min(look, clearance_->share(way)));
+    look_on(from, step, before, share);
+    if (clearance_->has_met()) break;
+  }
+  state_.q = from;
+  return share;
+}
+
+bool Descent::loads_friction() const {
+  for (std::size_t f = 0; f < hold_.size(); ++f)
+    if (hold_[f] == Hold::none && state_.friction[f].phase != FrictionPhase::apart &&
+        system_.frictions[f].friction->is_loaded(statics_.evaluation(), state_.friction[f]))
+      return true;
+  return false;
+}
+
+// Friction holds a contact where it touched, not as deep as the step went: the share of the step at which the first one
+// gets its load.
+double Descent::first_load(const std::vector<double>& from, const VecX& step, double low, double high) {
+  if (!loads_friction()) return high;
+  const std::vector<double> reached = state_.q;
+  double taken = high;
+  std::vector<double> place = reached;
+  for (int i = 0; i < k_most_trials && taken - low > 1e-12 * taken; ++i) {
+    const double middle = 0.5 * (low + taken);
+    if (move_to(from, middle * step) && loads_friction()) {
+      taken = middle;
+      place = state_.q;
+    } else {
+      low = middle;
+    }
+  }
+  state_.q = place;
+  statics_.evaluate(state_);
+  return taken;
+}
+
+// After a step that was taken at `factor` of what was planned.
+void Descent::adapt_region(double factor, const VecX& step, bool is_straight) {
+  double moved = 0.0, turned = 0.0;
+  for (int k = 0; k < n_; ++k) {
+    double& most = k % 3 < 2 ? moved : turned;
+    most = std::max(most, std::abs(step[k]) * scale_[k]); // the scale of a displacement is 1
+  }
+  if (factor < 1.0 && is_sparse_ && system_.contact_count == 0) {
+    radius_ = std::max(1.5 * moved, 0.25 * radius_);
+    turn_ = std::min(k_small_turn, std::max(1.5 * turned, 0.25 * turn_));
+    return;
+  }
+  if (factor < 1.0) {
+    radius_ = std::clamp(4.0 * moved, 0.25 * radius_, radius_);
+    turn_ = std::min(k_small_turn, std::clamp(4.0 * turned, 0.25 * turn_, turn_));
+    return;
+  }
+  if (moved > 0.5 * radius_) radius_ *= 2.0;
+  if (turned > 0.5 * turn_) turn_ = is_straight ? std::min(k_largest_turn, 1.5 * turn_) : std::min(k_small_turn, 2.0 * turn_);
+  else if (!is_straight) turn_ = std::min(turn_, k_small_turn);
+}
+
+bool Descent::advance(VecX step) {
+  const std::vector<double> from = state_.q;
+  const std::vector<UnitMode> modes = state_.mode;
+  const bool has_landed = land(from, step);
+  const double start = -step.dot(landscape_->force());
+  if (!(start < 0.0)) return false;
+  const double whole = has_landed ? 1.0 : first_contact(from, step);
+  double low = 0.0, high = whole, slope = 0.0, factor = whole;
+  bool is_taken = false;
+  for (int trial = 0; trial < k_most_trials; ++trial) {
+    bool is_too_far = !move_to(from, factor * step);
+    if (!is_too_far) {
+      slope = slope_along(step);
+      // What lands stays where it touches: there friction is to hold it.
+      if (!has_landed && (slope > -k_turned_against * start || state_.mode != modes)) slope = correct(factor * step, from, slope);
+      is_too_far = !(slope <= -k_turned_against * start);
+      is_taken = !is_too_far && (factor == whole || slope >= k_turned_against * start);
+    }
+    if (is_taken) break;
+    (is_too_far ? high : low) = factor;
+    // A large scene goes on from here: to search for how far it gets in this direction costs as much as many steps.
+    if (is_sparse_ && low > 0.0 && slope < 0.0 && high < whole) break;
+    if (trial > 12 && low > 0.0 && high - low < 1e-3 * high) break;
+    factor = 0.5 * (low + high);
+  }
+  if (!is_taken && low > 0.0) {
+    factor = low;
+    is_taken = move_to(from, factor * step);
+  }
+  if (!is_taken) {
+    state_.q = from;
+    return false;
+  }
+  if (!has_landed || factor < whole) factor = first_load(from, step, low < factor ? low : 0.0, factor);
+  const bool is_straight = std::abs(slope - start) < 0.3 * std::abs(start);
+  adapt_region(factor, factor * step, is_straight);
+  follow_friction(from);
+  return true;
+}
+
+// Friction that gets its load holds where it is, friction that is turned back, too; without load there is none.
+void Descent::follow_friction(const std::vector<double>& from) {
+  statics_.evaluate(state_);
+  bool is_changed = false, is_moved = false;
+  std::vector<Motion<double>> before_it;
+  for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+    FrictionState& friction = state_.friction[f];
+    if (friction.phase == FrictionPhase::apart) continue;
+    const FrictionElement& element = *system_.frictions[f].friction;
+    const FrictionPhase before = friction.phase;
+    if (!element.is_loaded(statics_.evaluation(), friction)) {
+      friction.phase = FrictionPhase::free;
+      hold_[f] = Hold::none;
+    } else if (before == FrictionPhase::slip && hold_[f] == Hold::slides) {
+      const RowSpec& row = *element.rows(friction);
+      if (before_it.empty()) place_bodies(from, state_.v, before_it);
+      const double was = evaluate_row<false>(row, before_it.data()).value;
+      const double slid = evaluate_row<false>(row, statics_.motion().data()).value - was;
+      if (slid * friction.sign >= -1e-9 * length_) continue;
+      friction.phase = FrictionPhase::stick;
+      anchor_friction(system_, state_, f, statics_.motion().data());
+      hold_[f] = Hold::sticks;
+    } else {
+      const bool is_displaced = element.watch_place(statics_.evaluation(), friction) < 0.0;
+      if (is_displaced) element.change_place(statics_.evaluation(), friction);
+      if (friction.phase == FrictionPhase::apart) continue;
+      friction.phase = FrictionPhase::stick;
+      if (is_displaced || hold_[f] != Hold::sticks) anchor_friction(system_, state_, f, statics_.motion().data());
+      hold_[f] = Hold::sticks;
+      is_moved = is_moved || is_displaced;
+    }
+    is_changed = is_changed || friction.phase != before;
+  }
+  if (is_changed) statics_.evaluate(state_);
+  if (is_changed || is_moved || left_out_.empty()) find_dependent_friction();
+  statics_.collect_rows(state_, left_out_);
+}
+
+// Feet of one body pair hold it once: the rows that the equations of motion leave out for that, where they begin to hold, stay out
+// here too. Together they would hold it against tilting, too, since the distance of two feet on the ground is another then,
+// however little.
+void Descent::find_dependent_friction() {
+  left_out_.assign(static_cast<std::size_t>(system_.friction_row_count) + 1, 0);
+  const auto is_bounded = [this](std::size_t f) {
+    return state_.friction[f].phase == FrictionPhase::stick && !system_.frictions[f].friction->never_slips();
+  };
+  bool is_any = false;
+  for (std::size_t f = 0; f < state_.friction.size(); ++f) is_any = is_any || is_bounded(f);
+  if (!is_any) return;
+  Dynamics dynamics(system_);
+  dynamics.set_state(state_);
+  std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
+  dynamics.pack(state_, y.data());
+  dynamics.rates(state_.t, y.data(), dy.data());
+  for (std::size_t r = 0; r < dynamics.layout().active.size(); ++r)
+    if (const ActiveRow& row = dynamics.layout().active[r]; row.friction >= 0 && dynamics.layout().is_left_out(static_cast<int>(r)))
+      left_out_[system_.frictions[row.friction].row + row.friction_row] = 1;
+}
+
+bool Descent::has_run_away() {
+  VecX moved(n_);
+  bool is_far = false;
+  for (int k = 0; k < n_; ++k) {
+    const double way = state_.q[k + 3] - start_[k + 3];
+    is_far = is_far || !(std::abs(way) < (k % 3 < 2 ? k_far * length_ : k_many_turns));
+    moved[k] = k % 3 < 2 ? way / (k_far * length_) : way / k_many_turns;
+  }
+  if (!is_far) return false;
+  runaway_ = largest_part(moved);
+  const int driven = 3 * runaway_.body - 3 + runaway_.coordinate;
+  driving_force_ = std::abs(statics_.force()[driven]);
+  // Where next to nothing acts on it itself, what moves along with it drives it (a pinion that its own weight turns on its rack): by the
+  // work for its share of the way.
+  double work = 0.0;
+  for (int k = 0; k < n_; ++k) work += statics_.force()[k] * (state_.q[k + 3] - start_[k + 3]);
+  const double way = std::abs(state_.q[driven + 3] - start_[driven + 3]);
+  if (driving_force_ * way < k_no_share * work && std::isfinite(work / way)) driving_force_ = work / way;
+  return true;
+}
+
+// Newton's steps to where rounding ends them.
+bool Descent::polish() {
+  bool is_better = false;
+  for (int i = 0; i < k_most_polishing; ++i) {
+    const State before = state_;
+    const double size = landscape_->imbalance();
+    const VecX step = landscape_->newton_step();
+    if (!(step_size(step) <= 1.0) || !move_to(before.q, step)) {
+      state_ = before;
+      linearise();
+      break;
+    }
+    linearise();
+    if (!(landscape_->imbalance() < 0.5 * size)) {
+      state_ = before;
+      linearise();
+      break;
+    }
+    is_better = true;
+  }
+  return is_better;
+}
+
+bool Descent::leave_saddle() {
+  const auto unstable = landscape_->most_unstable();
+  if (!unstable) return false;
+  VecX direction = unstable->direction;
+  const MotionPart part = largest_part(direction);
+  const bool is_pushed = std::abs(unstable->force) > 8.0 * unstable->rounding;
+  if (is_pushed ? unstable->force < 0.0 : part.sign < 0.0) direction = -direction;
+  left_.push_back(largest_part(direction));
+  radius_ = std::max(radius_, k_first_radius * length_);
+  turn_ = k_first_turn;
+  double largest = 0.0;
+  for (int i = 0; i < n_; ++i)
+    largest = std::max(largest, i % 3 < 2 ? std::abs(direction[i]) / length_ : std::abs(direction[i]) * scale_[i]);
+  const std::vector<double> from = state_.q;
+  for (double nudge = k_nudge; nudge > 1e-9; nudge *= 0.25)
+    if (move_to(from, (nudge / largest) * direction)) {
+      follow_friction(from);
+      return true;
+    }
+  state_.q = from;
+  return false;
+}
+
+void Descent::finish() {
+  yielding_ = landscape_->count_yielding();
+  residual_ = landscape_->acceleration().cwiseProduct(scale_).cwiseAbs().maxCoeff();
+  indifferent_ = landscape_->indifferent(more_indifferent_);
+  // What was not asked for holds where it is.
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f)
+    if (const int row = system_.frictions[f].row; state_.friction[f].phase == FrictionPhase::stick && left_out_[row] != 0)
+      anchor_friction(system_, state_, static_cast<int>(f), statics_.motion().data());
+}
+
+DescentEnd Descent::run() {
+  const OneThread alone;
+  statics_.evaluate(state_);
+  follow_friction(state_.q);
+  const std::vector<double> given = state_.q;
+  linearise();
+  if (!project()) state_.q = given;
+  int failures = 0;
+  for (iterations_ = 0; iterations_ < most_iterations(n_); ++iterations_) {
+    linearise();
+    if (iterations_ == 0) yielding_at_start_ = landscape_->count_yielding();
+    const VecX newton = landscape_->newton_step();
+    const bool is_pushed = landscape_->is_pushed();
+    const double left = newton.size() > 0 ? newton.cwiseAbs().maxCoeff() : 0.0;
+    if (!is_pushed && left <= (failures > 0 ? k_nearly_balanced : k_balanced) * length_) {
+      polish();
+      if (leave_saddle()) continue;
+      finish();
+      return DescentEnd::rest;
+    }
+    if (landscape_->is_skew() && !is_pushed && step_size(newton) <= 0.5 && polish()) {
+      follow_friction(state_.q);
+      continue;
+    }
+    if (advance(landscape_->trust_step([this](const VecX& step) { return step_size(step); }))) {
+      failures = 0;
+      if (has_run_away()) return DescentEnd::runs_away;
+      continue;
+    }
+    if (++failures > 20) break;
+    radius_ *= 0.1;
+    turn_ *= 0.1;
+  }
+  finish();
+  runaway_ = largest_part(landscape_->acceleration());
+  driving_force_ = std::abs(statics_.force()[3 * runaway_.body - 3 + runaway_.coordinate]);
+  return DescentEnd::no_way;
+}
+
+} // namespace steplap

@@ -1,0 +1,541 @@
+#include "mbd/rest/equilibrium.h"
+
+#include "mbd/rest/admissible_rest.h"
+#include "mbd/rest/indifference.h"
+#include "mbd/rest/ramped_rest.h"
+#include "mbd/rest/settling.h"
+#include "mbd/dynamics/dynamics.h"
+#include "mbd/events/blow.h"
+#include "mbd/system/element_failure.h"
+#include "mbd/system/one_sided_row.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_admissible = 1.0 + 1e-9; // share of what friction can bear: rounding of stiff contacts
+constexpr double k_least_used = 1e-9;       // less is rounding
+constexpr double k_flowed = 1e-12; // of the scene's length: what an elastic joint has slid in the search is rounding
+constexpr int k_most_flows = 200;
+constexpr double k_pushes = 1e3;     // tensions of a rope that are rounding: forces of a rest are known to some 1e-9 m/s²
+constexpr double k_on_rows = 1e-12;  // m, rad
+constexpr std::size_t k_most_rope_changes = 8; // for each rope
+constexpr double k_short = 0.999;
+constexpr int k_most_slips = 12;            // of one friction element, on the way to where it holds
+constexpr double k_tipped = 0.75; // rad
+constexpr int k_most_shared = 150; // coordinates up to which it is asked for all ways in which friction could share a load
+// Of the scene's length: contacts that gave way so far, with nothing but friction to resist them, did not stand.
+constexpr double k_stands = 1e-2;
+
+std::string rounded(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+// What friction gives way on the search, and by how much.
+struct Slip {
+  int friction = 0;
+  double used = 0.0; ///< when it first gave way
+  double from = 0.0; ///< its row's value then
+  int times = 0;
+  bool is_least = false;   ///< `used` is the least of all ways to share the load
+  bool is_new = true;      ///< it has just begun
+  bool gives_way = false; ///< nothing but its friction resisted it
+};
+
+// Friction that held contacts gave way.
+class SlidAway : public ElementFailure {
+public:
+  SlidAway(const std::string& message, std::vector<std::string> names, const Slip& slip)
+      : ElementFailure(message, std::move(names)), friction_(slip.friction), from_(slip.from) {}
+  [[nodiscard]] int friction() const { return friction_; }
+  [[nodiscard]] double from() const { return from_; } ///< its row's value when it first gave way
+
+private:
+  int friction_ = 0;
+  double from_ = 0.0;
+};
+
+std::string unstable_text(const System& system, const MotionPart& nudge) {
+  return "a pose on the way balances, but not stably: a nudge of " + part_text(system, nudge) + " leaves it";
+}
+
+enum class LoadHistory { any, ramped };
+
+class RestSearch {
+public:
+  RestSearch(const System& system, const State& start, RestAlgebra algebra, LoadHistory history = LoadHistory::any)
+      : system_(system), algebra_(algebra), history_(history), start_(start), state_(start) {
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
+    start_drives(system_, state_);
+    for (FrictionState& friction : state_.friction)
+      if (friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
+    (void)set_ropes(system_, state_);
+  }
+
+  Equilibrium run() {
+    if (system_.body_count() <= 1) return at_rest();
+    try {
+      return search();
+    } catch (const ElementFailure& none) {
+      if (history_ == LoadHistory::ramped || (system_.units.empty() && system_.frictions.empty())) throw;
+      return settled(none);
+    }
+  }
+
+private:
+  // From what the damped machine comes to; `none`: what the search from the start found.
+  Equilibrium settled(const ElementFailure& none) {
+    state_ = start_;
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
+    start_drives(system_, state_);
+    const Settling settling = settle_in_time(system_, with_drives_held());
+    if (!settling.is_tried) throw ElementFailure(std::string(none.what()) + "; the scene is too large to be let go and damped", none.elements());
+    const std::string tried = std::string(none.what()) + "; let go and strongly damped, it does not come to rest either (" +
+                              std::to_string(settling.steps) + " time steps)";
+    if (!settling.rest) throw ElementFailure(tried, none.elements());
+    const int iterations = result_.iterations;
+    State rest = *settling.rest;
+    rest.memory = held_memory(rest);
+    state_ = rest;
+    // What slid away from where it stood does not stand, wherever it comes to lie.
+    if (const auto* const slid = dynamic_cast<const SlidAway*>(&none);
+        slid && std::abs(row_value(slid->friction()) - slid->from()) > k_stands * length_)
+      throw ElementFailure(none.what(), none.elements());
+    result_ = {};
+    slips_.clear();
+    result_.iterations = iterations;
+    result_.settling_steps = settling.steps;
+    result_.is_settled = true;
+    try {
+      return search();
+    } catch (const ElementFailure&) {
+      throw ElementFailure(tried, none.elements());
+    }
+  }
+  // Drives are no longer held: their rows are as they were, those of friction as it came to hold.
+  [[nodiscard]] std::vector<double> held_memory(const State& rest) const {
+    std::vector<double> memory = rest.memory;
+    for (const RowSpec& row : system_.rows)
+      if (row.drive)
+        for (int k = 0; k < 2; ++k) memory[row.memory + k] = state_.memory[row.memory + k];
+    return memory;
+  }
+
+  Equilibrium search() {
+    while (true) {
+      Descent descent(system_, state_, algebra_);
+      const DescentEnd end = descent.run();
+      result_.iterations += descent.iterations();
+      result_.residual = descent.residual();
+      result_.indifferent = descent.indifferent();
+      result_.more_indifferent = descent.more_indifferent();
+      result_.left.insert(result_.left.end(), descent.left().begin(), descent.left().end());
+      length_ = std::max(length_, descent.length());
+      if (descent.yielding_at_start() > yielding_)
+        for (Slip& slip : slips_) slip.gives_way = slip.gives_way || slip.is_new;
+      for (Slip& slip : slips_) slip.is_new = false;
+      yielding_ = descent.yielding();
+      if (end != DescentEnd::rest && tighten_long()) continue;
+      if (end != DescentEnd::rest) fail(descent, end);
+      if (let_flow()) continue;
+      find_margins(descent);
+      if (change_ropes()) continue;
+      if (overloads_.empty()) break;
+      if (result_.is_settled || !share_anew(descent)) let_go(); // what settled has shared its load on the way
+    }
+    check_slides();
+    return at_rest();
+  }
+
+  Equilibrium at_rest() {
+    for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f) {
+      if (state_.friction[f].phase != FrictionPhase::slip || one_sided_row(*system_.frictions[f].friction)) continue;
+      state_.friction[f].phase = FrictionPhase::stick;
+      anchor_friction(system_, state_, f);
+    }
+    for (const Slip& slip : slips_) result_.slid.push_back(slip.friction);
+    result_.hangs_on_way = (result_.is_settled || !result_.slid.empty()) && !result_.margins.empty();
+    note_drives();
+    result_.state = state_;
+    result_.state.v = start_.v;
+    note_tipping();
+    for (std::size_t i = 3; i < start_.q.size(); ++i)
+      if (i % 3 < 2) result_.moved = std::max(result_.moved, std::abs(state_.q[i] - start_.q[i]));
+    return std::move(result_);
+  }
+
+  // Elastic joints beyond their bound slide back onto it; then the machine rests elsewhere. True if one did.
+  bool let_flow() {
+    if (system_.inner_groups.empty()) return false;
+    Statics statics(system_);
+    statics.evaluate(state_);
+    const std::vector<double> before = state_.inner;
+    for (const ForceGroup* group : system_.inner_groups) (void)group->settle_inner(statics.evaluation(), state_.inner.data());
+    double most = 0.0, along = 0.0, square = 0.0;
+    std::vector<double> flow(before.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      flow[i] = state_.inner[i] - before[i];
+      most = std::max(most, std::abs(flow[i]));
+      if (i < last_flow_.size()) along += flow[i] * last_flow_[i], square += last_flow_[i] * last_flow_[i];
+    }
+    if (most <= k_flowed * length_) return false;
+    // What a joint lets go it gets back but for the share of what stands beside it: flows fall off like a geometric series,
+    // whose sum is taken at every second one, short of it by a little.
+    const double ratio = square > 0.0 ? along / square : 0.0;
+    const double rest = ratio > 0.0 && ratio < 1.0 ? k_short * ratio / (1.0 - ratio) : 0.0;
+    if (++flows_ > k_most_flows || ratio >= 1.0 || rest * most > length_)
+      throw NumericalFailure("no static equilibrium found: an elastic joint slides on and on, since nothing beside it bears what it lets go");
+    last_flow_ = rest > 0.0 ? std::vector<double>() : flow;
+    for (std::size_t i = 0; i < flow.size(); ++i) state_.inner[i] += rest * flow[i];
+    return true;
+  }
+
+  // Rates of the drives are taken away, their values stay: the equations of motion are to see a machine at rest.
+  [[nodiscard]] State with_drives_held() const {
+    State held = state_;
+    for (const RowSpec& row : system_.rows) {
+      if (!row.drive) continue;
+      const double now = static_target(row, state_);
+      held.memory[row.memory + 1] = -row.drive->drive(state_.t, row.level).rate;
+      held.memory[row.memory] += now - static_target(row, held);
+    }
+    return held;
+  }
+
+  void find_margins(const Descent& descent) {
+    result_.margins.clear();
+    overloads_.clear();
+    pushing_.clear();
+    if (system_.frictions.empty()) return;
+    const State held = with_drives_held();
+    Dynamics dynamics(system_);
+    dynamics.set_state(held);
+    std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
+    dynamics.pack(held, y.data());
+    dynamics.rates(held.t, y.data(), dy.data());
+    dynamics.watch_merged(dy.data());
+    const LoadSharing* const sharing = dynamics.sharing();
+    std::vector<double> wrench(system_.friction_row_count, 0.0);
+    const std::vector<StaticRow>& rows = descent.statics().rows();
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      if (rows[r].friction >= 0) wrench[rows[r].friction_row] = descent.multipliers()[static_cast<Eigen::Index>(r)];
+    for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+      const FrictionUnit& unit = system_.frictions[f];
+      const FrictionPhase phase = state_.friction[f].phase;
+      if (const OneSidedRow* rope = one_sided_row(*unit.friction);
+          rope && phase == FrictionPhase::stick && wrench[unit.row] > k_pushes * rope->rest_tension)
+        pushing_.push_back({f, {wrench[unit.row], 0.0, 0.0}, 0.0});
+      if ((phase != FrictionPhase::stick && phase != FrictionPhase::slip) || unit.friction->never_slips()) continue;
+      double* const own = &wrench[unit.row];
+      if (phase == FrictionPhase::slip) descent.statics().slip_wrench(f, own);
+      const int group = sharing && phase == FrictionPhase::stick ? sharing->group_of(f) : -1;
+      FrictionMargin margin{f, share_used(descent.statics().evaluation(), f, own), group >= 0};
+      if (group >= 0) margin.used = sharing->groups()[group].least.usage();
+      result_.margins.push_back(margin);
+      if (phase == FrictionPhase::slip || margin.used <= k_admissible) continue;
+      if (group < 0) {
+        overloads_.push_back({f, {0.0, 0.0, 0.0}, margin.used});
+        std::copy_n(own, unit.friction->dimension(), overloads_.back().wrench);
+        continue;
+      }
+      for (const Release& release : sharing->releases(group))
+        if (release.friction == f) overloads_.push_back({f, {release.wrench[0], 0.0, 0.0}, margin.used});
+    }
+  }
+
+  // Inextensible ropes are taut where the search found them taut, and slack else: at rest none may push, and none may be
+  // longer than it is. True if one changes.
+  bool change_ropes() {
+    const auto worst = std::max_element(pushing_.begin(), pushing_.end(),
+                                        [](const Overload& a, const Overload& b) { return a.wrench[0] < b.wrench[0]; });
+    if (worst != pushing_.end()) {
+      state_.friction[worst->friction].phase = FrictionPhase::slip;
+      return count_rope(worst->friction);
+    }
+    std::vector<Motion<double>> motion;
+    place_bodies(state_.q, state_.v, motion);
+    for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+      const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
+      if (!rope || state_.friction[f].phase == FrictionPhase::stick || rope->left(motion.data()) >= -OneSidedRow::k_at_length * rope->length) continue;
+      state_.friction[f].phase = FrictionPhase::stick;
+      try {
+        put_on_rows();
+      } catch (const ConstraintFailure&) { // what slid beyond it rubs where it lies now: that has to give way
+        free_contacts();
+        put_on_rows();
+      }
+      return count_rope(f);
+    }
+    return false;
+  }
+  bool count_rope(int f) {
+    if (++rope_changes_ <= k_most_rope_changes * system_.frictions.size()) return true;
+    throw ElementFailure("no static equilibrium found: whether '" + name_of(f) + "' and other ropes are taut at rest cannot be decided", {name_of(f)});
+  }
+  // What runs away may hang on ropes that were slack where it began: once more with those taut that it has run beyond.
+  bool tighten_long() {
+    std::vector<Motion<double>> motion;
+    place_bodies(state_.q, state_.v, motion);
+    int changed = -1;
+    for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
+      const OneSidedRow* const rope = one_sided_row(*system_.frictions[f].friction);
+      if (!rope || state_.friction[f].phase == FrictionPhase::stick || rope->left(motion.data()) >= 0.0) continue;
+      state_.friction[f].phase = FrictionPhase::stick;
+      changed = f;
+    }
+    if (changed < 0) return false;
+    const std::vector<double> ran_to = state_.q;
+    state_.q = start_.q;
+    try {
+      put_on_rows();
+    } catch (const ConstraintFailure&) { // they cannot all be taut
+      state_.q = ran_to;
+      return false;
+    }
+    return count_rope(changed);
+  }
+  // Friction that holds contacts gets its load anew.
+  void free_contacts() {
+    for (int f = 0; f < static_cast<int>(state_.friction.size()); ++f)
+      if (state_.friction[f].phase == FrictionPhase::stick && !one_sided_row(*system_.frictions[f].friction) && is_of_contacts(f))
+        state_.friction[f].phase = FrictionPhase::free;
+  }
+  void put_on_rows() {
+    Dynamics dynamics(system_);
+    dynamics.set_state(state_);
+    std::vector<double> y(static_cast<std::size_t>(dynamics.dimension()));
+    dynamics.pack(state_, y.data());
+    dynamics.project(state_.t, y.data(), k_on_rows);
+    dynamics.unpack(state_.t, y.data(), state_);
+    std::fill(state_.v.begin(), state_.v.end(), 0.0);
+  }
+
+  [[nodiscard]] double share_used(const Evaluation& evaluation, int f, const double* wrench) const {
+    const FrictionElement& element = *system_.frictions[f].friction;
+    double size = 0.0, normal[3];
+    for (int r = 0; r < element.dimension(); ++r) size = std::max(size, std::abs(wrench[r]));
+    const double used = size == 0.0 ? 0.0 : element.gauge(evaluation, state_.friction[f], wrench, normal);
+    return used < k_least_used ? 0.0 : used;
+  }
+
+  // Does its bound come from contacts: does it bear nothing where all of them are open? (Of three dimensions are joints.)
+  [[nodiscard]] bool is_of_contacts(int f) const {
+    const FrictionElement& friction = *system_.frictions[f].friction;
+    if (friction.dimension() > 1) return false;
+    Statics statics(system_);
+    State state = state_;
+    statics.evaluate(state);
+    const std::vector<UnitMode> open(system_.units.size(), k_contact_open);
+    Evaluation apart = statics.evaluation();
+    apart.mode = open.data();
+    return !friction.is_loaded(apart, state.friction[f]);
+  }
+  [[nodiscard]] double row_value(int f) const {
+    std::vector<Motion<double>> motion;
+    place_bodies(state_.q, state_.v, motion);
+    return evaluate_row<false>(*system_.frictions[f].friction->rows(state_.friction[f]), motion.data()).value;
+  }
+
+  // Friction bears what it got when it got its load: another admissible set of forces may hold the machine.
+  bool share_anew(const Descent& descent) {
+    if (was_shared_anew_ || history_ == LoadHistory::ramped) return false;
+    // All ways to share a load are dense algebra: hours in large scenes. There friction slides to where it holds.
+    if (3 * (system_.body_count() - 1) > k_most_shared) {
+      is_too_large_ = true;
+      return false;
+    }
+    const OneThread alone;
+    const auto rest = admissible_rest(system_, state_, descent.scale(), length_);
+    if (!rest) return false;
+    least_usage_ = rest->usage;
+    if (rest->usage > 1.0) return false;
+    was_shared_anew_ = true;
+    state_ = rest->state;
+    return true;
+  }
+
+  // What is overloaded most slides, with what shares its load.
+  void let_go() {
+    const auto worst = std::max_element(overloads_.begin(), overloads_.end(),
+                                        [](const Overload& a, const Overload& b) { return a.used < b.used; });
+    for (const Overload& overload : overloads_) {
+      if (overload.used < worst->used) continue;
+      const int f = overload.friction;
+      const FrictionElement& element = *system_.frictions[f].friction;
+      if (element.dimension() > 1)
+        throw ElementFailure("no static equilibrium: '" + name_of(f) + "' would have to hold " + rounded(overload.used) +
+                                 " times what it can",
+                             {name_of(f)});
+      auto slip = std::find_if(slips_.begin(), slips_.end(), [f](const Slip& s) { return s.friction == f; });
+      if (slip == slips_.end()) {
+        const bool is_least = least_usage_ > 1.0;
+        slip = slips_.insert(slips_.end(), {f, is_least ? least_usage_ : overload.used, row_value(f), 0, is_least});
+      }
+      slip->is_new = true;
+      if (++slip->times > k_most_slips) fail_sliding(*slip);
+      Statics statics(system_);
+      statics.evaluate(state_);
+      element.begin_slip(statics.evaluation(), state_.friction[f], overload.wrench);
+      state_.friction[f].phase = FrictionPhase::slip;
+    }
+    was_shared_anew_ = false;
+  }
+
+  void check_slides() const {
+    for (const Slip& slip : slips_)
+      if (slip.gives_way && is_of_contacts(slip.friction) &&
+          std::abs(row_value(slip.friction) - slip.from) > k_stands * length_)
+        fail_sliding(slip);
+  }
+
+  [[nodiscard]] std::string name_of(int f) const { return system_.element_names[system_.frictions[f].element]; }
+  [[nodiscard]] std::string overload_text(const Slip& slip) const {
+    if (!slip.is_least)
+      return "'" + name_of(slip.friction) + "' would have to hold " + rounded(slip.used) + " times what it can" +
+             (is_too_large_ ? " (as the load came to be shared; other ways are not looked for in scenes of this size)" : "");
+    return "friction ('" + name_of(slip.friction) + "' and what shares its load) would have to hold " + rounded(slip.used) +
+           " times what it can, whichever way the load is shared";
+  }
+  [[noreturn]] void fail_sliding(const Slip& slip) const {
+    const RowSpec& row = *system_.frictions[slip.friction].friction->rows(state_.friction[slip.friction]);
+    const int body = row.a == k_ground ? row.b : row.a;
+    throw SlidAway("no static equilibrium: " + overload_text(slip) + ", and '" + system_.bodies[body].name + "' slides",
+                   {name_of(slip.friction), system_.bodies[body].name}, slip);
+  }
+  [[noreturn]] void fail(const Descent& descent, DescentEnd end) const {
+    const MotionPart& part = descent.runaway();
+    const std::string unit = part.coordinate == 2 ? " N m" : " N";
+    // An unstable rest is one: what there is none of is a rest that stays.
+    std::string text = "no static equilibrium: ";
+    if (!result_.left.empty())
+      text = "no stable equilibrium: " + unstable_text(system_, result_.left.front()) + "; downhill from there ";
+    if (!slips_.empty()) text += overload_text(slips_.front()) + "; ";
+    if (end == DescentEnd::runs_away)
+      text += part_text(system_, part) + " goes on without end: nothing holds it against the " +
+              rounded(descent.driving_force()) + unit + " that drive it";
+    else
+      text += "none was found; forces do not balance on " + part_text(system_, part) + " (" +
+              rounded(descent.residual()) + " m/s² are left after " + std::to_string(descent.iterations()) + " steps)";
+    std::vector<std::string> names;
+    if (!slips_.empty()) names.push_back(name_of(slips_.front().friction));
+    names.push_back(system_.bodies[part.body].name);
+    if (end == DescentEnd::no_way) throw RestNotFound(text, std::move(names));
+    throw ElementFailure(text, std::move(names));
+  }
+
+  // Those that joints lead to the ground.
+  [[nodiscard]] std::vector<char> led_bodies() const {
+    std::vector<std::vector<int>> joined(system_.bodies.size());
+    for (const RowSpec& row : system_.rows) {
+      joined[row.a].push_back(row.b);
+      joined[row.b].push_back(row.a);
+    }
+    std::vector<char> is_led(system_.bodies.size(), 0);
+    std::vector<int> next{k_ground};
+    is_led[k_ground] = 1;
+    while (!next.empty()) {
+      const int body = next.back();
+      next.pop_back();
+      for (const int other : joined[body])
+        if (std::exchange(is_led[other], char{1}) == 0) next.push_back(other);
+    }
+    return is_led;
+  }
+
+  // A body that no joint leads stood on something, or tipped over.
+  void note_tipping() {
+    if (system_.contact_count == 0) return;
+    const std::vector<char> is_led = led_bodies();
+    for (int i = 1; i < system_.body_count(); ++i) {
+      const double turn = state_.q[3 * i + 2] - start_.q[3 * i + 2];
+      if (is_led[i] || std::abs(turn) < k_tipped || std::abs(turn) < std::abs(result_.turned)) continue;
+      result_.turned = turn;
+      result_.turned_body = i;
+    }
+  }
+
+  void note_drives() {
+    for (const RowSpec& row : system_.rows) {
+      if (!row.drive) continue;
+      const SignalJet jet = row.drive->drive(state_.t, row.level);
+      const bool is_moving = row.level != DriveLevel::acceleration && jet.rate != 0.0;
+      if (is_moving || jet.acceleration != 0.0) result_.moving_drives.push_back(row.element);
+    }
+  }
+
+  struct Overload {
+    int friction = 0;
+    double wrench[3] = {0, 0, 0};
+    double used = 0.0;
+  };
+
+  const System& system_;
+  const RestAlgebra algebra_;
+  const LoadHistory history_;
+  int flows_ = 0;                  ///< of elastic joints, in the search
+  std::vector<double> last_flow_;  ///< per inner state
+  const State& start_;
+  State state_;
+  double length_ = 0.0;
+  int yielding_ = 0; ///< directions in which nothing resists at the last rest
+  double least_usage_ = 0.0; ///< of friction over all ways to share the load, where that was asked
+  bool was_shared_anew_ = false;
+  bool is_too_large_ = false; ///< for other ways to share a load
+  std::vector<Slip> slips_;
+  std::vector<Overload> overloads_;
+  std::vector<Overload> pushing_;  ///< taut ropes that would have to push
+  std::size_t rope_changes_ = 0;
+  Equilibrium result_;
+};
+
+} // namespace
+
+std::string part_text(const System& system, const MotionPart& part) {
+  const std::string name = "'" + system.bodies[part.body].name + "'";
+  if (part.coordinate == 2) return name + " turning " + (part.sign < 0.0 ? "clockwise" : "counter-clockwise");
+  return name + " along " + (part.sign < 0.0 ? "-" : "+") + (part.coordinate == 0 ? "x" : "y");
+}
+
+std::vector<std::string> remarks_on(const System& system, const Equilibrium& found) {
+  std::vector<std::string> remarks;
+  if (found.hangs_on_way && found.is_settled)
+    remarks.push_back("friction holds it where it came to when it was let go from the pose given, strongly damped: this rest is one of many, "
+                      "need not be the nearest, and which one hangs on the way to it");
+  else if (found.hangs_on_way)
+    remarks.push_back("friction holds it where it slid to: this rest is one of many, need not be the nearest, and "
+                      "which one hangs on the way to it");
+  for (const MotionPart& nudge : found.left)
+    remarks.push_back(unstable_text(system, nudge) + ", and so did the search");
+  for (std::string& text : indifference_texts(system, found.indifferent)) remarks.push_back(std::move(text));
+  if (found.more_indifferent > 0)
+    remarks.push_back("indifferent: so it is in " + std::to_string(found.more_indifferent) + " more directions");
+  if (found.turned != 0.0)
+    remarks.push_back("'" + system.bodies[found.turned_body].name + "' turned by " +
+                      rounded(found.turned * 180.0 / std::numbers::pi) +
+                      "° on the way to this rest: it does not stand as given");
+  for (const int f : found.slid)
+    remarks.push_back("'" + system.element_names[system.frictions[f].element] +
+                      "' could not hold where it got its load: it slid to where it does");
+  for (const int element : found.moving_drives)
+    remarks.push_back("the drive '" + system.element_names[element] +
+                      "' moves or accelerates at this time: this is the rest of the machine with the drive held");
+  return remarks;
+}
+
+Equilibrium find_equilibrium(const System& system, const State& start, RestAlgebra algebra) {
+  return RestSearch(system, start, algebra).run();
+}
+
+Equilibrium find_ramped_rest(const System& system, const State& start) {
+  return RestSearch(system, start, RestAlgebra::by_size, LoadHistory::ramped).run();
+}
+
+} // namespace steplap

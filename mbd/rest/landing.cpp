@@ -1,0 +1,148 @@
+#include "mbd/rest/landing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_same_share = 1e-12;
+constexpr int k_most_halvings = 60;
+constexpr double k_least_look = 1e-3; // of a step: a thousand looks at most, as along a small scene's
+
+} // namespace
+
+Landing::Landing(const System& system, const Statics& statics) : system_(system), statics_(statics), parent_(system.bodies.size()) {
+  std::iota(parent_.begin(), parent_.end(), 0);
+  join_bodies();
+}
+
+int Landing::island(int body) {
+  while (parent_[body] != body) body = parent_[body] = parent_[parent_[body]];
+  return body;
+}
+
+void Landing::join_bodies() {
+  const auto join = [this](int a, int b) {
+    if (a != k_ground && b != k_ground) parent_[island(a)] = island(b);
+  };
+  std::vector<PairJacobian> parts;
+  std::vector<int> carried;
+  for (const auto& group : system_.groups) group->add_jacobian(statics_.evaluation(), parts);
+  for (const PairJacobian& part : parts) {
+    const bool is_closed = part.contact >= 0 && statics_.evaluation().contact_force[part.contact] > 0.0;
+    if (is_closed) carried.insert(carried.end(), {part.a, part.b});
+    if (is_closed || (part.stiffness.array() != 0.0).any()) join(part.a, part.b);
+    else if (part.contact >= 0) open_.push_back({part.a, part.b, part.contact});
+  }
+  for (const StaticRow& row : statics_.rows()) {
+    int last = k_ground; // of a row over several bodies
+    for (const RowSpec* part = row.spec; part; part = part->next) {
+      join(part->a, part->b);
+      const int any = part->a != k_ground ? part->a : part->b;
+      join(last, any);
+      last = any;
+    }
+  }
+  is_carried_.assign(parent_.size(), 0);
+  for (const int body : carried) is_carried_[island(body)] = 1;
+  is_carried_[k_ground] = 1;
+}
+
+VecX Landing::cut_step(const VecX& step, const std::vector<double>& shares) {
+  VecX cut = step;
+  for (int body = 1; body < system_.body_count(); ++body) cut.segment<3>(3 * (body - 1)) *= shares[island(body)];
+  return cut;
+}
+
+// The island that lands where a contact closes: one that nothing carries, of two the one that goes further. −1: none.
+int Landing::lander(const Pair& pair, const VecX& step) {
+  const int a = island(pair.a), b = island(pair.b);
+  if (a == b || (is_carried_[a] != 0 && is_carried_[b] != 0)) return -1;
+  if (is_carried_[a] != is_carried_[b]) return is_carried_[a] != 0 ? b : a;
+  const auto size = [&step](int body) { return step.segment<3>(3 * (body - 1)).cwiseAbs().maxCoeff(); };
+  return size(pair.a) >= size(pair.b) ? a : b;
+}
+
+bool Landing::has_stopped(int island, double share) const { return !landed_[island].empty() && high_[island] < share; }
+
+// From a look at `share` on: as far as what still moves has been given looks, and has room.
+double Landing::next_share(const VecX& step, const std::vector<double>& looks, const Look& look, double share) {
+  double most = 1.0;
+  std::vector<double> moving(parent_.size(), 0.0);
+  for (int body = 1; body < system_.body_count(); ++body) {
+    if (!landed_[island(body)].empty()) continue;
+    most = std::max(most, looks[body]);
+    moving[island(body)] = 1.0;
+  }
+  const double room = std::max(look.room(cut_step(step, moving)), k_least_look);
+  return std::min(1.0, share + std::min(1.0 / most, room));
+}
+
+// Look by look, as many as what still moves takes. False if a contact closes at which nothing lands, or none at all.
+bool Landing::find_first(const VecX& step, const std::vector<double>& looks, const Look& look) {
+  const double* const force = statics_.evaluation().contact_force;
+  std::vector<double> shares(parent_.size());
+  std::vector<char> is_known(open_.size(), 0);
+  bool is_any = false;
+  for (double share = 0.0, before = 0.0; share < 1.0; before = share) {
+    share = next_share(step, looks, look, share);
+    for (std::size_t k = 0; k < shares.size(); ++k) shares[k] = std::min(share, high_[k]);
+    look.at(cut_step(step, shares));
+    for (std::size_t p = 0; p < open_.size(); ++p) {
+      if (is_known[p] != 0 || !(force[open_[p].contact] > 0.0)) continue;
+      is_known[p] = 1;
+      int landing = lander(open_[p], step);
+      if (landing < 0) return false;
+      if (has_stopped(landing, share)) { // the other one runs into it
+        landing = island(open_[p].a) == landing ? island(open_[p].b) : island(open_[p].a);
+        if (is_carried_[landing] != 0 || has_stopped(landing, share)) return false;
+      }
+      landed_[landing].push_back(open_[p].contact);
+      high_[landing] = share;
+      low_[landing] = before;
+      is_any = true;
+    }
+  }
+  return is_any;
+}
+
+// All of them at once by bisection.
+void Landing::close_in(const VecX& step, const Look& look) {
+  const double* const force = statics_.evaluation().contact_force;
+  std::vector<double> shares(parent_.size());
+  for (int i = 0; i < k_most_halvings; ++i) {
+    bool is_open = false;
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const bool is_known = landed_[k].empty() || high_[k] - low_[k] <= k_same_share * high_[k];
+      shares[k] = is_known ? high_[k] : 0.5 * (low_[k] + high_[k]);
+      is_open = is_open || !is_known;
+    }
+    if (!is_open) return;
+    look.at(cut_step(step, shares));
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      if (shares[k] == high_[k]) continue;
+      const bool is_closed = std::any_of(landed_[k].begin(), landed_[k].end(), [force](int contact) { return force[contact] > 0.0; });
+      (is_closed ? high_ : low_)[k] = shares[k];
+    }
+  }
+}
+
+bool Landing::cut(VecX& step, const std::vector<double>& looks, double touch, const Look& look) {
+  low_.assign(parent_.size(), 0.0);
+  high_.assign(parent_.size(), 1.0);
+  landed_.assign(parent_.size(), {});
+  if (open_.empty() || !find_first(step, looks, look)) return false;
+  close_in(step, look);
+  std::vector<double> size(parent_.size(), 0.0);
+  for (int body = 1; body < system_.body_count(); ++body)
+    size[island(body)] = std::max(size[island(body)], step.segment<3>(3 * (body - 1)).cwiseAbs().maxCoeff());
+  for (std::size_t k = 0; k < size.size(); ++k)
+    if (!landed_[k].empty() && size[k] > 0.0) high_[k] = std::min(1.0, high_[k] + touch / size[k]);
+  step = cut_step(step, high_);
+  return true;
+}
+
+} // namespace steplap

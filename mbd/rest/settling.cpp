@@ -1,0 +1,136 @@
+#include "mbd/rest/settling.h"
+
+#include "mbd/rest/clearance.h"
+#include "mbd/dynamics/dynamics.h"
+#include "mbd/events/blow.h"
+#include "mbd/integrators/time_stepping.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
+constexpr double k_first = 1e-4;   // of the scene's length: what the first step moves
+constexpr double k_move = 0.05, k_turn = 0.1; // of the length, rad: what a step moves at most
+constexpr double k_balanced = 1e-9; // of the accelerations at the start: what is left is for Newton's method
+constexpr double k_shortest = 1e-5; // of the longest step: time stepping takes less than a tenth of that for rounding
+constexpr double k_touch = 64.0;    // roundings of the largest coordinate
+constexpr double k_on_rows = 1e-12; // m, rad
+// Steps: each costs equations of all coordinates, and rows of friction squared.
+constexpr int k_most_steps = 4000, k_least_steps = 100;
+constexpr double k_most_work = 4e8;
+
+class Settler {
+public:
+  Settler(const System& system, const State& start)
+      : system_(system), dynamics_(system), stepping_(system), state_(start), scene_(scale_of(system, start)),
+        clearance_(system, k_touch * k_epsilon * scene_.reach) {
+    const auto limit = std::upper_bound(system.breakpoints.begin(), system.breakpoints.end(), start.t);
+    dynamics_.set_time_limit(limit == system.breakpoints.end() ? system.drives_end : *limit);
+    dynamics_.use_coordinates(Coordinates::absolute);
+    stepping_.hold_time(start.t);
+  }
+
+  Settling run() {
+    Settling found;
+    const double rows = static_cast<double>(system_.friction_row_count + system_.largest_dimension());
+    const double most = k_most_work / (rows * rows);
+    found.is_tried = most >= k_least_steps;
+    if (!found.is_tried) return found;
+    reference_ = largest_at_start();
+    if (!(reference_ > 0.0)) {
+      found.rest = state_;
+      return found;
+    }
+    double h = std::sqrt(k_first * scene_.length / reference_), longest = h;
+    clearance_.look(state_.q);
+    for (; found.steps < std::min(most, 1.0 * k_most_steps) && h > k_shortest * longest; ++found.steps) {
+      State next = state_;
+      if (!can_step(next, h)) {
+        h *= 0.25;
+        continue;
+      }
+      const VecX way = way_to(next);
+      const double size = std::max(size_of(way), 1.0 / clearance_.share(way));
+      if (!(size <= 1.0) || !passes_nothing(next, way)) {
+        h *= std::isfinite(size) && size > 1.0 ? std::max(0.1, 0.7 / std::sqrt(size)) : 0.25;
+        continue;
+      }
+      state_ = next;
+      if (acceleration_of(way, h) <= k_balanced * reference_) {
+        found.rest = state_;
+        break;
+      }
+      if (size < 0.5) h *= 2.0;
+      longest = std::max(longest, h);
+    }
+    return found;
+  }
+
+private:
+  [[nodiscard]] bool can_step(State& next, double h) {
+    const double t = state_.t;
+    next.t = t - h;
+    try {
+      stepping_.step(dynamics_, next, t, k_on_rows);
+    } catch (const NumericalFailure&) {
+      return false;
+    }
+    next.t = t;
+    std::fill(next.v.begin(), next.v.end(), 0.0);
+    return true;
+  }
+
+  [[nodiscard]] bool passes_nothing(const State& next, const VecX& way) {
+    clearance_.look(next.q);
+    if (clearance_.keeps_sides(way)) return true;
+    clearance_.look(state_.q);
+    return false;
+  }
+
+  [[nodiscard]] VecX way_to(const State& next) const {
+    VecX way(scene_.scale.size());
+    for (Eigen::Index k = 0; k < way.size(); ++k) way[k] = next.q[static_cast<std::size_t>(k) + 3] - state_.q[static_cast<std::size_t>(k) + 3];
+    return way;
+  }
+  // 1: as far as a step may move at most.
+  [[nodiscard]] double size_of(const VecX& way) const {
+    double size = 0.0;
+    for (Eigen::Index k = 0; k < way.size(); ++k)
+      size = std::max(size, std::abs(way[k]) / (k % 3 < 2 ? k_move * scene_.length : k_turn));
+    return size;
+  }
+  [[nodiscard]] double acceleration_of(const VecX& way, double h) const { return way.cwiseQuotient(scene_.scale).cwiseAbs().maxCoeff() / (h * h); }
+
+  // What the forces on a body would give it by itself, m/s², angles at their radius: what joints and friction hold is not seen
+  // in accelerations.
+  [[nodiscard]] double largest_at_start() {
+    Statics statics(system_);
+    State state = state_;
+    statics.evaluate(state);
+    double largest = system_.gravity.norm();
+    for (int k = 0; k < statics.coordinates(); ++k) {
+      const BodyData& body = system_.bodies[static_cast<std::size_t>(k / 3 + 1)];
+      largest = std::max(largest, std::abs(statics.force()[k]) / (k % 3 < 2 ? body.mass : body.inertia * scene_.scale[k]));
+    }
+    return largest;
+  }
+
+  const System& system_;
+  Dynamics dynamics_;
+  TimeStepping stepping_;
+  State state_;
+  SceneScale scene_;
+  Clearance clearance_;
+  double reference_ = 0.0;
+};
+
+} // namespace
+
+Settling settle_in_time(const System& system, const State& start) { return Settler(system, start).run(); }
+
+} // namespace steplap

@@ -1,0 +1,360 @@
+#include "mbd/trust/global_error.h"
+
+#include "mbd/trust/event_match.h"
+#include "mbd/base/number_text.h"
+#include "mbd/model/method.h"
+#include "mbd/system/formula_channel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <initializer_list>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_finer_tolerance = 0.01;
+constexpr double k_least_tolerance = 1e-14; // below it rounding makes the steps
+constexpr int k_division = 2;
+constexpr double k_finer_step = 1.0 / k_division;
+constexpr double k_finer_cost = 3.0;     // of a hundredth of the tolerance: order 5 takes 2.5 times the steps
+constexpr double k_rounding = 1e-14;     // of a channel's largest value, and of times
+constexpr double k_first_order = 0.5;    // what half the step leaves
+constexpr double k_safety = 1.5;
+constexpr long k_steps_between_looks = 64; // at the evaluations made
+constexpr double k_most_left = 0.9;      // of the error, by a finer run: its difference is the rest, a tenth of the error
+constexpr double k_stepping_safety = 3.0; // where nothing is located
+// Of an extreme beside a singular position (within 1e-5 rad): a force that goes with one over the distance is larger by far than
+// away from it, and runs that come to other distances do not agree on it.
+constexpr double k_disagreed = 0.01, k_grown = 1e3;
+
+bool locates_events(const SimulationOptions& options) { return !method(options.integrator).is_time_stepping; }
+
+// Error over difference; unknown where the finer run was none. What it leaves of the error is told by the steps that were
+// taken, not by those that were asked for.
+double factor_for(const SimulationOptions& coarse, const RunStatistics& run, const SimulationOptions& fine,
+                  const RunStatistics& finer, bool has_storm) {
+  if (fine.settings.step != coarse.settings.step) {
+    const double part = std::max(fine.settings.step / coarse.settings.step, static_cast<double>(run.steps) / static_cast<double>(finer.steps));
+    return part > k_most_left ? k_unknown_error : (locates_events(coarse) ? 1.0 : k_stepping_safety) / (1.0 - part);
+  }
+  const double part = has_storm ? k_first_order : fine.settings.tolerance / coarse.settings.tolerance;
+  const bool is_same = finer.steps <= run.steps && finer.evaluations <= run.evaluations;
+  return part > k_most_left || is_same ? k_unknown_error : k_safety / (1.0 - std::min(k_first_order, part));
+}
+
+double difference(double a, double b) {
+  if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0; // also equal infinities
+  const double d = std::abs(a - b);
+  return std::isfinite(d) ? d : k_unknown_error;
+}
+
+double difference(const std::optional<double>& a, const std::optional<double>& b) {
+  if (a.has_value() != b.has_value()) return k_unknown_error;
+  return a ? difference(*a, *b) : 0.0;
+}
+
+// Beside its pole a number without a unit, as the margin of what bears nothing, is one over rounding: it may be infinite.
+double difference(const Channel& channel, double a, double b) {
+  const bool is_at_pole = channel.unit.empty() && std::max(std::abs(a), std::abs(b)) > ExtremeFinder::k_at_pole;
+  return is_at_pole && a != b ? k_unknown_error : difference(a, b);
+}
+
+void keep_larger(double& error, double other) { error = larger_error(error, other); }
+
+// Do values of the unit jump at events? Places do not; velocities do where contacts are blows.
+bool may_jump(const Channel& channel) { return channel.unit != "m" && channel.unit != "rad"; }
+
+// One finer run against the run whose error is wanted.
+class Comparison {
+public:
+  Comparison(const System& system, const RunResult& run, const RunResult& fine, double factor)
+      : system_(system), run_(run), fine_(fine), match_(match_events(run.events, fine.events)), factor_(factor) {}
+
+  void add_to(GlobalErrorEstimate& estimate) const {
+    for (std::size_t c = 0; c < run_.ranges.size(); ++c) add_range(c, estimate.channels[c]);
+    add_curves(estimate.channels);
+    add_events(estimate.event_times);
+    keep_larger(estimate.dissipated, factor_ * difference(run_.statistics.dissipated, fine_.statistics.dissipated));
+    keep_larger(estimate.work, factor_ * difference(run_.statistics.work, fine_.statistics.work));
+  }
+
+private:
+  void add_range(std::size_t c, ChannelError& error) const {
+    const ChannelRange &mine = run_.ranges[c], &fine = fine_.ranges[c];
+    keep_larger(error.low, factor_ * difference(*mine.channel, mine.low.value, fine.low.value));
+    keep_larger(error.high, factor_ * difference(*mine.channel, mine.high.value, fine.high.value));
+    keep_larger(error.final, factor_ * difference(*mine.channel, mine.final, fine.final));
+    keep_larger(error.t_low, factor_ * difference(mine.low.t, fine.low.t));
+    keep_larger(error.t_high, factor_ * difference(mine.high.t, fine.high.t));
+    keep_larger(error.first_above_one, factor_ * difference(mine.first_above_one, fine.first_above_one));
+    if (mine.had_no_value != fine.had_no_value) error.low = error.high = k_unknown_error;
+  }
+
+  // Row after row, for they may be on disk.
+  void add_curves(std::vector<ChannelError>& errors) const {
+    const Trajectory &mine = *run_.trajectory, &fine = *fine_.trajectory;
+    const auto& channels = mine.channels();
+    const std::size_t rows = std::min(mine.size(), fine.size());
+    const BetweenEvents between(match_, run_.events, fine_.events);
+    std::vector<char> jumps(channels.size());
+    std::transform(channels.begin(), channels.end(), jumps.begin(), [](const Channel* channel) { return may_jump(*channel); });
+    std::vector<double> worst(channels.size(), 0.0);
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::span<const double> a = mine.row(row), b = fine.row(row);
+      const bool is_jump = between.holds(a[0]);
+      for (std::size_t c = 0; c < channels.size(); ++c)
+        if (!jumps[c] || !is_jump) worst[c] = larger_error(worst[c], difference(*channels[c], a[c + 1], b[c + 1]));
+    }
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      ChannelError& error = errors[static_cast<std::size_t>(channels[c] - system_.channels.data())];
+      keep_larger(error.curve, factor_ * worst[c]);
+      error.is_sampled = true;
+    }
+  }
+
+  void add_events(std::vector<double>& times) const {
+    for (const EventPair& pair : match_.pairs)
+      keep_larger(times[pair.mine], factor_ * difference(run_.events[pair.mine].t, fine_.events[pair.reference].t));
+    for (const std::size_t alone : match_.only_mine) times[alone] = k_unknown_error;
+  }
+
+  const System& system_;
+  const RunResult &run_, &fine_;
+  EventMatch match_;
+  double factor_;
+};
+
+double spread_of(const ChannelRange& range) { return range.high.value - range.low.value; }
+
+// Of channels in the same unit.
+struct Kind {
+  double range = 0.0, largest = 0.0; ///< the largest range, the largest value
+  double scale = 0.0;                ///< what forces could come to: rounding of theirs is what is left where nothing moves
+  double typical_error = 0.0;        ///< of extremes, of their ranges: half of the channels have less
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::map<std::string, Kind> kinds_of(const std::vector<ChannelRange>& ranges, const std::vector<ChannelError>& errors) {
+  std::map<std::string, Kind> kinds;
+  std::map<std::string, std::vector<double>> relative;
+  for (std::size_t c = 0; c < ranges.size(); ++c) {
+    const double spread = spread_of(ranges[c]), error = std::max(errors[c].low, errors[c].high);
+    if (!std::isfinite(spread)) continue;
+    Kind& kind = kinds[ranges[c].channel->unit];
+    kind.range = std::max(kind.range, spread);
+    kind.largest = std::max({kind.largest, std::abs(ranges[c].low.value), std::abs(ranges[c].high.value)});
+    if (spread > 0.0 && std::isfinite(error)) relative[ranges[c].channel->unit].push_back(error / spread);
+  }
+  for (auto& [unit, kind] : kinds) kind.typical_error = median(std::move(relative[unit]));
+  return kinds;
+}
+
+// What the largest force could accelerate, and what that could come to over the scene's length, as in extreme_scales.cpp; about a
+// body's centre what accelerates its centre does so at its radius of gyration.
+void set_scales(const System& system, const RunResult& run, std::map<std::string, Kind>& kinds) {
+  const auto largest = [&](const char* unit) {
+    const auto found = kinds.find(unit);
+    return found == kinds.end() ? 0.0 : found->second.largest;
+  };
+  double mass = 0.0, turned = 0.0;
+  std::map<std::string, double> acceleration; // by body, m/s²
+  for (const ChannelRange& range : run.ranges)
+    if (const std::string& name = range.channel->name; range.channel->unit == "m/s^2" && std::isfinite(range.largest().value))
+      acceleration[name.substr(0, name.rfind('.'))] += std::abs(range.largest().value);
+  for (const BodyData& body : system.bodies) {
+    mass += body.mass;
+    if (body.mass > 0.0 && body.inertia > 0.0)
+      turned = std::max(turned, (system.gravity.norm() + acceleration[body.name]) / std::sqrt(body.inertia / body.mass));
+  }
+  const double length = largest("m") > 0.0 ? largest("m") : 1.0;
+  const double force = std::max(largest("N"), mass * system.gravity.norm()), a = mass > 0.0 ? force / mass : 0.0, v = std::sqrt(a * length);
+  const std::pair<const char*, double> scales[] = {{"m/s", v}, {"rad/s", v / length}, {"m/s^2", a}, {"rad/s^2", std::max(turned, a / length)},
+                                                   {"N", force}, {"N m", force * length}, {"W", force * v}, {"J", force * length}};
+  for (const auto& [unit, scale] : scales)
+    if (const auto found = kinds.find(unit); found != kinds.end()) found->second.scale = scale;
+}
+
+bool is_exact(const ChannelRange& a, const ChannelRange& b) {
+  return a.low.value == a.high.value && b.low.value == a.low.value && b.high.value == a.high.value;
+}
+
+bool diverges(const ChannelRange& range, const Extreme& extreme, double error) {
+  const double size = std::abs(extreme.value);
+  return !(error <= k_disagreed * size) && size > k_grown * std::max(std::abs(range.first), std::abs(range.final));
+}
+
+// A formula whose bounds could not be closed may go beyond what both runs found, however well they agree.
+bool is_located(const ChannelRange& range, const Kind& kind) {
+  const double size = std::max({kind.range, kind.largest, range.channel->unit.empty() ? 1.0 : 0.0});
+  return !formula_of(*range.channel) || range.resolution <= ExtremeFinder::k_resolution * size;
+}
+
+// What the finest run does not know itself.
+void add_floors(const System& system, const RunResult& run, GlobalErrorEstimate& estimate) {
+  const SimulationOptions& options = estimate.finer.back();
+  const IntegratorSettings& settings = options.settings;
+  const bool has_located_events = locates_events(options);
+  const double tolerance = is_adaptive(system, options.integrator) ? settings.tolerance : settings.projection_tolerance;
+  const double end = run.final_state.t;
+  const double time = (tolerance + k_rounding) * end + (has_located_events ? 0.0 : settings.step);
+  std::map<std::string, Kind> kinds = kinds_of(run.ranges, estimate.channels);
+  set_scales(system, run, kinds);
+  for (std::size_t c = 0; c < run.ranges.size(); ++c) {
+    const ChannelRange& range = run.ranges[c];
+    const Kind& kind = kinds[range.channel->unit];
+    if (is_located(range, kind) && is_exact(range, estimate.finest.ranges[c])) continue;
+    ChannelError& error = estimate.channels[c];
+    const double floor = tolerance * kind.range + k_rounding * std::max(kind.largest, kind.scale);
+    const double spread = spread_of(range);
+    // Where blows fall in a step is chance, and so is what one extreme shows of it.
+    const double least = !has_located_events && std::isfinite(spread) ? kind.typical_error * spread : 0.0;
+    const double resolution = std::isinf(range.resolution) ? k_unknown_error : range.resolution;
+    error.low = larger_error(larger_error(error.low, least), range.unsure_low) + floor + resolution;
+    error.high = larger_error(larger_error(error.high, least), range.unsure_high) + floor + resolution;
+    if (range.is_low_singular && diverges(range, range.low, error.low)) error.low = k_unknown_error;
+    if (range.is_high_singular && diverges(range, range.high, error.high)) error.high = k_unknown_error;
+    error.final += floor;
+    error.curve += floor;
+    error.t_low += time;
+    error.t_high += time;
+    error.first_above_one += time;
+  }
+  for (std::size_t i = 0; i < run.events.size(); ++i)
+    if (!run.events[i].is_at_start()) estimate.event_times[i] += time;
+  const RunStatistics& s = run.statistics;
+  if (s.dissipated != 0.0) estimate.dissipated += tolerance * s.energy_scale + k_rounding * std::abs(s.dissipated);
+  if (s.work != 0.0) estimate.work += tolerance * s.energy_scale + k_rounding * std::abs(s.work);
+}
+
+// No finer run was one. What is the same throughout is known all the same, and so is when the run begins.
+void forget(const RunResult& run, GlobalErrorEstimate& estimate) {
+  constexpr double unknown = k_unknown_error;
+  for (std::size_t c = 0; c < run.ranges.size(); ++c)
+    if (!is_exact(run.ranges[c], estimate.finest.ranges[c]))
+      estimate.channels[c] = {unknown, unknown, unknown, unknown, unknown, unknown, unknown, true};
+  for (std::size_t i = 0; i < run.events.size(); ++i)
+    if (!run.events[i].is_at_start()) estimate.event_times[i] = unknown;
+  if (run.statistics.dissipated != 0.0) estimate.dissipated = unknown;
+  if (run.statistics.work != 0.0) estimate.work = unknown;
+  estimate.error.worst.fill({unknown, "", 0.0});
+  estimate.unknown_because = "no finer run took shorter steps, so that none tells an error";
+}
+
+// An event without partner has no time that could be called known.
+void note_unmatched(GlobalErrorEstimate& estimate, const RunResult& run, const EventFilter& is_counted) {
+  if (estimate.error.unmatched_events == 0) return;
+  WorstError& worst = estimate.error.worst[static_cast<std::size_t>(ErrorKind::event_time)];
+  worst = {k_unknown_error, "", 0.0};
+  for (std::size_t i = run.events.size(); i-- > 0;)
+    if (std::isnan(estimate.event_times[i]) && (!is_counted || is_counted(run.events[i])))
+      worst = {k_unknown_error, "'" + run.events[i].element + "' " + run.events[i].words(), run.events[i].t};
+}
+
+void keep_worst(RunDifference& worst, const RunDifference& other, double factor) {
+  for (std::size_t k = 0; k < k_error_kinds; ++k) {
+    const double value = factor * other.worst[k].value;
+    if (std::isnan(worst.worst[k].value) || value <= worst.worst[k].value) continue;
+    worst.worst[k] = other.worst[k];
+    worst.worst[k].value = value;
+  }
+  worst.unmatched_events = std::max(worst.unmatched_events, other.unmatched_events);
+  worst.compared_until = other.compared_until;
+}
+
+void add_cost(RunStatistics& sum, const RunStatistics& run) {
+  sum.steps += run.steps;
+  sum.evaluations += run.evaluations;
+  sum.cpu_seconds += run.cpu_seconds;
+}
+
+// Within what is left of the evaluations, for which a computer may be fast or slow.
+RunResult simulate_within(const System& system, const State& initial, const SimulationOptions& options, const RunStatistics& spent,
+                          double most_evaluations) {
+  Simulation simulation(system, initial, options);
+  for (long steps = 0; simulation.advance(); ++steps)
+    if (steps % k_steps_between_looks == 0 && static_cast<double>(spent.evaluations + simulation.statistics().evaluations) > most_evaluations)
+      throw EstimateTooDear("given up after " + number_text(most_evaluations) + " evaluations, at t = " +
+                            number_text(simulation.state().t) + " s of a finer run");
+  return std::move(simulation).result();
+}
+
+} // namespace
+
+double larger_error(double a, double b) {
+  return std::isnan(a) || std::isnan(b) ? k_unknown_error : std::max(a, b);
+}
+
+double ChannelError::largest() const {
+  double worst = 0.0;
+  for (const double error : {low, high, final, curve}) worst = larger_error(worst, error);
+  return worst;
+}
+
+bool is_adaptive(const System& system, const std::string& integrator) {
+  const Dynamics dynamics(system);
+  IntegratorSettings settings;
+  settings.step = 1e-3; // any: it makes no step
+  return make_integrator(integrator, dynamics, settings)->is_adaptive();
+}
+
+std::vector<SimulationOptions> finer_options(const System& system, const SimulationOptions& options) {
+  SimulationOptions finer = options;
+  finer.settings.division = k_division * options.settings.division;
+  finer.storm_step = k_finer_step * options.storm_step;
+  if (is_adaptive(system, options.integrator)) {
+    finer.settings.tolerance = std::max(k_least_tolerance, k_finer_tolerance * options.settings.tolerance);
+    return {finer};
+  }
+  finer.settings.step = k_finer_step * options.settings.step;
+  SimulationOptions finest = finer;
+  finest.settings.step *= k_finer_step;
+  finest.settings.division *= k_division;
+  return {finer, finest};
+}
+
+double times_of_finer_runs(const System& system, const SimulationOptions& options) {
+  if (is_adaptive(system, options.integrator)) return k_finer_cost;
+  double times = 0.0;
+  for (const SimulationOptions& finer : finer_options(system, options)) times += options.settings.step / finer.settings.step;
+  return times;
+}
+
+double parts_evaluated(const System& system, const RunStatistics& run) {
+  return static_cast<double>(run.evaluations) * static_cast<double>(system.bodies.size() + system.element_names.size());
+}
+
+GlobalErrorEstimate estimate_global_error(const System& system, const State& initial, const SimulationOptions& options,
+                                          const RunResult& run, const EventFilter& is_counted, double most_evaluations) {
+  GlobalErrorEstimate estimate;
+  estimate.channels.resize(system.channels.size());
+  estimate.event_times.resize(run.events.size());
+  estimate.finer = finer_options(system, options);
+  bool has_storm = run.statistics.storms > 0, is_any_finer = false;
+  for (const SimulationOptions& finer : estimate.finer) {
+    RunResult fine = simulate_within(system, initial, finer, estimate.cost, most_evaluations);
+    has_storm = has_storm || fine.statistics.storms > 0;
+    const double factor = factor_for(options, run.statistics, finer, fine.statistics, has_storm);
+    if (!std::isnan(factor)) {
+      is_any_finer = true;
+      Comparison(system, run, fine, factor).add_to(estimate);
+      keep_worst(estimate.error, compare_runs(system, run, fine, is_counted), factor);
+    }
+    add_cost(estimate.cost, fine.statistics);
+    estimate.finest = std::move(fine);
+  }
+  if (is_any_finer) add_floors(system, run, estimate);
+  else forget(run, estimate);
+  note_unmatched(estimate, run, is_counted);
+  estimate.finest.trajectory.reset();
+  return estimate;
+}
+
+} // namespace steplap

@@ -1,0 +1,214 @@
+#include "mbd/trust/run_comparison.h"
+
+#include "mbd/trust/event_match.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_least_range = 1e-3; // of the largest range among channels of one kind
+constexpr double k_is_constant = 1e-9; // a range below this part of the value is rounding
+// Of the largest value of its kind, as in mbd/simulation/extremes.h: a channel whose whole range is less shows rounding only.
+constexpr double k_rounding = 1e-12;
+
+struct Compared {
+  const Channel* channel = nullptr;
+  ErrorKind kind = ErrorKind::position;
+  std::size_t column = 0;
+  double low = 0.0, high = 0.0, size = 0.0; ///< of the reference
+  double arm = 1.0; ///< m: times an angle it is a length; by it a couple is a force
+  [[nodiscard]] double range() const { return high - low; }
+};
+
+std::optional<ErrorKind> kind_of(const Channel& channel, const std::set<std::string>& bodies) {
+  if (channel.unit == "N" || channel.unit == "N m") return ErrorKind::reaction;
+  const std::size_t dot = channel.name.rfind('.');
+  if (dot == std::string::npos || bodies.count(channel.name.substr(0, dot)) == 0)
+    return std::nullopt;
+  if (channel.unit == "m" || channel.unit == "rad") return ErrorKind::position;
+  if (channel.unit == "m/s" || channel.unit == "rad/s") return ErrorKind::velocity;
+  return std::nullopt;
+}
+
+// Largest radius of gyration.
+double size_of(const System& system) {
+  double size = 0.0;
+  for (const BodyData& body : system.bodies)
+    if (body.mass > 0.0) size = std::max(size, std::sqrt(body.inertia / body.mass));
+  return size > 0.0 ? size : 1.0;
+}
+
+// What turns the channel's unit into that of the translations of its kind.
+double arm_of(const Channel& channel, double size) {
+  if (channel.unit == "rad" || channel.unit == "rad/s") return size;
+  return channel.unit == "N m" ? 1.0 / size : 1.0;
+}
+
+void widen(Compared& c, double value) {
+  c.low = std::min(c.low, value);
+  c.high = std::max(c.high, value);
+  c.size = std::max(c.size, std::abs(value));
+}
+
+// Of the whole run where that is known, whatever the samples fell on. Row after row, for they may be on disk.
+void set_ranges(std::vector<Compared>& list, const System& system, const RunResult& run) {
+  const Trajectory& reference = *run.trajectory;
+  for (std::size_t row = 0; row < reference.size(); ++row) {
+    const std::span<const double> values = reference.row(row);
+    for (Compared& c : list) {
+      const double value = values[c.column + 1];
+      if (row == 0) c.low = c.high = value;
+      widen(c, value);
+    }
+  }
+  if (run.ranges.empty()) return;
+  for (Compared& c : list) {
+    const ChannelRange& whole = run.ranges[static_cast<std::size_t>(c.channel - system.channels.data())];
+    for (const double value : {whole.low.value, whole.high.value})
+      if (std::isfinite(value)) widen(c, value);
+  }
+}
+
+std::vector<Compared> compared_channels(const System& system, const RunResult& run) {
+  const Trajectory& reference = *run.trajectory;
+  std::set<std::string> bodies;
+  for (const BodyData& body : system.bodies)
+    bodies.insert(body.name);
+  const double size = size_of(system);
+  std::vector<Compared> list;
+  for (std::size_t column = 0; column < reference.channels().size(); ++column) {
+    Compared c;
+    c.channel = reference.channels()[column];
+    c.column = column;
+    const std::optional<ErrorKind> kind = kind_of(*c.channel, bodies);
+    if (!kind || reference.size() == 0) continue;
+    c.kind = *kind;
+    c.arm = arm_of(*c.channel, size);
+    list.push_back(c);
+  }
+  set_ranges(list, system, run);
+  return list;
+}
+
+// By kind, of a translation or force.
+using Scales = std::map<ErrorKind, double>;
+
+Scales sizes_of(const std::vector<Compared>& channels) {
+  Scales size;
+  for (const Compared& c : channels) size[c.kind] = std::max(size[c.kind], c.arm * c.size);
+  return size;
+}
+
+// The largest range, or the largest value where nothing moves.
+Scales scales_of(const std::vector<Compared>& channels) {
+  Scales range, size = sizes_of(channels);
+  for (const Compared& c : channels) range[c.kind] = std::max(range[c.kind], c.arm * c.range());
+  for (auto& [kind, value] : range) {
+    if (value <= k_is_constant * size[kind]) value = size[kind];
+    if (value == 0.0) value = 1.0; // zero throughout: the error as it is
+  }
+  return range;
+}
+
+bool is_worse(double value, const WorstError& worst) { // NaN is worse than anything
+  return !(value <= worst.value) && !std::isnan(worst.value);
+}
+
+void keep_worst(WorstError& worst, double value, const std::string& where, double t) {
+  if (is_worse(value, worst)) worst = {value, where, t};
+}
+
+void keep_worst(WorstError& worst, double value, double t) {
+  if (!is_worse(value, worst)) return;
+  worst.value = value;
+  worst.t = t;
+}
+
+double difference(double a, double b) {
+  if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0; // also equal infinities
+  return std::abs(a - b);
+}
+
+// Of every channel the largest error and when; row after row, for they may be on disk.
+std::vector<std::pair<const Compared*, WorstError>> worst_of_channels(const std::vector<Compared>& channels, const Trajectory& mine,
+                                                                      const Trajectory& theirs, std::size_t rows,
+                                                                      const BetweenEvents& between) {
+  const Scales scales = scales_of(channels), sizes = sizes_of(channels);
+  std::vector<std::pair<const Compared*, WorstError>> list;
+  std::vector<double> scale, rounding; // rounding: of a channel that does nothing else; 0 of all others
+  for (const Compared& c : channels) {
+    list.push_back({&c, {}});
+    scale.push_back(std::max(c.range(), k_least_range * scales.at(c.kind) / c.arm));
+    const double least = k_rounding * sizes.at(c.kind) / c.arm;
+    rounding.push_back(c.range() <= least ? least : 0.0);
+  }
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::span<const double> a = mine.row(row), b = theirs.row(row);
+    const bool is_jump = between.holds(b[0]);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const Compared& c = *list[i].first;
+      if (c.kind == ErrorKind::reaction && is_jump) continue;
+      const double off = difference(a[c.column + 1], b[c.column + 1]);
+      if (!(off <= rounding[i])) keep_worst(list[i].second, off / scale[i], b[0]);
+    }
+  }
+  return list;
+}
+
+} // namespace
+
+const char* name_of(ErrorKind kind) {
+  switch (kind) {
+  case ErrorKind::position:
+    return "positions";
+  case ErrorKind::velocity:
+    return "velocities";
+  case ErrorKind::reaction:
+    return "reactions";
+  case ErrorKind::event_time:
+    return "event times";
+  }
+  return "";
+}
+
+double RunDifference::largest() const {
+  double value = 0.0;
+  for (const WorstError& w : worst)
+    if (!(w.value <= value)) value = w.value;
+  return value;
+}
+
+RunDifference compare_runs(const System& system, const RunResult& run, const RunResult& reference,
+                           const EventFilter& is_counted) {
+  RunDifference d;
+  const Trajectory& mine = *run.trajectory;
+  const Trajectory& theirs = *reference.trajectory;
+  const std::size_t rows = std::min(mine.size(), theirs.size());
+  if (rows > 0) d.compared_until = theirs.time(rows - 1);
+  const EventMatch match = match_events(run.events, reference.events);
+  const auto counted = [&](const std::vector<std::size_t>& places, const std::vector<Event>& events) {
+    return std::count_if(places.begin(), places.end(), [&](std::size_t i) { return !is_counted || is_counted(events[i]); });
+  };
+  d.unmatched_events = static_cast<int>(counted(match.only_mine, run.events) + counted(match.only_reference, reference.events));
+  const BetweenEvents between(match, run.events, reference.events);
+  const std::vector<Compared> channels = compared_channels(system, reference);
+  for (const auto& [c, worst] : worst_of_channels(channels, mine, theirs, rows, between))
+    keep_worst(d.worst[static_cast<std::size_t>(c->kind)], worst.value, c->channel->name, worst.t);
+  const double duration = theirs.size() > 0 ? theirs.time(theirs.size() - 1) - theirs.time(0) : 0.0;
+  for (const EventPair& pair : match.pairs) {
+    const Event &mine_event = run.events[pair.mine], &event = reference.events[pair.reference];
+    if (is_counted && !is_counted(event)) continue;
+    keep_worst(d.worst[static_cast<std::size_t>(ErrorKind::event_time)],
+               std::abs(mine_event.t - event.t) / (duration > 0.0 ? duration : 1.0),
+               "'" + event.element + "' " + event.words(), event.t);
+  }
+  return d;
+}
+
+} // namespace steplap

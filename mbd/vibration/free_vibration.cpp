@@ -1,0 +1,175 @@
+#include "mbd/vibration/free_vibration.h"
+
+#include "mbd/algebra/decompositions.h"
+#include "mbd/vibration/modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
+constexpr double k_rounded_terms = 64.0;
+// Up to so many free coordinates eigenvalues are refined one by one, which costs a factorisation each.
+constexpr Eigen::Index k_refined = 60;
+constexpr double k_near = 1e-3; // a refinement that moves an eigenvalue further, as a share of it, has lost its way
+
+using Complex = std::complex<double>;
+using ComplexMatrix = Eigen::MatrixXcd;
+using ComplexVector = Eigen::VectorXcd;
+
+// Singular values of A with their right vectors; of a symmetric one by its eigenvectors.
+std::pair<VecX, MatX> singular_vectors(const MatX& a) {
+  if ((a - a.transpose()).cwiseAbs().sum() <= 1e-9 * a.cwiseAbs().sum()) {
+    const auto [values, vectors] = symmetric_eigen(0.5 * (a + a.transpose()));
+    return {values.cwiseAbs(), vectors};
+  }
+  const auto [values, v] = right_singular(a);
+  return {values, v};
+}
+
+// Orthonormal complement of the columns' span.
+MatX complement(const MatX& columns) {
+  const Eigen::Index n = columns.rows();
+  if (columns.cols() == 0) return MatX::Identity(n, n);
+  return orthonormal(columns, n).rightCols(n - columns.cols());
+}
+
+// Motions at constant velocity that damping does not resist either: (β, η') with Vᵀη' = 0, A V β + B η' = 0.
+MatX steady_motions(const FreeVibration& v) {
+  const Eigen::Index r = v.a.cols(), k = v.held.cols();
+  if (v.loose.cols() == 0) return MatX(k + r, 0);
+  const MatX av = v.a * v.held, bl = v.b * v.loose;
+  MatX beyond = bl;
+  if (k > 0) {
+    const MatX q = orthonormal(av, k);
+    beyond -= q * (q.transpose() * bl);
+  }
+  const double size = (v.b.cwiseAbs() * v.loose.cwiseAbs()).norm();
+  const RightSingular singular = right_singular(beyond);
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < v.loose.cols(); ++i)
+    if (i >= singular.values.size() || singular.values[i] <= k_rounded_terms * k_epsilon * size)
+      free.push_back(i);
+  MatX motions(k + r, static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const VecX rate = v.loose * singular.v.col(free[i]);
+    const auto at = static_cast<Eigen::Index>(i);
+    if (k > 0) motions.col(at).head(k) = -least_squares(av, v.b * rate);
+    motions.col(at).tail(r) = rate;
+  }
+  return motions;
+}
+
+// D⁻¹ M D with powers of two, so that rows and columns are of one size (B. N. Parlett, C. Reinsch, Numer. Math. 13 (1969)
+// 293): slow modes keep their digits beside fast ones. Returns D.
+VecX balance(MatX& m) {
+  const Eigen::Index n = m.rows();
+  VecX d = VecX::Ones(n);
+  for (bool is_changed = true; is_changed;) {
+    is_changed = false;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      double column = m.col(i).cwiseAbs().sum() - std::abs(m(i, i)), row = m.row(i).cwiseAbs().sum() - std::abs(m(i, i));
+      if (column == 0.0 || row == 0.0) continue;
+      const double before = column + row;
+      double f = 1.0;
+      for (; column < 0.5 * row; column *= 4.0) f *= 2.0;
+      for (; column >= 2.0 * row; column *= 0.25) f *= 0.5;
+      if ((column + row) / f >= 0.95 * before) continue;
+      is_changed = true;
+      d[i] *= f;
+      m.col(i) *= f;
+      m.row(i) /= f;
+    }
+  }
+  return d;
+}
+
+// Newton's method for (λ² − λ B − A) x = 0, inverse iteration with the eigenvalue moving along: rounding is then that of
+// the mode's own terms.
+void refine(const FreeVibration& v, Complex& value, ComplexVector& x) {
+  const Eigen::Index r = v.a.cols();
+  Complex at = value;
+  ComplexVector shape = x;
+  double last = k_near;
+  for (int i = 0; i < 6; ++i) {
+    ComplexMatrix q = -at * v.b.cast<Complex>() - v.a.cast<Complex>();
+    q.diagonal().array() += at * at;
+    ComplexVector right = Complex(2.0) * at * shape - v.b.cast<Complex>() * shape;
+    for (Eigen::Index k = 0; k < r; ++k) { // rows of one size: pivots are not chosen by the units of stiff ones
+      double size = 0.0;
+      for (Eigen::Index j = 0; j < r; ++j) size = std::max(size, std::abs(q(k, j).real()) + std::abs(q(k, j).imag()));
+      if (!(size > 0.0)) return;
+      q.row(k) /= size;
+      right[k] /= size;
+    }
+    const ComplexVector next = solve_complex(q, right);
+    const Complex ratio = shape.dot(next);
+    if (!next.allFinite() || size_of(ratio) == 0.0) break; // on the eigenvalue
+    const Complex change = Complex(shape.squaredNorm()) / ratio;
+    const double moved = size_of(change) / size_of(at);
+    if (!(moved < last)) break;
+    at -= change;
+    shape = next / next.norm();
+    last = moved;
+  }
+  if (last >= k_near) return;
+  value = at;
+  x = shape;
+}
+
+} // namespace
+
+void FreeVibration::part_loose(const std::function<MatX(const MatX&)>& sizes_of) {
+  // What nothing holds: singular vectors of A that rounding of the stiffness could make. Found beside the others with
+  // their own rounding, not with that of the stiffest.
+  const auto [sizes, vectors] = singular_vectors(a);
+  const MatX shapes = basis * vectors;
+  const MatX size = sizes_of(shapes);
+  std::vector<Eigen::Index> firm, free;
+  for (Eigen::Index i = 0; i < a.cols(); ++i) {
+    const double terms = shapes.col(i).cwiseAbs().dot(size.col(i));
+    const double rounding = k_epsilon * (k_rounded_terms * terms + 4.0 * sizes.maxCoeff());
+    (sizes[i] <= rounding ? free : firm).push_back(i);
+  }
+  const auto columns = [this, &all = vectors](const std::vector<Eigen::Index>& which) { // clang 14 takes no binding along unnamed
+    MatX out(a.cols(), static_cast<Eigen::Index>(which.size()));
+    for (std::size_t i = 0; i < which.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = all.col(which[i]);
+    return out;
+  };
+  held = columns(firm);
+  loose = columns(free);
+}
+
+std::vector<FreeMode> modes_of(const FreeVibration& v) {
+  std::vector<FreeMode> found;
+  const Eigen::Index r = v.a.cols(), k = v.held.cols();
+  // (β, η'): positions along what nothing holds do not count, nor do velocities that nothing resists: no eigenvalue
+  // that is left is zero.
+  MatX whole = MatX::Zero(k + r, k + r);
+  whole.topRightCorner(k, r) = v.held.transpose();
+  whole.bottomLeftCorner(r, k) = v.a * v.held;
+  whole.bottomRightCorner(r, r) = v.b;
+  const MatX moving = complement(steady_motions(v));
+  if (moving.cols() == 0) return found;
+  MatX companion = moving.transpose() * whole * moving;
+  const VecX scale = balance(companion);
+  const auto [values, vectors, is_converged] = eigenpairs(companion);
+  if (!is_converged) throw NumericalFailure("the eigenvalues of the small vibrations do not converge");
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    if (values[i].imag() < 0.0) continue;
+    const ComplexVector state_vector = moving * scale.asDiagonal() * vectors.col(i);
+    ComplexVector x = state_vector.tail(r);
+    x /= x.norm();
+    FreeMode mode{values[i], std::move(x)};
+    if (r <= k_refined) refine(v, mode.eigenvalue, mode.x);
+    found.push_back(std::move(mode));
+  }
+  return found;
+}
+
+} // namespace steplap
