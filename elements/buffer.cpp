@@ -214,6 +214,13 @@ const ElementKind& buffer_kind() {
     f.add("unloading", &T::unloading).in("m", "N").doc("the same while it comes out again, beyond the last point parallel to loading; default: as pressed in");
     f.add("gap", &T::gap).in("m").doc("what is left in the reference pose; negative: pressed in by so much");
     f.add("count", &T::count).at_least(1).doc("equal buffers side by side");
+    k.example = R"([[element]]
+name = 'buffer'
+kind = 'buffer'
+a = 'a'
+b = 'b'
+loading = [[0.0, 0.0], [0.1, 5e5]]
+)";
     k.holds<T>();
     k.compile = compile_buffer;
     return k;

@@ -80,6 +80,13 @@ public:
   [[nodiscard]] double support(const Evaluation& e, const FrictionState&, const double* rate) const override {
     return holds * share(e.t) * std::abs(rate[0]);
   }
+  // Sliding, it takes the viscous part beside the set that it can bear.
+  [[nodiscard]] double gauge(const Evaluation& e, const FrictionState& state, const double* wrench, double* normal) const override {
+    const double sliding = state.phase == FrictionPhase::slip ? viscous * std::abs(evaluate_row<false>(row, e.motion).rate) : 0.0;
+    const double capacity = share(e.t) * (holds + sliding);
+    normal[0] = wrench[0] < 0.0 ? -1.0 / capacity : 1.0 / capacity;
+    return normal[0] * wrench[0];
+  }
   void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
     watch_bounds(wrench[0], share(e.t), watch);
   }

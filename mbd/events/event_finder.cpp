@@ -30,6 +30,9 @@ EventFinder::EventFinder(const System& system, int max_dimension)
       const WatchKind kind = unit.group->watch_kind(w);
       if (kind != WatchKind::exact) (kind == WatchKind::place ? place_slots_ : rate_slots_).push_back(unit.watch + w);
     }
+  is_of_joint_.assign(slots_, 0);
+  for (const FrictionUnit& unit : system.frictions)
+    if (unit.friction->dimension() == 3) std::fill_n(is_of_joint_.begin() + unit.watch, k_friction_watches, 1);
   for (Look& look : place_) look.watch.resize(slots_), look.rate.resize(slots_);
 }
 
@@ -73,7 +76,7 @@ EventFinder::Suspicion EventFinder::suspicion(Integrator& integrator, const Dyna
     if (2.0 * low > nodes.high(i)) continue; // far
     const double w0 = integrator.watch0()[i], w1 = integrator.watch1()[i];
     const double start = fresh[i] ? std::max(w0, 0.0) : w0;
-    const WatchedStep watched{i, is_merged(dynamics, i), {start, h * integrator.watch_rate0()[i]}, {w1, h * integrator.watch_rate1()[i]}};
+    const WatchedStep watched{i, is_merged(dynamics, i), is_of_joint_[i] != 0, {start, h * integrator.watch_rate0()[i]}, {w1, h * integrator.watch_rate1()[i]}};
     if (w1 < 0.0) {
       // A plain crossing. A value that is fresh, or negative from the start (rounding, or the projection at another
       // event), has to be followed.

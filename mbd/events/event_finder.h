@@ -128,6 +128,7 @@ private:
   /// watch_kind() says, that to which velocities or places are known; 0 of all else.
   std::vector<double> slack_;
   std::vector<int> place_slots_, rate_slots_; ///< of units
+  std::vector<char> is_of_joint_;             ///< per slot: of friction over an area
   std::vector<int> near_;        ///< slots that ends and stages do not make certain
   std::vector<char> merged_;     ///< slots of joints that are merged, once somebody has asked in this step
   bool are_merged_known_ = false;

@@ -13,8 +13,8 @@ constexpr double k_curvature_safety = 4.0;
 // Where w″ changes its sign differences do not see it. Of a harmonic that turns by 1.6 rad about such a place it is up to 1.28 times
 // what w itself varies by.
 constexpr double k_bend_of_range = 2.0;
-// A clamping pressure bends what a load takes of it far more where it is least: 1 − 1/q of q = 1 + b (1 − cos 1.6 θ) by 2.56 (1 + b) times
-// its range, and elsewhere hardly at all. b is 9 where a tenth of the mean is left.
+// A clamping pressure bends what a load takes of a joint's grip far more where it is least: 1 − 1/q of q = 1 + b (1 − cos 1.6 θ) by
+// 2.56 (1 + b) times its range, and elsewhere hardly at all. b is 9 where a tenth of the mean is left.
 constexpr double k_bend_of_share = 25.6;
 constexpr int k_few = 3; // so few gaps may lie about such a place
 constexpr double k_unseen_by_one = 2.0; // of what the values at three places differ by
@@ -105,7 +105,7 @@ WatchNodes::Curve WatchNodes::curve_of(const WatchedStep& watched) const {
   c.bend[n] = c.bend[n - 1];
   // What is known of slopes at the ends tells more than the stages.
   const auto [least, most] = std::minmax_element(c.w.begin(), c.w.begin() + n + 1);
-  c.range = *most - *least;
+  c.most_bend = (watched.is_of_joint ? k_bend_of_share : k_bend_of_range) * (*most - *least);
   const double first = c.x[1], rest = 1.0 - c.x[n - 1];
   if (!std::isnan(c.start_slope)) c.bend[0] = 2.0 * ((c.w[1] - c.w[0]) / first - c.start_slope) / first;
   if (!std::isnan(c.end_slope)) c.bend[n] = 2.0 * (c.end_slope - (c.w[n] - c.w[n - 1]) / rest) / rest;
@@ -114,9 +114,7 @@ WatchNodes::Curve WatchNodes::curve_of(const WatchedStep& watched) const {
 
 double WatchNodes::Curve::bound(int gap) const {
   const double seen = k_curvature_safety * std::max(std::abs(bend[gap]), std::abs(bend[gap + 1]));
-  if (last > k_few) return seen;
-  const bool is_share = std::isnan(start_slope) && std::isnan(end_slope); // of what holds a joint nobody knows the rate
-  return std::max(seen, (is_share ? k_bend_of_share : k_bend_of_range) * range);
+  return last > k_few ? seen : std::max(seen, most_bend);
 }
 
 bool WatchNodes::Curve::is_positive_in(int gap) const {

@@ -25,7 +25,8 @@ struct WatchEnd {
 /// A watch value of a step.
 struct WatchedStep {
   int slot = 0;
-  bool is_merged = false; ///< of a joint that is merged: not every place has looked at it
+  bool is_merged = false;   ///< of a joint that is merged: not every place has looked at it
+  bool is_of_joint = false; ///< of a joint that holds with a share of its grip
   WatchEnd start, end;
 };
 
@@ -57,7 +58,7 @@ private:
     int last = 0;                         ///< index of the end
     std::array<double, k_most + 2> x{}, w{}, bend{}; ///< bend[j]: w″ by the difference about j
     double start_slope = 0.0, end_slope = 0.0;
-    double range = 0.0; ///< of w
+    double most_bend = 0.0; ///< of w″ where few places show it, by what w varies by
     [[nodiscard]] double bound(int gap) const; ///< M between places `gap` and `gap` + 1
     [[nodiscard]] bool is_positive_in(int gap) const;
     [[nodiscard]] bool falls_once_in(int gap) const;

@@ -1,6 +1,7 @@
 #include "mbd/simulation/simulation.h"
 
 #include "mbd/simulation/arguments.h"
+#include "mbd/simulation/check_sticking.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/element_failure.h"
 #include "mbd/system/one_sided_row.h"
@@ -32,7 +33,6 @@ constexpr long k_steps_between_looks = 1L << 16;
 // By how much a joint that holds may be beyond its limit, in shares of it: the mode problem knows wrenches to 1e-9 of the
 // capacities and finds events to rounding; what is a thousand times that is neither.
 constexpr double k_held_beyond = 1e-6;
-constexpr double k_stuck_beyond = 1e-6; // of bound and load together
 // Kinks of tables are no sign of anything wrong, and cost little; but a list of more than a million is read by nobody.
 constexpr long k_least_kinks = 1000000;
 constexpr long k_kinks_per_event = 10;
@@ -199,22 +199,6 @@ void Simulation::check_holding(double t, const std::vector<double>& watch) const
                            ": the run contradicts itself, for below 1 it has to slip. Try a smaller tolerance or step, or "
                            "another integrator",
                          {system_.element_names[system_.frictions[f].element]});
-  }
-}
-
-// The same of friction along a line. Its watch values are bound − λ and bound + λ: their sizes together are what it is judged against.
-static void check_sticking(const System& system, const State& state, const LoadSharing* sharing, double t, const std::vector<double>& watch) {
-  for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
-    const FrictionUnit& unit = system.frictions[f];
-    if (unit.friction->dimension() != 1 || unit.friction->never_slips() || one_sided_row(*unit.friction)) continue;
-    if (state.friction[f].phase != FrictionPhase::stick || (sharing && sharing->group_of(f) >= 0)) continue;
-    const double one = watch[unit.watch], other = watch[unit.watch + 1];
-    if (std::min(one, other) >= -k_stuck_beyond * (std::abs(one) + std::abs(other))) continue;
-    const std::string& name = system.element_names[unit.element];
-    throw ElementFailure("at t = " + number_text(t) + " s '" + name + "' sticks with " + rounded_text(0.5 * std::abs(other - one)) +
-                             " where it holds " + rounded_text(0.5 * (one + other)) +
-                             ": the run contradicts itself, for it has to slip. Try a smaller tolerance or step, or another integrator",
-                         {name});
   }
 }
 

@@ -212,7 +212,7 @@ void add_audit_channels(System& system, const Model& model) {
   }
   add_shared_channels(system);
   if (std::any_of(system.frictions.begin(), system.frictions.end(), may_turn))
-    system.channels.push_back({k_prefix + "slips" + k_unknown, "", "what forces change by where velocities do by rounding, N",
+    system.channels.push_back({k_prefix + "velocities" + k_unknown, "", "what forces change by where velocities do by rounding, N",
                                [self](const Snapshot& s) { return unknown_force(s, *self); }});
   if (may_pull(model)) return;
   system.channels.push_back({k_prefix + "contacts.pull", "", "largest tension in a contact, N", [self](const Snapshot& s) {

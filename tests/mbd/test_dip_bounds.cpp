@@ -106,7 +106,7 @@ template <class Places> WatchNodes nodes_of(const Wave& f, const Places& places)
 }
 
 WatchedStep watched(const Wave& f, bool has_slopes, bool is_merged = false) {
-  return {0, is_merged, {f.at(0.0), has_slopes ? f.slope(0.0) : k_unknown}, {f.at(1.0), has_slopes ? f.slope(1.0) : k_unknown}};
+  return {0, is_merged, false, {f.at(0.0), has_slopes ? f.slope(0.0) : k_unknown}, {f.at(1.0), has_slopes ? f.slope(1.0) : k_unknown}};
 }
 
 const std::vector<std::vector<double>> k_places = {

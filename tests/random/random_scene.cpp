@@ -63,6 +63,50 @@ void drop(SceneWriter& w, RandomNumber own) {
   w.element("polygon_contact", fields, {body});
 }
 
+// Scenes behind this seed hold a buffer, a force by formula and friction with a law of its own as well.
+constexpr std::uint64_t k_last_without_laws = 3000;
+
+// A buffer against a wall beside the body, with curves of its mass and of what it may run into in the scene's time.
+void buffer_beside(SceneWriter& w, RandomNumber& own, const std::string& body) {
+  const double slope = w.stiffness_for(w.mass, 1.0, 10.0), corner = w.size * own.between(0.02, 0.2);
+  const double share = own.between(0.1, 0.9), gap = w.size * own.between(-0.01, 0.1);
+  const bool is_left = own.chance(0.5);
+  w.element("buffer", {{"a", quoted(body)},
+                       {"axis", is_left ? "[1.0, 0.0]" : "[-1.0, 0.0]"},
+                       {"gap", number(gap)},
+                       {"loading", "[[0.0, 0.0], " + pair(corner, slope * corner) + ", " + pair(2.0 * corner, 3.0 * slope * corner) + "]"},
+                       {"unloading", "[[0.0, 0.0], " + pair(1.3 * corner, share * slope * corner) + "]"}},
+            {body});
+}
+
+// Drag of the square of the velocity, or a spring that hardens and ends at some force.
+void formula_on(SceneWriter& w, RandomNumber& own, const std::string& body) {
+  const double speed = w.size / w.duration, force = w.mass * speed / w.duration * own.decades(-1.0, 0.7);
+  const std::string axis = own.chance(0.5) ? "\"x\"" : "\"y\"";
+  if (own.chance(0.5)) {
+    const std::string formula = "\"-'" + number(force / (speed * speed)) + " N s2/m2' * abs(rate) * rate\"";
+    w.element("force", {{"a", quoted(body)}, {"coordinate", axis}, {"formula", formula}, {"energy", "\"dissipated\""}}, {body});
+  } else {
+    const std::string law = "'" + number(force / w.size) + " N/m' * (value - '" + number(w.size * own.between(-1.0, 1.0)) + " m')";
+    w.element("force", {{"a", quoted(body)}, {"coordinate", axis}, {"formula", "\"-max(-'" + number(force) + " N', min('" + number(force) + " N', " + law + "))\""}}, {body});
+  }
+}
+
+// A brake on a coordinate, pressed by a pulse, with a law of its own.
+void brake_on(SceneWriter& w, RandomNumber& own, const std::string& body) {
+  const double speed = w.size / w.duration, holds = w.mass * speed / w.duration * own.decades(-1.0, 1.0);
+  SceneWriter::Fields fields{{"a", quoted(body)}, {"coordinate", "\"x\""}, {"holds", number(holds)}, {"drags", number(holds * own.between(0.3, 0.95))}};
+  if (own.chance(0.5)) fields.push_back({"stribeck_velocity", number(speed * own.decades(-2.0, 0.0))});
+  if (own.chance(0.5)) fields.push_back({"viscous", number(holds / speed * own.decades(-2.0, 0.0))});
+  w.element("joint_friction", fields, {body});
+}
+
+void add_laws(SceneWriter& w, RandomNumber own, const std::string& body) {
+  if (own.chance(0.6)) buffer_beside(w, own, body);
+  if (own.chance(0.6)) formula_on(w, own, body);
+  if (own.chance(0.4)) brake_on(w, own, body);
+}
+
 void add_cell(SceneWriter& w, const std::vector<NamedCell>& cells, At place, std::vector<std::string>& ends) {
   const NamedCell& cell = w.r.one_of(cells);
   w.scene.cells.insert(cell.name);
@@ -85,6 +129,7 @@ Scene random_scene(std::uint64_t seed) {
     if (w.r.chance(0.5)) couple(w, ends[i - 1], ends[i]);
   if (!ends.empty()) hold(w, RandomNumber(~seed), ends.front());
   drop(w, RandomNumber(~seed * 3));
+  if (seed > k_last_without_laws && !ends.empty()) add_laws(w, RandomNumber(~seed * 5), ends.front());
   return w.scene;
 }
 

@@ -1,0 +1,29 @@
+#include "mbd/simulation/check_sticking.h"
+
+#include "mbd/base/number_text.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/system/element_failure.h"
+#include "mbd/system/one_sided_row.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace steplap {
+
+void check_sticking(const System& system, const State& state, const LoadSharing* sharing, double t, const std::vector<double>& watch) {
+  constexpr double k_stuck_beyond = 1e-6; // the mode problem knows forces to 1e-9 of the capacities, and events are found to rounding
+  for (int f = 0; f < static_cast<int>(system.frictions.size()); ++f) {
+    const FrictionUnit& unit = system.frictions[f];
+    if (unit.friction->dimension() != 1 || unit.friction->never_slips() || one_sided_row(*unit.friction)) continue;
+    if (state.friction[f].phase != FrictionPhase::stick || (sharing && sharing->group_of(f) >= 0)) continue;
+    const double one = watch[unit.watch], other = watch[unit.watch + 1];
+    if (std::min(one, other) >= -k_stuck_beyond * (std::abs(one) + std::abs(other))) continue;
+    const std::string& name = system.element_names[unit.element];
+    throw ElementFailure("at t = " + number_text(t) + " s '" + name + "' sticks with " + rounded_text(0.5 * std::abs(other - one)) +
+                             " where it holds " + rounded_text(0.5 * (one + other)) +
+                             ": the run contradicts itself, for it has to slip. Try a smaller tolerance or step, or another integrator",
+                         {name});
+  }
+}
+
+} // namespace steplap
