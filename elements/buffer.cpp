@@ -1,6 +1,6 @@
 #include "elements/buffer.h"
 
-#include "elements/coulomb_friction.h"
+#include "elements/bounded_friction.h"
 #include "elements/spring_laws.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/system.h"
@@ -56,15 +56,7 @@ public:
   }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
                                           bool) const override {
-    FrictionBlock block;
-    const double most = std::max(0.0, bound_at<double>(e));
-    const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? -most : most);
-    // Where a drive prescribes the coordinate no force changes its motion: it rests or it does not.
-    block.is_inside = a[0] > 0.0 ? std::abs(wanted) <= most * (1.0 + CoulombFriction::k_bound_slack)
-                                 : std::abs(b[0]) <= CoulombFriction::k_no_motion;
-    block.wrench[0] = std::clamp(wanted, -most, most);
-    block.direction[0] = wanted > 0.0 ? -1.0 : 1.0;
-    return block;
+    return block_within(std::max(0.0, bound_at<double>(e)), a[0], b[0]);
   }
 
 private:
@@ -74,9 +66,7 @@ private:
     return bound.value(value - S(free), TabulatedSpring::spring_segment(e.mode[unit]));
   }
   template <class S> void watch_bounds(const Evaluated<S>& e, const S* wrench, S* watch) const {
-    const S most = bound_at(e) * (1.0 + CoulombFriction::k_bound_slack);
-    watch[0] = most - wrench[0];
-    watch[1] = most + wrench[0];
+    steplap::watch_bounds<S>(bound_at(e), wrench[0], watch);
   }
 };
 

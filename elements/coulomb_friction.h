@@ -2,6 +2,7 @@
 // of contacts. Which rows it sticks along, and where, is up to who makes one (coulomb_stick, polygon_contact).
 #pragma once
 
+#include "elements/bounded_friction.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -14,11 +15,8 @@ class CoulombFriction : public FrictionElement {
 public:
   // Level feet are the normal state at rest: the foot is kept within this dead band, rad.
   static constexpr double k_foot_dead_band = 1e-13;
-  // |λ| may pass the bound by rounding, relative: ten times below the 1e-12 that a load can resolve.
-  static constexpr double k_bound_slack = 1e-13;
   // Acceleration beside which an error of friction counts, m/s²: that of the motion to which tolerances are absolute.
   static constexpr double k_floor_acceleration = 3.6;
-  static constexpr double k_no_motion = 1e-12; // m/s or m/s²: rounding of a coordinate that a drive keeps at rest
 
   std::vector<ContactIndex> contacts;
   std::vector<RowSpec> feet; ///< rear-most, front-most; the same twice for one contact
@@ -92,14 +90,7 @@ public:
   }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a,
                                           const double* b, bool is_kinetic) const override {
-    FrictionBlock block;
-    const double bound = (is_kinetic ? mu_kinetic : mu_static) * normal_force(e);
-    const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? -bound : bound);
-    // Where a drive prescribes the coordinate no force changes its motion: it rests or it does not.
-    block.is_inside = a[0] > 0.0 ? std::abs(wanted) <= bound * (1.0 + k_bound_slack) : std::abs(b[0]) <= k_no_motion;
-    block.wrench[0] = std::clamp(wanted, -bound, bound);
-    block.direction[0] = wanted > 0.0 ? -1.0 : 1.0;
-    return block;
+    return block_within((is_kinetic ? mu_kinetic : mu_static) * normal_force(e), a[0], b[0]);
   }
 
 private:
@@ -112,9 +103,7 @@ private:
     return -mu_kinetic * smooth_normal_force(e) * state.sign;
   }
   template <class S> void watch_bounds(const Evaluated<S>& e, const S* wrench, S* watch) const {
-    const S bound = mu_static * smooth_normal_force(e) * (1.0 + k_bound_slack);
-    watch[0] = bound - wrench[0];
-    watch[1] = bound + wrench[0];
+    steplap::watch_bounds<S>(mu_static * smooth_normal_force(e), wrench[0], watch);
   }
   template <class S> [[nodiscard]] S turn_to_other_foot(const Evaluated<S>& e, const FrictionState& state) const {
     if (!has_two_feet) return 1.0;

@@ -1,5 +1,6 @@
 #include "elements/joint_friction.h"
 
+#include "elements/bounded_friction.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/system/system.h"
 
@@ -10,9 +11,6 @@ namespace steplap {
 
 namespace {
 
-constexpr double k_bound_slack = 1e-13; // as in coulomb_stick.cpp
-constexpr double k_no_motion = 1e-12; // m/s or m/s²: rounding of a coordinate that a drive keeps at rest
-
 // Is the piece of the signal that holds t zero throughout?
 bool is_zero_at(const Signal& signal, double t) {
   const std::vector<Signal::Piece>& pieces = signal.pieces();
@@ -22,25 +20,38 @@ bool is_zero_at(const Signal& signal, double t) {
   return piece.is_level && piece.c[0] == 0.0 && piece.harmonics.empty() && piece.modulated.empty();
 }
 
-// Where the signal is least up to `end`: between samples that resolve its fastest harmonic its least value is closed in on.
-double time_of_least(const Signal& signal, double end) {
-  constexpr int k_samples_of_a_turn = 32, k_least_samples = 64, k_halvings = 60;
-  constexpr double k_whole_turn = 6.283185307179586;
-  std::vector<double> times{0.0};
-  for (const double t : signal.breakpoints())
-    if (t > 0.0 && t < end) times.push_back(t);
-  times.push_back(end);
-  double best = 0.0, apart = end;
-  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-    const double length = times[i + 1] - times[i], turns = signal.fastest_at(times[i]) * length / k_whole_turn;
-    const double samples = std::max<double>(k_least_samples, std::ceil(k_samples_of_a_turn * turns));
-    for (double k = 0.0; k < samples; ++k) {
-      const double t = times[i] + k * length / samples;
-      if (signal.value(t) < signal.value(best)) best = t, apart = length / samples;
-    }
+// Where a piece from `start` to `end` may be least: its ends and where its slope is zero; with harmonics at samples that resolve them.
+std::vector<double> places_of_least(const Signal& signal, const Signal::Piece& piece, double start, double end) {
+  constexpr double k_samples_of_a_turn = 64.0, k_whole_turn = 6.283185307179586;
+  std::vector<double> places{start, end};
+  if (!piece.harmonics.empty() || !piece.modulated.empty()) {
+    const double samples = std::ceil(k_samples_of_a_turn * (1.0 + signal.fastest_at(start) * (end - start) / k_whole_turn));
+    for (double k = 1.0; k < samples; ++k) places.push_back(start + k * (end - start) / samples);
+    return places;
   }
-  double low = std::max(0.0, best - apart), high = std::min(end, best + apart);
-  for (int n = 0; n < k_halvings; ++n) {
+  const double a = 3.0 * piece.c[3], b = piece.c[2], c = piece.c[1], root = std::sqrt(std::max(0.0, b * b - a * c));
+  for (const double tau : {(-b - root) / a, (-b + root) / a, -0.5 * c / b}) // of a cubic, twice; of a square
+    if (const double t = piece.start + tau; t > start && t < end) places.push_back(t);
+  return places;
+}
+
+// Where the signal is least up to `end`. Between two samples of harmonics its least value is closed in on.
+double time_of_least(const Signal& signal, double end) {
+  double best = 0.0, low = 0.0, high = 0.0;
+  const std::vector<Signal::Piece>& pieces = signal.pieces();
+  for (std::size_t i = 0; i < pieces.size() && pieces[i].start < end; ++i) {
+    const double from = std::max(0.0, pieces[i].start), to = i + 1 < pieces.size() ? std::min(end, pieces[i + 1].start) : end;
+    if (!(from < to)) continue;
+    std::vector<double> places = places_of_least(signal, pieces[i], from, std::nextafter(to, from));
+    std::sort(places.begin(), places.end());
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (signal.value(places[k]) < signal.value(best)) {
+        best = places[k];
+        low = places[k > 0 ? k - 1 : 0];
+        high = places[std::min(k + 1, places.size() - 1)];
+      }
+  }
+  for (int n = 0; n < 60; ++n) {
     const double one = low + (high - low) / 3.0, other = high - (high - low) / 3.0;
     if (signal.value(one) < signal.value(other)) high = other;
     else low = one;
@@ -88,7 +99,7 @@ public:
     return normal[0] * wrench[0];
   }
   void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
-    watch_bounds(wrench[0], share(e.t), watch);
+    watch_bounds<double>(holds * share(e.t), wrench[0], watch);
   }
   [[nodiscard]] bool trace_friction(const TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench,
                                     Traced* watch) const override {
@@ -99,7 +110,7 @@ public:
       watch[0] = state.sign * rate[0];
       watch[1] = 1.0;
     } else {
-      watch_bounds(wrench[0], whole, watch);
+      watch_bounds<Traced>(Traced(holds), wrench[0], watch);
     }
     watch[2] = 1.0;
     return true;
@@ -109,14 +120,7 @@ public:
   }
   [[nodiscard]] FrictionBlock solve_block(const Evaluation& e, const FrictionState&, const double* a, const double* b,
                                           bool is_kinetic) const override {
-    FrictionBlock block;
-    const double bound = share(e.t) * (is_kinetic ? sliding_bound(sliding_rate(e)) : holds);
-    const double wanted = a[0] > 0.0 ? -b[0] / a[0] : (b[0] > 0.0 ? -bound : bound);
-    // Where a drive prescribes the coordinate no force changes its motion: it rests or it does not.
-    block.is_inside = a[0] > 0.0 ? std::abs(wanted) <= bound * (1.0 + k_bound_slack) : std::abs(b[0]) <= k_no_motion;
-    block.wrench[0] = std::clamp(wanted, -bound, bound);
-    block.direction[0] = wanted > 0.0 ? -1.0 : 1.0;
-    return block;
+    return block_within(share(e.t) * (is_kinetic ? sliding_bound(sliding_rate(e)) : holds), a[0], b[0]);
   }
 
 private:
@@ -138,12 +142,6 @@ private:
   template <class S> [[nodiscard]] S sliding_force(const S& rate, const FrictionState& state, const S& share) const {
     const S bound = sliding_bound<S>(state.sign * rate);
     return -state.sign * (signal ? share * bound : bound);
-  }
-  template <class S> void watch_bounds(const S& wrench, const S& share, S* watch) const {
-    const double slack = holds * (1.0 + k_bound_slack);
-    const S bound = signal ? slack * share : S(slack);
-    watch[0] = bound - wrench;
-    watch[1] = bound + wrench;
   }
 };
 

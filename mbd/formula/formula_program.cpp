@@ -27,12 +27,44 @@ bool is_of_tape(FormulaOp op) {
   }
 }
 
+// How fast a formula changes with the time itself steps cannot know: a narrow pulse of it, or one of many, would be stepped over. They
+// know it of what is straight in the time, and of signals. So the time may be added, compared, and multiplied by what it does not stand in.
+void require_plain_time(const std::vector<FormulaProgram::Step>& steps) {
+  std::vector<char> has_time;
+  for (const FormulaProgram::Step& step : steps) {
+    const auto in = [&](std::size_t k) { return step.of[k] >= 0 && has_time[static_cast<std::size_t>(step.of[k])] != 0; };
+    const bool is_any = in(0) || in(1) || in(2);
+    bool is_plain = true, stays = is_any;
+    switch (step.op) {
+    case FormulaOp::time: stays = true; break;
+    case FormulaOp::add:
+    case FormulaOp::subtract:
+    case FormulaOp::negate:
+    case FormulaOp::abs:
+    case FormulaOp::min:
+    case FormulaOp::max:
+    case FormulaOp::finite:
+    case FormulaOp::choice: break;
+    case FormulaOp::multiply: is_plain = !(in(0) && in(1)); break;
+    case FormulaOp::divide: is_plain = !in(1); break;
+    case FormulaOp::less:
+    case FormulaOp::less_or_equal: stays = false; break; // true or false from here on
+    default: is_plain = !is_any; break;
+    }
+    if (!is_plain)
+      throw std::invalid_argument("has the time in a function, a power, a divisor or a product with itself, and no step can know how fast that changes: make it a "
+                                  "[[signal]] and name that, or a [[state]]");
+    has_time.push_back(stays ? 1 : 0);
+  }
+}
+
 } // namespace
 
 FormulaProgram::FormulaProgram(const FormulaTree& tree) {
   std::vector<int> place;
   for (const FormulaNode& node : tree) add_node(node, place);
   if (place.back() != size() - 1) (void)add(FormulaOp::finite, place.back());
+  require_plain_time(steps_);
   set_guards();
 }
 

@@ -1,6 +1,6 @@
 // joint_friction whose bound follows a signal, hangs on the velocity, or both: brakes, clutches, seals. All motions here are closed
 // forms.
-#include "tests/physics/scene.h"
+#include "tests/physics/stepped.h"
 
 #include <doctest/doctest.h>
 
@@ -44,15 +44,6 @@ coordinate = "x"
 
 std::string push(double force) {
   return "[[element]]\nkind = \"load\"\nname = \"push\"\nat = \"block\"\nforce = [" + std::to_string(force) + ", 0.0]\n";
-}
-
-Run stepped(const std::string& text, double step, double end) {
-  Run r;
-  r.system = compile(scene(text + "\n[simulation]\nstep = 1e-3\n"));
-  SimulationOptions o = options({"moreau", 1.0, end});
-  o.settings.step = step;
-  r.result = simulate(*r.system, r.system->initial_state(), o);
-  return r;
 }
 
 // What an integration at 1e-11 leaves of 10 rad/s after some events.
@@ -195,4 +186,11 @@ TEST_CASE("what cannot be is refused") {
   CHECK_THROWS_AS(pressed("frequencies = [40.0]\namplitudes = [1.0]\noffset = 0.9999999\n"), ModelError); // by a hair
   CHECK_THROWS_AS(pressed("frequencies = [1.0, 7.3]\namplitudes = [1.0, 0.3]\noffset = 1.2\n"), ModelError);
   CHECK_NOTHROW(pressed("frequencies = [40.0]\namplitudes = [1.0]\noffset = 1.0\n"));
+  // Of pieces without harmonics the least value is a corner or where the slope is zero, wherever that lies.
+  const auto table = [&](double low) {
+    (void)compile(scene(text("holds = 5.0\nsignal = \"s\"\n[[signal]]\nkind = \"trapezoid\"\nname = \"up\"\npeak = 1.0\nduration = 0.7\nrise = 0.1\nfall = 0.013\n"
+                             "[[signal]]\nkind = \"scaled\"\nname = \"s\"\nsignal = \"up\"\nfactor = -1.0\noffset = " + std::to_string(low) + "\n")));
+  };
+  CHECK_THROWS_AS(table(0.999999), ModelError);
+  CHECK_NOTHROW(table(1.0));
 }

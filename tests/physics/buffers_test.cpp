@@ -1,6 +1,6 @@
 // Buffers: curves for loading and unloading with exact stick between them, against closed forms and against the signal of two wagons
 // that meet, which integrates the same curves by a program of its own.
-#include "tests/physics/scene.h"
+#include "tests/physics/stepped.h"
 #include "tests/random/random_number.h"
 
 #include <doctest/doctest.h>
@@ -24,15 +24,6 @@ std::string digits(double x) {
 std::string wagon(const std::string& name, double mass, double x, double vx) {
   return "[[body]]\nname = \"" + name + "\"\nmass = " + digits(mass) + "\ninertia = 1.0\nposition = [" + digits(x) + ", 0.0]\nvelocity = [" + digits(vx) +
          ", 0.0]\n[[element]]\nkind = \"prismatic\"\nname = \"rails of " + name + "\"\na = \"" + name + "\"\naxis = [1.0, 0.0]\n";
-}
-
-Run stepped(const std::string& text, double step, double end) {
-  Run r;
-  r.system = compile(scene(text + "\n[simulation]\nstep = 1e-3\n"));
-  SimulationOptions o = options({"moreau", 1.0, end});
-  o.settings.step = step;
-  r.result = simulate(*r.system, r.system->initial_state(), o);
-  return r;
 }
 
 std::string buffer(const std::string& fields) { return "[[element]]\nkind = \"buffer\"\nname = \"buffer\"\n" + fields; }

@@ -210,3 +210,18 @@ TEST_CASE("what is wrong with a formula is said with its element, and what would
   says("'5 N s2/m' * load.ax", "no force can hang on it");
   says("'1 1' * drag.force", "there is no 'drag.force'");
 }
+
+TEST_CASE("what changes with the time as fast as a formula likes is refused, what is straight in it is not") {
+  const auto compiled = [](const std::string& text) {
+    (void)compile(scene(k_no_gravity + body("a", "mass = 2; inertia = 1") + force("push", "a = \"a\";" + formula(text)) + "[simulation]\nstep = 1e-3\n"));
+  };
+  for (const char* const hidden : {"sin(200 * t / '1 s') > 0.95 ? '5 N' : '0 N'", "'5 N' * exp(-t / '1 s')", "'1 N/s2' * t * t", "'1 N/s2' * t^2", "'1 N s' / (t + '1 s')",
+                                   "'1 N' * sqrt(abs(t / '1 s' - 0.5))"}) {
+    CAPTURE(hidden);
+    CHECK_THROWS_AS(compiled(hidden), ModelError);
+  }
+  for (const char* const plain : {"'3 N/s' * t", "t < '0.5 s' ? '1 N' : '2 N'", "'1 N/s' * abs(t - '0.3 s')", "'1 N' * min(t / '2 s', 1)", "'1 N/m/s' * t * value", "-(t - '1 s') * '1 N/s' / 3"}) {
+    CAPTURE(plain);
+    CHECK_NOTHROW(compiled(plain));
+  }
+}

@@ -1,5 +1,6 @@
 // The implicit, the time-stepping and the automatic method on scenes with contacts and friction.
 #include "tests/physics/paper_runs.h"
+#include "tests/physics/stepped.h"
 
 #include <doctest/doctest.h>
 
@@ -48,16 +49,6 @@ name = "push"
 at = { body = "block", at = [0.0, -0.2] }
 force = [)" + std::to_string(force) + R"(, 0.0]
 )";
-}
-
-Run stepped(const std::string& text, double step, double end) {
-  const Model model = scene(text + "\n[simulation]\nstep = 1e-3\n");
-  Run r;
-  r.system = compile(model);
-  SimulationOptions o = options({"moreau", 1.0, end});
-  o.settings.step = step;
-  r.result = simulate(*r.system, r.system->initial_state(), o);
-  return r;
 }
 
 Model stiff_feet() {

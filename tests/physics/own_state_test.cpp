@@ -168,7 +168,7 @@ TEST_CASE("what is wrong with a state is said with its place") {
     CHECK(message(tables).find(expected) != std::string::npos);
   };
   says(state("z", "unit = \"m\";" + rate("load.y")), "has to be in 'm/s'");
-  says(state("z", "unit = \"mm\";" + rate("load.vy + '1 m/s' / t * '1 s'")), "no finite value at the start");
+  says(state("z", "unit = \"mm\";" + rate("load.vy + '1 m2/s' / load.x")), "no finite value at the start");
   says(state("z", "unit = \"furlongs per fortnight\";" + rate("load.vy")), "is not known");
   says(state("value", "unit = \"m\";" + rate("load.vy")), "mean something else");
   says(state("z", "unit = \"m\";" + rate("lod.vy")), "did you mean 'load.vy'");

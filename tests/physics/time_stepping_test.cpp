@@ -2,7 +2,7 @@
 // events, at first order, whatever holds the bodies between which friction acts.
 #include "mbd/integrators/time_stepping.h"
 #include "tests/physics/model_text.h"
-#include "tests/physics/scene.h"
+#include "tests/physics/stepped.h"
 
 #include <doctest/doctest.h>
 
@@ -19,15 +19,6 @@ std::string number(double x) {
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", x);
   return text;
-}
-
-Run stepped(const std::string& text, double step, double end, double output_step = 0.0) {
-  Run r;
-  r.system = compile(scene(text + "\n[simulation]\nstep = 1e-3\n"));
-  SimulationOptions o = options({"moreau", 1.0, end, output_step});
-  o.settings.step = step;
-  r.result = simulate(*r.system, r.system->initial_state(), o);
-  return r;
 }
 
 struct Case {
