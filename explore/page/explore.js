@@ -46,6 +46,8 @@
   const runOf = (answer, name) => { const run = new steplap.data.Run(answer.data.runs[0]); run.name = name; return run; };
   function onAnswer(answer, asked) {
     if (asked.request.model !== model) return;
+    // A run of a file that was saved meanwhile is no neighbour of the old state: both are asked for anew, or already are.
+    if (!answer.errors && !isKept && answer.version !== versionOfOld) return;
     clearTimeout(waiting);
     at('pace').textContent = '';
     troubles.server = [];
@@ -76,9 +78,15 @@
   }
 
   // --- old and new state ------------------------------------------------------------------------------------
+  let versionOfOld = 0, asksOfOld = 0; // the version of the file that the old state was last asked of; how many such questions are under way
   async function askOld() {
-    const asked = model, answer = await answers.post('run', { model, values: {}, is_settled: true, page: `${answers.page} old` });
+    ++asksOfOld;
+    try { await takeOld(); } finally { --asksOfOld; }
+  }
+  async function takeOld() {
+    const asked = model, known = version, answer = await answers.post('run', { model, values: {}, is_settled: true, page: `${answers.page} old` });
     if (asked !== model || answer.is_superseded) return;
+    versionOfOld = answer.errors ? known : answer.version;
     if (answer.errors) { troubles.run = answer.errors; showTroubles(); return; }
     if (!isKept) before = runOf(answer, 'old');
     if (!Object.keys(sliders.changed()).length) { const old = now; now = runOf(answer, 'new'); draw(old, true); }
@@ -288,6 +296,7 @@
         }
         showModel();
         if (!models[model].errors.length) await askOld();
+        else versionOfOld = version; // the last machine that could be read stays
       } catch {
         onSilence();
         await new Promise((resolve) => setTimeout(resolve, 2000));
@@ -332,6 +341,6 @@
   listenToKeys();
   setPlaying(false);
   steplap.onPaper = (action) => action();
-  steplap.page = { answers, sliders, map, latencies, show: go, time: () => t, scenes, runs: () => [before, now], version: () => version, get plots() { return plots; }, get view() { return view; } };
+  steplap.page = { answers, isIdle: () => answers.isIdle && !asksOfOld, sliders, map, latencies, show: go, time: () => t, scenes, runs: () => [before, now], version: () => version, get plots() { return plots; }, get view() { return view; } };
   follow();
 })();

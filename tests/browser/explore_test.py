@@ -123,7 +123,7 @@ class ExploreTest(base.Page):
         self.run_js("const s = document.querySelector(`input[type=range][data-path='${arguments[0]}']`); s.value = String(arguments[1]); s.dispatchEvent(new Event('input', { bubbles: true }))", path, value)
 
     def idle(self):
-        self.until(lambda: self.run_js("return steplap.page.answers.isIdle"))
+        self.until(lambda: self.run_js("return steplap.page.isIdle()"))
 
     def way(self):
         """How far the sled of the new state comes, m."""
