@@ -1,6 +1,7 @@
 // assessment.json: all that the printed page and scripts read. SI unless a unit stands beside; null where nothing is known.
 #include "assess/assessment.h"
 #include "record/time_text.h"
+#include "run/left_out.h"
 #include "run/ordered_json.h"
 #include "run/version.h"
 
@@ -63,9 +64,11 @@ Json models(const Assessment& a) {
   for (std::size_t m = 0; m < a.models.size(); ++m) {
     const DrivenModel& model = a.models[m];
     const Recorder& r = model.recorder;
+    std::vector<std::string> unknown = r.knows_not;
+    for (std::string& text : left_out_of(model.given)) unknown.push_back(std::move(text));
     all.push_back({{"name", model.name}, {"file", model.file}, {"sha256", model.sha256}, {"plane", r.plane},
                    {"recorder", {{"name", r.name}, {"marker", r.marker}, {"body", model.body}, {"x", r.x}, {"y", r.y}, {"angle", model.marker_angle}, {"rotation", r.rotation}, {"drift", r.drift}, {"settle", r.settle}}},
-                   {"replaced", r.replaces}, {"notes", model.notes}, {"knows_not", r.knows_not}, {"uncertain", uncertain_of_model(a, m)}});
+                   {"replaced", r.replaces}, {"notes", model.notes}, {"knows_not", unknown}, {"uncertain", uncertain_of_model(a, m)}});
   }
   return all;
 }

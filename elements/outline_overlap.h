@@ -157,6 +157,8 @@ template <class S> struct OverlapForce {
   S moment{0};      ///< about the origin
   S volume{0};      ///< ∫ d dA
   S dissipation{0}; ///< W
+  /// One outline lies wholly within the other: the rim of the overlap belongs to one of them alone, nothing pushes it out.
+  bool is_swallowed = false;
 };
 
 /// Relative velocity of a's points seen from b's: u + Ω ẑ × x.
@@ -228,6 +230,7 @@ OverlapForce<S> overlap_force(const PlacedOutline<S>& a, const PlacedOutline<S>&
   }
   CutRing<S>*cell = &rings[1 - now], *spare = &rings[2]; // `cell` is the one written last
   const S k(stiffness), alpha(dissipation);
+  result.is_swallowed = of_a == 0 || of_a == overlap.size;
   const bool is_from_a = 2 * of_a < overlap.size;
   S moment(0);
   for (int i = 0; i < overlap.size; ++i) {

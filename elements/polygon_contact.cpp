@@ -4,9 +4,11 @@
 #include "elements/coulomb_friction.h"
 #include "mbd/system/approximate_place.h"
 #include "mbd/system/law_group.h"
+#include "mbd/system/swallowing_contacts.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -20,6 +22,7 @@ struct Outlines {
   ConvexOutline a, b;
   double reach_a = 0.0, reach_b = 0.0; ///< of their corners from the centres of gravity
   double through = 0.0;                ///< GapBounds
+  double narrowest = 0.0;              ///< the least width of a, or of b
 };
 
 template <class S, class B> struct Placed {
@@ -32,7 +35,7 @@ template <class S, class B> struct Placed {
   }
 };
 
-class PolygonGroup final : public ForceGroup, public GapSource {
+class PolygonGroup final : public ForceGroup, public GapSource, public SwallowingContacts {
 public:
   struct Entry {
     int a = k_ground, b = k_ground;
@@ -56,10 +59,14 @@ public:
       if (mode == k_contact_open) continue;
       BodyForce& sum = e.link_force[entry.link];
       if (now.gap > 0.0) {
-        pull_back(entry, placed, now, sum);
+        bring_back(entry, placed, now, sum);
         continue;
       }
       const OverlapForce<double> f = force(entry, placed, relative(m, placed.centre));
+      if (f.is_swallowed) {
+        bring_back(entry, placed, now, sum);
+        continue;
+      }
       sum.fx += f.force.x;
       sum.fy += f.force.y;
       sum.m += f.moment - cross(placed.centre, f.force);
@@ -130,6 +137,16 @@ public:
       bounds.through = entry.outlines->through;
     }
   }
+  // What is swallowed is at least as deep as the narrower of the two is wide.
+  [[nodiscard]] int first_swallowed(const std::vector<UnitMode>& modes, const std::vector<double>& watch,
+                                    const std::function<const Motion<double>*()>& motion) const override {
+    for (const Entry& entry : entries) {
+      if (modes[entry.unit] == k_contact_open || watch[entry.watch] < entry.outlines->narrowest) continue;
+      const Placed<double, Motion<double>> placed(*entry.outlines, motion()[entry.a], motion()[entry.b]);
+      if (overlap_force(placed.a, placed.b, RelativeVelocity<double>{}, entry.stiffness, 0.0).is_swallowed) return entry.unit;
+    }
+    return -1;
+  }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override {
     return measured(element, e).gap < 0.0 ? k_contact_pressed : k_contact_open;
   }
@@ -156,11 +173,12 @@ public:
   }
 
 private:
-  // While the mode says pressed the force goes on beyond the gap's zero with its sign changed, as that of a corner would:
-  // stages of a step that is too long may be thrown out of the contact, on the far side of a thin part, too, and where they
-  // felt nothing the step's error would be seen as zero. No step ends there.
-  static void pull_back(const Entry& entry, const Placed<double, Origin>& placed, const Approach& now, BodyForce& sum) {
-    const Pair<double> f = (-entry.stiffness * now.gap * now.gap) * now.normal;
+  // While the mode says pressed the force goes on where the law has none. Beyond the gap's zero it has its sign changed, as that of a
+  // corner would; where one outline lies wholly within the other it pushes out by the nearest way, as much as a corner so deep would be
+  // pushed. Stages of a step that is too long may be thrown out of the contact, on the far side of a thin part, too, or come to lie
+  // below the ground, and where they felt nothing the step's error would be seen as zero. No step ends there (first_swallowed()).
+  static void bring_back(const Entry& entry, const Placed<double, Origin>& placed, const Approach& now, BodyForce& sum) {
+    const Pair<double> f = (-entry.stiffness * now.gap * std::abs(now.gap)) * now.normal;
     sum.fx += f.x;
     sum.fy += f.y;
     sum.m += cross(now.corner - placed.centre, f);
@@ -394,8 +412,9 @@ void compile_polygon(const Element& element, SystemBuilder& builder) {
   PolygonGroup::Entry entry;
   entry.a = builder.marker(e.a).body;
   entry.b = builder.marker(e.b).body;
-  const double through = is_plane ? std::numeric_limits<double>::infinity() : 0.5 * std::min(width_of(*a), width_of(*b));
-  entry.outlines = std::make_shared<const Outlines>(Outlines{*a, *b, reach_of(*a), reach_of(*b), through});
+  const double narrowest = is_plane ? width_of(*a) : std::min(width_of(*a), width_of(*b));
+  const double through = is_plane ? std::numeric_limits<double>::infinity() : 0.5 * narrowest;
+  entry.outlines = std::make_shared<const Outlines>(Outlines{*a, *b, reach_of(*a), reach_of(*b), through, narrowest});
   entry.stiffness = e.stiffness;
   entry.dissipation = e.dissipation;
   entry.has_friction = e.static_friction.has_value() && !is_plane;

@@ -1,6 +1,7 @@
 #include "elements/step_lap_assessment.h"
 #include "mbd/formula/unit_dimension.h"
 #include "mbd/io/digest.h"
+#include "run/left_out.h"
 #include "run/ordered_json.h"
 #include "run/overview.h"
 #include "run/prominence.h"
@@ -393,6 +394,7 @@ OrderedJson summary_document(const Report& report, ShownDigits digits) {
   if (Json joints = joints_json(report); !joints.empty()) json["joints"] = std::move(joints);
   // Without criteria there is nothing to say, unless the run itself is not to be trusted.
   if (report.judgement.has_criteria || !report.judgement.distrust.empty()) json["judgement"] = judgement_json(report.judgement);
+  if (const std::vector<std::string> left_out = left_out_of(loaded.model); !left_out.empty()) json["left_out"] = left_out;
   if (report.second_opinion) json["second_opinion"] = second_opinion_json(*report.second_opinion);
   Meanings meanings;
   json["extremes"] = extremes_json(report, meanings);

@@ -1,5 +1,6 @@
 #include "transformer/core.h"
 
+#include "transformer/clamp.h"
 #include "transformer/core_builder.h"
 
 namespace steplap {
@@ -89,7 +90,7 @@ void add_stack(FieldTable& f) {
 
 void add_friction(FieldTable& f) {
   using T = Core;
-  f.add("pressure", &T::pressure).in("Pa").positive().required().doc("clamping pressure, constant");
+  f.add("pressure", &T::pressure).in("Pa").not_negative().doc("clamping pressure, constant; needed unless [[clamp]] tables press the core");
   f.add("static_friction", &T::static_friction).positive().required().doc("mu_s");
   f.add("kinetic_friction", &T::kinetic_friction).positive().doc("mu_k; default: mu_s");
   f.add("bottom_pressure", &T::bottom_pressure).in("Pa").positive().doc("at the bottom corners, if different");
@@ -174,7 +175,7 @@ const TableKind& core_kind() {
     k.holds<Core>();
     k.reads_masses = k.reads_elements = false; // of elements names, and outlines of sheets
     k.apply = [](const Element& table, Model& model) {
-      build_core(static_cast<const Core&>(table), model);
+      build_core(clamped(static_cast<const Core&>(table), model), model);
     };
     return k;
   }();

@@ -45,11 +45,12 @@ struct Core : TableObject {
   double density = 7650.0; ///< kg/m³, of the sheets
   std::string centre_of_gravity = "of_the_sheets"; ///< or "as_given" by the body
 
-  double pressure = 0.0; ///< Pa
+  double pressure = 0.0; ///< Pa; 0: [[clamp]] tables make it
   double static_friction = 0.0;
   std::optional<double> kinetic_friction;
   std::optional<double> bottom_pressure, bottom_static_friction, bottom_kinetic_friction;
   std::vector<double> joint_pressure_shares; ///< of each joint, of all its pressures; none: all 1
+  std::vector<double> bottom_joint_shares;   ///< at the bottom, if clamps make it another; no field of the table
   /// Pa/m outwards and away from the window, `pressure` being that at the middle of the mitre; at the bottom if different.
   std::optional<Vec2> pressure_gradient, bottom_pressure_gradient;
   std::string transverse_support;           ///< what holds the stack across: "both" faces, "front" or "back"
@@ -70,9 +71,10 @@ struct Core : TableObject {
   /// Outer limbs, then middle ones.
   [[nodiscard]] std::vector<std::string> all_limbs() const;
   [[nodiscard]] std::string joint_name(std::size_t limb) const;
-  /// Its share of the clamping pressures.
-  [[nodiscard]] double joint_share(std::size_t limb) const {
-    return limb < joint_pressure_shares.size() ? joint_pressure_shares[limb] : 1.0;
+  /// Its share of the clamping pressures at that end.
+  [[nodiscard]] double joint_share(std::size_t limb, bool is_top) const {
+    const std::vector<double>& shares = is_top || bottom_joint_shares.empty() ? joint_pressure_shares : bottom_joint_shares;
+    return limb < shares.size() ? shares[limb] : 1.0;
   }
 };
 

@@ -29,6 +29,7 @@ public:
     check_names();
     const std::vector<Diagnostic> found = check_dimensions(core_);
     problems_.insert(problems_.end(), found.begin(), found.end());
+    if (core_.pressure == 0.0) error("needs 'pressure' above 0, that clamps its sheets (in Pa), or a [[clamp]] with what presses them", "pressure");
     stop_if_wrong();
     const CoreGeometry geometry(core_);
     try {
@@ -244,7 +245,7 @@ void CoreBuilder::give_settings(StepLapJoint& joint, const CoreGeometry& geometr
 
 void CoreBuilder::press(StepLapInterface& face, std::size_t i, const CoreCorner& corner, const Lap& lap,
                         const CoreGeometry& geometry) {
-  const LapPressure pressure = geometry.pressure(corner, lap, core_.joint_share(i));
+  const LapPressure pressure = geometry.pressure(corner, lap, core_.joint_share(i, corner.is_top));
   face.pressure = pressure.middle;
   face.pressure_gradient = rotated(pressure.gradient, active_part().angle);
   face.transverse_pressure = pressure.transverse;

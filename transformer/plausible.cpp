@@ -2,6 +2,7 @@
 
 #include "elements/step_lap_interface.h"
 #include "mbd/base/number_text.h"
+#include "transformer/clamp.h"
 #include "transformer/core.h"
 #include "transformer/core_builder.h"
 #include "transformer/core_geometry.h"
@@ -209,7 +210,7 @@ const std::vector<UsualRange>& usual_ranges() {
 std::vector<CoreRemark> implausible_cores(const Model& model) {
   std::vector<CoreRemark> said;
   for (const TableEntry& entry : model.tables)
-    if (const auto* core = dynamic_cast<const Core*>(entry.table.get())) Look(model, *core, said).run();
+    if (const auto* core = dynamic_cast<const Core*>(entry.table.get())) Look(model, clamped(*core, model), said).run();
   // Interfaces given one by one; those of a core stand where the core does.
   const auto is_of_core = [&](const StepLapInterface& face) {
     return std::any_of(model.tables.begin(), model.tables.end(), [&](const TableEntry& entry) {

@@ -68,7 +68,7 @@ SimulationOptions options_of(const Model& model) {
 
 Simulation::Simulation(const System& system, const State& initial, SimulationOptions options)
     : system_(system), options_(checked(std::move(options), initial.t)), state_(checked(initial, system)), dynamics_(system),
-      handler_(system, dynamics_), finder_(system, system.largest_dimension()),
+      handler_(system, dynamics_), finder_(system, system.largest_dimension()), swallowed_(system),
       y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   cpu_start_ = thread_cpu_seconds();
   if (options_.end > system.drives_end)
@@ -164,7 +164,10 @@ void Simulation::restart(bool is_evaluated) {
     dynamics_.pack(state_, y_.data());
     integrator_->restart(dynamics_, state_.t, y_.data());
   }
-  if (!integrator_->stepped_state()) check_holding(state_.t, integrator_->watch0());
+  if (!integrator_->stepped_state()) {
+    check_holding(state_.t, integrator_->watch0());
+    swallowed_.check(dynamics_, state_.t, integrator_->y0(), state_.mode, integrator_->watch0());
+  }
   if (ledger_) ledger_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
   if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()), *integrator_, dynamics_);
   is_between_events_ = true;
@@ -479,6 +482,7 @@ bool Simulation::pass_step() {
   }
   check_holding(t1, integrator_->watch1());
   check_sticking(system_, state_, dynamics_.sharing(), t1, integrator_->watch1());
+  swallowed_.check(dynamics_, t1, integrator_->y1(), state_.mode, integrator_->watch1());
   energy_.check_step(dynamics_, t1, integrator_->y1());
   if (t1 >= options_.end) {
     integrator_->accept();

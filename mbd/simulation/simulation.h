@@ -7,6 +7,7 @@
 #include "mbd/events/event_storm.h"
 #include "mbd/simulation/extremes.h"
 #include "mbd/simulation/power_ledger.h"
+#include "mbd/simulation/swallowed_check.h"
 #include "mbd/integrators/integrator.h"
 #include "mbd/integrators/time_stepping.h"
 #include "mbd/simulation/trajectory.h"
@@ -130,6 +131,7 @@ private:
   Dynamics dynamics_;
   EventHandler handler_;
   EventFinder finder_;
+  SwallowedCheck swallowed_;
   std::unique_ptr<Integrator> integrator_;
   std::unique_ptr<Trajectory> trajectory_;
   std::unique_ptr<ExtremeFinder> extremes_; ///< null if they are not asked for

@@ -35,7 +35,7 @@ steplap.verdict = (() => {
     return !o ? 'not asked' : o.none_because ? `none: ${o.none_because}` : o.agrees ? `${o.method} agrees` : `${o.method} disagrees: ${o.disagreement}`;
   }
   const list = (texts) => (texts.length ? make('ul', { class: 'caps' }, ...texts.map((text) => make('li', {}, text))) : 'nothing');
-  function rows() {
+  function rows(runs) {
     const energy = (r) => r.summary.accuracy;
     return [
       ['run', (r) => (r.summary.completed ? `complete, 0 to ${instant(r.end, r.end)}` : `stopped at ${instant(r.end, r.end)}: ${r.summary.failure || ''}`)],
@@ -48,6 +48,7 @@ steplap.verdict = (() => {
       ['constraint residual', (r) => `${few(energy(r).max_position_residual)} m or rad`],
       ['steps, evaluations', (r) => `${r.summary.statistics.steps}, ${r.summary.statistics.evaluations}`],
       ['events', (r) => String(r.summary.statistics.events)],
+      ...(runs.some((r) => r.summary.left_out) ? [['not in the model', (r) => list(r.summary.left_out || [])]] : []),
       ['warnings', (r) => list((r.summary.findings || []).filter((f) => f.level === 'warning').map((f) => f.text))]];
   }
   function buildCards(runs) {
@@ -62,7 +63,7 @@ steplap.verdict = (() => {
   // What the fold holds; it is not needed for the first picture.
   function buildTrust(runs) {
     const heads = ['', ...runs.map((r) => r.name)];
-    document.getElementById('trust').append(table(runs.length > 1 ? heads : null, rows().map(([name, text]) => [name, ...runs.map(text)])));
+    document.getElementById('trust').append(table(runs.length > 1 ? heads : null, rows(runs).map(([name, text]) => [name, ...runs.map(text)])));
   }
   return { build, buildCards, buildTrust };
 })();

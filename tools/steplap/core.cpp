@@ -7,6 +7,7 @@
 #include "run/run.h"
 #include "tools/steplap/output_files.h"
 #include "tools/steplap/text_table.h"
+#include "transformer/clamp.h"
 #include "transformer/core_builder.h"
 #include "transformer/core_geometry.h"
 #include "transformer/plausible.h"
@@ -144,7 +145,7 @@ void print_corners(std::ostream& out, const Core& core, const CoreGeometry& geom
     for (const Lap& lap : corner.laps) {
       count += lap.count;
       area += lap.count * lap.area;
-      pressed += lap.count * lap.area * geometry.pressure(corner, lap, core.joint_share(limb)).middle * (1.0 - core.pressure_loss);
+      pressed += lap.count * lap.area * geometry.pressure(corner, lap, core.joint_share(limb, corner.is_top)).middle * (1.0 - core.pressure_loss);
       width += lap.count * (lap.outer - lap.inner);
     }
     const double friction = corner.is_top
@@ -175,6 +176,20 @@ void print_steel(std::ostream& out, const Core& core, const CoreGeometry& geomet
   out << table;
 }
 
+// What the clamps of its yokes come to.
+void print_clamping(std::ostream& out, const Core& core, const Model& model) {
+  if (!is_clamped(core, model)) return;
+  TextTable table({Align::left, Align::right, Align::right, Align::right, Align::right});
+  table.set_head("clamping", {"yoke", "force", "on", "pressure", "from end to end"});
+  for (const bool is_top : {true, false}) {
+    const YokeClamping yoke = clamping_of(core, model, is_top);
+    const double half = 0.5 * yoke.length, area = yoke.length * yoke.height;
+    table.add_row({is_top ? "top" : "bottom", quantity_cell(yoke.force, "N"), Cell(quantity_text(area, "m²"), area, "m^2"), quantity_cell(yoke.pressure(), "Pa"),
+                   quantity_cell(yoke.pressure() * (yoke.share(half) - yoke.share(-half)), "Pa")});
+  }
+  out << table;
+}
+
 // Is it not the only table whose yokes are in its active part?
 bool is_one_of_several(const Core& core, const Model& model) {
   return std::count_if(model.tables.begin(), model.tables.end(), [&core](const TableEntry& entry) {
@@ -198,6 +213,7 @@ void print_core(std::ostream& out, const Core& core, const Model& model) {
   if (const auto steel = yoke_steel(model, core.active_part))
     out << "  yokes: " << quantity_text(*steel, "kg") << " of the " << quantity_text(model.find_body(core.active_part)->mass, "kg") << " of '"
         << core.active_part << "'" << (is_one_of_several(core, model) ? ", those of all its tables together" : "") << "\n";
+  print_clamping(out, core, model);
   for (std::size_t i = 0; i < core.all_limbs().size(); ++i) {
     out << About{core.joint_name(i)} << "\n"
         << core.joint_name(i) << ": '" << core.all_limbs()[i] << "'"
@@ -230,7 +246,7 @@ ExitCode core(const CoreOptions& options, Console& console) {
   if (is_drawn_there && cores.size() > 1) throw UsageError("--svg -: there are " + std::to_string(cores.size()) + " cores, each with a drawing of its own: choose one with --core");
   for (std::size_t i = 0; i < cores.size(); ++i) {
     if (i > 0) out << "\n";
-    print_core(out, *cores[i], loaded->model);
+    print_core(out, clamped(*cores[i], loaded->model), loaded->model);
     if (is_drawn_there) files.write(options.image, core_svg(*cores[i], loaded->model));
     else if (options.image) write_image(*options.image, i, *cores[i], loaded->model, out);
   }
