@@ -7,6 +7,8 @@
 // its pivots, as long as none of them is much smaller than another that its column offers (T. A.
 // Davis, E. Palamadai Natarajan, ACM TOMS 37 (2010) 36); else rows are chosen anew. Once the lists
 // have their length nothing is allocated.
+//
+// By hand, and not KLU of SuiteSparse: faster on chains, slower on middling grids (docs/design/tried_and_left_out.md).
 #pragma once
 
 #include "mbd/base/types.h"

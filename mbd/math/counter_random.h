@@ -1,5 +1,5 @@
 // Random numbers by counter: the k-th number of the n-th sample of a stream is a function of (seed, stream, n, k) and
-// of nothing that came before. Philox 4x32-10 of Salmon, Moraes, Dror and Shaw, SC 2011.
+// of nothing that came before. Philox 4x32-10 of Salmon, Moraes, Dror and Shaw, SC 2011, by their library Random123.
 #pragma once
 
 #include <array>
