@@ -54,6 +54,24 @@ ChannelRange joined(const ChannelRange& a, const ChannelRange& b) {
   return both;
 }
 
+// What was added to the first system behind its own channels, in the same order: what hangs on an element that does not act is zero.
+void add_channels(const ActionGroup& group, const System& first, System& system) {
+  const std::size_t own = system.channels.size();
+  const auto is_same = [](const Channel& a, const Channel& b) { return a.name == b.name; };
+  if (own > first.channels.size() || system.integrands.size() != first.integrands.size() ||
+      !std::equal(system.channels.begin(), system.channels.end(), first.channels.begin(), is_same))
+    throw std::logic_error("actions have changed the channels of '" + system.title + "'");
+  for (const auto& addition : group.additions) addition(system);
+  const std::vector<Channel> added(system.channels.begin() + static_cast<std::ptrdiff_t>(own), system.channels.end());
+  system.channels.resize(own);
+  for (std::size_t i = own; i < first.channels.size(); ++i) {
+    const auto found = std::find_if(added.begin(), added.end(), [&](const Channel& channel) { return is_same(channel, first.channels[i]); });
+    Channel channel = found == added.end() ? first.channels[i] : *found;
+    if (found == added.end()) channel.value = [](const Snapshot&) { return 0.0; };
+    system.channels.push_back(std::move(channel));
+  }
+}
+
 } // namespace
 
 ActionFollower::ActionFollower(const System& system) : first_(system), group_(*action_group(system)), triggers_(group_) {
@@ -72,13 +90,10 @@ void ActionFollower::act(std::unique_ptr<RunLeg>& leg) {
   first_now_ = at_once_.size();
   while (leg->is_interrupted() && !is_ended_) {
     const Arrangement before = now_;
-    std::size_t known = leg->record().events.size();
+    const std::size_t known = leg->record().events.size();
     for (std::size_t i = 0; i < group_.entries.size() && !is_ended_; ++i)
       if (triggers_.is_due[i] != 0) happen(i, *leg);
-    if (!(now_ == before)) {
-      known = leg->record().events.size();
-      change_over(leg, before);
-    }
+    if (!(now_ == before)) change_over(leg, before);
     if (!is_ended_) leg->look_for_actions(known);
   }
   if (is_ended_) leg->close(true);
@@ -135,10 +150,7 @@ std::unique_ptr<System> ActionFollower::compiled(const Arrangement& arrangement,
   }
   acts = acting_elements(model);
   auto system = compile(model, group_.channels ? &*group_.channels : nullptr);
-  const auto is_same = [](const Channel& a, const Channel& b) { return a.name == b.name; };
-  if (!std::equal(system->channels.begin(), system->channels.end(), first_.channels.begin(), first_.channels.end(), is_same) ||
-      system->integrands.size() != first_.integrands.size())
-    throw std::logic_error("actions have changed the channels of '" + model.header.title + "'");
+  add_channels(group_, first_, *system);
   return system;
 }
 

@@ -59,6 +59,12 @@ bool ActionGroup::holds(std::size_t action, const State& state, const std::vecto
   return entry.trigger.formula->value<double>(e, e.inner, no_coordinate<double>(), SignalsNow{e.t}, bits.values, nullptr) != 0.0;
 }
 
+ActionGroup* action_group(System& system) {
+  for (const auto& group : system.groups)
+    if (auto* const found = dynamic_cast<ActionGroup*>(group.get())) return found;
+  return nullptr;
+}
+
 const ActionGroup* action_group(const System& system) {
   for (const auto& group : system.groups)
     if (const auto* const found = dynamic_cast<const ActionGroup*>(group.get())) return found;

@@ -11,6 +11,7 @@
 #include "mbd/model/action.h"
 #include "mbd/system/motion_formula.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,6 +49,8 @@ public:
   std::vector<Entry> entries;
   std::shared_ptr<const Model> model;                    ///< completed, as it is at the start of a run
   std::optional<std::vector<std::string>> channels = {}; ///< that were wanted of the system; not given: all
+  /// What else was done to the system once it was compiled: it is done to those, too, that actions make of it. May add channels.
+  std::vector<std::function<void(System&)>> additions = {};
 
   void add_forces(Evaluation& e) const override;
   [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override;
@@ -66,5 +69,6 @@ private:
 
 /// Nullptr if the system has no actions.
 [[nodiscard]] const ActionGroup* action_group(const System& system);
+[[nodiscard]] ActionGroup* action_group(System& system);
 
 } // namespace steplap

@@ -2,6 +2,7 @@
 
 #include "mbd/base/name_pattern.h"
 #include "mbd/model/formula_fields.h"
+#include "mbd/system/actions.h"
 #include "mbd/system/formula_channel.h"
 #include "mbd/system/measured_channel.h"
 #include "mbd/system/one_sided_row.h"
@@ -62,6 +63,9 @@ bool wants_energies(const std::vector<std::string>* wanted) {
            return std::any_of(std::begin(k_energies), std::end(k_energies), [&](const char* energy) { return name.ends_with(energy); });
          });
 }
+
+// States and actions.
+bool has_no_energy(const ForceGroup& group) { return dynamic_cast<const OwnStateGroup*>(&group) != nullptr || dynamic_cast<const ActionGroup*>(&group) != nullptr; }
 
 std::string without_unit(const std::string& name) {
   if (name.empty() || name.back() != ']') return name;
@@ -148,7 +152,7 @@ void RequestedChannels::end_element() {
   share.element = builder_.element_;
   for (std::size_t g = 0; g < system.groups.size(); ++g) {
     const std::size_t before = g < counts_.size() ? counts_[g] : 0, now = builder_.group_types_[g].count(*system.groups[g]);
-    if (now == before || dynamic_cast<const OwnStateGroup*>(system.groups[g].get()) != nullptr) continue; // states have no energy
+    if (now == before || has_no_energy(*system.groups[g])) continue;
     share.groups.push_back(system.groups[g].get());
     share.first.push_back(before);
     share.count.push_back(now - before);
@@ -173,7 +177,7 @@ void RequestedChannels::end_inactive_element(System& acting) {
   if (!is_wanted) return;
   for (std::size_t g = 0; g < aside.groups.size(); ++g) {
     const std::size_t before = g < counts_.size() ? counts_[g] : 0;
-    if (builder_.group_types_[g].count(*aside.groups[g]) == before || dynamic_cast<const OwnStateGroup*>(aside.groups[g].get()) != nullptr) continue;
+    if (builder_.group_types_[g].count(*aside.groups[g]) == before || has_no_energy(*aside.groups[g])) continue;
     (builder_.group_types_[g].does_work ? share.works : share.stores) = true;
   }
   share.dissipates = share.stores;
