@@ -38,12 +38,12 @@ ChannelRange joined(const ChannelRange& a, const ChannelRange& b) {
   ChannelRange both = b;
   both.channel = a.channel;
   both.first = a.first;
-  if (!(b.low.value <= a.low.value)) {
+  if (std::isnan(b.low.value) || a.low.value <= b.low.value) {
     both.low = a.low;
     both.is_low_singular = a.is_low_singular;
     both.unsure_low = a.unsure_low;
   }
-  if (!(b.high.value >= a.high.value)) {
+  if (std::isnan(b.high.value) || a.high.value >= b.high.value) {
     both.high = a.high;
     both.is_high_singular = a.is_high_singular;
     both.unsure_high = a.unsure_high;

@@ -60,6 +60,20 @@ double stored_energy(const System& system, const State& state) {
                        {name});
 }
 
+// What an element remembers by rates of its own begins with a run.
+void refuse_inner(const Changeover& change, const State& state) {
+  const OwnStateGroup* const own = own_state_group(change.to);
+  for (std::size_t i = 0; i < change.to.inner_elements.size(); ++i) {
+    const int element = change.to.inner_elements[i], at = static_cast<int>(i);
+    const bool is_state = own && at >= own->first_inner && at < own->first_inner + static_cast<int>(own->entries.size());
+    if (is_state || !change.closes(element)) continue;
+    const std::string& name = change.to.element_names[static_cast<std::size_t>(element)];
+    throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s '" + name + "' cannot begin to act: what it remembers (a slid distance, whether it has broken) begins with a run. " +
+                             "Let it act from the start, or take an element that remembers nothing",
+                         {name});
+  }
+}
+
 void place_rope(const Changeover& change, std::size_t f, const std::vector<Motion<double>>& motion, State& state) {
   const OneSidedRow& rope = *one_sided_row(*change.to.frictions[f].friction);
   const std::string& name = change.to.element_names[static_cast<std::size_t>(change.to.frictions[f].element)];
@@ -102,6 +116,7 @@ State carried(const Changeover& change, const State& state) {
 void place_what_closes(const Changeover& change, State& state) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
+  refuse_inner(change, state);
   for (const RowSpec& row : change.to.rows) {
     if (change.begins[static_cast<std::size_t>(row.element)] == 0) continue;
     const double now = evaluate_row<false>(row, motion.data()).value;
