@@ -8,6 +8,7 @@
 #include "mbd/system/own_states.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -105,10 +106,16 @@ private:
   }
 
   [[nodiscard]] static double number(const ActionStepText& text, const Field& field, const ElementEntry& entry) {
-    const std::string subject = "'" + text.name + "." + text.field + "'";
+    double plain = 0.0; // SI, as a number of a file is
+    const char *const begin = text.value.data(), *const end = begin + text.value.size();
+    if (const auto read = std::from_chars(begin, end, plain); read.ec == std::errc() && read.ptr == end) return checked(plain, text, field);
     const Quantity quantity = parse_quantity(text.value, unit_in(entry.kind->fields, field, entry.element.get()));
-    if (!quantity.problem.empty()) throw std::invalid_argument(subject + ": " + quantity.problem);
-    const double value = quantity.value;
+    if (!quantity.problem.empty()) throw std::invalid_argument("'" + text.name + "." + text.field + "': " + quantity.problem);
+    return checked(quantity.value, text, field);
+  }
+
+  [[nodiscard]] static double checked(double value, const ActionStepText& text, const Field& field) {
+    const std::string subject = "'" + text.name + "." + text.field + "'";
     const bool is_low = value < field.minimum || (field.is_minimum_excluded && value <= field.minimum);
     if (is_low || value > field.maximum || !std::isfinite(value))
       throw std::invalid_argument(subject + " cannot be " + text.value + ": it is " + (is_low ? (field.is_minimum_excluded ? "larger than " : "at least ") + number_text(field.minimum) : "at most " + number_text(field.maximum)));
@@ -149,7 +156,8 @@ private:
   bool read_formula(ActionTrigger& trigger) {
     MotionFormula formula(builder_, {action_.when, "when", "", "-", "-"});
     if (!formula.is_valid()) return false;
-    if (formula.program().switch_count() == 0) {
+    const bool is_constant = formula.operands().empty() && !formula.program().uses_time();
+    if (is_constant || formula.program().switch_count() == 0) {
       builder_.error("'when' is the same at all times: compare what moves, or a time");
       return false;
     }

@@ -70,7 +70,8 @@ std::optional<EventText> event_text(const std::string& when) {
   const std::string text = trimmed(when);
   for (std::size_t space = text.find(' '); space != std::string::npos; space = text.find(' ', space + 1)) {
     const auto kind = event_kind_called(trimmed(text.substr(space)));
-    if (kind) return EventText{trimmed(text.substr(0, space)), *kind};
+    const bool is_compared = text.find_first_of("<>=") < space; // "t > opens", with a parameter of that name
+    if (kind && !is_compared) return EventText{trimmed(text.substr(0, space)), *kind};
   }
   return std::nullopt;
 }
