@@ -11,11 +11,13 @@
 
 namespace steplap {
 
+/// One per run of a model with actions.
 class ActionFollower {
 public:
   /// `system` has actions; it begins as its model says.
   explicit ActionFollower(const System& system);
 
+  /// Which actions are armed, for the legs.
   [[nodiscard]] ActionTriggers& triggers() { return triggers_; }
   /// Does what is due where `leg` is interrupted, one after the other in the order of the file, and what is due because of that; puts the
   /// leg in which the run goes on in its place. Throws ElementFailure for actions that set each other off without end.

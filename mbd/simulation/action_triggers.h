@@ -13,15 +13,19 @@
 
 namespace steplap {
 
+/// One flag per action of the model.
 struct ActionTriggers {
-  std::vector<char> is_armed;
+  std::vector<char> is_armed;    ///< it waits for its condition
   std::vector<char> is_spent;    ///< its condition is true, and has been since it last happened
   std::vector<char> has_event;   ///< its event has been, and it has not happened yet
   std::vector<char> is_due;      ///< as looked at last
 
+  /// As the model says at the start.
   explicit ActionTriggers(const ActionGroup& group);
 
+  /// From here on it waits.
   void arm(std::size_t action);
+  /// From here on it does not.
   void disarm(std::size_t action);
   /// It happens: no more before its condition comes true anew, nor, if it happens once, before it is armed.
   void spend(std::size_t action, bool is_once);

@@ -40,13 +40,14 @@ public:
   void close(bool is_end_of_run);
   /// Asks the actions whether one is due at state(), with the events from `known` on.
   void look_for_actions(std::size_t known) { is_interrupted_ = is_action_due(known); }
+  /// At the end of the run, or where an element ended it.
   [[nodiscard]] bool is_over() const { return state_.t >= options_.end || !handler_.stop_reason().empty(); }
 
-  [[nodiscard]] const System& system() const { return system_; }
+  [[nodiscard]] const System& system() const { return system_; } ///< that it is computed in
   [[nodiscard]] const State& state() const { return state_; } ///< at the last event or the end
   /// The state after the last step, whether or not an event ended it.
   [[nodiscard]] State current_state() const;
-  [[nodiscard]] RunRecord& record() const { return *record_; }
+  [[nodiscard]] RunRecord& record() const { return *record_; } ///< of the whole run so far
   /// Not empty if an element ended the run before its time ("'front joint' came apart").
   [[nodiscard]] const std::string& stop_reason() const { return handler_.stop_reason(); }
   /// Of this leg, without its time.
