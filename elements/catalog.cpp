@@ -1,5 +1,6 @@
 #include "elements/catalog.h"
 
+#include "elements/action.h"
 #include "elements/buffer.h"
 #include "elements/bushing.h"
 #include "elements/coulomb_stick.h"
@@ -49,7 +50,7 @@ const Catalogue& element_catalog() {
     c.signals = signal_kinds();
     c.signals.push_back(&shunting_kind());
     c.signals.push_back(&record_signal_kind());
-    c.tables = {&shape_kind(), &own_state_kind(), &channel_kind(), &plot_kind(), &acceptance_kind()};
+    c.tables = {&shape_kind(), &own_state_kind(), &action_kind(), &channel_kind(), &plot_kind(), &acceptance_kind()};
     return c;
   }();
   return catalogue;

@@ -27,7 +27,7 @@ std::vector<Finding> far_joints(const LoadedModel& loaded) {
   const State given = loaded.system->initial_state();
   for (const ElementEntry& entry : loaded.model.elements) {
     const auto* const joint = dynamic_cast<const Joint*>(entry.element.get());
-    if (!joint || entry.kind != &revolute_kind() || joint->b != "ground") continue;
+    if (!joint || !joint->active || entry.kind != &revolute_kind() || joint->b != "ground") continue;
     const Place a = place_of(loaded.model, joint->a);
     if (!a.body || !(a.body->mass > 0.0)) continue;
     const Vec3 pose = pose_of(*loaded.system, given, a.body);

@@ -1,6 +1,7 @@
 #include "run/findings.h"
 
 #include "elements/shape.h"
+#include "mbd/model/action.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/freedom.h"
 #include "mbd/base/shown_text.h"
@@ -56,6 +57,9 @@ References references_of(const Model& model) {
         found.markers.insert(over.begin(), over.end());
       }
     }
+  for (const ElementEntry& entry : model.elements)
+    if (const auto* const action = dynamic_cast<const Action*>(entry.element.get()))
+      for (const std::string& step : action->steps) found.signals.insert(action_step(step).value);
   for (const ElementEntry& entry : model.elements)
     for (const std::string& name : names_in_formulas(entry)) {
       found.signals.insert(name);

@@ -388,6 +388,7 @@ OrderedJson summary_document(const Report& report, ShownDigits digits) {
   Json json = summary_head(report, digits);
   json["integrator"] = loaded.model.simulation.integrator;
   json["settings"] = settings_json(loaded.model);
+  if (!run.result.ended_by.empty()) json["ended_by"] = run.result.ended_by;
   json["statistics"] = statistics_json(statistics);
   json["accuracy"] = accuracy_json(statistics, report);
   if (report.estimate.errors) json["global_error"] = global_error_json(report);

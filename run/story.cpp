@@ -21,7 +21,7 @@ namespace {
 
 // What entries tell of. Of what goes to and fro the first event says which way is told: a foot that stood lifts, a ball that flew
 // touches.
-enum class What { slips, would_slip, lifts, opens, touches, slack, taut, leaves_gap, closes_gap, strikes, leaves_stop, tips, breaks, apart, interface, storm };
+enum class What { slips, would_slip, lifts, opens, touches, slack, taut, leaves_gap, closes_gap, strikes, leaves_stop, tips, breaks, apart, interface, storm, happens };
 
 struct Words {
   const char* key;     // StoryEntry::what
@@ -30,7 +30,7 @@ struct Words {
 };
 
 const Words& words_of(What what) {
-  static constexpr std::array<Words, 16> k_words{{{"slips", "slips", "slip"},
+  static constexpr std::array<Words, 17> k_words{{{"slips", "slips", "slip"},
                                                   {"would slip", "would slip", "would slip"},
                                                   {"lifts", "lifts", "lift"},
                                                   {"opens", "opens", "open"},
@@ -45,7 +45,8 @@ const Words& words_of(What what) {
                                                   {"breaks", "breaks", "break"},
                                                   {"comes apart", "comes apart", "come apart"},
                                                   {"loses an interface", "loses an interface", "lose interfaces"},
-                                                  {"changes too often", "changes too often to be followed event by event", "change too often to be followed event by event"}}};
+                                                  {"changes too often", "changes too often to be followed event by event", "change too often to be followed event by event"},
+                                                  {"happens", "happens", "happen"}}};
   return k_words[static_cast<std::size_t>(what)];
 }
 
@@ -59,10 +60,11 @@ struct Happening {
   std::optional<StoryAmount> amount;
   std::optional<double> from_error, to_error;
   bool is_over = true;
+  std::string detail = {}; // of an action: what it does
 };
 
 bool is_instant(What what) {
-  return what == What::breaks || what == What::apart || what == What::interface || what == What::tips || what == What::would_slip;
+  return what == What::breaks || what == What::apart || what == What::interface || what == What::tips || what == What::would_slip || what == What::happens;
 }
 
 // --- from events to happenings
@@ -201,6 +203,10 @@ private:
       end(What::slips, event, error);
       return begin(What::apart, event, error);
     case EventKind::loses_interface: return begin(What::interface, event, error);
+    case EventKind::happens:
+      begin(What::happens, event, error);
+      entry(What::happens, event.element).detail = event.detail;
+      return;
     case EventKind::storm: return begin(What::storm, event, error);
     case EventKind::storm_over: return end(What::storm, event, error);
     default: return;
@@ -349,6 +355,7 @@ public:
     const std::string who = sentence_name(h.who);
     if (h.what == What::tips) return who + (h.amount && h.amount->value > k_over ? " tips over: it has turned by " + amount(*h.amount) + " at " + time(h.from, {}) + "." : " tips" + reach(h.what, h.amount) + " (at " + time(h.from, {}) + ").");
     if (h.what == What::would_slip) return who + ", which is only monitored, would slip at " + time(h.from, {}) + ".";
+    if (h.what == What::happens) return "Action '" + h.who + "' happens" + when(h) + ": " + h.detail + ".";
     std::string how = reach(h.what, h.amount);
     if (is_plural(h.who) && how.starts_with(" and slides")) how.replace(0, 11, " and slide");
     return who + " " + (is_plural(h.who) ? words_of(h.what).several : words_of(h.what).verb) + when(h) + how + ".";

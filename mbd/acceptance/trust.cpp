@@ -3,6 +3,7 @@
 #include "mbd/acceptance/element_judgement.h"
 #include "mbd/model/method.h"
 #include "mbd/model/validate.h"
+#include "mbd/simulation/energy_account.h"
 
 #include <algorithm>
 #include <cmath>

@@ -37,6 +37,7 @@ constexpr std::array<Entry, k_event_kinds> k_table{{
     {EventKind::meets_interface, "meets at an interface again", "the sheets of a step-lap interface overlap again"},
     {EventKind::storm, "changes too often to be followed: time stepping", "events crowd: time stepping goes over the interval that follows"},
     {EventKind::storm_over, "is followed event by event again", "the end of such an interval"},
+    {EventKind::happens, "happens", "an action of the model is done, with what it does"},
     {EventKind::breaks, "breaks", "a tie's force has reached its strength: it bears nothing for good"},
     {EventKind::comes_apart, "comes apart", "a step-lap joint has no overlap left: no friction for good"},
 }};

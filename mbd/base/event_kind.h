@@ -36,6 +36,7 @@ enum class EventKind : std::uint8_t {
   meets_interface,
   storm,
   storm_over,
+  happens,
   breaks,
   comes_apart ///< the last one: new kinds go before it
 };

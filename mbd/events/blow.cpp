@@ -71,6 +71,16 @@ BoxSolution impulses_of(const System& system, Dynamics& dynamics, const State& l
                        {system.element_names[system.frictions[struck.ropes.front()].element]});
 }
 
+// What holds in the modes of `state` is met by its places and velocities.
+void meet(Dynamics& dynamics, State& state) {
+  std::vector<double> y(static_cast<std::size_t>(dynamics.system().largest_dimension()));
+  dynamics.set_state(state);
+  dynamics.pack(state, y.data());
+  dynamics.project(state.t, y.data(), k_projection_tolerance);
+  dynamics.close_velocities(state.t, y.data());
+  dynamics.unpack(state.t, y.data(), state);
+}
+
 bool is_any_driven(const System& system) {
   for (const RowSpec& row : system.rows)
     if (row.drive) return true;
@@ -127,12 +137,7 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
     state.memory[rope.blow] = impulse;
     state.memory[rope.blow + 1] += 0.5 * impulse * std::max(struck.rate[i], 0.0);
   }
-  std::vector<double> y(static_cast<std::size_t>(system.largest_dimension()));
-  dynamics.set_state(after);
-  dynamics.pack(after, y.data());
-  dynamics.project(after.t, y.data(), k_projection_tolerance);
-  dynamics.close_velocities(after.t, y.data());
-  dynamics.unpack(after.t, y.data(), after);
+  meet(dynamics, after);
   const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
   State jump = after;
   for (std::size_t i = 0; i < jump.v.size(); ++i) jump.v[i] -= state.v[i];
@@ -142,6 +147,24 @@ void take_blow(const System& system, Dynamics& dynamics, State& state) {
   state.q = std::move(after.q);
   state.v = std::move(after.v);
   for (const int f : struck.ropes) state.friction[f] = after.friction[f];
+}
+
+void close_rows(const System& system, Dynamics& dynamics, State& state) {
+  State after = state;
+  for (std::size_t f = 0; f < system.frictions.size(); ++f) {
+    FrictionState& friction = after.friction[f];
+    if (one_sided_row(*system.frictions[f].friction)) friction.phase = FrictionPhase::slip;
+    else if (!system.frictions[f].friction->never_slips() && friction.phase != FrictionPhase::apart) friction.phase = FrictionPhase::free;
+  }
+  meet(dynamics, after);
+  const double gained = system.kinetic_energy(after) - system.kinetic_energy(state);
+  State jump = after;
+  for (std::size_t i = 0; i < jump.v.size(); ++i) jump.v[i] -= state.v[i];
+  const double lost = system.kinetic_energy(jump);
+  state.dissipated += lost;
+  state.work += gained + lost;
+  state.q = std::move(after.q);
+  state.v = std::move(after.v);
 }
 
 bool was_struck(const System& system, std::size_t f, const std::vector<double>& before, const State& state) {

@@ -20,6 +20,11 @@ namespace steplap {
 /// Changes velocities, the ropes' phases and memories, dissipated energy and work; phases of friction are left as they were.
 void take_blow(const System& system, Dynamics& dynamics, State& state);
 
+/// The blow when joints and drives close that did not act before: their rows' rates jump to what they hold, as the least change of
+/// velocities in the measure of the kinetic energy does it, Δv = −M⁻¹Jᵀ(J M⁻¹ Jᵀ)⁻¹(Jv − target). Friction bears none of it, nor do
+/// ropes: take_blow() comes after it. ½ Δvᵀ M Δv is dissipated; what moving drives give beside that is their work.
+void close_rows(const System& system, Dynamics& dynamics, State& state);
+
 /// Of the last blow that a rope took; `before`: the memory as it was then.
 [[nodiscard]] bool was_struck(const System& system, std::size_t friction, const std::vector<double>& before, const State& state);
 [[nodiscard]] std::string blow_text(const System& system, std::size_t friction, const std::vector<double>& before, const State& state);

@@ -387,10 +387,11 @@ EventHandler::Fired EventHandler::fire(State& state, const std::vector<int>& fir
 }
 
 // Contacts and friction behind a blow are those of the new velocities. True if a contact has changed its mode.
-bool EventHandler::strike(State& state, std::vector<Event>& events) {
+bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
   modes_.evaluate(state);
   const std::vector<double> watch = dynamics_.watch();
   const State unhurt = state;
+  if (blow == Blow::rows) close_rows(system_, dynamics_, state);
   take_blow(system_, dynamics_, state);
   modes_.evaluate(state);
   const bool is_contact_changed = switch_units(state, fallen(watch, dynamics_.watch()), events);
@@ -422,7 +423,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
   bool is_contact_changed = switch_units(state, fired, events);
   const Fired found = fire(state, fired);
   if (!fired.empty()) modes_.forget_evaluation();
-  if (found.is_any_tight && strike(state, events)) is_contact_changed = true;
+  if (found.is_any_tight && strike(state, Blow::ropes, events)) is_contact_changed = true;
   bool is_settled = false; // in the modes that it has
   // The mode problem is one of elements at rest: what little is left of a slip that has ended goes first.
   if (found.is_any_at_rest) {
@@ -436,7 +437,24 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
       settled_ = settled;
     }
   }
-  if (is_contact_changed || fired.empty()) { // at a breakpoint a signal may begin or cease to press
+  conclude(state, is_contact_changed || fired.empty(), is_settled, events); // at a breakpoint a signal may begin or cease to press
+}
+
+// What did not act stands in its first mode, or holds nothing: both are found here.
+void EventHandler::take_over(State& state, bool closes_rows, std::vector<Event>& events) {
+  clear_fresh();
+  settled_ = 0.0;
+  before_ = state.friction;
+  memory_before_ = state.memory;
+  dynamics_.forget_layouts();
+  modes_.begin_event();
+  if (closes_rows) strike(state, Blow::rows, events);
+  conclude(state, true, false, events);
+}
+
+// Modes of units are decided, and what has slipped to rest is: now all of friction is. `is_settled`: in the modes that it has.
+void EventHandler::conclude(State& state, bool is_loading_changed, bool is_settled, std::vector<Event>& events) {
+  if (is_loading_changed) {
     modes_.evaluate(state);
     if (update_loading(state)) {
       modes_.forget_evaluation();

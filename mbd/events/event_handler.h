@@ -34,6 +34,11 @@ public:
   /// `state` is at the event, `fired` the watch slots that fell below zero (none: a breakpoint of a
   /// signal, at which loads may jump). Changes modes, phases and anchors, notes what changed.
   void handle(State& state, const std::vector<int>& fired, std::vector<Event>& events);
+  /// `state` comes from another system at the same time (mbd/simulation/changeover.h): some elements act that did not, or the other way
+  /// round. `closes_rows`: new constraints may take a blow.
+  void take_over(State& state, bool closes_rows, std::vector<Event>& events);
+  /// A watch value that is at its zero, and not to be believed negative.
+  void mark_fresh(int slot) { fresh_[slot] = 1; }
 
   /// After a method that decides modes and phases itself: those that hold at the accelerations' level.
   void settle_phases(State& state);
@@ -71,7 +76,9 @@ private:
   };
   Fired fire(State& state, const std::vector<int>& fired);
   [[noreturn]] void fail_on_pulley(const State& state, int f) const;
-  bool strike(State& state, std::vector<Event>& events);
+  enum class Blow { ropes, rows };
+  bool strike(State& state, Blow blow, std::vector<Event>& events);
+  void conclude(State& state, bool is_loading_changed, bool is_settled, std::vector<Event>& events);
   void slip_rates(const State& state, int f, double* rate);
   void settle(State& state);
   [[nodiscard]] static bool has_new_rows(const std::vector<FrictionState>& before, const State& state);

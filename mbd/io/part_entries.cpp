@@ -3,10 +3,12 @@
 #include "mbd/formula/renamed_formula.h"
 #include "mbd/io/parameters_reader.h"
 #include "mbd/io/presentation.h"
+#include "mbd/model/action.h"
 #include "mbd/model/formula_fields.h"
 #include "mbd/model/placement.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace steplap {
 
@@ -22,6 +24,20 @@ bool is_marker_of_ground(const Node& marker) {
 void prefix_texts(Node& node, const std::string& prefix) {
   if (node.type == Node::Type::text && node.text() != k_ground_name) node.scalar = prefix + node.text();
   for (Node& child : node.children) prefix_texts(child, prefix);
+}
+
+// What an action does to elements, signals and actions of its own file.
+void prefix_steps(Node& node, const std::string& prefix) {
+  for (Node& child : node.children) prefix_steps(child, prefix);
+  if (node.type != Node::Type::text) return;
+  try {
+    ActionStepText step = action_step(node.text());
+    if (step.verb == ActionVerb::stop) return;
+    step.name = prefix + step.name;
+    if (step.verb == ActionVerb::set && is_name_in_step(step.value)) step.value = prefix + step.value;
+    node.scalar = text_of(step);
+  } catch (const std::invalid_argument&) { // told where the action is compiled
+  }
 }
 
 Node text_at(const std::string& key, const Node& at, const std::string& text) {
@@ -209,6 +225,14 @@ void PartEntries::put_field(Node& child, const Field& field, const KindFacts& fa
   case FieldType::elements: prefix_texts(child, part.prefix); break;
   case FieldType::marker: put_reference(child, part); break;
   default: break;
+  }
+  if (dynamic_cast<const Action*>(facts.made.get())) {
+    if (field.name == "do") return prefix_steps(child, part.prefix);
+    const auto event = field.name == "when" && child.type == Node::Type::text ? event_text(child.text()) : std::nullopt;
+    if (event) {
+      child.scalar = part.prefix + event->element + " " + words_of(event->kind);
+      return;
+    }
   }
   if (is_formula_field(field) && child.type == Node::Type::text) child.scalar = with_prefixed_names(child.text(), part.prefix, is_own_name);
   const PartTreatment treatment = part_treatment(*facts.fields, field);

@@ -136,7 +136,7 @@ std::optional<long> repeats(const Node& repeat, const std::string& subject, std:
 } // namespace
 
 const std::vector<std::string>& repeated_arrays() {
-  static const std::vector<std::string> names = {"part", "body", "marker", "signal", "element"};
+  static const std::vector<std::string> names = {"part", "body", "marker", "signal", "element", "action"};
   return names;
 }
 

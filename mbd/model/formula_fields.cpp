@@ -4,7 +4,7 @@
 
 namespace steplap {
 
-bool is_formula_key(const std::string& name) { return name == "formula" || name == "rate"; }
+bool is_formula_key(const std::string& name) { return name == "formula" || name == "rate" || name == "when"; }
 
 bool is_formula_field(const Field& field) { return field.type == FieldType::text && is_formula_key(field.name); }
 

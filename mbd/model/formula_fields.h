@@ -1,4 +1,4 @@
-// Which fields of elements hold formulas (mbd/formula/formula.h): texts called "formula" or "rate".
+// Which fields of elements hold formulas (mbd/formula/formula.h): texts called "formula", "rate" or "when".
 //
 // Names in them are those of channels, states, signals and parameters. Where a file is a part of another they get its prefix,
 // and channels that they name are made although nobody writes them.

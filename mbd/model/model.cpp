@@ -90,6 +90,7 @@ const FieldTable& Element::common_fields() {
     f.add("draw", &Element::draw)
         .one_of({"auto", "hidden", "spring", "contact", "pin", "rail", "rod", "weld", "arrow", "friction"})
         .doc("how drawings show it; auto: as its kind is usually drawn");
+    f.add("active", &Element::active).doc("it acts from the start; false: not before an [[action]] holds it");
     return f;
   }();
   return table;

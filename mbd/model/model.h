@@ -65,6 +65,7 @@ struct Element {
   virtual ~Element() = default;
   std::string name;          ///< unique among elements
   std::string draw = "auto"; ///< how drawings show it; "auto": as its kind is usually drawn
+  bool active = true;        ///< it acts from the start; else from where an action says so
   Location where;            ///< in the model's file
 
   /// Fields that elements of every kind have, besides name and kind.

@@ -20,6 +20,8 @@ public:
   /// `max_dimension`: of the packed state. Refers to the system.
   PowerLedger(const System& system, int max_dimension);
 
+  /// What `before` had come to counts from here on: of another system with the same integrands.
+  void go_on_from(const PowerLedger& before) { total_ = before.total_; }
   /// A state from which the motion goes on anew: the start, the far side of an event.
   void begin(double t, const Snapshot& snapshot);
   /// The step just made counts up to t.

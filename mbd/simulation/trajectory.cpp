@@ -5,19 +5,22 @@
 namespace steplap {
 
 Trajectory::Trajectory(const System& system, const std::vector<std::string>& patterns) {
-  for (const Channel& channel : system.channels) {
+  for (std::size_t i = 0; i < system.channels.size(); ++i) {
+    const Channel& channel = system.channels[i];
     bool is_wanted = patterns.empty();
     for (const std::string& pattern : patterns) is_wanted |= matches_pattern(channel.name, pattern);
-    if (is_wanted) channels_.push_back(&channel);
+    if (!is_wanted) continue;
+    channels_.push_back(&channel);
+    places_.push_back(i);
   }
   rows_ = std::make_unique<RowStore>(channels_.size() + 1);
 }
 
-void Trajectory::add(double t, const Snapshot& snapshot) {
+void Trajectory::add(double t, const Snapshot& snapshot, const System& system) {
   double* row = rows_->add_row();
   if (!row) return;
   *row = t;
-  for (const Channel* channel : channels_) *++row = channel->value(snapshot);
+  for (const std::size_t place : places_) *++row = system.channels[place].value(snapshot);
 }
 
 const std::vector<double>& Trajectory::times() const {

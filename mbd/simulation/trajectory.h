@@ -19,8 +19,9 @@ public:
   /// The channels of `system` whose names match one of `patterns` (* and ?; none = all).
   Trajectory(const System& system, const std::vector<std::string>& patterns);
 
-  /// `t`: the time the sample is due; snapshot.t may lie a hair before it, left of a breakpoint.
-  void add(double t, const Snapshot& snapshot);
+  /// `t`: the time the sample is due; snapshot.t may lie a hair before it, left of a breakpoint. `system`: that of the snapshot, with the
+  /// same channels in the same order.
+  void add(double t, const Snapshot& snapshot, const System& system);
 
   /// Those sampled, in the system's order.
   [[nodiscard]] const std::vector<const Channel*>& channels() const { return channels_; }
@@ -41,6 +42,7 @@ public:
 
 private:
   std::vector<const Channel*> channels_;
+  std::vector<std::size_t> places_;     ///< of them in System::channels
   std::unique_ptr<RowStore> rows_;    ///< time, then the channels
   mutable std::vector<double> times_; ///< as far as they were asked for
 };

@@ -2,6 +2,7 @@
 
 #include "mbd/base/name_pattern.h"
 #include "mbd/model/formula_fields.h"
+#include "mbd/system/actions.h"
 #include "mbd/system/formula_channel.h"
 #include "mbd/system/measured_channel.h"
 #include "mbd/system/one_sided_row.h"
@@ -62,6 +63,9 @@ bool wants_energies(const std::vector<std::string>* wanted) {
            return std::any_of(std::begin(k_energies), std::end(k_energies), [&](const char* energy) { return name.ends_with(energy); });
          });
 }
+
+// States and actions.
+bool has_no_energy(const ForceGroup& group) { return dynamic_cast<const OwnStateGroup*>(&group) != nullptr || dynamic_cast<const ActionGroup*>(&group) != nullptr; }
 
 std::string without_unit(const std::string& name) {
   if (name.empty() || name.back() != ']') return name;
@@ -148,7 +152,7 @@ void RequestedChannels::end_element() {
   share.element = builder_.element_;
   for (std::size_t g = 0; g < system.groups.size(); ++g) {
     const std::size_t before = g < counts_.size() ? counts_[g] : 0, now = builder_.group_types_[g].count(*system.groups[g]);
-    if (now == before || dynamic_cast<const OwnStateGroup*>(system.groups[g].get()) != nullptr) continue; // states have no energy
+    if (now == before || has_no_energy(*system.groups[g])) continue;
     share.groups.push_back(system.groups[g].get());
     share.first.push_back(before);
     share.count.push_back(now - before);
@@ -159,6 +163,35 @@ void RequestedChannels::end_element() {
   share.first_friction = frictions_;
   share.friction_end = system.frictions.size();
   shares_.push_back(std::move(share));
+}
+
+void RequestedChannels::end_inactive_element(System& acting) {
+  if (!wants_shares_) return;
+  const System& aside = *builder_.system_;
+  Share share;
+  share.element = builder_.element_;
+  share.acts = false;
+  bool is_wanted = false;
+  for (const char* energy : k_energies)
+    is_wanted |= builder_.use_of(acting.element_names[builder_.element_], energy, true) != SystemBuilder::Use::none;
+  if (!is_wanted) return;
+  for (std::size_t g = 0; g < aside.groups.size(); ++g) {
+    const std::size_t before = g < counts_.size() ? counts_[g] : 0;
+    if (builder_.group_types_[g].count(*aside.groups[g]) == before || has_no_energy(*aside.groups[g])) continue;
+    (builder_.group_types_[g].does_work ? share.works : share.stores) = true;
+  }
+  share.dissipates = share.stores;
+  for (std::size_t f = frictions_; f < aside.frictions.size(); ++f) share.dissipates |= !aside.frictions[f].friction->is_elastic();
+  for (std::size_t r = rows_; r < aside.rows.size(); ++r) share.works |= aside.rows[r].drive != nullptr;
+  shares_.push_back(std::move(share));
+}
+
+// What it had turned into heat, and the work that it had done, stay as they were.
+void RequestedChannels::add_inactive_share(const Share& share) {
+  const auto none = [](const Snapshot&) { return 0.0; };
+  if (share.dissipates) add_energy(share, "dissipated", "energy that it has turned into heat since the start", {none, {}});
+  if (share.stores) make(true, builder_.system_->element_names[share.element], "stored", "J", "energy stored in it now", none);
+  if (share.works) add_energy(share, "work", {"work that it has done since the start", "positive: it has given energy to the bodies"}, {none, {}});
 }
 
 void RequestedChannels::add_energy(const Share& share, const char* name, const ChannelText& text, Integrand integrand) {
@@ -405,7 +438,7 @@ bool RequestedChannels::is_anything_missing() const {
 void RequestedChannels::add() {
   if (!has_requests_ && !is_anything_missing()) return;
   add_markers();
-  for (const Share& share : shares_) add_share(share);
+  for (const Share& share : shares_) share.acts ? add_share(share) : add_inactive_share(share);
   add_whole();
   if (!builder_.errors_.empty()) return; // elements without their channels
   add_formulas();

@@ -24,6 +24,8 @@ public:
   /// Around an element's compilation: what of the system is its share.
   void begin_element();
   void end_element();
+  /// The same of one that does not act: its energies stay as they are, so that they have their places. `acting`: the system being made.
+  void end_inactive_element(System& acting);
   /// When the system is complete but for these.
   void add();
 
@@ -44,6 +46,8 @@ private:
     std::vector<std::size_t> first, count;
     std::vector<char> does_work;
     std::size_t first_row = 0, row_end = 0, first_friction = 0, friction_end = 0;
+    bool dissipates = false, stores = false, works = false; ///< its channels
+    bool acts = true;
   };
 
   void note(const Location& where, const std::string& message);
@@ -53,6 +57,7 @@ private:
   void add_markers();
   void add_whole();
   void add_share(const Share& share);
+  void add_inactive_share(const Share& share);
   void add_energy(const Share& share, const char* name, const ChannelText& text, Integrand integrand);
   void add_formulas();
   void add_formula(Defined& formula);

@@ -2,6 +2,7 @@
 
 #include "mbd/base/name_pattern.h"
 #include "mbd/model/method.h"
+#include "mbd/system/measured_channel.h"
 #include "mbd/system/own_states.h"
 #include "mbd/system/requested_channels.h"
 
@@ -29,11 +30,11 @@ void place_bodies(const std::vector<double>& q, const std::vector<double>& v,
 // A drive read as a velocity or an acceleration begins where the body is; one read as an acceleration
 // also begins with the speed that the body has. A position is absolute: the base is what the signal's
 // increment since t = 0 leaves out.
-void start_drives(const System& system, State& state) {
+void start_drives(const System& system, State& state, const std::vector<char>* begins) {
   std::vector<Motion<double>> motion;
   place_bodies(state.q, state.v, motion);
   for (const RowSpec& row : system.rows) {
-    if (!row.drive) continue;
+    if (!row.drive || (begins && (*begins)[row.element] == 0)) continue;
     if (row.level == DriveLevel::position) {
       state.memory[row.memory] = system.initial_memory[row.memory] + row.drive->value(0.0);
       continue;
@@ -169,6 +170,23 @@ void SystemBuilder::compile_bodies() {
     marker_index_[marker.name] = compiled(marker.body, marker.point, marker.at, marker.angle);
 }
 
+std::vector<char> acting_elements(const Model& model) {
+  std::vector<char> acts;
+  std::unordered_map<std::string_view, const Element*> by_name;
+  for (const ElementEntry& entry : model.elements) {
+    acts.push_back(entry.element->active ? 1 : 0);
+    by_name[entry.element->name] = entry.element.get();
+  }
+  if (std::find(acts.begin(), acts.end(), 0) == acts.end()) return acts;
+  for (std::size_t i = 0; i < acts.size(); ++i)
+    for (const Field& field : model.elements[i].kind->fields.fields()) {
+      if (field.type != FieldType::element) continue;
+      const auto other = by_name.find(std::get<std::string>(field.get(model.elements[i].element.get())));
+      if (other != by_name.end() && !other->second->active) acts[i] = 0;
+    }
+  return acts;
+}
+
 void SystemBuilder::compile_elements(RequestedChannels& requested) {
   element_index_.reserve(model_.elements.size());
   system_->element_names.reserve(model_.elements.size());
@@ -179,14 +197,76 @@ void SystemBuilder::compile_elements(RequestedChannels& requested) {
     system_->element_names.push_back(element.name);
     system_->element_kinds.push_back(model_.elements[i].kind->name);
   }
+  const std::vector<char> acts = acting_elements(model_);
   for (const int stage : {0, 1})
     for (std::size_t i = 0; i < model_.elements.size(); ++i) {
       if (model_.elements[i].kind->stage != stage) continue;
       element_ = static_cast<int>(i);
+      if (acts[i] == 0) {
+        compile_inactive(model_.elements[i], requested);
+        continue;
+      }
       requested.begin_element();
       model_.elements[i].kind->compile(*model_.elements[i].element, *this);
       requested.end_element();
     }
+}
+
+namespace {
+
+// A contact that does not act: open, without a normal force.
+class InactiveContacts final : public ForceGroup {
+public:
+  struct Entry {
+    int contact = 0, unit = 0, watch = 0;
+  };
+  std::vector<Entry> entries;
+
+  void add_forces(Evaluation& e) const override {
+    for (const Entry& entry : entries) e.contact_force[entry.contact] = 0.0;
+  }
+  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
+    for (const Entry& entry : entries) e.contact_force[entry.contact] = Traced(0.0);
+    return true;
+  }
+  [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
+  void add_jacobian(const Evaluation&, std::vector<PairJacobian>&) const override {}
+  void mark_bodies(std::vector<char>&) const override {}
+};
+
+} // namespace
+
+// An element that does not act is compiled into a system that is thrown away, so that what is wrong with it is found and its
+// channels have their places: they are zero, but for what follows from the motion alone. Who refers to it as a contact finds one that
+// is open.
+void SystemBuilder::compile_inactive(const ElementEntry& entry, RequestedChannels& requested) {
+  auto aside = std::make_unique<System>();
+  aside->bodies = system_->bodies;
+  aside->scale = system_->scale;
+  aside->gravity = system_->gravity;
+  aside->element_names = system_->element_names;
+  aside->element_kinds = system_->element_kinds;
+  aside->contact_count = system_->contact_count;
+  std::vector<GroupType> types;
+  const auto first_channel = static_cast<std::ptrdiff_t>(system_->channels.size());
+  const std::size_t first_operand = system_->operands.size();
+  std::swap(system_, aside);
+  std::swap(group_types_, types);
+  acting_ = aside.get();
+  requested.begin_element();
+  entry.kind->compile(*entry.element, *this);
+  const bool is_contact = system_->contact_count > acting_->contact_count;
+  acting_ = nullptr;
+  requested.end_inactive_element(*aside);
+  std::swap(system_, aside);
+  std::swap(group_types_, types);
+  for (auto channel = system_->channels.begin() + first_channel; channel != system_->channels.end(); ++channel) channel->bounds = {};
+  for (std::size_t i = first_operand; i < system_->operands.size(); ++i) system_->operands[i]->bounds = {};
+  if (!is_contact) return;
+  auto& contacts = group<InactiveContacts>();
+  contacts.entries.push_back({});
+  add_unit(contacts, 0);
+  contacts.entries.back().contact = add_contact(contacts.entries.back().unit);
 }
 
 void SystemBuilder::finish() {
@@ -266,7 +346,7 @@ int SystemBuilder::body(const std::string& name) const {
 const Signal* SystemBuilder::signal(const std::string& name, SignalUse use) {
   if (name.empty()) return nullptr;
   const Signal* const found = signal_of(name);
-  auto& moving = system_->motion_signals_;
+  auto& moving = acting().motion_signals_;
   if (use == SignalUse::motion && std::find(moving.begin(), moving.end(), found) == moving.end()) moving.push_back(found);
   return found;
 }
@@ -276,9 +356,9 @@ const Signal* SystemBuilder::signal_of(const std::string& name) {
   if (const Signal* built = signals_.build(name)) {
     auto signal = std::make_unique<Signal>(*built);
     for (const double t : signal->breakpoints())
-      if (t > 0.0) system_->breakpoints.push_back(t);
+      if (t > 0.0) acting().breakpoints.push_back(t);
     signal_index_[name] = signal.get();
-    system_->signals_.push_back(std::move(signal));
+    acting().signals_.push_back(std::move(signal));
     return signal_index_[name];
   }
   throw ModelError(model_.elements[element_].element->where, "unknown signal '" + name + "'");
@@ -311,6 +391,7 @@ int SystemBuilder::add_contact(int unit) {
 int SystemBuilder::add_memory(double base, double base_rate) {
   system_->initial_memory.push_back(base);
   system_->initial_memory.push_back(base_rate);
+  system_->memory_elements.insert(system_->memory_elements.end(), 2, element_);
   return static_cast<int>(system_->initial_memory.size()) - 2;
 }
 
@@ -350,6 +431,22 @@ int SystemBuilder::add_friction(std::unique_ptr<FrictionElement> friction) {
   return static_cast<int>(system_->frictions.size()) - 1;
 }
 
+namespace {
+
+// A measure of the motion goes on; all else is zero.
+std::function<double(const Snapshot&)> value_while_inactive(const std::function<double(const Snapshot&)>& value) {
+  const auto* const measured = value.target<MeasuredValue>();
+  if (!measured) return [](const Snapshot&) { return 0.0; };
+  MeasuredValue left = *measured;
+  left.shown = [row = left.measure, zero = left.zero, is_rate = left.is_rate](const Snapshot& s) {
+    const MeasureValue<double> m = evaluate_row<false>(row, s.motion);
+    return is_rate ? m.rate : m.value - zero;
+  };
+  return left;
+}
+
+} // namespace
+
 bool SystemBuilder::wants_channel(std::string_view owner, std::string_view name) const {
   if (!wanted_) return true;
   return std::any_of(wanted_->begin(), wanted_->end(), [&](std::string_view w) {
@@ -376,11 +473,11 @@ Channel& SystemBuilder::enter_channel(Use use, std::string_view owner, std::stri
   std::string whole(owner);
   if (!whole.empty()) whole.append(1, '.');
   whole.append(name);
-  Channel channel{std::move(whole), std::string(unit), std::string(text.meaning), std::move(value)};
+  Channel channel{std::move(whole), std::string(unit), std::string(text.meaning), acting_ ? value_while_inactive(value) : std::move(value)};
   channel.sign = text.sign;
   channel.codes = text.codes;
-  if (use == Use::channel) return system_->channels.emplace_back(std::move(channel));
-  return *system_->operands.emplace_back(std::make_unique<Channel>(std::move(channel)));
+  if (use == Use::channel) return acting().channels.emplace_back(std::move(channel));
+  return *acting().operands.emplace_back(std::make_unique<Channel>(std::move(channel)));
 }
 
 void SystemBuilder::error(const std::string& message) {

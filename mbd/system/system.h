@@ -155,6 +155,7 @@ public:
   std::vector<double> motion_breakpoints;                      ///< of those that are no mere forces (SignalUse), ascending
   double drives_end = std::numeric_limits<double>::infinity(); ///< the first drive jumps there: no run may pass it, s
   std::vector<double> initial_memory;                          ///< where State::memory starts
+  std::vector<int> memory_elements;                            ///< of each number in it
   std::vector<double> initial_inner;                           ///< where State::inner starts
   std::vector<int> inner_elements;                             ///< of each inner state
   std::vector<const ForceGroup*> inner_groups;                 ///< those with inner states
@@ -191,8 +192,9 @@ private:
 void place_bodies(const std::vector<double>& q, const std::vector<double>& v,
                   std::vector<Motion<double>>& motion);
 
-/// Bases of driven rows, so that the drives begin at the pose and velocity of `state`.
-void start_drives(const System& system, State& state);
+/// Bases of driven rows, so that the drives begin at the pose and velocity of `state`: of all, or of those elements alone
+/// (by System::element_names) that `begins` marks.
+void start_drives(const System& system, State& state, const std::vector<char>* begins = nullptr);
 
 /// Where a marker ends up: a compiled body and a point and angle in its frame (from its centre of
 /// gravity).
@@ -234,6 +236,15 @@ public:
   [[nodiscard]] const ContactIndex* contact(const std::string& element) const;
   /// Of the model, by its name; nullptr if there is none.
   [[nodiscard]] const ElementEntry* element(const std::string& name) const;
+  /// Of the channels, those that are wanted; not given: all.
+  [[nodiscard]] std::optional<std::vector<std::string>> wanted_channels() const {
+    return wanted_ ? std::optional<std::vector<std::string>>(*wanted_) : std::nullopt;
+  }
+  /// No step passes over this time, s.
+  void add_breakpoint(double t) {
+    system_->breakpoints.push_back(t);
+    system_->motion_breakpoints.push_back(t);
+  }
   /// The completed model that is being compiled.
   [[nodiscard]] const Model& model() const { return model_; }
 
@@ -287,6 +298,9 @@ private:
                          std::function<double(const Snapshot&)> value);
   void compile_bodies();
   void compile_elements(RequestedChannels& requested);
+  void compile_inactive(const ElementEntry& entry, RequestedChannels& requested);
+  /// What signals and channels belong to, whatever the element being compiled adds to.
+  [[nodiscard]] System& acting() { return acting_ ? *acting_ : *system_; }
   void finish();
   void add_body_channels();
 
@@ -304,8 +318,12 @@ private:
   const std::vector<std::string>* wanted_;
   std::vector<std::string> operand_names_; ///< of expressions, sorted
   std::vector<GroupType> group_types_;     ///< of each of the system's groups
+  System* acting_ = nullptr;               ///< while system_ takes what an inactive element adds: the system being made
   Channel unwanted_;
 };
+
+/// Per element of a completed model: it acts, and so does that on which it hangs, as a sheet interface on its joint.
+[[nodiscard]] std::vector<char> acting_elements(const Model& model);
 
 /// Compiles a completed model. Of the channels, only those named in `wanted` are made; null: all. Throws ModelError with
 /// all errors found.

@@ -1,6 +1,7 @@
 #include "mbd/trust/audit.h"
 
 #include "mbd/math/portable_math.h"
+#include "mbd/system/actions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -202,6 +203,8 @@ bool may_pull(const Model& model) {
 
 void add_audit_channels(System& system, const Model& model) {
   System* self = &system;
+  if (ActionGroup* const actions = action_group(system))
+    actions->additions.push_back([](System& made) { add_audit_channels(made, *action_group(made)->model); });
   for (std::size_t f = 0; f < system.frictions.size(); ++f) {
     const std::string name = k_prefix + system.element_names[system.frictions[f].element];
     system.channels.push_back({name + k_pushes, "W", "power that friction gives", [self, f](const Snapshot& s) {

@@ -60,7 +60,7 @@ TEST_CASE("an integration method is a file and a line in methods.cpp") {
   const auto sources = product_sources();
   const Reasons by_right = {
       {"mbd/model/model.h", "what a file that names none has"},
-      {"mbd/simulation/simulation.h", "what a program that names none has"},
+      {"mbd/simulation/run_record.h", "what a program that names none has"},
       {"mbd/trust/accuracy_study.h", "the two that make references"},
       {"mbd/trust/cross_check.cpp", "the plan of a cross check, method by method"},
       {"mbd/acceptance/trust.cpp", "what to try instead"},
@@ -170,6 +170,7 @@ TEST_CASE("where kinds of rows are told apart") {
       {"mbd/dynamics/layout.cpp", "which have a shorter way, angles a constant gradient"},
       {"mbd/dynamics/mechanism_layout.cpp", "which joints a member of a mechanism may hang by"},
       {"mbd/dynamics/projection.cpp", "the unit of a message"},
+      {"mbd/simulation/changeover.cpp", "the unit of a message"},
       {"mbd/dynamics/load_sharing.cpp", "the unit of a residual"},
   };
   for (const auto& [path, text] : product_sources())

@@ -5,6 +5,7 @@
 #include "mbd/io/reader.h"
 #include "tests/random/random_number.h"
 #include "transformer/catalog.h"
+#include "mbd/simulation/energy_account.h"
 
 #include <doctest/doctest.h>
 

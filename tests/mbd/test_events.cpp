@@ -1,5 +1,6 @@
 // The event finder on motions whose events are known: grazing, two crossings inside one step, several
 // at once.
+#include "mbd/events/event_finder.h"
 #include "tests/physics/scene.h"
 
 #include <doctest/doctest.h>

@@ -107,6 +107,37 @@ void add_laws(SceneWriter& w, RandomNumber own, const std::string& body) {
   if (own.chance(0.4)) brake_on(w, own, body);
 }
 
+// Scenes behind this seed have actions as well.
+constexpr std::uint64_t k_last_without_actions = 6000;
+
+// When something happens: at a time, or where the body has moved or turned, once the time has come.
+std::string condition(SceneWriter& w, RandomNumber& own, const std::string& body) {
+  const std::string time = number(w.duration * own.between(0.1, 0.9));
+  if (own.chance(0.4)) return quoted(time + " s");
+  const char* const quantity = own.chance(0.5) ? "vx" : "omega";
+  const std::string zero = std::string(quantity) == "vx" ? "'0 m/s'" : "'0 rad/s'";
+  return "\"t > '" + time + " s' && " + body + "." + quantity + (own.chance(0.5) ? " > " : " < ") + zero + "\"";
+}
+
+// Some element lets go, and may hold again. A brake may be set, and the run may end before its time.
+void add_actions(SceneWriter& w, RandomNumber own, const std::string& body) {
+  std::vector<Block> elements;
+  for (const Block& block : w.scene.blocks)
+    if (block.table == "element") elements.push_back(block);
+  if (elements.empty()) return;
+  const Block chosen = own.one_of(elements);
+  const std::string& released = chosen.name;
+  const char* const k_have_to_fit[] = {"revolute", "point_on_line", "gear", "rack", "rope", "wound_rope", "prescribed_motion"}; // where they close
+  w.action({{"when", condition(w, own, body)}, {"do", "[\"release " + released + "\"]"}}, {released, body});
+  const bool fits = std::none_of(std::begin(k_have_to_fit), std::end(k_have_to_fit), [&](const char* kind) { return chosen.kind == kind; });
+  if (fits && own.chance(0.5)) w.action({{"when", condition(w, own, body)}, {"do", "[\"hold " + released + "\"]"}}, {released, body});
+  if (own.chance(0.4)) {
+    const std::string brace = w.element("joint_friction", {{"a", quoted(body)}, {"coordinate", "\"angle\""}, {"holds", number(w.mass * w.size * w.size / (w.duration * w.duration) * own.decades(-1.0, 1.0))}, {"active", "false"}}, {body});
+    w.action({{"when", condition(w, own, body)}, {"do", "[\"hold " + brace + "\"]"}}, {brace, body});
+  }
+  if (own.chance(0.2)) w.action({{"when", quoted(number(w.duration * own.between(0.8, 1.0)) + " s")}, {"do", "[\"stop\"]"}}, {body});
+}
+
 void add_cell(SceneWriter& w, const std::vector<NamedCell>& cells, At place, std::vector<std::string>& ends) {
   const NamedCell& cell = w.r.one_of(cells);
   w.scene.cells.insert(cell.name);
@@ -130,6 +161,7 @@ Scene random_scene(std::uint64_t seed) {
   if (!ends.empty()) hold(w, RandomNumber(~seed), ends.front());
   drop(w, RandomNumber(~seed * 3));
   if (seed > k_last_without_laws && !ends.empty()) add_laws(w, RandomNumber(~seed * 5), ends.front());
+  if (seed > k_last_without_actions && !ends.empty()) add_actions(w, RandomNumber(~seed * 7), ends.front());
   return w.scene;
 }
 

@@ -10,7 +10,7 @@
 
 namespace steplap::random {
 
-/// One [[body]], [[signal]] or [[element]].
+/// One [[body]], [[signal]], [[element]] or [[action]].
 struct Block {
   std::string table, kind, name;
   std::string fields;            ///< lines "key = value"

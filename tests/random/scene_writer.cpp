@@ -57,6 +57,12 @@ std::string SceneWriter::element(const std::string& kind, const Fields& fields, 
   return block.name;
 }
 
+std::string SceneWriter::action(const Fields& fields, const std::vector<std::string>& uses) {
+  const Block block{"action", "", new_name("action_"), lines(fields), uses};
+  scene.blocks.push_back(block);
+  return block.name;
+}
+
 // A measured history, quiet but for a few spikes of one sample.
 std::string SceneWriter::record(double peak) {
   const std::string file = "record_" + std::to_string(scene.seed) + "_" + std::to_string(count_) + ".csv";

@@ -25,6 +25,7 @@ public:
   std::string body(double body_mass, double inertia, At at, const Fields& more = {});
   /// `uses`: bodies, elements, signals it names.
   std::string element(const std::string& kind, const Fields& fields, const std::vector<std::string>& uses);
+  std::string action(const Fields& fields, const std::vector<std::string>& uses);
   /// Of any kind; zero at the start and without jumps if `is_smooth`.
   std::string signal(double peak, bool is_smooth = false);
 

@@ -1,0 +1,214 @@
+#include "mbd/simulation/action_follower.h"
+
+#include "mbd/base/shown_text.h"
+#include "mbd/system/element_failure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace steplap {
+
+namespace {
+
+// Of the time, or of the scene's: what lies nearer is one instant.
+constexpr double k_same_instant = 1e-13;
+constexpr std::ptrdiff_t k_most_at_once = 20; // times that an action happens at one instant, where events between them chase each other
+
+RunStatistics sum_of(const RunStatistics& a, const RunStatistics& b) {
+  RunStatistics sum = b; // dissipated energy and work go on from leg to leg
+  sum.steps += a.steps;
+  sum.rejections += a.rejections;
+  sum.evaluations += a.evaluations;
+  sum.events += a.events;
+  sum.coded_stages += a.coded_stages;
+  sum.storms += a.storms;
+  sum.max_position_residual = std::max(a.max_position_residual, b.max_position_residual);
+  sum.max_velocity_residual = std::max(a.max_velocity_residual, b.max_velocity_residual);
+  sum.energy_residual = a.energy_residual + b.energy_residual; // each is of its own start
+  sum.energy_exchanged = std::max(a.energy_exchanged, b.energy_exchanged);
+  sum.energy_scale = std::max(a.energy_scale, b.energy_scale);
+  sum.energy_worst_step = std::max(a.energy_worst_step, b.energy_worst_step);
+  sum.energy_rounding = std::max(a.energy_rounding, b.energy_rounding);
+  if (a.passed_pulse) sum.passed_pulse = a.passed_pulse;
+  return sum;
+}
+
+ChannelRange joined(const ChannelRange& a, const ChannelRange& b) {
+  ChannelRange both = b;
+  both.channel = a.channel;
+  both.first = a.first;
+  if (std::isnan(b.low.value) || a.low.value <= b.low.value) {
+    both.low = a.low;
+    both.is_low_singular = a.is_low_singular;
+    both.unsure_low = a.unsure_low;
+  }
+  if (std::isnan(b.high.value) || a.high.value >= b.high.value) {
+    both.high = a.high;
+    both.is_high_singular = a.is_high_singular;
+    both.unsure_high = a.unsure_high;
+  }
+  both.resolution = std::max(a.resolution, b.resolution);
+  both.had_no_value = a.had_no_value || b.had_no_value;
+  if (a.first_above_one) both.first_above_one = a.first_above_one;
+  return both;
+}
+
+// What was added to the first system behind its own channels, in the same order: what hangs on an element that does not act is zero.
+void add_channels(const ActionGroup& group, const System& first, System& system) {
+  const std::size_t own = system.channels.size();
+  const auto is_same = [](const Channel& a, const Channel& b) { return a.name == b.name; };
+  if (own > first.channels.size() || system.integrands.size() != first.integrands.size() ||
+      !std::equal(system.channels.begin(), system.channels.end(), first.channels.begin(), is_same))
+    throw std::logic_error("actions have changed the channels of '" + system.title + "'");
+  for (const auto& addition : group.additions) addition(system);
+  const std::vector<Channel> added(system.channels.begin() + static_cast<std::ptrdiff_t>(own), system.channels.end());
+  system.channels.resize(own);
+  for (std::size_t i = own; i < first.channels.size(); ++i) {
+    const auto found = std::find_if(added.begin(), added.end(), [&](const Channel& channel) { return is_same(channel, first.channels[i]); });
+    Channel channel = found == added.end() ? first.channels[i] : *found;
+    if (found == added.end()) channel.value = [](const Snapshot&) { return 0.0; };
+    system.channels.push_back(std::move(channel));
+  }
+}
+
+} // namespace
+
+ActionFollower::ActionFollower(const System& system) : first_(system), group_(*action_group(system)), triggers_(group_) {
+  for (const ElementEntry& entry : group_.model->elements) now_.acts.push_back(entry.element->active ? 1 : 0);
+  Arranged& first = arranged_[now_];
+  first.system = &first_;
+  first.acts = acting_elements(*group_.model);
+}
+
+// What is due at one time happens in the order of the file. Only then does what it has changed begin to act: a switch that is set twice
+// at once is set to the last of both.
+void ActionFollower::act(std::unique_ptr<RunLeg>& leg) {
+  const double t = leg->state().t;
+  if (std::abs(t - instant_) > k_same_instant * std::max(first_.scale.time(), std::abs(t))) at_once_.clear();
+  instant_ = t;
+  first_now_ = at_once_.size();
+  while (leg->is_interrupted() && !is_ended_) {
+    const Arrangement before = now_;
+    const std::size_t known = leg->record().events.size();
+    for (std::size_t i = 0; i < group_.entries.size() && !is_ended_; ++i)
+      if (triggers_.is_due[i] != 0) happen(i, *leg);
+    if (!(now_ == before)) change_over(leg, before);
+    if (!is_ended_) leg->look_for_actions(known);
+  }
+  if (is_ended_) leg->close(true);
+  else leg->go_on();
+}
+
+void ActionFollower::happen(std::size_t action, RunLeg& leg) {
+  const ActionGroup::Entry& entry = group_.entries[action];
+  guard_against_rings(action, leg);
+  at_once_.push_back(action);
+  triggers_.spend(action, entry.is_once);
+  leg.record().events.push_back({leg.state().t, entry.name, EventKind::happens, entry.text});
+  for (const ActionStep& step : entry.steps) {
+    take_step(step);
+    if (step.verb == ActionVerb::stop) ended_by_ = entry.name;
+  }
+}
+
+void ActionFollower::take_step(const ActionStep& step) {
+  const auto target = static_cast<std::size_t>(std::max(step.target, 0));
+  switch (step.verb) {
+  case ActionVerb::release: now_.acts[target] = 0; break;
+  case ActionVerb::hold: now_.acts[target] = 1; break;
+  case ActionVerb::set: now_.set[{step.target, step.field}] = &step; break;
+  case ActionVerb::arm: triggers_.arm(target); break;
+  case ActionVerb::disarm: triggers_.disarm(target); break;
+  case ActionVerb::stop: is_ended_ = true; break;
+  }
+}
+
+void ActionFollower::guard_against_rings(std::size_t action, const RunLeg& leg) const {
+  const auto now = at_once_.begin() + static_cast<std::ptrdiff_t>(first_now_);
+  auto from = std::find(now, at_once_.end(), action);
+  if (from == at_once_.end() && std::count(at_once_.begin(), at_once_.end(), action) >= k_most_at_once)
+    from = std::prev(std::find(at_once_.rbegin(), at_once_.rend(), action).base());
+  if (from == at_once_.end()) return;
+  std::string ring;
+  std::vector<std::string> names;
+  for (; from != at_once_.end(); ++from) {
+    names.push_back(group_.entries[*from].name);
+    ring += "'" + names.back() + "', then ";
+  }
+  throw ElementFailure("at t = " + rounded_text(leg.state().t, 12) + " s actions set each other off without end: " + ring + "'" + group_.entries[action].name +
+                           "' again. Let one of them happen at another condition, so that there is a way between them",
+                       names);
+}
+
+std::unique_ptr<System> ActionFollower::compiled(const Arrangement& arrangement, std::vector<char>& acts) const {
+  Model model = *group_.model;
+  for (std::size_t i = 0; i < arrangement.acts.size(); ++i) model.elements[i].element->active = arrangement.acts[i] != 0;
+  for (const auto& [target, step] : arrangement.set) {
+    const ElementEntry& entry = model.elements[static_cast<std::size_t>(target.first)];
+    entry.kind->fields.find(target.second)->set(entry.element.get(), step->value);
+  }
+  acts = acting_elements(model);
+  auto system = compile(model, group_.channels ? &*group_.channels : nullptr);
+  add_channels(group_, first_, *system);
+  return system;
+}
+
+const ActionFollower::Arranged& ActionFollower::arranged(const Arrangement& arrangement) {
+  const auto [found, is_new] = arranged_.try_emplace(arrangement);
+  Arranged& made = found->second;
+  if (!is_new && made.system) return made;
+  made.made = compiled(arrangement, made.acts);
+  made.system = made.made.get();
+  return made;
+}
+
+Changeover ActionFollower::changeover(const Arrangement& before, const Arrangement& after) {
+  const Arranged &from = arranged(before), &to = arranged(after);
+  Changeover change{*from.system, *to.system, from.acts, to.acts, std::vector<char>(to.acts.size(), 0)};
+  for (std::size_t i = 0; i < to.acts.size(); ++i) change.begins[i] = static_cast<char>(to.acts[i] != 0 && from.acts[i] == 0);
+  for (const auto& [target, step] : after.set) {
+    const auto known = before.set.find(target);
+    const auto element = static_cast<std::size_t>(target.first);
+    if ((known == before.set.end() || known->second != step) && to.acts[element] != 0) change.begins[element] = 1;
+  }
+  return change;
+}
+
+void ActionFollower::change_over(std::unique_ptr<RunLeg>& leg, const Arrangement& before) {
+  try {
+    const Changeover change = changeover(before, now_);
+    leg->close(false);
+    auto next = std::make_unique<RunLeg>(*leg, change);
+    statistics_.push_back(leg->statistics());
+    ranges_.push_back(leg->ranges());
+    leg = std::move(next);
+  } catch (const ModelError& error) { // elements contradict each other as they act now
+    throw NumericalFailure("at t = " + rounded_text(leg->state().t, 12) + " s action '" + group_.entries[at_once_.back()].name +
+                           "' makes a machine that cannot be: " + error.diagnostics().front().message);
+  }
+}
+
+RunStatistics ActionFollower::add_statistics(const RunStatistics& last) const {
+  RunStatistics sum = last;
+  for (auto leg = statistics_.rbegin(); leg != statistics_.rend(); ++leg) sum = sum_of(*leg, sum);
+  return sum;
+}
+
+std::vector<ChannelRange> ActionFollower::joined_ranges(std::vector<ChannelRange> last) const {
+  for (auto leg = ranges_.rbegin(); leg != ranges_.rend(); ++leg)
+    for (std::size_t c = 0; c < last.size(); ++c) last[c] = joined((*leg)[c], last[c]);
+  return last;
+}
+
+State ActionFollower::in_first_system(const RunLeg& leg) const {
+  if (&leg.system() == &first_) return leg.state();
+  const Arranged *last = nullptr, *first = nullptr;
+  for (const auto& [arrangement, each] : arranged_) {
+    if (each.system == &leg.system()) last = &each;
+    if (each.system == &first_) first = &each;
+  }
+  return carried({leg.system(), first_, last->acts, first->acts, std::vector<char>(first->acts.size(), 0)}, leg.state());
+}
+
+} // namespace steplap

@@ -1,0 +1,138 @@
+#include "mbd/simulation/changeover.h"
+
+#include "mbd/base/shown_text.h"
+#include "mbd/system/element_failure.h"
+#include "mbd/system/one_sided_row.h"
+#include "mbd/system/own_states.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace steplap {
+
+namespace {
+
+// Of the scene's length: what is farther apart does not fit. Events are located, and joints met, far closer than that.
+constexpr double k_fit = 1e-6;
+
+// Copies what each element of `from` remembers to its place in `to`, one after the other; `of_from`, `of_to`: its element, per place.
+template <class F> void carry(const std::vector<int>& of_from, const std::vector<int>& of_to, const std::vector<char>& goes_on, const F& copy) {
+  std::vector<std::vector<std::size_t>> places(goes_on.size());
+  for (std::size_t i = 0; i < of_from.size(); ++i) places[static_cast<std::size_t>(of_from[i])].push_back(i);
+  std::vector<std::size_t> next(goes_on.size(), 0);
+  for (std::size_t i = 0; i < of_to.size(); ++i) {
+    const auto element = static_cast<std::size_t>(of_to[i]);
+    if (goes_on[element] != 0 && next[element] < places[element].size()) copy(places[element][next[element]++], i);
+  }
+}
+
+template <class Units> std::vector<int> elements_of(const Units& units) {
+  std::vector<int> elements;
+  for (const auto& unit : units) elements.push_back(unit.element);
+  return elements;
+}
+
+// Own states stand together, whichever element was compiled first that reads one.
+std::vector<int> elements_of_inner(const System& system, int own_states) {
+  std::vector<int> elements = system.inner_elements;
+  if (const OwnStateGroup* const group = own_state_group(system))
+    for (int i = 0; i < own_states; ++i) elements[static_cast<std::size_t>(group->first_inner + i)] = static_cast<int>(system.element_names.size());
+  return elements;
+}
+
+double stored_energy(const System& system, const State& state) {
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  double sum = 0.0;
+  for (const auto& group : system.groups) sum += group->potential(motion.data());
+  for (const ForceGroup* group : system.inner_groups) sum += group->inner_energy(motion.data(), state.inner.data());
+  return sum;
+}
+
+[[noreturn]] void fail_to_close(const System& system, const State& state, const RowSpec& row, double off) {
+  const std::string& name = system.element_names[static_cast<std::size_t>(row.element)];
+  const bool is_angle = row.kind == MeasureKind::angle;
+  throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s '" + name + "' cannot close: its " + (is_angle ? "angle" : "markers") + " would have to move by " +
+                           rounded_text(std::abs(off), 4) + (is_angle ? " rad" : " m") + " at once. " +
+                           (row.drive ? "A drive that is read as a position begins where its signal is: read it as a velocity, or set it where the two meet"
+                                      : "Let it close where they meet, or take a weld, which holds the pose that it finds"),
+                       {name});
+}
+
+// What an element remembers by rates of its own begins with a run.
+void refuse_inner(const Changeover& change, const State& state) {
+  const OwnStateGroup* const own = own_state_group(change.to);
+  for (std::size_t i = 0; i < change.to.inner_elements.size(); ++i) {
+    const int element = change.to.inner_elements[i], at = static_cast<int>(i);
+    const bool is_state = own && at >= own->first_inner && at < own->first_inner + static_cast<int>(own->entries.size());
+    if (is_state || !change.closes(element)) continue;
+    const std::string& name = change.to.element_names[static_cast<std::size_t>(element)];
+    throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s '" + name + "' cannot begin to act: what it remembers (a slid distance, whether it has broken) begins with a run. " +
+                             "Let it act from the start, or take an element that remembers nothing",
+                         {name});
+  }
+}
+
+void place_rope(const Changeover& change, std::size_t f, const std::vector<Motion<double>>& motion, State& state) {
+  const OneSidedRow& rope = *one_sided_row(*change.to.frictions[f].friction);
+  const std::string& name = change.to.element_names[static_cast<std::size_t>(change.to.frictions[f].element)];
+  const double length = rope.measured(motion.data()).value;
+  if (length > rope.length * (1.0 + OneSidedRow::k_too_long))
+    throw ElementFailure("at t = " + rounded_text(state.t, 12) + " s the ends of rope '" + name + "' are " + rounded_text(length - rope.length, 4) +
+                             " m farther apart than its length lets them be: let it begin to act where they are nearer, or make it longer",
+                         {name});
+  state.friction[f].phase = length >= rope.length * (1.0 - OneSidedRow::k_at_length) ? FrictionPhase::stick : FrictionPhase::slip;
+}
+
+} // namespace
+
+bool Changeover::closes_rows() const {
+  const auto is_new = [this](int element) { return begins[static_cast<std::size_t>(element)] != 0; };
+  return std::any_of(to.rows.begin(), to.rows.end(), [&](const RowSpec& row) { return is_new(row.element); }) ||
+         std::any_of(to.frictions.begin(), to.frictions.end(), [&](const FrictionUnit& unit) { return is_new(unit.element) && one_sided_row(*unit.friction); });
+}
+
+State carried(const Changeover& change, const State& state) {
+  State next = change.to.initial_state();
+  next.t = state.t;
+  next.q = state.q;
+  next.v = state.v;
+  next.dissipated = state.dissipated;
+  next.work = state.work;
+  std::vector<char> goes_on = change.acts;
+  for (std::size_t i = 0; i < goes_on.size(); ++i) goes_on[i] = static_cast<char>(goes_on[i] != 0 && change.acted[i] != 0);
+  goes_on.push_back(1); // own states
+  for (FrictionState& friction : next.friction) friction.phase = FrictionPhase::free; // until it is found what presses
+  carry(elements_of(change.from.units), elements_of(change.to.units), goes_on, [&](std::size_t a, std::size_t b) { next.mode[b] = state.mode[a]; });
+  carry(elements_of(change.from.frictions), elements_of(change.to.frictions), goes_on, [&](std::size_t a, std::size_t b) { next.friction[b] = state.friction[a]; });
+  carry(change.from.memory_elements, change.to.memory_elements, goes_on, [&](std::size_t a, std::size_t b) { next.memory[b] = state.memory[a]; });
+  const OwnStateGroup *const had = own_state_group(change.from), *const has = own_state_group(change.to);
+  const int own_states = had && has ? static_cast<int>(has->entries.size()) : 0;
+  carry(elements_of_inner(change.from, own_states), elements_of_inner(change.to, own_states), goes_on, [&](std::size_t a, std::size_t b) { next.inner[b] = state.inner[a]; });
+  return next;
+}
+
+void place_what_closes(const Changeover& change, State& state) {
+  std::vector<Motion<double>> motion;
+  place_bodies(state.q, state.v, motion);
+  refuse_inner(change, state);
+  for (const RowSpec& row : change.to.rows) {
+    if (change.begins[static_cast<std::size_t>(row.element)] == 0) continue;
+    const double now = evaluate_row<false>(row, motion.data()).value;
+    if (change.closes(row.element) && row.memory >= 0 && !row.drive) state.memory[static_cast<std::size_t>(row.memory)] = now;
+    const double off = off_target(row, now, row_target(row, state.memory.data(), state.t).value);
+    const double fits = k_fit * (row.kind == MeasureKind::angle ? 1.0 : change.to.scale.length);
+    if (std::abs(off) > fits) fail_to_close(change.to, state, row, off);
+  }
+  for (std::size_t f = 0; f < change.to.frictions.size(); ++f)
+    if (change.closes(change.to.frictions[f].element) && one_sided_row(*change.to.frictions[f].friction)) place_rope(change, f, motion, state);
+}
+
+void book_stored_energy(const Changeover& change, const State& before, State& after) {
+  const double gained = stored_energy(change.to, after) - stored_energy(change.from, before);
+  if (gained > 0.0) after.work += gained;
+  else after.dissipated -= gained;
+}
+
+} // namespace steplap

@@ -1,0 +1,58 @@
+// RunLeg: where an action interrupts it, and how the next one begins.
+#include "mbd/simulation/run_leg.h"
+
+#include "mbd/base/number_text.h"
+
+#include <algorithm>
+#include <span>
+
+namespace steplap {
+
+RunLeg::RunLeg(RunLeg& before, const Changeover& change)
+    : system_(change.to), options_(before.options_), state_(carried(change, before.state_)), dynamics_(change.to), handler_(change.to, dynamics_),
+      finder_(change.to, change.to.largest_dimension()), swallowed_(change.to), record_(before.record_), actions_(before.actions_), group_(action_group(change.to)),
+      y_(static_cast<std::size_t>(change.to.largest_dimension())), dy_(y_.size()) {
+  options_.max_events -= before.statistics_.events;
+  if (options_.end > system_.drives_end)
+    throw NumericalFailure("a drive jumps at t = " + number_text(system_.drives_end) + " s, before the end of the run");
+  refuse_time_stepping();
+  integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
+  start_drives(system_, state_, &change.begins);
+  place_what_closes(change, state_);
+  dynamics_.set_time_limit(next_limit());
+  dynamics_.set_state(state_);
+  dynamics_.pack(state_, y_.data());
+  dynamics_.rates(state_.t, y_.data(), dy_.data());
+  for (std::size_t u = 0; u < system_.units.size(); ++u) {
+    const Unit& unit = system_.units[u];
+    if (change.begins[static_cast<std::size_t>(unit.element)] != 0) state_.mode[u] = unit.group->initial_mode(unit.index, dynamics_.evaluation());
+  }
+  book_stored_energy(change, before.state_, state_);
+  handler_.take_over(state_, change.closes_rows(), record_->events);
+  make_parts(before.ledger_.get());
+}
+
+// True, and the leg is interrupted, where one is due; `known`: events that there were before this one was handled.
+bool RunLeg::is_action_due(std::size_t known) {
+  if (!actions_ || is_over()) return false;
+  const bool is_stepped = integrator_->stepped_state() != nullptr;
+  is_interrupted_ = actions_->look(*group_, system_, state_, is_stepped, std::span(record_->events).subspan(known));
+  return is_interrupted_;
+}
+
+void RunLeg::go_on() {
+  is_interrupted_ = false;
+  if (is_between_events_) return;
+  dynamics_.set_time_limit(next_limit());
+  restart();
+}
+
+void RunLeg::close(bool is_end_of_run) {
+  go_on();
+  if (is_end_of_run) return end_run();
+  is_between_events_ = false;
+  std::copy_n(integrator_->y0(), dynamics_.dimension(), y_.begin());
+  finish_extremes();
+}
+
+} // namespace steplap

@@ -1,0 +1,558 @@
+#include "mbd/simulation/run_leg.h"
+
+#include "mbd/simulation/arguments.h"
+#include "mbd/simulation/check_sticking.h"
+#include "mbd/base/shown_text.h"
+#include "mbd/system/element_failure.h"
+#include "mbd/system/one_sided_row.h"
+#include "mbd/system/own_states.h"
+#include "mbd/system/slip_scratch.h"
+#include "mbd/base/number_text.h"
+#include "mbd/integrators/explicit_pair.h"
+#include "mbd/model/method.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+namespace steplap {
+
+namespace {
+
+// Events within this relative distance of each other count as one instant; more of them than the
+// limit means that modes chase each other without the motion getting anywhere.
+constexpr double k_same_instant = 1e-13;
+constexpr int k_max_events_at_once = 60;
+// Windows of storms, of the time in which bodies fall, √(L/g) (1 ms for L = 1 m), and of the run, of which it is a thousandth:
+// an element may have 50 events in each of them, 50 000 in a run, and is followed from one to the next.
+constexpr double k_storm_window = 1e-3 * std::numbers::pi;
+constexpr double k_storm_windows = 2.0; // that time stepping goes over
+constexpr long k_steps_between_looks = 1L << 16;
+// By how much a joint that holds may be beyond its limit, in shares of it: the mode problem knows wrenches to 1e-9 of the
+// capacities and finds events to rounding; what is a thousand times that is neither.
+constexpr double k_held_beyond = 1e-6;
+// Kinks of tables are no sign of anything wrong, and cost little; but a list of more than a million is read by nobody.
+constexpr long k_least_kinks = 1000000;
+constexpr long k_kinks_per_event = 10;
+// rad, of a harmonic of a load or drive in a step whose error nothing controls: of the fourth order it then takes half a wave
+// to 1e-5.
+constexpr double k_turn_of_fixed_steps = 0.4;
+constexpr double k_output_slack = 1e-9; // of an output step: a sample due at an end is taken there
+
+} // namespace
+
+RunLeg::RunLeg(const System& system, const State& initial, SimulationOptions options, ActionTriggers* actions)
+    : system_(system), options_(checked(std::move(options), initial.t)), state_(checked(initial, system)), dynamics_(system),
+      handler_(system, dynamics_), finder_(system, system.largest_dimension()), swallowed_(system), record_(std::make_shared<RunRecord>()), actions_(actions),
+      group_(action_group(system)), y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
+  if (options_.end > system.drives_end)
+    throw NumericalFailure("a drive jumps at t = " + number_text(system.drives_end) + " s, before the end of the run");
+  refuse_time_stepping();
+  integrator_ = make_integrator(options_.integrator, dynamics_, options_.settings);
+  record_->trajectory = std::make_unique<Trajectory>(system, options_.channels);
+  start_drives(system_, state_);
+  dynamics_.set_time_limit(next_limit());
+  handler_.start(state_);
+  handler_.note_start(state_, record_->events);
+  make_parts(nullptr);
+  if (options_.output_step > 0.0) record_sample(state_.t);
+}
+
+// Places and velocities are such that what holds is met to rounding by now, or to the digits of the file.
+void RunLeg::make_parts(const PowerLedger* before) {
+  dynamics_.set_state(state_);
+  dynamics_.pack(state_, y_.data());
+  dynamics_.project(state_.t, y_.data(), options_.settings.projection_tolerance);
+  dynamics_.unpack(state_.t, y_.data(), state_);
+  dynamics_.use_coordinates(chosen_coordinates());
+  dynamics_.use_stage_code(options_.stage_code);
+  if (options_.kept_layouts > 0) dynamics_.keep_layouts(options_.kept_layouts);
+  for (std::size_t f = 0; f < system_.frictions.size(); ++f) {
+    const FrictionElement& friction = *system_.frictions[f].friction;
+    if (friction.dimension() > 1 && !friction.never_slips()) joints_.push_back(static_cast<int>(f));
+  }
+  if (options_.has_extremes) extremes_ = std::make_unique<ExtremeFinder>(system_, system_.largest_dimension());
+  if (!system_.integrands.empty()) {
+    ledger_ = std::make_unique<PowerLedger>(system_, system_.largest_dimension());
+    if (before) ledger_->go_on_from(*before);
+    dynamics_.show_integrals(ledger_.get());
+  }
+  integrator_->expect_looks(extremes_ || ledger_ || options_.output_step > 0.0);
+  if (integrator_->is_adaptive()) tell_slip_laws(dynamics_.evaluation(), options_.settings.tolerance, system_.frictions.size());
+  restart();
+  energy_.start(dynamics_, state_.t, y_.data(), integrator_->is_adaptive() ? options_.settings.tolerance : 0.0);
+}
+
+// Time stepping is linear in absolute coordinates.
+Coordinates RunLeg::chosen_coordinates() const {
+  return method(options_.integrator).is_time_stepping ? Coordinates::absolute : options_.coordinates;
+}
+
+void RunLeg::refuse_time_stepping() const {
+  if (!method(options_.integrator).is_time_stepping) return;
+  if (const OneSidedRow* rope = first_one_sided_row(system_))
+    throw NumericalFailure("'" + options_.integrator + "' does not locate where the inextensible rope '" +
+                           system_.element_names[rope->row.element] +
+                           "' becomes taut or slack: choose another integrator, auto for one, or give the rope a stiffness");
+  const auto is_own_state = [](const ForceGroup* group) { return dynamic_cast<const OwnStateGroup*>(group) != nullptr; };
+  if (std::all_of(system_.inner_groups.begin(), system_.inner_groups.end(), is_own_state)) return;
+  throw NumericalFailure("'" + options_.integrator + "' does not follow what '" + system_.element_names[system_.inner_elements[0]] +
+                         "' remembers (the slid distance of an elastic joint, whether a tie has broken): choose another "
+                         "integrator, auto for one");
+}
+
+// Where something begins to move otherwise, or a law to change: no method steps over that.
+double RunLeg::next_motion_limit() const {
+  const auto next = std::upper_bound(system_.motion_breakpoints.begin(), system_.motion_breakpoints.end(), state_.t);
+  return next == system_.motion_breakpoints.end() ? options_.end : std::min(*next, options_.end);
+}
+
+// Up to where `step` may go that takes forces by their means: over what is too near for a step of its own.
+double RunLeg::next_limit_of_steps(double step) const {
+  constexpr double k_own_step = 1e-4; // of a step: far above what time stepping takes for rounding
+  const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t + k_own_step * step);
+  return next == system_.breakpoints.end() ? next_motion_limit() : std::min(*next, next_motion_limit());
+}
+
+double RunLeg::next_limit() const {
+  if (integrator_->stepped_state()) return next_limit_of_steps(options_.settings.step);
+  const auto next = std::upper_bound(system_.breakpoints.begin(), system_.breakpoints.end(), state_.t);
+  return next == system_.breakpoints.end() ? options_.end : std::min(*next, options_.end);
+}
+
+// What signals do up to the next breakpoint.
+void RunLeg::approach_limit() {
+  limit_ = next_limit();
+  dynamics_.set_time_limit(limit_);
+  const double fastest = system_.fastest_at(0.5 * (state_.t + limit_));
+  const double turn = integrator_->is_adaptive() ? Integrator::k_largest_turn : k_turn_of_fixed_steps;
+  double longest = fastest > 0.0 ? turn / fastest : std::numeric_limits<double>::infinity();
+  const int division = options_.settings.division;
+  if (division > 1 && integrator_->is_adaptive()) longest = std::min(longest, limit_ - state_.t) / division;
+  integrator_->limit_step(longest);
+}
+
+// `is_evaluated`: by the handler, as this state is.
+void RunLeg::restart(bool is_evaluated) {
+  is_evaluated = is_evaluated && next_limit() == limit_;
+  if (!is_evaluated) dynamics_.set_state(state_);
+  approach_limit();
+  if (is_evaluated) {
+    integrator_->restart_evaluated(dynamics_, state_.t, handler_.packed(), handler_.rates());
+  } else {
+    dynamics_.pack(state_, y_.data());
+    integrator_->restart(dynamics_, state_.t, y_.data());
+  }
+  if (!integrator_->stepped_state()) {
+    check_holding(state_.t, integrator_->watch0());
+    swallowed_.check(dynamics_, state_.t, integrator_->y0(), state_.mode, integrator_->watch0());
+  }
+  if (ledger_) ledger_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()));
+  if (extremes_) extremes_->begin(state_.t, dynamics_.snapshot(integrator_->rate0()), *integrator_, dynamics_);
+  is_between_events_ = true;
+}
+
+// What no method may pass on.
+void RunLeg::check_finite() {
+  const double* y = integrator_->y1();
+  for (int i = 0; i < dynamics_.dimension(); ++i)
+    if (!std::isfinite(y[i])) fail_infinite(integrator_->t1());
+}
+
+void RunLeg::fail_infinite(double t) const {
+  std::ostringstream message;
+  message << "the motion became infinite at t = " << t << " s: '" << integrator_->name()
+          << "' does not bear steps of " << integrator_->h() << " s here";
+  if (!integrator_->is_adaptive()) message << "; try a smaller step, or rodas5p";
+  if (!record_->events.empty()) message << ". The last event was of '" << record_->events.back().element << "'";
+  if (record_->events.empty()) throw NumericalFailure(message.str());
+  throw ElementFailure(message.str(), {std::string(record_->events.back().element)});
+}
+
+// A joint that is part of the motion holds as long as it can: one that holds beyond its limit is a fault of the event
+// finder or of the mode problem, and whatever it is taken to bear is wrong. Of a group that shares a load the watch is the
+// group's.
+void RunLeg::check_holding(double t, const std::vector<double>& watch) const {
+  for (const int f : joints_) {
+    const double left = watch[system_.frictions[f].watch];
+    if (left >= -k_held_beyond || state_.friction[f].phase != FrictionPhase::stick) continue;
+    throw ElementFailure("at t = " + number_text(t) + " s '" + system_.element_names[system_.frictions[f].element] +
+                           "' holds with a margin of " + rounded_text(1.0 / (1.0 - left), 12) +
+                           ": the run contradicts itself, for below 1 it has to slip. Try a smaller tolerance or step, or "
+                           "another integrator",
+                         {system_.element_names[system_.frictions[f].element]});
+  }
+}
+
+// y_ holds the state to sample.
+void RunLeg::record_sample(double t) {
+  dynamics_.rates(t, y_.data(), dy_.data());
+  const Snapshot snapshot = dynamics_.snapshot(dy_.data());
+  record_->trajectory->add(t, snapshot, system_);
+  ++record_->samples;
+  if (options_.progress) options_.progress(t);
+}
+
+// Before anything is looked at in the step made, up to t.
+void RunLeg::keep_ledger(double t) {
+  if (ledger_) ledger_->add_step(t, *integrator_, dynamics_);
+}
+
+// Between the ends of a step a curve through them meets the joints to the accuracy of the step only, where no coordinates of
+// the joints carry it. Beside a singular position it stays as it is.
+static void close_joints(Dynamics& dynamics, double t, std::vector<double>& y, double tolerance) {
+  const Residual off = dynamics.residual(t, y.data());
+  if (!(off.position > tolerance)) return;
+  const std::vector<double> before = y;
+  try {
+    dynamics.project(t, y.data(), tolerance);
+  } catch (const NumericalFailure&) {
+    y = before;
+  }
+}
+
+// Samples due in the step made, up to t.
+void RunLeg::sample_until(double t) {
+  if (options_.output_step <= 0.0) return;
+  for (;;) {
+    const double due = static_cast<double>(record_->samples) * options_.output_step;
+    if (due > t + k_output_slack * options_.output_step) return;
+    const double theta = std::clamp((due - integrator_->t0()) / integrator_->h(), 0.0, 1.0);
+    integrator_->dense(dynamics_, theta, y_.data());
+    close_joints(dynamics_, due, y_, options_.settings.projection_tolerance);
+    record_sample(due);
+  }
+}
+
+// Whose switching value it is.
+std::string RunLeg::owner_of(int slot) const {
+  int element = -1;
+  for (const Unit& unit : system_.units)
+    if (slot >= unit.watch && slot < unit.watch + unit.watch_count) element = unit.element;
+  for (const FrictionUnit& unit : system_.frictions)
+    if (slot >= unit.watch && slot < unit.watch + k_friction_watches) element = unit.element;
+  return element < 0 ? "" : std::string(system_.element_names[element]);
+}
+
+void RunLeg::guard_against_chatter(double t, const std::vector<int>& fired) {
+  const bool is_same = t - last_event_ <= k_same_instant * std::max(system_.scale.time(), std::abs(t));
+  events_at_once_ = is_same ? events_at_once_ + 1 : 0;
+  last_event_ = t;
+  ++statistics_.events;
+  if (events_at_once_ < k_max_events_at_once && statistics_.events - kinks_ < options_.max_events) return;
+  std::ostringstream message;
+  message.precision(12);
+  message << (events_at_once_ >= k_max_events_at_once ? "events repeat without end at t = "
+                                                      : "more events than simulation.max_events by t = ")
+          << t << " s; ";
+  if (record_->events.empty()) { // of a kind that is not written
+    message << "a switching value of '" << owner_of(fired.back()) << "' keeps changing its sign";
+    throw ElementFailure(message.str(), {owner_of(fired.back())});
+  }
+  message << "the last ones:";
+  const std::size_t shown = std::min<std::size_t>(record_->events.size(), 4);
+  for (std::size_t i = record_->events.size() - shown; i < record_->events.size(); ++i)
+    message << " '" << record_->events[i].element << "' " << record_->events[i].words() << (i + 1 < record_->events.size() ? ";" : "");
+  throw ElementFailure(message.str(), {std::string(record_->events.back().element)});
+}
+
+// A method that chooses its steps may choose such small ones that the run would never end.
+void RunLeg::guard_against_crawl() {
+  if (integrator_->steps() < next_look_) return;
+  const double t = integrator_->t1(), passed = t - last_look_;
+  const bool is_first = next_look_ == 0;
+  next_look_ = integrator_->steps() + k_steps_between_looks;
+  last_look_ = t;
+  if (is_first) return;
+  const double needed = (options_.end - t) / passed * static_cast<double>(k_steps_between_looks);
+  if (!(needed > k_most_steps)) return;
+  std::ostringstream message;
+  message << "the last " << k_steps_between_looks << " steps to t = " << t << " s passed " << passed
+          << " s; the rest would take " << needed << " steps. Something is far stiffer or faster than the run is long: '"
+          << integrator_->name() << "' is not made for it, or a stiffness, a mass or the end is mistaken.";
+  throw NumericalFailure(message.str());
+}
+
+// The force of a joint that slides is none where its sheets have parted: the step went on past that kink.
+bool RunLeg::are_joints(const std::vector<int>& slots) const {
+  return std::all_of(slots.begin(), slots.end(), [this](int slot) {
+    return std::any_of(system_.frictions.begin(), system_.frictions.end(),
+                       [slot](const FrictionUnit& unit) {
+                         return slot >= unit.watch && slot < unit.watch + k_friction_watches && unit.friction->dimension() > 1;
+                       });
+  });
+}
+
+// Tables of many points make many: they have a limit of their own, far above that of other events.
+static void guard_against_kinks(long kinks, long max_events, double t, const std::string& element) {
+  const long most = std::max(k_least_kinks, k_kinks_per_event * std::min(max_events, std::numeric_limits<long>::max() / k_kinks_per_event));
+  if (kinks <= most) return;
+  throw ElementFailure("more than " + std::to_string(most) + " kinks of characteristics by t = " + number_text(t) + " s, the last one of '" + element +
+                         "'. Thin out its table, end the run earlier, or raise simulation.max_events: " + std::to_string(k_kinks_per_event) +
+                         " kinks are let pass for each event",
+                       {element});
+}
+
+void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired) {
+  is_between_events_ = false;
+  std::copy(y, y + dynamics_.dimension(), y_.begin());
+  // Projection begins with factors of this state: after those of a sample it would leave something else within its tolerance.
+  (void)dynamics_.residual(t, y_.data());
+  dynamics_.project(t, y_.data(), options_.settings.projection_tolerance);
+  energy_.check_step(dynamics_, t, y_.data());
+  dynamics_.unpack(t, y_.data(), state_);
+  if (fired.empty()) dynamics_.set_time_limit(limit_ = next_limit()); // on the far side of the breakpoint
+  if (ledger_ && ledger_->has_stored()) {
+    dynamics_.rates(t, y_.data(), dy_.data());
+    ledger_->end(dynamics_.snapshot(dy_.data()));
+  }
+  const std::size_t known = record_->events.size();
+  handler_.handle(state_, fired, record_->events);
+  energy_.check_settled(state_.t, handler_.settled());
+  const auto is_at_kink = [](const Event& event) { return is_kink(event.kind); };
+  const auto first_new = record_->events.begin() + static_cast<std::ptrdiff_t>(known);
+  if (first_new != record_->events.end() && std::all_of(first_new, record_->events.end(), is_at_kink))
+    guard_against_kinks(++kinks_, options_.max_events, t, std::string(record_->events.back().element));
+  if (method(options_.integrator).may_step_over_storms && !actions_ && system_.inner_count() == 0 && !first_one_sided_row(system_) && handler_.stop_reason().empty()) {
+    const double window = storm_window();
+    for (std::size_t i = known; i < record_->events.size(); ++i) {
+      if (is_kink(record_->events[i].kind) || !storm_.note(t, record_->events[i].element, window)) continue;
+      const double step = options_.storm_step * window;
+      const double end = std::min(next_motion_limit(), t + k_storm_windows * window);
+      if (end - t > step) return step_through_storm(std::string(record_->events[i].element), end);
+    }
+  }
+  if (!fired.empty()) guard_against_chatter(t, fired);
+  if (is_action_due(known)) return;
+  restart(handler_.is_evaluated());
+}
+
+// An element's events are a storm where they crowd within the time in which everything else changes: bodies that fall, the
+// run as a whole, and the fastest wave of a load or drive, of which 50 events are no part.
+double RunLeg::storm_window() const {
+  const SceneUnits& scale = system_.scale;
+  const double window = k_storm_window / std::max(scale.rate, std::numbers::pi / scale.duration);
+  const double fastest = system_.fastest_at(state_.t);
+  return fastest > 0.0 ? std::min(window, 2.0 * std::numbers::pi / fastest) : window;
+}
+
+// An element whose events crowd is not followed from one to the next: time stepping goes over an interval,
+// in which modes change where they will, and the usual methods go on from its end.
+void RunLeg::step_through_storm(const std::string& element, double end) {
+  if (!stepping_) stepping_ = std::make_unique<TimeStepping>(system_);
+  is_between_events_ = false;
+  ++statistics_.storms;
+  const double begin = state_.t;
+  record_->events.push_back({begin, element, EventKind::storm, "for " + rounded_text(1e3 * (end - begin)) + " ms"});
+  dynamics_.use_coordinates(Coordinates::absolute);
+  dynamics_.set_time_limit(end);
+  const double step = options_.storm_step * storm_window();
+  const long parts = stepping_->extra_parts();
+  const int division = options_.settings.division;
+  double whole = 0.0, t_whole = begin; // the step that is divided, s, and its end
+  int part = division;
+  while (state_.t < end && stepping_->extra_parts() - parts < options_.storm_parts) {
+    const double due = static_cast<double>(record_->samples) * options_.output_step;
+    if (part == division) { // cut by a sample as a step of its length would be
+      part = 0;
+      t_whole = std::min({end, state_.t + division * step, next_limit_of_steps(division * step)});
+      if (const double fastest = system_.fastest_at(0.5 * (state_.t + t_whole)); fastest > 0.0)
+        t_whole = std::min(t_whole, state_.t + k_turn_of_fixed_steps / fastest);
+      if (options_.output_step > 0.0 && due > state_.t && due <= t_whole) t_whole = due;
+      whole = t_whole - state_.t;
+    }
+    ++part;
+    const double t1 = part == division ? t_whole : t_whole - (division - part) * whole / division;
+    const bool is_sample = options_.output_step > 0.0 && due == t1;
+    note_passed(state_.t, t1);
+    stepping_->step(dynamics_, state_, t1, options_.settings.projection_tolerance);
+    ++statistics_.steps;
+    if (!is_sample && !extremes_ && !ledger_) continue;
+    dynamics_.pack(state_, y_.data());
+    if (extremes_ || ledger_) dynamics_.rates(t1, y_.data(), dy_.data());
+    if (ledger_) ledger_->add_stepped(t1, dynamics_.snapshot(dy_.data()));
+    if (extremes_) extremes_->begin(t1, dynamics_.snapshot(dy_.data()));
+    if (is_sample) record_sample(t1);
+  }
+  dynamics_.use_coordinates(chosen_coordinates());
+  handler_.settle_phases(state_);
+  record_->events.push_back({state_.t, element, EventKind::storm_over});
+  storm_.clear();
+  events_at_once_ = 0;
+  dynamics_.set_time_limit(next_limit());
+  restart();
+  energy_.note(dynamics_, state_.t, y_.data()); // steps of the first order have no bound of their own
+}
+
+// `evaluations`: as many as there were when the step was made; none since means that `dynamics_` is at its end. (A method
+// that chooses its steps may have used it for more than evaluations.)
+void RunLeg::look_for_extremes(long evaluations, bool is_last) {
+  if (!extremes_) return;
+  const bool is_at_end = !integrator_->is_adaptive() && dynamics_.evaluations() == evaluations;
+  extremes_->add_step(*integrator_, dynamics_, is_at_end, is_last);
+}
+
+// False at the end.
+bool RunLeg::begin_advance() {
+  if (is_over()) return false;
+  integrator_->begin_step(dynamics_, next_limit());
+  return true;
+}
+
+// True once the step is made. Throws NumericalFailure.
+bool RunLeg::conclude_try() {
+  bool is_made = false;
+  try {
+    is_made = integrator_->conclude_try(dynamics_);
+  } catch (const JointsNearSingular&) { // rounding is spread otherwise over places and angles
+    state_ = current_state();
+    options_.coordinates = Coordinates::absolute;
+    dynamics_.use_coordinates(Coordinates::absolute);
+    restart();
+    return true;
+  }
+  return is_made && pass_step();
+}
+
+bool RunLeg::advance() {
+  if (!begin_advance()) return false;
+  do integrator_->make_try(dynamics_);
+  while (!conclude_try());
+  return !is_over() && !is_interrupted_;
+}
+
+// Events in the step made, its samples, its end. False: the step is withdrawn, and another try of it due.
+bool RunLeg::pass_step() {
+  const double limit = next_limit();
+  constexpr long k_now_and_then = 64; // steps: also where no sample is due for long
+  if (options_.progress && integrator_->steps() % k_now_and_then == 0) options_.progress(state_.t);
+  const long evaluations = dynamics_.evaluations();
+  guard_against_crawl();
+  if (integrator_->stepped_state()) {
+    pass_stepped();
+    return true;
+  }
+  check_finite();
+  const bool is_event = finder_.find(*integrator_, dynamics_, handler_.fresh());
+  const bool is_withdrawn = finder_.is_step_withdrawn() ||
+                            !integrator_->resolves_slips(dynamics_, is_event ? finder_.theta() : 1.0, finder_.state().data());
+  if (is_withdrawn) {
+    integrator_->begin_step(dynamics_, limit);
+    return false;
+  }
+  if (is_event) {
+    const double t = integrator_->t0() + finder_.theta() * integrator_->h();
+    const bool is_ended = are_joints(finder_.fired()) && integrator_->end_at(dynamics_, finder_.theta());
+    const double* const at_event = is_ended ? integrator_->y1() : finder_.state().data();
+    keep_ledger(t);
+    if (extremes_) extremes_->end_at(t, *integrator_, dynamics_);
+    sample_until(std::nextafter(t, 0.0) - k_output_slack * options_.output_step);
+    pass_event(t, at_event, finder_.fired());
+    if (!handler_.stop_reason().empty()) end_run();
+    return true;
+  }
+  const double t1 = integrator_->t1();
+  keep_ledger(t1);
+  look_for_extremes(evaluations, t1 >= limit);
+  sample_until(t1);
+  handler_.clear_fresh();
+  if (t1 >= limit && limit < options_.end) {
+    pass_event(t1, integrator_->y1(), {});
+    return true;
+  }
+  check_holding(t1, integrator_->watch1());
+  check_sticking(system_, state_, dynamics_.sharing(), t1, integrator_->watch1());
+  swallowed_.check(dynamics_, t1, integrator_->y1(), state_.mode, integrator_->watch1());
+  energy_.check_step(dynamics_, t1, integrator_->y1());
+  if (t1 >= options_.end) {
+    integrator_->accept();
+    dynamics_.unpack(t1, integrator_->y0(), state_);
+    end_run();
+    return true;
+  }
+  state_.t = t1;
+  integrator_->accept();
+  return true;
+}
+
+// The last row, wherever the run ends, and the values that channels end with.
+void RunLeg::end_run() {
+  if (!is_between_events_) return; // it broke off at an event
+  is_between_events_ = false;
+  const double t = integrator_->t0();
+  std::copy_n(integrator_->y0(), dynamics_.dimension(), y_.begin());
+  const bool is_sampled = options_.output_step > 0.0;
+  const double last = record_->trajectory->size() > 0 ? record_->trajectory->time(record_->trajectory->size() - 1) : -std::numeric_limits<double>::infinity();
+  if (is_sampled && t > last + k_output_slack * options_.output_step) record_sample(t);
+  finish_extremes();
+}
+
+// At y_.
+void RunLeg::finish_extremes() {
+  if (!extremes_) return;
+  dynamics_.rates(integrator_->t0(), y_.data(), dy_.data());
+  extremes_->finish(dynamics_.snapshot(dy_.data()));
+}
+
+// Bodies have the impulse of what a step of time stepping passes over, but no force or acceleration shows it.
+void RunLeg::note_passed(double t0, double t1) {
+  if (statistics_.passed_pulse) return;
+  constexpr double k_rounding = 64.0 * std::numeric_limits<double>::epsilon(); // times that were meant to be the same
+  const std::vector<double>& times = system_.breakpoints;
+  for (auto next = std::lower_bound(times.begin(), times.end(), t0); next != times.end() && next + 1 != times.end() && *(next + 1) < t1; ++next)
+    if (*(next + 1) - *next > k_rounding * *(next + 1)) statistics_.passed_pulse = *next;
+}
+
+// A step that has decided the modes itself: they are taken over, and noted where they changed.
+void RunLeg::pass_stepped() {
+  const double t1 = integrator_->t1();
+  note_passed(state_.t, t1);
+  if (ledger_) {
+    dynamics_.rates(t1, integrator_->y1(), dy_.data());
+    ledger_->add_stepped(t1, dynamics_.snapshot(dy_.data()));
+  }
+  sample_until(t1);
+  energy_.note(dynamics_, t1, integrator_->y1()); // in the layout of the step, which the next line may do away with
+  const std::size_t known = record_->events.size();
+  handler_.note_changes(state_, *integrator_->stepped_state(), record_->events);
+  state_ = *integrator_->stepped_state();
+  statistics_.events += static_cast<long>(record_->events.size() - known);
+  if (is_action_due(known)) return;
+  dynamics_.set_time_limit(next_limit());
+  restart();
+  if (t1 >= options_.end) end_run();
+}
+
+State RunLeg::current_state() const {
+  State state = state_;
+  dynamics_.unpack(integrator_->t0(), integrator_->y0(), state);
+  return state;
+}
+
+RunStatistics RunLeg::statistics() const {
+  RunStatistics s = statistics_;
+  s.steps += integrator_->steps();
+  s.rejections = integrator_->rejections();
+  s.evaluations = dynamics_.evaluations();
+  s.coded_stages = dynamics_.coded_stages();
+  s.max_position_residual = integrator_->max_position_residual();
+  s.max_velocity_residual = integrator_->max_velocity_residual();
+  s.energy_residual = energy_.residual();
+  s.energy_exchanged = energy_.exchanged();
+  s.energy_scale = energy_.scale();
+  s.energy_worst_step = energy_.worst_step();
+  s.energy_rounding = energy_.rounding();
+  s.dissipated = state_.dissipated;
+  s.work = state_.work;
+  return s;
+}
+
+void RunLeg::break_off() {
+  if (!is_between_events_) return;
+  state_ = current_state();
+  dynamics_.set_state(state_);
+  end_run();
+}
+
+} // namespace steplap

@@ -1,0 +1,74 @@
+#include "mbd/system/actions.h"
+
+namespace steplap {
+
+namespace {
+
+template <class S> OwnCoordinate<S> no_coordinate() { return {S(0.0), S(0.0)}; }
+
+} // namespace
+
+template <class S, class AtTime> void ActionGroup::watch(Evaluated<S>& e, const double* inner, const AtTime& at_time) const {
+  S quantity[k_most_switches];
+  for (const Entry& entry : entries) {
+    if (entry.unit < 0) continue;
+    const MotionFormula& formula = *entry.trigger.formula;
+    const SwitchBits bits = e.mode[entry.unit];
+    preset_quantities(formula.program().switch_count(), bits, quantity);
+    (void)formula.value(e, inner, no_coordinate<S>(), at_time, bits, quantity);
+    watch_switches(bits, quantity, entry.trigger.switches, e.watch + entry.watch, e.watch_rate + entry.watch);
+  }
+}
+
+void ActionGroup::add_forces(Evaluation& e) const { watch(e, e.inner, SignalsNow{e.t}); }
+
+bool ActionGroup::trace_forces(TracedEvaluation& e) const {
+  for (const Entry& entry : entries)
+    if (entry.unit >= 0 && !entry.trigger.formula->can_be_traced()) return false;
+  watch<Traced>(e, nullptr, SignalsTraced{e});
+  return true;
+}
+
+void ActionGroup::mark_bodies(std::vector<char>& is_used) const {
+  for (const Entry& entry : entries)
+    if (entry.trigger.formula)
+      for (const int body : entry.trigger.formula->bodies()) is_used[body] = 1;
+}
+
+UnitMode ActionGroup::initial_mode(int element, const Evaluation& e) const {
+  FormulaProgram::Bits bits{0, 0};
+  entries[static_cast<std::size_t>(element)].trigger.formula->find_bits(e, no_coordinate<double>(), bits);
+  return bits.values;
+}
+
+UnitMode ActionGroup::next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const {
+  return next_bits(*entries[static_cast<std::size_t>(element)].trigger.formula, mode, slot, e, no_coordinate<double>());
+}
+
+bool ActionGroup::holds(std::size_t action, const State& state, const std::vector<Motion<double>>& motion, bool is_stepped) const {
+  const Entry& entry = entries[action];
+  if (entry.trigger.time) return state.t >= *entry.trigger.time;
+  if (!entry.trigger.formula) return false;
+  Evaluation e;
+  e.t = state.t;
+  e.motion = motion.data();
+  e.inner = state.inner.data();
+  FormulaProgram::Bits bits{0, 0};
+  if (entry.unit >= 0 && !is_stepped) bits = {state.mode[static_cast<std::size_t>(entry.unit)]};
+  else entry.trigger.formula->find_bits(e, no_coordinate<double>(), bits);
+  return entry.trigger.formula->value<double>(e, e.inner, no_coordinate<double>(), SignalsNow{e.t}, bits.values, nullptr) != 0.0;
+}
+
+ActionGroup* action_group(System& system) {
+  for (const auto& group : system.groups)
+    if (auto* const found = dynamic_cast<ActionGroup*>(group.get())) return found;
+  return nullptr;
+}
+
+const ActionGroup* action_group(const System& system) {
+  for (const auto& group : system.groups)
+    if (const auto* const found = dynamic_cast<const ActionGroup*>(group.get())) return found;
+  return nullptr;
+}
+
+} // namespace steplap
