@@ -11,8 +11,8 @@
 #include "mbd/simulation/changeover.h"
 #include "mbd/simulation/energy_account.h"
 #include "mbd/simulation/power_ledger.h"
-#include "mbd/simulation/swallowed_check.h"
 #include "mbd/simulation/run_record.h"
+#include "mbd/simulation/swallowed_check.h"
 
 #include <limits>
 #include <memory>
