@@ -44,7 +44,8 @@ public:
   /// Code may have been made since. It is used if it makes of the stage that was written down what that has made.
   void look_for_code();
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
-  /// For accelerations, rates of inner states, power and switching values at coordinates, rates and inner states y. False: evaluate without code; nothing was changed.
+  /// For accelerations, rates of inner states, power and switching values at coordinates, rates and inner states y. False: evaluate
+  /// without code; nothing was changed.
   /// `all`: also what can_look(), put_wrenches() and smallest_pivot() are asked for.
   [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all);
   /// Can merged joints be looked at by what a stage has found? Then: what they bear at the last run(), into their slots.

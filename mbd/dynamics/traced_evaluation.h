@@ -19,8 +19,8 @@ namespace steplap {
 
 struct TracedRates {
   /// Inputs: coordinates and rates, inner states, then the numbers of the layout that follow from time, then those of signals;
-  /// outputs: accelerations, rates of inner states, dissipation, work, watch values, rates of watch values; then what a look at merged joints and the end of a step
-  /// ask for: wrenches, and of each pivot that and its diagonal.
+  /// outputs: accelerations, rates of inner states, dissipation, work, watch values, rates of watch values; then what a look at
+  /// merged joints and the end of a step ask for: wrenches, and of each pivot that and its diagonal.
   Tape tape;
   std::vector<TimeInput> signals;
   std::vector<int> watches;      ///< the slots of watch values
@@ -39,9 +39,10 @@ struct TracedRates {
 /// rate.
 [[nodiscard]] std::size_t time_input_count(const Layout& layout);
 
-/// At time t, coordinates, rates and inner states y and the layout's numbers of time. False if some part of the scene is not
-/// traced: more than a few rows, long ones, rows that depend on each other. `live`: the evaluation whose modes and memory calls of
-/// elements see; it must outlive `traced`. `least_pivot`: the tape's condition. `known`: a tape that this one should be, which then is not written once more (Traced::start); false, too, if it is another.
+/// At time t, coordinates, rates and inner states y and the layout's numbers of time. False if the scene is not traced: it has too
+/// many coordinates or rows, or rows that depend on each other. `live`: the evaluation whose modes and memory calls of elements see;
+/// it must outlive `traced`. `least_pivot`: the tape's condition. `known`: a tape that this one should be, which then is not
+/// written once more (Traced::start); false, too, if it is another.
 [[nodiscard]] bool trace_rates(const System& system, const Layout& layout, const State& state, const Evaluation& live, double t, const double* y,
                                std::span<const double> time_inputs, double least_pivot, TracedRates& traced, const Tape* known = nullptr);
 
