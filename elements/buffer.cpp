@@ -39,7 +39,7 @@ public:
   void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
     watch_bounds<double>(e, wrench, watch);
   }
-  [[nodiscard]] bool trace_friction(const TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
+  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
                                     Traced* watch) const override {
     if (rate) {
       wrench[0] = -state.sign * bound_at<Traced>(e);

@@ -56,7 +56,7 @@ public:
                    double* watch) const override {
     watch_bounds<double>(e, wrench, watch);
   }
-  [[nodiscard]] bool trace_friction(const TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
+  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
                                     Traced* watch) const override {
     if (rate) {
       wrench[0] = sliding_force(e, state);

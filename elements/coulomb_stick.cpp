@@ -22,7 +22,7 @@ class SegmentFriction final : public CoulombFriction {
 public:
   SegmentMeasure segment;
 
-  [[nodiscard]] bool trace_friction(const TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
+  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
     return false; // its place has branches of its own
   }
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {

@@ -92,11 +92,9 @@ public:
   std::vector<Entry> entries;
   static constexpr bool k_does_work = Works;
 
-  void add_forces(Evaluation& e) const override { add_forces_to(e, e.inner, SignalsNow{e.t}); }
+  void add_forces(Evaluation& e) const override { add_forces_to(e, SignalsNow{e.t}); }
   [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override {
-    for (const Entry& entry : entries)
-      if (!entry.formula.can_be_traced()) return false;
-    add_forces_to<Traced>(e, nullptr, SignalsTraced{e});
+    add_forces_to<Traced>(e, SignalsTraced{e});
     return true;
   }
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
@@ -153,7 +151,7 @@ public:
 
   [[nodiscard]] double force_of(int i, const Evaluation& e) const {
     const Entry& entry = entries[i];
-    return entry.formula.value<double>(e, e.inner, entry.own_now(e), SignalsNow{e.t}, entry.bits(e), nullptr);
+    return entry.formula.value<double>(e, entry.own_now(e), SignalsNow{e.t}, entry.bits(e), nullptr);
   }
 
 private:
@@ -183,13 +181,13 @@ private:
     }
   };
 
-  template <class S, class AtTime> void add_forces_to(Evaluated<S>& e, const double* inner, const AtTime& at_time) const {
+  template <class S, class AtTime> void add_forces_to(Evaluated<S>& e, const AtTime& at_time) const {
     S quantity[k_most_switches];
     for (const Entry& entry : entries) {
       const MeasureValue<S> m = entry.measure(e.link_motion[entry.link], Origin{});
       const SwitchBits bits = entry.bits(e);
       preset_quantities(entry.formula.program().switch_count(), bits, quantity);
-      const S f = entry.formula.value(e, inner, entry.own(m), at_time, bits, quantity);
+      const S f = entry.formula.value(e, entry.own(m), at_time, bits, quantity);
       if (entry.unit >= 0) watch_switches(bits, quantity, entry.switches, e.watch + entry.watch, e.watch_rate + entry.watch);
       apply_force(e.link_force[entry.link], m, f);
       if constexpr (Works) e.work += f * m.rate;
@@ -259,7 +257,7 @@ void compile_formula_force(const Element& element, SystemBuilder& builder) {
   const OwnCoordinate<double> own = entry.own_now(start);
   FormulaProgram::Bits bits{0, 0};
   entry.formula.find_bits(start, own, bits);
-  if (!std::isfinite(entry.formula.value<double>(start, start.inner, own, SignalsNow{0.0}, bits.values, nullptr)))
+  if (!std::isfinite(entry.formula.value<double>(start, own, SignalsNow{0.0}, bits.values, nullptr)))
     return builder.error("'formula' has no finite value at the start: something is divided by zero, or a root or logarithm is taken of what has none");
   entry.switches = scales_of(entry.formula, start, own);
   const bool jumps = entry.formula.program().has_comparisons();

@@ -101,16 +101,15 @@ public:
   void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override {
     watch_bounds<double>(holds * share(e.t), wrench[0], watch);
   }
-  [[nodiscard]] bool trace_friction(const TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench,
+  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench,
                                     Traced* watch) const override {
-    if (signal) return false;
-    const Traced whole(1.0);
+    const Traced now = signal ? greatest_of(Traced(0.0), e.of_time({signal})) : Traced(1.0);
     if (rate) {
-      wrench[0] = sliding_force(rate[0], state, whole);
+      wrench[0] = sliding_force(rate[0], state, now);
       watch[0] = state.sign * rate[0];
       watch[1] = 1.0;
     } else {
-      watch_bounds<Traced>(Traced(holds), wrench[0], watch);
+      watch_bounds<Traced>(holds * now, wrench[0], watch);
     }
     watch[2] = 1.0;
     return true;

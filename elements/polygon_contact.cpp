@@ -236,7 +236,7 @@ public:
 
   void mark_bodies(std::vector<char>& is_used) const override { is_used[a] = is_used[b] = 1; }
 
-  [[nodiscard]] bool trace_friction(const TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
+  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState&, const Traced*, Traced*, Traced*) const override {
     return false; // its place has branches of its own
   }
   [[nodiscard]] double watch_place(const Evaluation& e, const FrictionState& state) const override {

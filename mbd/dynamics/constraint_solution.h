@@ -66,7 +66,6 @@ private:
   void compare_row(std::size_t r, double t);
   // Of rows over more than two bodies what their parts add (row_parts.cpp): to γ, to what they are off by, to what is left
   // of `right` at the accelerations `a`, to the accelerations, and along a row.
-  template <bool WithBias> MeasureValue<double> load_part(std::size_t i);
   void pull_parts();
   void compare_parts();
   void take_part_accelerations(const double* a, double* right) const;

@@ -12,29 +12,23 @@ namespace {
 // Below this smallest pivot the rates of a stage are those of the nearest state on the constraints.
 constexpr double k_placed_pivot = 1e-4;
 
+// Clusters of several bodies have slots behind those of links.
+EvaluationArrays arrays_with_clusters(const System& system) {
+  EvaluationArrays arrays(system);
+  arrays.force.resize(system.bodies.size() + static_cast<std::size_t>(system.links.slot_count()));
+  return arrays;
+}
+
 } // namespace
 
 Dynamics::Dynamics(const System& system)
-    : system_(system), layouts_(system), force_(system.bodies.size() + system.links.slot_count()), kinematics_(system),
-      rows_(kinematics_), reactions_(system, kinematics_, force_.data()), motion_(kinematics_.motion().data()),
+    : system_(system), layouts_(system), scratch_(system), arrays_(arrays_with_clusters(system)), kinematics_(system), rows_(kinematics_),
+      reactions_(system, kinematics_, arrays_.force.data()), motion_(kinematics_.motion().data()),
       friction_force_(reactions_.friction_force().data()) {
-  contact_force_.assign(system.contact_count, 0.0);
-  watch_.assign(system.watch_count, 1.0);
-  watch_rate_.assign(system.watch_count, std::numeric_limits<double>::quiet_NaN());
   inner_ = system.initial_inner;
-  evaluation_.motion = motion_;
-  evaluation_.force = force_.data();
-  evaluation_.link_motion = motion_;
-  evaluation_.link_force = force_.data();
-  evaluation_.contact_force = contact_force_.data();
-  evaluation_.watch = watch_.data();
+  arrays_.connect(evaluation_, kinematics_.motion());
   evaluation_.inner = inner_.data();
-  evaluation_.watch_rate = watch_rate_.data();
-  for (const FrictionUnit& unit : system.frictions) {
-    scratch_.push_back(unit.friction->make_scratch());
-    scratch_pointers_.push_back(scratch_.back().get());
-  }
-  evaluation_.scratch = scratch_pointers_.data();
+  evaluation_.scratch = scratch_.pointers();
 }
 
 void Dynamics::set_state(const State& state) {
@@ -45,8 +39,8 @@ void Dynamics::set_state(const State& state) {
   is_merged_near_ = was_merged_near_ = false;
   pending_.end();
   stage_programs_.leave();
-  std::fill(watch_.begin(), watch_.end(), 1.0);
-  std::fill(force_.begin(), force_.end(), BodyForce{}); // of bodies that none acts on in the new layout
+  std::fill(arrays_.watch.begin(), arrays_.watch.end(), 1.0);
+  std::fill(arrays_.force.begin(), arrays_.force.end(), BodyForce{}); // of bodies that none acts on in the new layout
   const auto [layout, is_new] = layouts_.at(state, choice_);
   // A layout that comes back may have been given up in between: it remembers nothing of the last time.
   if (layout_ != &layout) layout.forget_sharing();
@@ -114,17 +108,17 @@ STEPLAP_INLINE void Dynamics::apply_sliding(std::size_t i) {
   }
   unit.friction->slip_wrench(evaluation_, friction, rate, wrench);
   for (int r = 0; r < n; ++r) {
-    apply_force(force_[link], m[r], wrench[r]);
+    apply_force(arrays_.force[link], m[r], wrench[r]);
     evaluation_.dissipation -= wrench[r] * rate[r];
     friction_force_[unit.row + r] = wrench[r];
   }
-  unit.friction->watch_slip(evaluation_, friction, rate, &watch_[unit.watch]);
+  unit.friction->watch_slip(evaluation_, friction, rate, &arrays_.watch[unit.watch]);
 }
 
 // Forces of all elements, on clusters and on the bodies that ride on them.
 void Dynamics::apply_forces() {
   const Layout& layout = *layout_;
-  BodyForce* const force = force_.data();
+  BodyForce* const force = arrays_.force.data();
   // Those that are added to, one by one: a call to clear them all at once takes longer than they do.
   force[k_ground] = {};
   for (const int slot : layout.slots) force[slot] = {};
@@ -162,13 +156,13 @@ void Dynamics::finish_watches() {
   const LoadSharing* const shared = sharing(); // elements that share a load are watched at a step's ends
   const auto watch_place = [this](int f) {
     const FrictionUnit& unit = system_.frictions[f];
-    watch_[unit.watch + 2] = unit.friction->watch_place(evaluation_, state_->friction[f]);
+    arrays_.watch[unit.watch + 2] = unit.friction->watch_place(evaluation_, state_->friction[f]);
   };
   const auto watch = [&](int f) {
     const FrictionUnit& unit = system_.frictions[f];
     if (!shared || shared->group_of(f) < 0) [[likely]]
       unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row],
-                                 &watch_[unit.watch]);
+                                 &arrays_.watch[unit.watch]);
     watch_place(f);
   };
   for (const int f : layout.holding) watch(f);
@@ -237,7 +231,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
   const double* w = layout.inverse_mass.data();
   double* out = a;
   for (int k = 0; k < layout.absolute_count; ++k) {
-    const BodyForce& f = force_[layout.slots[k]];
+    const BodyForce& f = arrays_.force[layout.slots[k]];
     out[0] = w[0] * (weight[0] + f.fx);
     out[1] = w[1] * (weight[1] + f.fy);
     out[2] = w[2] * (weight[2] + f.m);
@@ -256,7 +250,7 @@ void Dynamics::rates_at(double t, const double* y, double* dy) {
     a[k] = kinematics_.lock_target(i).acceleration;
     dy[k] = kinematics_.lock_target(i).rate;
   }
-  rows_.solve(t, force_.data(), a);
+  rows_.solve(t, arrays_.force.data(), a);
   finish_rates(y, dy);
 }
 
@@ -282,7 +276,7 @@ bool Dynamics::run_code(double t, const double* y, double* dy, bool all) {
   if (!program || !program->is_ready() || !(layout_->smallest_pivot() >= k_traced_pivot)) return false;
   const double now = std::min(t, time_cap_);
   take_time_inputs(now, program->time_inputs());
-  if (!program->run(now, y, dy + coordinate_count(), watch_.data(), watch_rate_.data(), all)) return false;
+  if (!program->run(now, y, dy + coordinate_count(), arrays_.watch.data(), arrays_.watch_rate.data(), all)) return false;
   ++evaluations_;
   ++coded_stages_;
   pending_.end();
@@ -351,8 +345,8 @@ void Dynamics::count_stage(double t, const double* y, const double* dy) {
   const double now = std::min(t, time_cap_);
   take_time_inputs(now, program->time_inputs());
   reactions_.find_joints(cluster_accelerations(dy), multipliers().data());
-  const StageFound found{dy + coordinate_count(), watch_.data(), watch_rate_.data(), friction_force_, layout_->smallest_pivot()};
-  program->record(system_, *state_, now, y, found);
+  const StageFound found{dy + coordinate_count(), arrays_.watch.data(), arrays_.watch_rate.data(), friction_force_, layout_->smallest_pivot()};
+  program->record(system_, *state_, evaluation_, now, y, found);
 }
 
 void Dynamics::defer_byproducts(const StageProgram& program, double t, const double* y) {
@@ -414,7 +408,7 @@ bool Dynamics::watch_wrenches() {
   for (const int f : layout_->merged) {
     if (is_shared(f)) continue;
     const FrictionUnit& unit = system_.frictions[f];
-    double* watch = &watch_[unit.watch];
+    double* watch = &arrays_.watch[unit.watch];
     unit.friction->watch_stick(evaluation_, state_->friction[f], &friction_force_[unit.row], watch);
     if (std::min(watch[0], watch[1]) < k_near_limit) is_near = true;
   }

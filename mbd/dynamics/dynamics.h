@@ -15,6 +15,7 @@
 #include "mbd/dynamics/layout_store.h"
 #include "mbd/dynamics/reactions.h"
 #include "mbd/dynamics/stage_program.h"
+#include "mbd/system/evaluation_arrays.h"
 
 #include <algorithm>
 #include <limits>
@@ -150,8 +151,8 @@ public:
   [[nodiscard]] Residual residual(double t, const double* y);
 
   // --- by-products of the last rates() ----------------------------------------------------------
-  [[nodiscard]] const std::vector<double>& watch() const { return watch_; }
-  [[nodiscard]] const std::vector<double>& watch_rate() const { return watch_rate_; }
+  [[nodiscard]] const std::vector<double>& watch() const { return arrays_.watch; }
+  [[nodiscard]] const std::vector<double>& watch_rate() const { return arrays_.watch_rate; }
   /// Both with all bodies where they are.
   [[nodiscard]] const Evaluation& evaluation() {
     ensure_byproducts();
@@ -268,10 +269,9 @@ private:
   long evaluations_ = 0, coded_stages_ = 0;
 
   Evaluation evaluation_;
-  std::vector<std::unique_ptr<FrictionScratch>> scratch_;
-  std::vector<FrictionScratch*> scratch_pointers_;
-  std::vector<BodyForce> force_; ///< per slot; of a body that is its cluster's only one, the cluster's
-  std::vector<double> contact_force_, watch_, watch_rate_, inner_;
+  FrictionScratches scratch_;
+  EvaluationArrays arrays_; ///< the force of a body that is its cluster's only one is the cluster's
+  std::vector<double> inner_;
   Kinematics kinematics_;
   ConstraintSolution rows_;
   Reactions reactions_;

@@ -9,37 +9,22 @@
 
 namespace steplap {
 
-template <bool WithBias> MeasureValue<double> ConstraintSolution::load_part(std::size_t i) {
-  const RowSpec& part = *layout_->part_specs[i];
-  MeasureValue<double> m = evaluate_row<WithBias>(part, motion_[part.a], motion_[part.b]);
-  put_in_clusters<WithBias>(*layout_, part, motion_, m, layout_->schur_rows[layout_->parts[i].row]);
-  return m;
-}
-
-void ConstraintSolution::pull_parts() {
-  for (std::size_t i = 0; i < layout_->parts.size(); ++i) multiplier_[layout_->parts[i].of] -= load_part<true>(i).bias;
-}
+void ConstraintSolution::pull_parts() { steplap::pull_parts(*layout_, motion_, layout_->schur_rows.data(), multiplier_.data()); }
 
 void ConstraintSolution::compare_parts() {
   for (std::size_t i = 0; i < layout_->parts.size(); ++i) {
-    const MeasureValue<double> m = load_part<false>(i);
+    const MeasureValue<double> m = load_part<false>(*layout_, i, motion_, layout_->schur_rows.data());
     off_[layout_->parts[i].of] += m.value;
     rate_off_[layout_->parts[i].of] += m.rate;
   }
 }
 
 void ConstraintSolution::take_part_accelerations(const double* a, double* right) const {
-  for (const SchurPart& part : layout_->parts)
-    right[part.of] = less_accelerations(layout_->schur_rows[part.row], right[part.of], a);
+  steplap::take_part_accelerations(*layout_, layout_->schur_rows.data(), a, right);
 }
 
 void ConstraintSolution::add_part_responses(const double* lambda, double* a) const {
-  for (const SchurPart& part : layout_->parts) {
-    const SchurRow& row = layout_->schur_rows[part.row];
-    for (int side = 0; side < 2; ++side)
-      if (row.body[side] >= 0)
-        for (int c = 0; c < 3; ++c) a[3 * row.body[side] + c] += row.wj[side][c] * lambda[part.of];
-  }
+  steplap::add_part_responses(*layout_, layout_->schur_rows.data(), lambda, a);
 }
 
 double ConstraintSolution::along_parts(std::size_t r, const double* change) const {

@@ -150,6 +150,35 @@ STEPLAP_INLINE S pull_row(const Layout& layout, const ActiveRow& active, const M
   return pull_simple_row(active, row, motion);
 }
 
+/// Fills in part i of the layout's long rows, at the motion placed. With `WithBias` the bias is that of the clusters.
+template <bool WithBias, class S>
+STEPLAP_INLINE MeasureValue<S> load_part(const Layout& layout, std::size_t i, const Motion<S>* motion, SchurRowOf<S>* rows) {
+  const RowSpec& part = *layout.part_specs[i];
+  MeasureValue<S> m = evaluate_row<WithBias>(part, motion[part.a], motion[part.b]);
+  put_in_clusters<WithBias>(layout, part, motion, m, rows[layout.parts[i].row]);
+  return m;
+}
+
+/// What the parts of long rows add to γ, `right`.
+template <class S> void pull_parts(const Layout& layout, const Motion<S>* motion, SchurRowOf<S>* rows, S* right) {
+  for (std::size_t i = 0; i < layout.parts.size(); ++i) right[layout.parts[i].of] -= load_part<true>(layout, i, motion, rows).bias;
+}
+
+/// What they take of it where the accelerations of the clusters are `a`.
+template <class S> void take_part_accelerations(const Layout& layout, const SchurRowOf<S>* rows, const S* a, S* right) {
+  for (const SchurPart& part : layout.parts) right[part.of] = less_accelerations(rows[part.row], right[part.of], a);
+}
+
+/// a += W Jᵀ λ of the parts.
+template <class S> void add_part_responses(const Layout& layout, const SchurRowOf<S>* rows, const S* lambda, S* a) {
+  for (const SchurPart& part : layout.parts) {
+    const SchurRowOf<S>& row = rows[part.row];
+    for (int side = 0; side < 2; ++side)
+      if (row.body[side] >= 0)
+        for (int c = 0; c < 3; ++c) a[3 * row.body[side] + c] += row.wj[side][c] * lambda[part.of];
+  }
+}
+
 /// a += W Jᵀ λ: a constant row is zero but for θ.
 template <class S> STEPLAP_INLINE void add_response(const SchurRowOf<S>& row, int side, const S& lambda, S* a) {
   S* const ak = a + 3 * row.body[side];

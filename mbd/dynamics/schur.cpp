@@ -208,7 +208,6 @@ void SchurSolver::analyze(const std::vector<SchurRow>& rows, int count, const st
   find_pattern(columns);
   column_fill_.assign(n_, 0);
   l_.assign(column_begin_.back(), 0.0);
-  d_.assign(n_, 0.0);
   work_.assign(n_, 0.0);
   permuted_.assign(n_, 0.0);
 }
@@ -355,6 +354,7 @@ template <int N> void SchurSolver::factor_dense(const std::vector<SchurRow>& row
 
 void SchurSolver::trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x,
                         std::vector<TracedPivot>& pivots) const {
+  if (!is_small()) return trace_sparse(rows, least_pivot, x, pivots);
   // Places in the rows as doubles: of which row, which side.
   constexpr std::size_t k_row = sizeof(SchurRow) / sizeof(double);
   const auto side_of = [](std::size_t place, std::size_t member) {
@@ -387,53 +387,73 @@ template <int N> void SchurSolver::solve_dense(double* x) const {
 }
 
 // What the further parts of row k add to its entries.
-void SchurSolver::add_part_products(const std::vector<SchurRow>& rows, int k) {
+template <class S> void SchurSolver::add_part_products(const std::vector<SchurRowOf<S>>& rows, int k, S* y) const {
   for (int p = part_begin_[k]; p < part_begin_[k + 1]; ++p) {
     const Product& product = part_products_[p].product;
-    const double* a = rows[part_products_[p].part].wj[product.side_k];
-    const double* b = rows[product.row].j[product.side_i];
-    work_[product.position] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const S* a = rows[part_products_[p].part].wj[product.side_k];
+    const S* b = rows[product.row].j[product.side_i];
+    y[product.position] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  }
+}
+
+// L D Lᵀ, a row of the pattern after the other. `fill`: room for an index a column; `y`: a number a column, all zero before and
+// after. `invert(k, d, diagonal)` gives 1/d, or 0 where the row that is eliminated as k-th is left out.
+template <class S, class Raise, class Invert>
+STEPLAP_INLINE void SchurSolver::eliminate_pattern(const std::vector<SchurRowOf<S>>& rows, int* fill, S* y, S* l, S* inverse_d, const Raise& raise,
+                                                   const Invert& invert) const {
+  for (int k = 0; k < n_; ++k) fill[k] = column_begin_[k];
+  for (int k = 0; k < n_; ++k) {
+    const SchurRowOf<S>& row_k = rows[order_[k]];
+    for (int p = product_begin_[k]; p < product_begin_[k + 1]; ++p) {
+      const Product& product = products_[p];
+      const S* a = row_k.wj[product.side_k];
+      const S* b = rows[product.row].j[product.side_i];
+      y[product.position] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    }
+    if (!part_products_.empty()) [[unlikely]] add_part_products(rows, k, y);
+    const S diagonal = raise(y[k]);
+    S d = diagonal;
+    y[k] = S(0.0);
+    for (int p = pattern_begin_[k]; p < pattern_begin_[k + 1]; ++p) {
+      const int i = pattern_[p];
+      const S yi = y[i];
+      y[i] = S(0.0);
+      const int end = fill[i];
+      for (int c = column_begin_[i]; c < end; ++c) y[column_row_[c]] -= l[c] * yi;
+      const S lki = yi * inverse_d[i];
+      d -= lki * yi;
+      l[end] = lki;
+      fill[i] = end + 1;
+    }
+    inverse_d[k] = invert(k, d, diagonal);
   }
 }
 
 void SchurSolver::factor_sparse(const std::vector<SchurRow>& rows) {
   dependent_count_ = 0;
   double smallest_pivot = 1.0;
-  double* const y = work_.data();
-  for (int k = 0; k < n_; ++k) column_fill_[k] = column_begin_[k];
-  for (int k = 0; k < n_; ++k) {
-    const SchurRow& row_k = rows[order_[k]];
-    for (int p = product_begin_[k]; p < product_begin_[k + 1]; ++p) {
-      const Product& product = products_[p];
-      const double* a = row_k.wj[product.side_k];
-      const double* b = rows[product.row].j[product.side_i];
-      y[product.position] += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    }
-    if (!part_products_.empty()) [[unlikely]] add_part_products(rows, k);
-    const double diagonal = y[k] * (1.0 + shift_);
-    double d = diagonal;
-    y[k] = 0.0;
-    for (int p = pattern_begin_[k]; p < pattern_begin_[k + 1]; ++p) {
-      const int i = pattern_[p];
-      const double yi = y[i];
-      y[i] = 0.0;
-      const int end = column_fill_[i];
-      for (int c = column_begin_[i]; c < end; ++c) y[column_row_[c]] -= l_[c] * yi;
-      const double lki = yi * inverse_d_[i];
-      d -= lki * yi;
-      l_[end] = lki;
-      column_fill_[i] = end + 1;
-    }
-    d_[k] = d;
+  const auto raise = [this](double diagonal) { return diagonal * (1.0 + shift_); };
+  eliminate_pattern(rows, column_fill_.data(), work_.data(), l_.data(), inverse_d_.data(), raise, [&](int k, double d, double diagonal) {
     if (leaves_out(order_[k], d, diagonal)) [[unlikely]] {
-      inverse_d_[k] = 0.0;
       ++dependent_count_;
-    } else {
-      inverse_d_[k] = 1.0 / d;
-      smallest_pivot = std::min(smallest_pivot, d / diagonal);
+      return 0.0;
     }
-  }
+    smallest_pivot = std::min(smallest_pivot, d / diagonal);
+    return 1.0 / d;
+  });
   smallest_pivot_ = smallest_pivot;
+}
+
+void SchurSolver::trace_sparse(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const {
+  std::vector<int> fill(column_fill_.size());
+  std::vector<Traced> y(work_.size(), Traced(0.0)), l(l_.size()), inverse_d(inverse_d_.size());
+  eliminate_pattern(rows, fill.data(), y.data(), l.data(), inverse_d.data(), [](const Traced& diagonal) { return diagonal; },
+                    [&](int, const Traced& d, const Traced& diagonal) {
+                      if (!(d > least_pivot * diagonal)) throw NotTraceable();
+                      pivots.push_back({d / diagonal, Traced(1.0)}); // as factor_sparse compares them
+                      return Traced(1.0) / d;
+                    });
+  substitute_pattern(l.data(), inverse_d.data(), y.data(), x);
 }
 
 void SchurSolver::solve(const std::vector<SchurRow>& rows, double* x) const {
@@ -502,15 +522,17 @@ void SchurSolver::eliminate(double* x) const {
   eliminate_sparse(x);
 }
 
-void SchurSolver::eliminate_sparse(double* x) const {
-  double* const y = permuted_.data();
+// x = A⁻¹ x by the factors; y: room for a number a row.
+template <class S> STEPLAP_INLINE void SchurSolver::substitute_pattern(const S* l, const S* inverse_d, S* y, S* x) const {
   for (int k = 0; k < n_; ++k) y[k] = x[order_[k]];
   for (int k = 0; k < n_; ++k)
-    for (int c = column_begin_[k]; c < column_begin_[k + 1]; ++c) y[column_row_[c]] -= l_[c] * y[k];
-  for (int k = 0; k < n_; ++k) y[k] *= inverse_d_[k];
+    for (int c = column_begin_[k]; c < column_begin_[k + 1]; ++c) y[column_row_[c]] -= l[c] * y[k];
+  for (int k = 0; k < n_; ++k) y[k] *= inverse_d[k];
   for (int k = n_ - 1; k >= 0; --k)
-    for (int c = column_begin_[k]; c < column_begin_[k + 1]; ++c) y[k] -= l_[c] * y[column_row_[c]];
+    for (int c = column_begin_[k]; c < column_begin_[k + 1]; ++c) y[k] -= l[c] * y[column_row_[c]];
   for (int k = 0; k < n_; ++k) x[order_[k]] = y[k];
 }
+
+void SchurSolver::eliminate_sparse(double* x) const { substitute_pattern(l_.data(), inverse_d_.data(), permuted_.data(), x); }
 
 } // namespace steplap

@@ -61,14 +61,15 @@ public:
   void decide_rank(const std::vector<char>& is_friction, const std::vector<char>& was_out);
   /// Has no factorisation followed decide_rank() yet?
   [[nodiscard]] bool is_rank_open() const { return is_rank_open_; }
-  /// What factor() and solve() do for few rows that are independent, on numbers that are written down: conditions are that they
-  /// stay as far from singular positions as `least_pivot`. x = A⁻¹ x. Adds the pivots that smallest_pivot() is one of.
+  /// What factor() and solve() do for rows that are independent and can_be_traced(), on numbers that are written down: conditions
+  /// are that they stay as far from singular positions as `least_pivot`. x = A⁻¹ x. Adds the pivots that smallest_pivot() is one of.
   void trace(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const;
   /// In place: x = A⁻¹ x. `rows`: those factored.
   void solve(const std::vector<SchurRow>& rows, double* x) const;
 
   [[nodiscard]] int size() const { return n_; }
   [[nodiscard]] bool is_small() const { return n_ <= k_max_dense; }
+  [[nodiscard]] bool can_be_traced() const { return n_ <= k_usual_rows; }
   [[nodiscard]] bool is_singular() const { return dependent_count_ > 0; }
   [[nodiscard]] bool is_dependent(int row) const { return inverse_d_[position_[row]] == 0.0; }
   /// Is it one of friction that was decided to stay out?
@@ -98,7 +99,11 @@ private:
   void find_pattern(const Columns& columns);
   void factor_sparse(const std::vector<SchurRow>& rows);
   void eliminate_sparse(double* x) const;
-  void add_part_products(const std::vector<SchurRow>& rows, int k);
+  void trace_sparse(const std::vector<SchurRowOf<Traced>>& rows, double least_pivot, Traced* x, std::vector<TracedPivot>& pivots) const;
+  template <class S> void add_part_products(const std::vector<SchurRowOf<S>>& rows, int k, S* y) const;
+  template <class S, class Raise, class Invert>
+  void eliminate_pattern(const std::vector<SchurRowOf<S>>& rows, int* fill, S* y, S* l, S* inverse_d, const Raise& raise, const Invert& invert) const;
+  template <class S> void substitute_pattern(const S* l, const S* inverse_d, S* y, S* x) const;
   template <class F> void for_parts(const F& f, const std::vector<SchurRow>& rows) const;
   template <int N> void solve_dense(double* x) const;
 
@@ -147,7 +152,7 @@ private:
   std::vector<int> pattern_begin_, pattern_; ///< columns of row k of L, ascending
   std::vector<int> column_begin_, column_row_;
   std::vector<int> column_fill_;
-  std::vector<double> l_, d_, inverse_d_, work_;
+  std::vector<double> l_, inverse_d_, work_;
   mutable std::vector<double> permuted_;
   mutable std::vector<double> right_, correction_, response_; ///< of refine
 };

@@ -50,8 +50,8 @@ bool Dynamics::watch_groups() {
     const double margin = 1.0 + k_bound_slack - group.least.usage();
     const double concord = 1.0 - layout_->sharing->discord(static_cast<int>(g), evaluation_, reactions_.acceleration().data());
     for (const int f : group.frictions) {
-      watch_[system_.frictions[f].watch] = margin;
-      watch_[system_.frictions[f].watch + 1] = concord;
+      arrays_.watch[system_.frictions[f].watch] = margin;
+      arrays_.watch[system_.frictions[f].watch + 1] = concord;
     }
     if (concord < k_near_limit) is_near = true;
     if (margin < k_near_limit) is_near = true;

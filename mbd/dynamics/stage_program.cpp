@@ -10,9 +10,10 @@ namespace steplap {
 
 StageProgram::StageProgram(const Layout& layout, const State& state, StageCode choice)
     : layout_(&layout), modes_(state.mode.begin(), state.mode.end()),
-      coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), time_count_(time_input_count(layout)), choice_(choice),
+      coordinate_count_(static_cast<std::size_t>(layout.coordinate_count)), inner_count_(state.inner.size()),
+      time_count_(time_input_count(layout)), choice_(choice),
       is_hopeless_(!MachineCode::is_available()) {
-  inputs_.resize(2 * coordinate_count_ + time_count_);
+  inputs_.resize(2 * coordinate_count_ + inner_count_ + time_count_);
   for (const FrictionState& f : state.friction) frictions_.push_back({f.phase, f.sign, f.foot});
   family_ = tape_family(key());
   stages_ = family_->made();
@@ -24,7 +25,7 @@ std::uint64_t StageProgram::key() const {
   std::uint64_t hash = 14695981039346656037ULL;
   const auto add = [&hash](std::uint64_t x) { hash = (hash ^ x ^ x >> 29U) * 1099511628211ULL; };
   const Layout& l = *layout_;
-  for (const std::size_t size : {coordinate_count_, time_count_, l.clusters.size(), l.placements.size(), l.active.size(),
+  for (const std::size_t size : {coordinate_count_, inner_count_, time_count_, l.clusters.size(), l.placements.size(), l.active.size(),
                                  l.links.size(), l.locks.size(), l.merged.size()})
     add(size);
   for (const std::uint64_t part : l.key) add(part);
@@ -48,7 +49,10 @@ bool StageProgram::is_of(const State& state) const {
 void StageProgram::look_for_code() {
   if (code_ || !tape_code_ || !tape_code_->code()) return;
   const MachineCode& made = *tape_code_->code();
-  const bool is_same = made.run(traced_.inputs.data(), traced_.tape.constants.data(), outputs_.data()) &&
+  const double *const inputs = traced_.inputs.data(), *const constants = traced_.tape.constants.data();
+  // What elements that are called remember may have changed since.
+  const bool is_as_ever = traced_.calls.empty() || replay(tape_code_->tape(), inputs, constants, traced_.outputs.data());
+  const bool is_same = is_as_ever && made.run(inputs, constants, outputs_.data()) && !has_call_failed() &&
                        std::memcmp(outputs_.data(), traced_.outputs.data(), outputs_.size() * sizeof(double)) == 0;
   if (is_same) {
     code_ = &made;
@@ -71,13 +75,14 @@ void StageProgram::give_up() {
 }
 
 bool StageProgram::run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all) {
-  const std::size_t n = coordinate_count_, signals = traced_.signals.size();
-  std::copy_n(y, 2 * n, inputs_.data());
+  const std::size_t n = coordinate_count_ + inner_count_, signals = traced_.signals.size();
+  std::copy_n(y, coordinate_count_ + n, inputs_.data());
   for (std::size_t i = 0; i < signals; ++i) inputs_[inputs_.size() - signals + i] = traced_.signals[i].at(t);
   if (!code_->run(inputs_.data(), traced_.tape.constants.data(), outputs_.data(), all)) {
     note_failure();
     return false;
   }
+  if (has_call_failed()) return false; // the evaluation without code throws what the element threw
   failures_ = 0;
   const double* out = outputs_.data();
   std::copy_n(out, n + 2, dy);
@@ -100,6 +105,12 @@ void StageProgram::put_wrenches(double* friction_force) const {
   for (const int slot : traced_.wrenches) friction_force[slot] = outputs_[at++];
 }
 
+bool StageProgram::has_call_failed() const {
+  bool is_any = false;
+  for (const auto& call : traced_.calls) is_any = call->has_failed() || is_any;
+  return is_any;
+}
+
 // In the order in which the solvers compare.
 double StageProgram::smallest_pivot_in(const double* outputs) const {
   const double* at = outputs + traced_.usual_outputs() + traced_.wrenches.size();
@@ -120,13 +131,13 @@ bool StageProgram::has_found(const StageFound& found) const {
   const auto are_same = [&is_same](const std::vector<int>& slots, const double* x) {
     return std::all_of(slots.begin(), slots.end(), [&](int slot) { return is_same(x[slot]); });
   };
-  return std::all_of(found.dy, found.dy + coordinate_count_ + 2, is_same) && are_same(traced_.watches, found.watch) &&
+  return std::all_of(found.dy, found.dy + coordinate_count_ + inner_count_ + 2, is_same) && are_same(traced_.watches, found.watch) &&
          are_same(traced_.watch_rates, found.watch_rate) && are_same(traced_.wrenches, found.friction_force) &&
          smallest_pivot_in(traced_.outputs.data()) == found.smallest_pivot;
 }
 
-void StageProgram::record(const System& system, const State& state, double t, const double* y,
-                             const StageFound& found) {
+void StageProgram::record(const System& system, const State& state, const Evaluation& live, double t, const double* y,
+                          const StageFound& found) {
   ++tapes_;
   const std::shared_ptr<TapeCode> known = std::exchange(candidate_, nullptr);
   // Steps are kept by the store alone, and their memory for the next tape: a run has dozens of sets of modes.
@@ -136,13 +147,13 @@ void StageProgram::record(const System& system, const State& state, double t, co
     std::vector<TapeStep>& from;
     ~GiveBack() { from.swap(steps); }
   } const give_back{traced_.tape.steps};
-  const bool is_traced = trace_rates(system, *layout_, state, t, y, {time_inputs(), time_count_}, k_traced_pivot,
+  const bool is_traced = trace_rates(system, *layout_, state, live, t, y, {time_inputs(), time_count_}, k_traced_pivot,
                                      traced_, known ? &known->tape() : nullptr);
   // By chance of the same key, or on another branch: it will be written down if it lasts.
   if (known && !is_traced) return;
   is_hopeless_ = !is_traced || !has_found(found); // to the bit
   if (is_hopeless_) return;
-  inputs_.resize(2 * coordinate_count_ + time_count_ + traced_.signals.size());
+  inputs_.resize(2 * coordinate_count_ + inner_count_ + time_count_ + traced_.signals.size());
   outputs_.resize(traced_.outputs.size());
   tape_code_ = known ? known : shared_code(traced_.tape);
   if (!known) family_->keep(tape_code_);

@@ -29,7 +29,7 @@ enum class StageCode : std::uint8_t {
 
 /// What an evaluation without code has found.
 struct StageFound {
-  const double* dy; ///< accelerations, dissipation and work
+  const double* dy; ///< accelerations, rates of inner states, dissipation and work
   const double *watch, *watch_rate, *friction_force;
   double smallest_pivot;
 };
@@ -44,7 +44,8 @@ public:
   /// Code may have been made since. It is used if it makes of the stage that was written down what that has made.
   void look_for_code();
   [[nodiscard]] bool is_ready() const { return code_ != nullptr; }
-  /// For accelerations, power and switching values at coordinates and rates y. False: evaluate without code; nothing was changed.
+  /// For accelerations, rates of inner states, power and switching values at coordinates, rates and inner states y. False: evaluate
+  /// without code; nothing was changed.
   /// `all`: also what can_look(), put_wrenches() and smallest_pivot() are asked for.
   [[nodiscard]] bool run(double t, const double* y, double* dy, double* watch, double* watch_rate, bool all);
   /// Can merged joints be looked at by what a stage has found? Then: what they bear at the last run(), into their slots.
@@ -53,7 +54,7 @@ public:
   /// To the bit that of Layout::smallest_pivot, at the last run().
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_in(outputs_.data()); }
   /// Where run() takes the layout's numbers of time, in the order of traced_evaluation.h.
-  [[nodiscard]] double* time_inputs() { return inputs_.data() + 2 * coordinate_count_; }
+  [[nodiscard]] double* time_inputs() { return inputs_.data() + 2 * coordinate_count_ + inner_count_; }
 
   /// Have the modes lasted, so that the stage that follows is to be written down?
   [[nodiscard]] bool wants_stage() const {
@@ -64,10 +65,12 @@ public:
   /// Where modes come back: was code made for such a tape since?
   void look_for_candidate();
   /// Writes down the stage evaluated last, at t, y and these time_inputs(). The tape is held against what was found.
-  void record(const System& system, const State& state, double t, const double* y, const StageFound& found);
+  /// `live`: as trace_rates.
+  void record(const System& system, const State& state, const Evaluation& live, double t, const double* y, const StageFound& found);
 
 private:
   void note_failure();
+  [[nodiscard]] bool has_call_failed() const;
   [[nodiscard]] double smallest_pivot_in(const double* outputs) const;
   void give_up();
   [[nodiscard]] std::uint64_t key() const;
@@ -96,7 +99,7 @@ private:
   std::shared_ptr<TapeCode> tape_code_; ///< null until it is written down
   const MachineCode* code_ = nullptr;
   std::vector<double> inputs_, outputs_;
-  std::size_t coordinate_count_ = 0, time_count_ = 0;
+  std::size_t coordinate_count_ = 0, inner_count_ = 0, time_count_ = 0;
   long stages_ = 0;              ///< made without code, in this run and those before it
   int failures_ = 0, tapes_ = 0; ///< failures: since it last held
   StageCode choice_;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <utility>
 
 namespace steplap {
@@ -18,11 +19,8 @@ constexpr std::size_t k_of_lock = 3, k_of_driven_row = 2;
 // Beyond these the code of an evaluation, some 80 instructions for each, leaves the cache that loops stay in.
 constexpr int k_most_coordinates = 100;
 
-bool is_plain(const System& system, const Layout& layout) {
-  return layout.coordinate_count <= k_most_coordinates && !layout.has_long_rows() && system.inner_count() == 0 &&
-         layout.schur.is_small() && !layout.is_singular() && !layout.sharing &&
-         std::none_of(layout.active.begin(), layout.active.end(), // an angle of centre against centre is no operation of a tape
-                      [](const ActiveRow& row) { return row.spec->kind == MeasureKind::roll_round; });
+bool is_plain(const Layout& layout) {
+  return layout.coordinate_count <= k_most_coordinates && layout.schur.can_be_traced() && !layout.is_singular() && !layout.sharing;
 }
 
 /// What a trace works on, kept from one to the next: taking memory would take a tenth of its time.
@@ -30,7 +28,7 @@ struct TracerMemory {
   std::vector<Motion<Traced>> motion_;
   std::vector<BodyForceOf<Traced>> force_, lack_;
   std::vector<Traced> contact_force_, watch_, watch_rate_, friction_force_;
-  std::vector<Traced> q_, v_, time_, a_, multiplier_, cluster_a_;
+  std::vector<Traced> q_, v_, inner_, inner_rate_, time_, a_, multiplier_, cluster_a_;
   std::vector<SchurRowOf<Traced>> rows_;
   std::vector<EdgeGeometry> edges_;
 
@@ -46,16 +44,17 @@ public:
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
   ~Tracer() { kept() = std::move(static_cast<TracerMemory&>(*this)); }
-  Tracer(const System& system, const Layout& layout, const State& state)
-      : TracerMemory(std::move(kept())), system_(system), layout_(layout), state_(state) {
+  Tracer(const System& system, const Layout& layout, const State& state, const Evaluation& live)
+      : TracerMemory(std::move(kept())), system_(system), layout_(layout), state_(state), live_(live) {
     motion_.assign(system.bodies.size() + system.links.slot_count(), {});
     force_.assign(motion_.size(), {});
     contact_force_.assign(system.contact_count, Traced(0.0));
     watch_.assign(system.watch_count, Traced(1.0));
     watch_rate_.assign(system.watch_count, Traced(std::numeric_limits<double>::quiet_NaN()));
     friction_force_.assign(system.friction_row_count, Traced(0.0));
-    for (auto* const numbers : {&q_, &v_, &time_, &a_, &multiplier_, &cluster_a_}) numbers->clear();
+    for (auto* const numbers : {&q_, &v_, &inner_, &time_, &a_, &multiplier_, &cluster_a_}) numbers->clear();
     rows_.clear();
+    inner_rate_.assign(static_cast<std::size_t>(system.inner_count()), Traced(0.0));
     e_.motion = motion_.data();
     e_.link_motion = motion_.data();
     e_.force = force_.data();
@@ -70,6 +69,8 @@ public:
   // Throws NotTraceable.
   void trace(double t, const double* y, std::span<const double> time_inputs, double least_pivot, TracedRates& traced) {
     e_.t = t;
+    traced.calls.clear();
+    calls_ = &traced.calls;
     take_inputs(y, time_inputs);
     place();
     load_rows();
@@ -85,8 +86,13 @@ public:
   }
 
 private:
-  static void require(bool holds) {
-    if (!holds) throw NotTraceable();
+  ElementCall& call_element() { return *calls_->emplace_back(std::make_unique<ElementCall>(system_, live_)); }
+
+  // As FrictionElement::trace_friction.
+  void trace_friction(int f, const Traced* rate, Traced* wrench) {
+    const FrictionUnit& unit = system_.frictions[f];
+    Traced* const watch = &watch_[unit.watch];
+    if (!unit.friction->trace_friction(e_, state_.friction[f], rate, wrench, watch)) call_element().trace(f, e_, rate, wrench, watch);
   }
 
   [[nodiscard]] std::size_t coordinate_count() const { return static_cast<std::size_t>(layout_.coordinate_count); }
@@ -97,6 +103,9 @@ private:
     const std::size_t n = coordinate_count();
     for (std::size_t i = 0; i < n; ++i) q_.push_back(Traced::input(y[i]));
     for (std::size_t i = 0; i < n; ++i) v_.push_back(Traced::input(y[n + i]));
+    for (std::size_t i = 0; i < inner_rate_.size(); ++i) inner_.push_back(Traced::input(y[2 * n + i]));
+    e_.inner = inner_.data();
+    e_.inner_rate = inner_rate_.data();
     for (const double x : time_inputs) time_.push_back(Traced::input(x));
   }
   [[nodiscard]] const Traced* of_lock(std::size_t lock) const { return time_.data() + k_of_lock * lock; }
@@ -119,9 +128,9 @@ private:
     for (const ActiveLink& link : layout_.links) motion_[link.slot] = seen_from(motion_[link.a], motion_[link.b]);
   }
 
+  // The parts of long rows stand behind all rows.
   void load_rows() {
-    for (std::size_t r = 0; r < layout_.active.size(); ++r) {
-      const SchurRow& known = layout_.schur_rows[r];
+    for (const SchurRow& known : layout_.schur_rows) {
       SchurRowOf<Traced>& row = rows_.emplace_back();
       row.is_constant = known.is_constant;
       for (int side = 0; side < 2; ++side) {
@@ -133,12 +142,15 @@ private:
           row.wj[side][c] = known.wj[side][c];
         }
       }
-      multiplier_.push_back(pull_row(layout_, layout_.active[r], motion_.data(), row));
     }
+    for (std::size_t r = 0; r < layout_.active.size(); ++r)
+      multiplier_.push_back(pull_row(layout_, layout_.active[r], motion_.data(), rows_[r]));
+    pull_parts(layout_, motion_.data(), rows_.data(), multiplier_.data());
   }
 
   void apply_forces() {
-    for (const auto& group : system_.groups) require(group->trace_forces(e_));
+    for (const auto& group : system_.groups)
+      if (!group->trace_forces(e_)) call_element().trace(*group, e_);
     for (std::size_t i = 0; i < layout_.sliding.size(); ++i) slide(layout_.sliding[i], layout_.sliding_link[i]);
     for (const ActiveLink& link : layout_.links) {
       const BodyForceOf<Traced>& f = force_[link.slot];
@@ -161,7 +173,7 @@ private:
       m[r] = evaluate_row<false>(rows[r], motion_[link], Origin{});
       rate[r] = m[r].rate;
     }
-    require(unit.friction->trace_friction(e_, state_.friction[f], rate, wrench, &watch_[unit.watch]));
+    trace_friction(f, rate, wrench);
     for (int r = 0; r < n; ++r) {
       apply_force(force_[link], m[r], wrench[r]);
       e_.dissipation -= wrench[r] * rate[r];
@@ -185,6 +197,7 @@ private:
   void solve_rows(double least_pivot) {
     const auto of_absolute = static_cast<std::size_t>(layout_.schur.size());
     for (std::size_t r = 0; r < of_absolute; ++r) multiplier_[r] = less_accelerations(rows_[r], multiplier_[r], a_.data());
+    take_part_accelerations(layout_, rows_.data(), a_.data(), multiplier_.data());
     for (TracedMechanism& m : mechanisms_) accelerate(m);
     for (std::size_t i = 0; i < layout_.driven_rows.size(); ++i) multiplier_[layout_.driven_rows[i]] += of_driven_row(i)[0];
     if (rows_.empty()) return;
@@ -197,6 +210,7 @@ private:
     if (of_absolute == 0) return;
     layout_.schur.trace(rows_, least_pivot, multiplier_.data(), pivots_.emplace_back());
     add_responses(rows_.data(), of_absolute, multiplier_.data(), a_.data());
+    add_part_responses(layout_, rows_.data(), multiplier_.data(), a_.data());
   }
 
   // Without its rows, and what these lack then.
@@ -226,13 +240,14 @@ private:
     for (const HeldRow& held : layout_.held_rows) friction_force_[held.friction_row] = multiplier_[held.row];
     for (const int f : layout_.holding) {
       const FrictionUnit& unit = system_.frictions[f];
-      require(unit.friction->trace_friction(e_, state_.friction[f], nullptr, &friction_force_[unit.row], &watch_[unit.watch]));
+      trace_friction(f, nullptr, &friction_force_[unit.row]);
     }
   }
 
   void put_out(TracedRates& traced) {
     traced.outputs.clear();
-    for (const Traced& a : a_) put_out(a, traced);
+    for (const auto* rates : {&a_, &inner_rate_})
+      for (const Traced& rate : *rates) put_out(rate, traced);
     put_out(e_.dissipation, traced);
     put_out(e_.work, traced);
     traced.watches.clear();
@@ -249,7 +264,7 @@ private:
     }
     traced.signals = e_.time_inputs;
     traced.inputs.clear();
-    for (const auto* given : {&q_, &v_, &time_})
+    for (const auto* given : {&q_, &v_, &inner_, &time_})
       for (const Traced& x : *given) traced.inputs.push_back(value_of(x));
     for (const TimeInput& signal : e_.time_inputs) traced.inputs.push_back(signal.at(e_.t));
   }
@@ -308,6 +323,8 @@ private:
   const System& system_;
   const Layout& layout_;
   const State& state_;
+  const Evaluation& live_;
+  std::vector<std::unique_ptr<ElementCall>>* calls_ = nullptr; ///< those made now
   std::vector<TracedMechanism> mechanisms_;
   std::vector<std::vector<TracedPivot>> pivots_; ///< of each solver
   TracedEvaluation e_;
@@ -319,12 +336,12 @@ std::size_t time_input_count(const Layout& layout) {
   return k_of_lock * layout.locks.size() + k_of_driven_row * layout.driven_rows.size();
 }
 
-bool trace_rates(const System& system, const Layout& layout, const State& state, double t, const double* y,
+bool trace_rates(const System& system, const Layout& layout, const State& state, const Evaluation& live, double t, const double* y,
                  std::span<const double> time_inputs, double least_pivot, TracedRates& traced, const Tape* known) {
-  if (!is_plain(system, layout)) return false;
+  if (!is_plain(layout)) return false;
   Traced::start(known);
   try {
-    Tracer(system, layout, state).trace(t, y, time_inputs, least_pivot, traced);
+    Tracer(system, layout, state, live).trace(t, y, time_inputs, least_pivot, traced);
   } catch (const NotTraceable&) {
     (void)Traced::finish(nullptr);
     return false;

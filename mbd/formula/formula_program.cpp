@@ -13,20 +13,6 @@ bool is_switch(FormulaOp op) {
   return op == FormulaOp::abs || op == FormulaOp::min || op == FormulaOp::max || op == FormulaOp::less || op == FormulaOp::less_or_equal;
 }
 
-bool is_of_tape(FormulaOp op) {
-  switch (op) {
-  case FormulaOp::power:
-  case FormulaOp::asin:
-  case FormulaOp::acos:
-  case FormulaOp::atan:
-  case FormulaOp::atan2:
-  case FormulaOp::exp:
-  case FormulaOp::ln:
-  case FormulaOp::log10: return false;
-  default: return true;
-  }
-}
-
 // How fast a formula changes with the time itself steps cannot know: a narrow pulse of it, or one of many, would be stepped over. They
 // know it of what is straight in the time, and of signals. So the time may be added, compared, and multiplied by what it does not stand in.
 void require_plain_time(const std::vector<FormulaProgram::Step>& steps) {
@@ -81,7 +67,6 @@ int FormulaProgram::add(FormulaOp op, int a, int b, int c) {
     step.index = switch_count_++;
     comparisons_.push_back(op == FormulaOp::less || op == FormulaOp::less_or_equal ? 1 : 0);
   }
-  is_traceable_ = is_traceable_ && is_of_tape(op);
   uses_time_ = uses_time_ || op == FormulaOp::time;
   return size() - 1;
 }

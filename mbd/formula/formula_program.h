@@ -66,12 +66,22 @@ template <int N> void turn(const Dual<N>& a, Dual<N>& sine, Dual<N>& cosine) {
   cosine = cos(a);
 }
 
-// What a tape has no operation for is never asked of it (FormulaProgram::is_traceable).
-template <class S> S power(const S& a, const S&) { return a; }
-template <class S> S exponential(const S& a) { return a; }
-template <class S> S logarithm(const S& a) { return a; }
+// What a tape has no operation for is a call of the function of doubles (mbd/tape/traced.h).
+template <class S> S power(const S& a, const S& b) {
+  const S arguments[] = {a, b};
+  S value;
+  S::call([](const double* of, double* found) { *found = power(of[1], of[2]); }, arguments, {&value, 1});
+  return value;
+}
+template <double (*function)(double), class S> S called(const S& a) {
+  S value;
+  S::call([](const double* of, double* found) { *found = function(of[1]); }, {&a, 1}, {&value, 1});
+  return value;
+}
+template <class S> S exponential(const S& a) { return called<exponential>(a); }
+template <class S> S logarithm(const S& a) { return called<logarithm>(a); }
 template <class S> S root(const S& a) { return sqrt(greatest_of(a, S(0.0))); }
-template <class S> S arc(const S& y, const S&) { return y; }
+template <class S> S arc(const S& y, const S& x) { return atan2(y, x); }
 template <class S> void turn(const S& a, S& sine, S& cosine) { find_sin_cos(a, sine, cosine); }
 
 } // namespace formula_math
@@ -105,8 +115,6 @@ public:
   /// Has the value a jump where switch `s` changes? False of |a|, min and max.
   [[nodiscard]] bool is_comparison(int s) const { return comparisons_[static_cast<std::size_t>(s)] != 0; }
   [[nodiscard]] bool has_comparisons() const;
-  /// All its operations are those of a tape.
-  [[nodiscard]] bool is_traceable() const { return is_traceable_; }
   [[nodiscard]] bool uses_time() const { return uses_time_; }
 
   /// Its value with the bits given. `values` has room for size() numbers. `quantity`: one per switch, what its bit hangs on; untouched
@@ -152,7 +160,7 @@ private:
   std::vector<Guard> guards_;
   std::vector<char> comparisons_; ///< per switch
   int operand_count_ = 0, switch_count_ = 0;
-  bool is_traceable_ = true, uses_time_ = false;
+  bool uses_time_ = false;
 };
 
 // ---------------------------------------------------------------------------------------------

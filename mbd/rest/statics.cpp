@@ -60,25 +60,12 @@ void anchor_friction(const System& system, State& state, int f, const Motion<dou
     if (rows[r].memory >= 0) state.memory[rows[r].memory] = evaluate_row<false>(rows[r], motion).value;
 }
 
-Statics::Statics(const System& system) : system_(system), n_(3 * (system.body_count() - 1)) {
-  motion_.resize(system.bodies.size() + static_cast<std::size_t>(system.links.size()));
-  body_force_.resize(motion_.size());
-  contact_force_.assign(system.contact_count, 0.0);
-  watch_.assign(system.watch_count, 1.0);
-  watch_rate_.assign(system.watch_count, 0.0);
-  inner_rate_.assign(static_cast<std::size_t>(system.inner_count()), 0.0);
+Statics::Statics(const System& system)
+    : system_(system), n_(3 * (system.body_count() - 1)), scratch_(system), motion_(static_cast<std::size_t>(system.links.slot_count())),
+      arrays_(system) {
   force_ = VecX::Zero(n_);
-  for (const FrictionUnit& unit : system.frictions) {
-    scratch_.push_back(unit.friction->make_scratch());
-    scratch_pointers_.push_back(scratch_.back().get());
-  }
-  evaluation_.motion = evaluation_.link_motion = motion_.data();
-  evaluation_.force = evaluation_.link_force = body_force_.data();
-  evaluation_.scratch = scratch_pointers_.data();
-  evaluation_.contact_force = contact_force_.data();
-  evaluation_.watch = watch_.data();
-  evaluation_.watch_rate = watch_rate_.data();
-  evaluation_.inner_rate = inner_rate_.data();
+  arrays_.connect(evaluation_, motion_);
+  evaluation_.scratch = scratch_.pointers();
 }
 
 void Statics::set_modes(State& state) {
@@ -100,21 +87,16 @@ void Statics::evaluate(State& state) {
     m.y = state.q[3 * i + 1];
     set_angle(m, state.q[3 * i + 2]);
   }
-  for (int i = 0; i < system_.links.size(); ++i)
-    motion_[system_.links.slot(i)] = seen_from(motion_[system_.links[i].a], motion_[system_.links[i].b]);
-  std::fill(body_force_.begin(), body_force_.end(), BodyForce{});
+  place_links(system_.links, motion_);
+  std::fill(arrays_.force.begin(), arrays_.force.end(), BodyForce{});
   set_modes(state);
   for (const auto& group : system_.groups) group->add_forces(evaluation_);
-  for (int i = 0; i < system_.links.size(); ++i) {
-    const Link& link = system_.links[i];
-    const int slot = system_.links.slot(i);
-    add_link_force(body_force_[slot], motion_[slot], motion_[link.b], body_force_[link.a], body_force_[link.b]);
-  }
+  add_link_forces(system_.links, motion_, arrays_.force);
   for (int i = 1; i < system_.body_count(); ++i) {
     const double mass = system_.bodies[i].mass;
-    force_[3 * i - 3] = body_force_[i].fx + mass * system_.gravity.x();
-    force_[3 * i - 2] = body_force_[i].fy + mass * system_.gravity.y();
-    force_[3 * i - 1] = body_force_[i].m;
+    force_[3 * i - 3] = arrays_.force[i].fx + mass * system_.gravity.x();
+    force_[3 * i - 2] = arrays_.force[i].fy + mass * system_.gravity.y();
+    force_[3 * i - 1] = arrays_.force[i].m;
   }
   add_sliding_forces();
 }
@@ -218,7 +200,7 @@ void Statics::add_sliding_stiffness(int f, const std::vector<PairJacobian>& part
   const RowGradient<double> g = row_gradient(row, motion_[row.a], motion_[row.b]);
   for (const PairJacobian& part : parts) {
     if (part.contact < 0) continue;
-    double& normal = contact_force_[part.contact];
+    double& normal = arrays_.contact_force[part.contact];
     const double before = normal, step = std::max(1.0, before);
     normal = before + step;
     slip_wrench(f, more);

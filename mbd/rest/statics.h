@@ -7,11 +7,10 @@
 //   Q + Jᵀλ = 0,   K = ∂(Q + Jᵀλ)/∂q at constant λ
 #pragma once
 
-#include "mbd/system/system.h"
+#include "mbd/system/evaluation_arrays.h"
 
 #include <Eigen/SparseCore>
 
-#include <memory>
 #include <vector>
 
 namespace steplap {
@@ -52,7 +51,7 @@ public:
   [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
   /// Normal force of a contact, for whoever asks what friction would do with another.
-  [[nodiscard]] double& contact_force(int contact) { return contact_force_[contact]; }
+  [[nodiscard]] double& contact_force(int contact) { return arrays_.contact_force[contact]; }
   /// Wrench of friction element f while it slips, along its rows.
   void slip_wrench(int f, double* wrench) const;
 
@@ -65,13 +64,9 @@ private:
   int n_ = 0, bilateral_count_ = 0;
   const State* state_ = nullptr;
   Evaluation evaluation_;
-  std::vector<std::unique_ptr<FrictionScratch>> scratch_;
-  std::vector<FrictionScratch*> scratch_pointers_;
+  FrictionScratches scratch_;
   std::vector<Motion<double>> motion_;
-  std::vector<BodyForce> body_force_;
-  mutable std::vector<double> contact_force_;
-  std::vector<double> watch_, watch_rate_;
-  std::vector<double> inner_rate_; ///< nobody asks for it: at rest nothing flows
+  mutable EvaluationArrays arrays_; ///< nobody asks for rates of inner states: at rest nothing flows
   std::vector<StaticRow> rows_;
   VecX force_;
 };

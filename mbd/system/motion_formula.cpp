@@ -122,7 +122,6 @@ private:
       const StatePlace place = place_of_state(builder_, *state);
       operand.inner = place.inner;
       operand.unit = place.unit;
-      made_.reads_states_ = true;
       return enter(operand, powers_of(state->unit));
     }
     const Parameters& parameters = builder_.model().parameters;
@@ -251,7 +250,7 @@ MotionFormula::MotionFormula(SystemBuilder& builder, const MotionFormulaText& te
 void MotionFormula::find_bits(const Evaluation& e, const OwnCoordinate<double>& own, FormulaProgram::Bits& bits) const {
   auto& room = motion_formula::Room<double>::kept();
   room.grow(operands_.size(), static_cast<std::size_t>(program().size()));
-  read(e, e.inner, own, SignalsNow{e.t}, room.operands.data());
+  read(e, own, SignalsNow{e.t}, room.operands.data());
   (void)program().find_bits(room.operands.data(), e.t, bits, room.values.data());
 }
 
@@ -260,7 +259,7 @@ double MotionFormula::differentiate(const Evaluation& e, const OwnCoordinate<dou
   auto& duals = motion_formula::Room<Chunk>::kept();
   room.grow(operands_.size(), 1);
   duals.grow(operands_.size(), static_cast<std::size_t>(program().size()));
-  read(e, e.inner, own, SignalsNow{e.t}, room.operands.data());
+  read(e, own, SignalsNow{e.t}, room.operands.data());
   double value = 0.0;
   const std::size_t count = operands_.size();
   for (std::size_t first = 0; first == 0 || first < count; first += k_chunk) {
@@ -280,7 +279,7 @@ std::vector<double> MotionFormula::gains(const Evaluation& e, const OwnCoordinat
   auto& duals = motion_formula::Room<Chunk>::kept();
   room.grow(operands_.size(), 1);
   duals.grow(operands_.size(), static_cast<std::size_t>(program().size()));
-  read(e, e.inner, own, SignalsNow{e.t}, room.operands.data());
+  read(e, own, SignalsNow{e.t}, room.operands.data());
   std::vector<double> gains(static_cast<std::size_t>(program().switch_count()), 0.0);
   std::vector<Chunk> quantity(gains.size());
   for (std::size_t k = 0; k < operands_.size(); ++k) {

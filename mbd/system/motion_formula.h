@@ -54,13 +54,12 @@ public:
   [[nodiscard]] bool is_valid() const { return !programs_.empty(); }
   [[nodiscard]] const FormulaProgram& program() const { return programs_.front(); }
   [[nodiscard]] const std::vector<MotionOperand>& operands() const { return operands_; }
-  [[nodiscard]] bool can_be_traced() const { return program().is_traceable() && !reads_states_; }
   /// Bodies whose motion it reads, besides that of its own coordinate.
   [[nodiscard]] const std::vector<int>& bodies() const { return bodies_; }
 
   /// The value in an evaluation. `at_time(signal)`: what a signal is at the time; `quantity` as in FormulaProgram.
   template <class S, class AtTime>
-  S value(const Evaluated<S>& e, const double* inner, const OwnCoordinate<S>& own, const AtTime& at_time, SwitchBits bits, S* quantity) const;
+  S value(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, SwitchBits bits, S* quantity) const;
   /// Bits of its switches as they are now, but for those given.
   void find_bits(const Evaluation& e, const OwnCoordinate<double>& own, FormulaProgram::Bits& bits) const;
   /// Value with its derivatives by all operands: into `derivatives`, which has room for them.
@@ -71,12 +70,11 @@ public:
 private:
   class Resolver;
   template <class S, class AtTime>
-  void read(const Evaluated<S>& e, const double* inner, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const;
+  void read(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const;
 
   std::vector<FormulaProgram> programs_; ///< one, if it is valid
   std::vector<MotionOperand> operands_;
   std::vector<int> bodies_;
-  bool reads_states_ = false;
 };
 
 /// A body's share of the derivatives of an operand: by its pose and its velocity.
@@ -147,7 +145,7 @@ template <class S> struct Room {
 } // namespace motion_formula
 
 template <class S, class AtTime>
-void MotionFormula::read(const Evaluated<S>& e, const double* inner, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const {
+void MotionFormula::read(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, S* x) const {
   for (const MotionOperand& operand : operands_) {
     switch (operand.kind) {
     case MotionOperand::Kind::own_value: *x = own.value; break;
@@ -158,7 +156,7 @@ void MotionFormula::read(const Evaluated<S>& e, const double* inner, const OwnCo
       *x = operand.is_rate ? m.rate : m.value - S(operand.zero);
       break;
     }
-    case MotionOperand::Kind::state: *x = S(operand.unit * inner[operand.inner]); break;
+    case MotionOperand::Kind::state: *x = S(operand.unit) * e.inner[operand.inner]; break;
     case MotionOperand::Kind::signal: *x = S(at_time(*operand.signal)); break;
     }
     ++x;
@@ -166,10 +164,10 @@ void MotionFormula::read(const Evaluated<S>& e, const double* inner, const OwnCo
 }
 
 template <class S, class AtTime>
-S MotionFormula::value(const Evaluated<S>& e, const double* inner, const OwnCoordinate<S>& own, const AtTime& at_time, SwitchBits bits, S* quantity) const {
+S MotionFormula::value(const Evaluated<S>& e, const OwnCoordinate<S>& own, const AtTime& at_time, SwitchBits bits, S* quantity) const {
   auto& room = motion_formula::Room<S>::kept();
   room.grow(operands_.size(), static_cast<std::size_t>(program().size()));
-  read(e, inner, own, at_time, room.operands.data());
+  read(e, own, at_time, room.operands.data());
   const S t = program().uses_time() ? S(at_time(clock_signal())) : S(0.0);
   return program().evaluate(room.operands.data(), t, bits, room.values.data(), quantity);
 }

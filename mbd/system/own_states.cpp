@@ -74,13 +74,20 @@ const OwnStateGroup* own_state_group(const System& system) {
   return nullptr;
 }
 
-void OwnStateGroup::add_forces(Evaluation& e) const {
-  double quantity[k_most_switches];
+void OwnStateGroup::add_forces(Evaluation& e) const { add_rates(e, SignalsNow{e.t}); }
+
+bool OwnStateGroup::trace_forces(TracedEvaluation& e) const {
+  add_rates<Traced>(e, SignalsTraced{e});
+  return true;
+}
+
+template <class S, class AtTime> void OwnStateGroup::add_rates(Evaluated<S>& e, const AtTime& at_time) const {
+  S quantity[k_most_switches];
   for (const Entry& entry : entries) {
     const SwitchBits bits = entry.unit < 0 ? 0 : e.mode[entry.unit];
     preset_quantities(entry.rate.program().switch_count(), bits, quantity);
-    const double rate = entry.rate.value(e, e.inner, k_no_coordinate, SignalsNow{e.t}, bits, quantity);
-    e.inner_rate[entry.place.inner] = rate / entry.place.unit;
+    const S rate = entry.rate.value(e, OwnCoordinate<S>{}, at_time, bits, quantity);
+    e.inner_rate[entry.place.inner] = rate / S(entry.place.unit);
     if (entry.unit >= 0) watch_switches(bits, quantity, entry.switches, e.watch + entry.watch, e.watch_rate + entry.watch);
   }
 }

@@ -54,6 +54,7 @@ public:
   int first_inner = -1; ///< of the model's states, one after another; -1: they have no places yet
 
   void add_forces(Evaluation& e) const override;
+  [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>&) const override {}
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override;
@@ -61,6 +62,9 @@ public:
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
   [[nodiscard]] EventKind transition(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
+
+private:
+  template <class S, class AtTime> void add_rates(Evaluated<S>& e, const AtTime& at_time) const;
 };
 
 /// Nullptr if the system has no own states.

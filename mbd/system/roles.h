@@ -69,6 +69,8 @@ template <class S> struct Evaluated {
   S work{0.0};                            ///< W, of loads and drives
   const UnitMode* mode = nullptr;         ///< per unit
   const FrictionState* friction = nullptr;
+  const S* inner = nullptr;               ///< inner states of force elements
+  S* inner_rate = nullptr;                ///< their rates: zero, unless an element says more
 };
 
 /// What a signal is asked for: its value, or the rate at which a drive by it moves (DriveLevel::position).
@@ -97,8 +99,6 @@ struct Evaluation : Evaluated<double> {
   /// stepping; where this is not before t (infinite) by their values at t.
   double mean_from = std::numeric_limits<double>::infinity();
   const double* memory = nullptr;         ///< of the state: anchors of rows
-  const double* inner = nullptr;          ///< inner states of force elements
-  double* inner_rate = nullptr;           ///< their rates: zero, unless an element says more
   FrictionScratch* const* scratch = nullptr; ///< per friction element; null where it wants none
 
   [[nodiscard]] double force_of(const Signal& signal) const { return mean_from < t ? signal.mean(mean_from, t) : signal.value(t); }
@@ -142,8 +142,8 @@ class ForceGroup {
 public:
   virtual ~ForceGroup() = default;
   virtual void add_forces(Evaluation& e) const = 0;
-  /// The same operations in the same order on numbers that are written down. Returns false if this group cannot be traced: the
-  /// whole scene is then evaluated without machine code.
+  /// The same operations in the same order on numbers that are written down. Returns false, with `e` untouched, if this group
+  /// has no such template: what is written down then is a call of add_forces().
   [[nodiscard]] virtual bool trace_forces(TracedEvaluation& /*e*/) const { return false; }
   [[nodiscard]] virtual double potential(const Motion<double>* motion) const = 0;
   virtual void add_jacobian(const Evaluation& e, std::vector<PairJacobian>& out) const = 0;
@@ -194,9 +194,10 @@ class FrictionElement {
 public:
   virtual ~FrictionElement() = default;
   /// What slip_wrench(), watch_slip(), watch_stick() and watch_place() do, on numbers that are written down: with `rate` while
-  /// it slips, then `wrench` is found; else `wrench` is what it bears. False: it cannot. Of `state` it may use phase, sign and
-  /// foot alone: by these (and modes of units) it is known whether what was written down still holds.
-  [[nodiscard]] virtual bool trace_friction(const TracedEvaluation& /*e*/, const FrictionState& /*state*/, const Traced* /*rate*/,
+  /// it slips, then `wrench` is found; else `wrench` is what it bears. Returns false, with all untouched, if it has no such
+  /// template: what is written down then is a call of those functions. Of `state` it may use phase, sign and foot alone: by
+  /// these (and modes of units) it is known whether what was written down still holds.
+  [[nodiscard]] virtual bool trace_friction(TracedEvaluation& /*e*/, const FrictionState& /*state*/, const Traced* /*rate*/,
                                             Traced* /*wrench*/, Traced* /*watch*/) const {
     return false;
   }

@@ -103,12 +103,13 @@ private:
 
   bool has_frame() const { return plan_.slots > 0 || plan_.has_calls; }
   int slots_begin() const { return plan_.has_calls ? k_saved_size : 0; }
+  int call_slots_begin() const { return slots_begin() + 8 * plan_.slots; }
 
   void begin() {
     if (has_frame()) {
       a_.push(x86::rbp);
       a_.mov(x86::rbp, x86::rsp);
-      const int size = slots_begin() + 8 * plan_.slots;
+      const int size = call_slots_begin() + 8 * plan_.call_slots;
       a_.sub(x86::rsp, size);
       a_.and_(x86::rsp, -64);
       // A page after the other, so that a stack that ends is met where it ends.
@@ -149,6 +150,7 @@ private:
     case OperandPlace::Kind::constant: return x86::ptr(x86::rsi, offset);
     case OperandPlace::Kind::output: return x86::ptr(x86::rdx, offset);
     case OperandPlace::Kind::slot: return x86::ptr(x86::rsp, slots_begin() + offset);
+    case OperandPlace::Kind::call_slot: return x86::ptr(x86::rsp, call_slots_begin() + offset);
     case OperandPlace::Kind::sign_bits: return x86::ptr(sign_bits_);
     default: return x86::ptr(value_bits_);
     }
@@ -166,7 +168,8 @@ private:
     case Kind::store: a_.emit(names_.load, memory(i.second), reg(i.first)); break;
     case Kind::arithmetic: arithmetic(i); break;
     case Kind::condition: condition(i); break;
-    case Kind::sin_cos: call(i); break;
+    case Kind::sin_cos: find_sine(i); break;
+    case Kind::call: call(i); break;
     case Kind::leave:
       a_.test(x86::ecx, x86::ecx);
       a_.jz(done_);
@@ -214,10 +217,23 @@ private:
 
   void call(const PlannedInstruction& i) {
     a_.lea(x86::rdi, memory(i.second));
+    a_.lea(x86::rsi, memory({OperandPlace::Kind::call_slot, i.result_slot}));
+    a_.mov(x86::rax, memory(i.second));
+    a_.call(x86::rax);
+    take_arguments();
+  }
+
+  void find_sine(const PlannedInstruction& i) {
+    a_.lea(x86::rdi, memory(i.second));
     a_.lea(x86::rsi, memory({OperandPlace::Kind::slot, i.sine_slot}));
     a_.lea(x86::rdx, memory({OperandPlace::Kind::slot, i.cosine_slot}));
     a_.mov(x86::rax, reinterpret_cast<std::uint64_t>(sin_cos_of_one));
     a_.call(x86::rax);
+    take_arguments();
+  }
+
+  // Behind a call: those of the code itself.
+  void take_arguments() {
     a_.mov(x86::rdi, x86::ptr(x86::rsp, k_saved_inputs));
     a_.mov(x86::rsi, x86::ptr(x86::rsp, k_saved_constants));
     a_.mov(x86::rdx, x86::ptr(x86::rsp, k_saved_outputs));
@@ -273,7 +289,7 @@ InstructionSet MachineCode::best_instructions() { return k_best_instructions; }
 MachineCode::MachineCode(const Tape& tape, InstructionSet instructions) {
   if (instructions > best_instructions()) throw std::invalid_argument("machine code: the processor has no such instructions");
   const RegisterPlan plan = plan_registers(tape, order_of_steps(tape), rules_for(instructions));
-  if (8 * plan.slots > k_most_frame) return;
+  if (8 * (plan.slots + plan.call_slots) > k_most_frame) return;
 
   Faults faults;
   asmjit::CodeHolder code;

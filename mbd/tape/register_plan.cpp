@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <unordered_map>
 #include <utility>
 
 namespace steplap {
@@ -43,6 +44,7 @@ public:
       else
         plan_step(p, tape_.steps[at(order_[p])]);
     }
+    plan_.call_slots = argument_slots_ + result_slots_;
     return std::move(plan_);
   }
 
@@ -54,6 +56,11 @@ private:
     OperandPlace home;                  ///< where it lies in memory
     std::int32_t output = k_none; ///< first of its outputs
     std::int32_t partner = k_none; ///< the cosine of a sine, the sine of a cosine, of the same argument
+  };
+  struct Call {
+    std::vector<std::int32_t> arguments; ///< steps
+    std::vector<std::int32_t> next;      ///< position of the next use of each, behind the call
+    std::int32_t first_result = 0;       ///< of the slots of results
   };
   struct NextUses {
     std::int32_t a = k_never, b = k_never, result = k_never;
@@ -94,6 +101,7 @@ private:
   void look_at_steps() {
     for (std::size_t i = 0; i < tape_.steps.size(); ++i) {
       const TapeStep& s = tape_.steps[i];
+      if (s.operation == TapeOperation::call) look_at_call(i);
       if (is_given(s.operation)) values_[i].home = {s.operation == input ? OperandPlace::Kind::input : OperandPlace::Kind::constant, s.a};
       if (s.operation != sine && s.operation != cosine) continue;
       if (call_of_.empty()) call_of_.assign(tape_.steps.size(), k_none);
@@ -105,6 +113,17 @@ private:
         other = static_cast<std::int32_t>(i);
       }
     }
+  }
+
+  // All calls share the room for arguments. Results have their own: when they are used last is no call's affair.
+  void look_at_call(std::size_t i) {
+    const TapeStep& s = tape_.steps[i];
+    Call& call = calls_[static_cast<std::int32_t>(i)];
+    call.arguments = arguments_of(tape_, s);
+    call.next.resize(call.arguments.size());
+    argument_slots_ = std::max(argument_slots_, static_cast<std::int32_t>(call.arguments.size()));
+    call.first_result = result_slots_;
+    result_slots_ += s.b;
   }
 
   bool is_before(std::int32_t step, std::size_t p) const { return values_[at(step)].position < static_cast<std::int32_t>(p); }
@@ -124,6 +143,11 @@ private:
       const TapeStep& s = tape_.steps[at(order_[p])];
       next_[p].result = values_[at(order_[p])].next;
       if (is_idle(p)) continue;
+      if (s.operation == TapeOperation::call) {
+        Call& call = calls_.at(order_[p]);
+        for (std::size_t k = call.arguments.size(); k-- > 0;) call.next[k] = std::exchange(values_[at(call.arguments[k])].next, here);
+        continue;
+      }
       if (takes_two(s.operation)) next_[p].b = std::exchange(values_[at(s.b)].next, here);
       next_[p].a = std::exchange(values_[at(s.a)].next, here);
     }
@@ -136,10 +160,14 @@ private:
 
   void plan_step(std::size_t p, const TapeStep& s) {
     if (is_idle(p)) return;
+    if (s.operation == TapeOperation::call) return call(calls_.at(order_[p]));
     Value& a = values_[at(s.a)];
-    if (s.operation == sine || s.operation == cosine) {
+    if (s.operation == TapeOperation::result) {
       a.next = next_[p].a;
-      call(p, s);
+      take_result(p, s);
+    } else if (s.operation == sine || s.operation == cosine) {
+      a.next = next_[p].a;
+      find_sine(p, s);
     } else if (takes_two(s.operation)) {
       Value& b = values_[at(s.b)];
       a.next = next_[p].a;
@@ -340,7 +368,41 @@ private:
     let_slots_go(s);
   }
 
-  void call(std::size_t p, const TapeStep& s) {
+  void let_registers_go() {
+    for (int r = 0; r < rules_.registers; ++r)
+      if ((free_ >> r & 1) == 0) evict(r);
+  }
+
+  void call(const Call& call) {
+    plan_.has_calls = true;
+    for (std::size_t k = 0; k < call.arguments.size(); ++k) {
+      Value& v = values_[at(call.arguments[k])];
+      const OperandPlace to{OperandPlace::Kind::call_slot, static_cast<std::int32_t>(k)};
+      if (v.reg >= 0) {
+        store(v.reg, to);
+      } else {
+        const int r = free_register();
+        load(r, v.home);
+        store(r, to);
+      }
+      v.next = call.next[k];
+      free_register_of(v);
+      free_slot_of(v);
+    }
+    let_registers_go();
+    PlannedInstruction& i = plan(Kind::call);
+    i.second = {OperandPlace::Kind::call_slot, 0};
+    i.result_slot = argument_slots_ + call.first_result;
+  }
+
+  void take_result(std::size_t p, const TapeStep& s) {
+    Value& v = values_[at(order_[p])];
+    v.next = next_[p].result;
+    v.home = {OperandPlace::Kind::call_slot, argument_slots_ + calls_.at(s.a).first_result + s.b};
+    store_known(order_[p]);
+  }
+
+  void find_sine(std::size_t p, const TapeStep& s) {
     Value& v = values_[at(order_[p])];
     if (v.home.kind != OperandPlace::Kind::nowhere) { // found with its partner
       v.next = next_[p].result;
@@ -349,8 +411,7 @@ private:
       return let_slots_go(s);
     }
     plan_.has_calls = true;
-    for (int r = 0; r < rules_.registers; ++r)
-      if ((free_ >> r & 1) == 0) evict(r);
+    let_registers_go();
     const std::int32_t slots[2] = {free_slot(), free_slot()};
     PlannedInstruction& i = plan(Kind::sin_cos);
     i.second = values_[at(s.a)].home;
@@ -424,6 +485,8 @@ private:
   std::vector<std::int32_t> next_output_; ///< of the same value
   std::vector<std::int32_t> output_next_; ///< next use of the value of an output behind `stores_`
   std::vector<std::int32_t> call_of_;     ///< of an argument: its sine or cosine that has no partner
+  std::unordered_map<std::int32_t, Call> calls_; ///< by their steps
+  std::int32_t argument_slots_ = 0, result_slots_ = 0;
   std::uint32_t free_;                    ///< registers
   std::uint32_t busy_ = 0;                ///< operands of this step: must not leave
   std::uint32_t passing_ = 0;             ///< loaded for this step only
@@ -438,11 +501,12 @@ std::vector<std::int32_t> order_of_steps(const Tape& tape) {
   const auto n = static_cast<std::int32_t>(tape.steps.size());
   std::vector<std::int32_t> order;
   order.reserve(tape.steps.size());
-  const auto is_call = [](const TapeStep& s) { return s.operation == sine || s.operation == cosine; };
+  const auto is_call = [](const TapeStep& s) { return s.operation == sine || s.operation == cosine || s.operation == call; };
+  const auto is_done = [](const TapeStep& s) { return !is_given(s.operation) && s.operation != argument; };
   const bool has_rest = tape.usual_outputs > 0 && tape.usual_outputs < tape.outputs.size();
   if (!has_rest && std::none_of(tape.steps.begin(), tape.steps.end(), is_call)) {
     for (std::int32_t i = 0; i < n; ++i)
-      if (!is_given(tape.steps[at(i)].operation)) order.push_back(i);
+      if (is_done(tape.steps[at(i)])) order.push_back(i);
     return order;
   }
   // What calls hang on, what conditions and usual outputs hang on, the rest.
@@ -455,11 +519,11 @@ std::vector<std::int32_t> order_of_steps(const Tape& tape) {
     if (is_call(s)) own = 0;
     if (is_given(s.operation)) continue;
     turn[at(s.a)] = std::min(turn[at(s.a)], own);
-    if (takes_two(s.operation)) turn[at(s.b)] = std::min(turn[at(s.b)], own);
+    if (has_second_step(s)) turn[at(s.b)] = std::min(turn[at(s.b)], own);
   }
   for (char now = 0; now <= 2; ++now)
     for (std::int32_t i = 0; i < n; ++i)
-      if (turn[at(i)] == now && !is_given(tape.steps[at(i)].operation)) order.push_back(i);
+      if (turn[at(i)] == now && is_done(tape.steps[at(i)])) order.push_back(i);
   return order;
 }
 

@@ -22,6 +22,7 @@ struct OperandPlace {
     constant,
     output,
     slot,       ///< of the frame
+    call_slot,  ///< the same, of the part that arguments and results of calls have to themselves
     sign_bits,  ///< the bit pattern of −0
     value_bits, ///< all bits but the sign
   };
@@ -38,13 +39,15 @@ struct PlannedInstruction {
                 ///< negate: first ^ second, sign_bits; absolute: first & second, value_bits; square_root: of first
     condition, ///< first is the tape's b and second its a: a < b is b > a, whose jump is not taken with NaN
     sin_cos,   ///< slots sine_slot and cosine_slot = of second, in memory; registers are lost
+    call,      ///< of the function whose address is the first argument; arguments begin at the call slot `second`, results at
+               ///< call slot `result_slot`; registers are lost
     leave,     ///< the usual outputs are stored, and conditions looked at: here it ends if no more is wanted
   };
   TapeOperation operation = TapeOperation::constant;
   Kind kind = Kind::load;
   std::int8_t destination = 0, first = 0; ///< registers
   OperandPlace second;
-  std::int32_t sine_slot = 0, cosine_slot = 0;
+  std::int32_t sine_slot = 0, cosine_slot = 0, result_slot = 0;
 };
 
 /// What instructions can do.
@@ -55,13 +58,13 @@ struct RegisterRules {
 
 struct RegisterPlan {
   std::vector<PlannedInstruction> instructions;
-  int slots = 0;
+  int slots = 0, call_slots = 0;
   int conditions = 0;
   bool has_calls = false;
 };
 
-/// The steps of the tape without inputs and constants, in an order in which they can be done: what sines and cosines hang on
-/// first, so that little has to be kept while they are found, what more is wanted than the usual outputs last, else as it stands.
+/// The steps of the tape without inputs, constants and arguments, in an order in which they can be done: what sines, cosines and
+/// calls hang on first, so that little has to be kept while they are found, what more is wanted than the usual outputs last, else as it stands.
 [[nodiscard]] std::vector<std::int32_t> order_of_steps(const Tape& tape);
 
 /// Steps that no output and no condition hangs on are left out of the plan.

@@ -2,10 +2,12 @@
 
 #include "mbd/math/portable_math.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 namespace steplap {
@@ -39,6 +41,10 @@ public:
     const TapeStep& s = tape_.steps[i];
     if (s.operation == input) return need(s.a >= 0 && s.a < tape_.input_count, i);
     if (s.operation == constant) return need(s.a >= 0 && (!has_constants_ || static_cast<std::size_t>(s.a) < tape_.constants.size()), i);
+    if (s.operation == argument) return need(is_value_before(s.a, i) && (s.b == -1 || is_before(argument, s.b, i)), i);
+    if (s.operation == call) return need(is_before(argument, s.a, i) && s.b > 0, i);
+    if (s.operation == result)
+      return need(is_before(call, s.a, i) && s.b >= 0 && s.b < tape_.steps[static_cast<std::size_t>(s.a)].b, i);
     need(is_value_before(s.a, i) && (!takes_two(s.operation) || is_value_before(s.b, i)), i);
   }
 
@@ -48,7 +54,10 @@ public:
 
 private:
   bool is_value_before(std::int32_t step, std::size_t i) const {
-    return step >= 0 && static_cast<std::size_t>(step) < i && !is_condition(tape_.steps[static_cast<std::size_t>(step)].operation);
+    return step >= 0 && static_cast<std::size_t>(step) < i && has_value(tape_.steps[static_cast<std::size_t>(step)].operation);
+  }
+  bool is_before(TapeOperation o, std::int32_t step, std::size_t i) const {
+    return step >= 0 && static_cast<std::size_t>(step) < i && tape_.steps[static_cast<std::size_t>(step)].operation == o;
   }
   static void need(bool holds, std::size_t i) {
     if (!holds) throw std::logic_error("tape: step " + std::to_string(i) + " takes what is no value before it");
@@ -122,6 +131,8 @@ private:
   Signed value_of(const TapeStep& s) {
     const TapeOperation o = s.operation;
     if (is_given(o)) return {make(o, s.a)};
+    if (o == argument) return {make(o, plain(at(s.a)), s.b < 0 ? s.b : at(s.b).step)};
+    if (o == call || o == result) return {make(o, at(s.a).step, s.b)};
     const Signed a = at(s.a), b = takes_two(o) ? at(s.b) : a;
     switch (o) {
     case add: return sum(a, b);
@@ -149,7 +160,7 @@ private:
       if (is_condition(s.operation)) number[i] = 1;
       if (number[i] == 0 || is_given(s.operation)) continue;
       number[static_cast<std::size_t>(s.a)] = 1;
-      if (takes_two(s.operation)) number[static_cast<std::size_t>(s.b)] = 1;
+      if (has_second_step(s)) number[static_cast<std::size_t>(s.b)] = 1;
     }
     Tape result{{}, tape_.constants, tape_.input_count, std::move(outputs), tape_.usual_outputs};
     result.steps.reserve(made_.size());
@@ -158,7 +169,7 @@ private:
       TapeStep s = made_[i];
       number[i] = static_cast<std::int32_t>(result.steps.size());
       if (!is_given(s.operation)) s.a = number[static_cast<std::size_t>(s.a)];
-      if (takes_two(s.operation)) s.b = number[static_cast<std::size_t>(s.b)];
+      if (has_second_step(s)) s.b = number[static_cast<std::size_t>(s.b)];
       result.steps.push_back(s);
     }
     for (std::int32_t& output : result.outputs) output = number[static_cast<std::size_t>(output)];
@@ -171,25 +182,54 @@ private:
   std::vector<Signed> value_; ///< of the steps of the tape
 };
 
-// Of a step that has a value.
+// Of a step that has a value and is no call's.
 double value_of(const TapeStep& s, const double* inputs, const double* constants, const std::vector<double>& values) {
   if (s.operation == input) return inputs[s.a];
   if (s.operation == constant) return constants[s.a];
   return result_of(s.operation, values[static_cast<std::size_t>(s.a)], takes_two(s.operation) ? values[static_cast<std::size_t>(s.b)] : 0.0);
 }
 
+/// What the calls of a tape have found.
+class CallResults {
+public:
+  void call(const Tape& tape, std::size_t i, const std::vector<double>& values) {
+    const TapeStep& s = tape.steps[i];
+    std::vector<double> arguments;
+    for (const std::int32_t step : arguments_of(tape, s)) arguments.push_back(values[static_cast<std::size_t>(step)]);
+    std::vector<double>& results = of_call_[static_cast<std::int32_t>(i)];
+    results.resize(static_cast<std::size_t>(s.b));
+    std::bit_cast<TapeFunction>(arguments.front())(arguments.data(), results.data());
+  }
+  double of(const TapeStep& s) const { return of_call_.at(s.a)[static_cast<std::size_t>(s.b)]; }
+
+private:
+  std::unordered_map<std::int32_t, std::vector<double>> of_call_; ///< by its step
+};
+
 } // namespace
+
+std::vector<std::int32_t> arguments_of(const Tape& tape, const TapeStep& call) {
+  std::vector<std::int32_t> values;
+  for (std::int32_t i = call.a; i >= 0; i = tape.steps[static_cast<std::size_t>(i)].b) values.push_back(tape.steps[static_cast<std::size_t>(i)].a);
+  std::reverse(values.begin(), values.end());
+  return values;
+}
 
 Tape simplified(const Tape& tape) { return Simplifier(tape).simplified(); }
 
 bool replay(const Tape& tape, const double* inputs, const double* constants, double* outputs) {
   std::vector<double> values(tape.steps.size());
+  CallResults found;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const TapeStep& s = tape.steps[i];
     if (is_condition(s.operation)) {
       const bool is_less = values[static_cast<std::size_t>(s.a)] < values[static_cast<std::size_t>(s.b)];
       if (is_less != (s.operation == if_less)) return false;
-    } else {
+    } else if (s.operation == call) {
+      found.call(tape, i, values);
+    } else if (s.operation == result) {
+      values[i] = found.of(s);
+    } else if (s.operation != argument) {
       values[i] = value_of(s, inputs, constants, values);
     }
   }

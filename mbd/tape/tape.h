@@ -28,13 +28,25 @@ enum class TapeOperation : std::uint32_t {
   cosine,      ///< portable::sin_cos(a).cos; behind a `sine` of the same a both are found by one call
   if_less,     ///< no value: what follows holds where a < b only
   if_not_less, ///< no value: where not a < b, as with NaN
+  argument,    ///< no value: a is an argument of a call, behind those that end with step b; b = −1: it is the first
+  call,        ///< no value: a TapeFunction is called. Its address is the bits of the first of the arguments that end with step a,
+               ///< and it finds b numbers
+  result,      ///< of the call a, number b
 };
+
+/// What a call on a tape does: finds `results` from `arguments`, of which the first is its own address. The same from the same
+/// arguments, but for what the objects that these refer to are told between runs of the tape.
+using TapeFunction = void (*)(const double* arguments, double* results);
 
 [[nodiscard]] constexpr bool is_condition(TapeOperation o) {
   return o == TapeOperation::if_less || o == TapeOperation::if_not_less;
 }
 [[nodiscard]] constexpr bool is_given(TapeOperation o) {
   return o == TapeOperation::input || o == TapeOperation::constant;
+}
+/// Something that other steps may take.
+[[nodiscard]] constexpr bool has_value(TapeOperation o) {
+  return !is_condition(o) && o != TapeOperation::argument && o != TapeOperation::call;
 }
 /// a and b may change places: the same bits, but for which of two NaN it is.
 [[nodiscard]] constexpr bool is_commutative(TapeOperation o) {
@@ -52,6 +64,11 @@ struct TapeStep {
   friend bool operator==(const TapeStep&, const TapeStep&) = default;
 };
 
+/// Is b a step, too?
+[[nodiscard]] constexpr bool has_second_step(const TapeStep& s) {
+  return takes_two(s.operation) || (s.operation == TapeOperation::argument && s.b >= 0);
+}
+
 struct Tape {
   std::vector<TapeStep> steps;
   std::vector<double> constants;     ///< those of the sample that was traced; another has others in the same places
@@ -59,6 +76,9 @@ struct Tape {
   std::vector<std::int32_t> outputs; ///< the steps whose values are wanted
   std::size_t usual_outputs = 0;     ///< so many, the first ones, may be wanted alone (MachineCode::run); 0: all or none
 };
+
+/// The steps whose values a call takes, in their order.
+[[nodiscard]] std::vector<std::int32_t> arguments_of(const Tape& tape, const TapeStep& call);
 
 /// Without what no output and no condition hangs on, with steps that are equal made once, and with signs turned where that
 /// costs nothing (x + (−y) is x − y): the same bits, but for the sign of a NaN, and constants in the same places. Values of

@@ -1,6 +1,7 @@
 #include "mbd/tape/traced.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace steplap {
 
@@ -65,6 +66,26 @@ Traced Traced::input(double value) {
 }
 
 void Traced::output(const Traced& x) { TapeWriter::now->outputs.push_back(x.step()); }
+
+void Traced::call(TapeFunction function, std::span<const Traced> arguments, std::span<Traced> results) {
+  static thread_local std::vector<double> given, found;
+  const Traced address(std::bit_cast<double>(function));
+  given.assign(1, value_of(address));
+  for (const Traced& x : arguments) given.push_back(value_of(x));
+  found.assign(results.size(), 0.0);
+  function(given.data(), found.data());
+  for (std::size_t i = 0; i < results.size(); ++i) results[i] = Traced(found[i]);
+  if (std::all_of(arguments.begin(), arguments.end(), [](const Traced& x) { return x.is_constant(); })) return;
+  const auto put_argument = [](const Traced& x, std::int32_t before) {
+    const std::int32_t step = x.step();
+    return TapeWriter::now->put(TapeOperation::argument, step, before);
+  };
+  std::int32_t last = put_argument(address, -1);
+  for (const Traced& x : arguments) last = put_argument(x, last);
+  const std::int32_t made = TapeWriter::now->put(TapeOperation::call, last, static_cast<std::int32_t>(results.size()));
+  for (std::size_t i = 0; i < results.size(); ++i)
+    results[i].step_ = TapeWriter::now->put(TapeOperation::result, made, static_cast<std::int32_t>(i));
+}
 
 bool Traced::decided(const Traced& a, const Traced& b) {
   const bool is_less = a.value_ < b.value_;

@@ -13,6 +13,7 @@
 #include "mbd/tape/tape.h"
 
 #include <cmath>
+#include <span>
 
 namespace steplap {
 
@@ -68,6 +69,9 @@ public:
   [[nodiscard]] static Traced input(double value);
   /// To be the next output.
   static void output(const Traced& x);
+  /// What is no operation of a tape: `function` finds `results` from its own address and `arguments`. Constants, where all
+  /// arguments are: a function that hangs on anything else needs an argument that is none.
+  static void call(TapeFunction function, std::span<const Traced> arguments, std::span<Traced> results);
   /// Those up to here are the usual ones (Tape::usual_outputs).
   static void end_usual_outputs() { TapeWriter::now->usual_outputs = TapeWriter::now->outputs.size(); }
 
@@ -97,8 +101,12 @@ public:
     sine = made(TapeOperation::sine, a, a, turn.sin);
     cosine = made(TapeOperation::cosine, a, a, turn.cos);
   }
-  /// No operation of a tape.
-  friend Traced atan2(const Traced& /*y*/, const Traced& /*x*/) { throw NotTraceable(); }
+  friend Traced atan2(const Traced& y, const Traced& x) {
+    const Traced arguments[] = {y, x};
+    Traced angle;
+    call([](const double* of, double* found) { *found = portable::atan2(of[1], of[2]); }, arguments, {&angle, 1});
+    return angle;
+  }
 
 private:
   static Traced made(TapeOperation operation, const Traced& a, const Traced& b, double value) {

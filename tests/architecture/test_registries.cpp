@@ -161,12 +161,62 @@ TEST_CASE("one switch over measures") {
   CHECK(switches == std::vector<std::string>{"mbd/system/row.h"});
 }
 
+namespace {
+
+/// A line of the table "Each equation once" of docs/explanation/theory.md: what its second cell names.
+struct EquationLine {
+  std::string equation;
+  std::vector<std::string> files, functions;
+};
+
+std::vector<EquationLine> equation_table() {
+  std::vector<EquationLine> table;
+  std::ifstream lines(std::string(STEPLAP_SOURCE) + "/docs/explanation/theory.md");
+  bool is_inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("###")) is_inside = line == "### Each equation once";
+    if (!is_inside || !line.starts_with("| ") || line.starts_with("| equation")) continue;
+    const std::size_t begin = line.find(" | ") + 3, end = line.find(" | ", begin);
+    EquationLine& made = table.emplace_back();
+    made.equation = line.substr(2, begin - 5);
+    const std::string cell = line.substr(begin, end - begin);
+    const std::regex name("`([^`]+)`");
+    for (std::sregex_iterator at(cell.begin(), cell.end(), name), none; at != none; ++at) {
+      const std::string text = (*at)[1];
+      (text.find('/') != std::string::npos ? made.files : made.functions).push_back(text);
+    }
+  }
+  return table;
+}
+
+} // namespace
+
+TEST_CASE("the table of equations names functions where they are") {
+  const std::map<std::string, std::string> sources = product_sources();
+  const std::vector<EquationLine> table = equation_table();
+  CHECK(table.size() >= 7);
+  for (const EquationLine& line : table) {
+    CAPTURE(line.equation);
+    CHECK(!line.files.empty());
+    CHECK(!line.functions.empty());
+    std::string text;
+    for (const std::string& file : line.files) {
+      CHECK_MESSAGE(sources.count(file) == 1, file << " is no source");
+      if (sources.count(file) == 1) text += sources.at(file);
+    }
+    for (const std::string& function : line.functions) {
+      const std::size_t scope = function.rfind("::");
+      const std::string name = scope == std::string::npos ? function : function.substr(scope + 2);
+      CHECK_MESSAGE(std::regex_search(text, std::regex("\\b" + name + "\\b")), function << " is in none of these files");
+    }
+  }
+}
+
 TEST_CASE("where kinds of rows are told apart") {
   // A kind of row is a MeasureKind, what it measures with its derivatives, and an element that makes rows of it.
   const Reasons by_right = {
       {"mbd/system/row.h", "what each measures"},
       {"mbd/system/measured_channel.h", "makes rows of measures"},
-      {"mbd/dynamics/traced_evaluation.cpp", "which no tape is made of"},
       {"mbd/dynamics/layout.cpp", "which have a shorter way, angles a constant gradient"},
       {"mbd/dynamics/mechanism_layout.cpp", "which joints a member of a mechanism may hang by"},
       {"mbd/dynamics/projection.cpp", "the unit of a message"},

@@ -23,6 +23,32 @@ const std::vector<std::string> k_rooms = {
 // Headers of libraries, of which one file of the product knows.
 const std::vector<std::string> k_heavy = {"toml++/", "udunits2", "CLI/", "openssl/", "muParser", "sqlite3", "mpi.h", "asmjit/", "fmt/", "boost/beast", "unsupported/Eigen/FFT"};
 
+// Rooms with doors: the headers that other rooms may include, and why. The others are the room's own affair.
+struct Door {
+  std::string header, why;
+  std::string of = {}; ///< the only room that it leads to; empty: any
+};
+const std::map<std::string, std::vector<Door>> k_doors = {
+    {"mbd/rest",
+     {{"assembly.h", "puts bodies where joints hold"},
+      {"start.h", "where a run begins"},
+      {"equilibrium.h", "a pose at rest"},
+      {"ramped_rest.h", "a rest under loads that grow"},
+      {"freedom.h", "motions that nothing holds"},
+      {"statics.h", "forces, rows and stiffness of a pose at rest"},
+      {"tangent.h", "the motions that rows leave"},
+      {"bordered_system.h", "stiffness with rows, sparse", "mbd/vibration"},
+      {"sparse_rows.h", "gradients of rows, sparse", "mbd/vibration"},
+      {"spread.h", "starts of an iteration", "mbd/vibration"}}},
+    {"mbd/vibration", {{"modes.h", "frequencies and shapes"}}},
+    {"mbd/trust",
+     {{"global_error.h", "estimated errors of a run"},
+      {"accuracy_study.h", "convergence"},
+      {"cross_check.h", "method against method"},
+      {"audit.h", "a run against the laws of its friction"},
+      {"event_match.h", "events of two runs in pairs"}}},
+};
+
 struct Source {
   std::string path;
   std::vector<std::string> own, foreign; ///< what it includes
@@ -96,6 +122,28 @@ TEST_CASE("every source stands in a room and includes only what stands before it
     }
   }
   CHECK(arrows > 200); // it has looked at the tree
+}
+
+TEST_CASE("rest, vibration and trust are entered by their doors alone") {
+  std::set<std::string> used;
+  for (const Source& source : all_sources()) {
+    const int room = room_of(source.path);
+    if (room < 0) continue;
+    for (const std::string& name : source.own) {
+      const int other = room_of(name);
+      if (other < 0 || other == room) continue;
+      const auto doors = k_doors.find(k_rooms[static_cast<std::size_t>(other)]);
+      if (doors == k_doors.end()) continue;
+      const auto door = std::find_if(doors->second.begin(), doors->second.end(), [&](const Door& d) { return doors->first + "/" + d.header == name; });
+      CHECK_MESSAGE(door != doors->second.end(), source.path << " includes " << name << ", which is no door of its room");
+      if (door == doors->second.end()) continue;
+      used.insert(name);
+      const bool may_enter = door->of.empty() || door->of == k_rooms[static_cast<std::size_t>(room)];
+      CHECK_MESSAGE(may_enter, source.path << " includes " << name << ", a door to " << door->of << " alone");
+    }
+  }
+  for (const auto& [room, doors] : k_doors)
+    for (const Door& door : doors) CHECK_MESSAGE(used.count(room + "/" + door.header) == 1, room << "/" << door.header << " is a door that nobody uses");
 }
 
 TEST_CASE("no header leads back to itself") {

@@ -4,7 +4,7 @@
 
 #include "elements/catalog.h"
 #include "mbd/io/reader.h"
-#include "mbd/system/system.h"
+#include "mbd/system/evaluation_arrays.h"
 #include "tests/elements/conformance_scenes.h"
 
 #include <limits>
@@ -38,31 +38,14 @@ class Probe {
 public:
   explicit Probe(const ConformanceScene& scene, bool is_mirrored = false, bool is_swapped = false)
       : system_(compile(parse_model(conformance_text(scene, is_mirrored, is_swapped), scene.kind, element_catalog()))),
-        state_(system_->initial_state()) {
-    motion_.resize(system_->links.slot_count());
-    force_.resize(motion_.size());
-    contact_force_.assign(system_->contact_count, 0.0);
-    watch_.assign(system_->watch_count, 1.0);
-    watch_rate_.assign(system_->watch_count, std::numeric_limits<double>::quiet_NaN());
-    for (const FrictionUnit& unit : system_->frictions) {
-      scratch_.push_back(unit.friction->make_scratch());
-      scratch_pointers_.push_back(scratch_.back().get());
-    }
+        state_(system_->initial_state()), motion_(static_cast<std::size_t>(system_->links.slot_count())), arrays_(*system_), scratch_(*system_) {
+    arrays_.connect(e_, motion_);
     e_.t = 0.1;
-    e_.motion = motion_.data();
-    e_.force = force_.data();
-    e_.link_motion = motion_.data();
-    e_.link_force = force_.data();
     e_.mode = state_.mode.data();
     e_.friction = state_.friction.data();
     e_.memory = state_.memory.data();
-    inner_rate_.assign(state_.inner.size(), 0.0);
     e_.inner = state_.inner.data();
-    e_.inner_rate = inner_rate_.data();
-    e_.scratch = scratch_pointers_.data();
-    e_.contact_force = contact_force_.data();
-    e_.watch = watch_.data();
-    e_.watch_rate = watch_rate_.data();
+    e_.scratch = scratch_.pointers();
     choose_places();
   }
 
@@ -70,15 +53,14 @@ public:
   [[nodiscard]] const Evaluation& evaluation() const { return e_; }
   [[nodiscard]] State& state() { return state_; }
   [[nodiscard]] const std::vector<Motion<double>>& motion() const { return motion_; }
-  [[nodiscard]] const std::vector<double>& watch() const { return watch_; }
-  [[nodiscard]] const std::vector<double>& watch_rate() const { return watch_rate_; }
+  [[nodiscard]] const std::vector<double>& watch() const { return arrays_.watch; }
+  [[nodiscard]] const std::vector<double>& watch_rate() const { return arrays_.watch_rate; }
 
   void place(const Pose& pose) {
     const std::vector<double> q(pose.q.data(), pose.q.data() + 9), v(pose.v.data(), pose.v.data() + 9);
     place_bodies(q, v, motion_);
     motion_.resize(system_->links.slot_count());
-    for (int i = 0; i < system_->links.size(); ++i)
-      motion_[system_->links.slot(i)] = seen_from(motion_[system_->links[i].a], motion_[system_->links[i].b]);
+    place_links(system_->links, motion_);
   }
   /// Modes as the laws choose them at this pose; they stay for later poses.
   void choose_modes(const Pose& pose) {
@@ -95,16 +77,13 @@ public:
   /// Generalised forces on ground, a and b, each about its own centre.
   Vec9 forces(const Pose& pose) {
     place(pose);
-    std::fill(force_.begin(), force_.end(), BodyForce{});
+    std::vector<BodyForce>& force = arrays_.force;
+    std::fill(force.begin(), force.end(), BodyForce{});
     e_.dissipation = e_.work = 0.0;
     for (const auto& group : system_->groups) group->add_forces(e_);
-    for (int i = 0; i < system_->links.size(); ++i) {
-      const Link& link = system_->links[i];
-      const int slot = system_->links.slot(i);
-      add_link_force(force_[slot], motion_[slot], motion_[link.b], force_[link.a], force_[link.b]);
-    }
+    add_link_forces(system_->links, motion_, force);
     Vec9 f;
-    for (int i = 0; i < 3; ++i) f.segment<3>(3 * i) << force_[i].fx, force_[i].fy, force_[i].m;
+    for (int i = 0; i < 3; ++i) f.segment<3>(3 * i) << force[i].fx, force[i].fy, force[i].m;
     return f;
   }
   double potential(const Pose& pose) {
@@ -147,10 +126,8 @@ private:
   std::unique_ptr<System> system_;
   State state_;
   std::vector<Motion<double>> motion_;
-  std::vector<BodyForce> force_;
-  std::vector<double> contact_force_, watch_, watch_rate_, inner_rate_;
-  std::vector<std::unique_ptr<FrictionScratch>> scratch_;
-  std::vector<FrictionScratch*> scratch_pointers_;
+  EvaluationArrays arrays_;
+  FrictionScratches scratch_;
   Evaluation e_;
 };
 

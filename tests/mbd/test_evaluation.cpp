@@ -111,6 +111,52 @@ TEST_CASE("every body is where it moves to, also those that no force acts on") {
 }
 
 // The limbs slide on the yokes, then hold to them: bodies that friction acts on, then parts of a core that nothing acts on.
+// Springs make the energy hang on every place.
+TEST_CASE("energy is that of the state that is asked for, wherever bodies were at the last evaluation") {
+  const std::string text = std::string(k_pendulum) + R"([[body]]
+name = "ball"
+mass = 0.7
+inertia = 0.2
+position = [0.4, -1.0]
+[[element]]
+kind = "bushing"
+name = "mount"
+a = "ball"
+b = "ground"
+stiffness = [300.0, 500.0]
+rotational_stiffness = 40.0
+[[element]]
+kind = "spring_damper"
+name = "spring"
+a = { body = "rod", at = [0.2, 0.1] }
+b = { body = "ball", at = [0.1, 0.1] }
+stiffness = 200.0
+)";
+  const auto system = compile(scene(text));
+  const State state = system->initial_state();
+  for (const Coordinates choice : {Coordinates::absolute, Coordinates::joint}) {
+    Dynamics dynamics(*system), fresh(*system);
+    for (Dynamics* one : {&dynamics, &fresh}) {
+      one->use_coordinates(choice);
+      one->set_state(state);
+    }
+    std::vector<double> y(static_cast<std::size_t>(dynamics.dimension())), dy(y.size());
+    dynamics.pack(state, y.data());
+    for (int i = 0; i < 2 * dynamics.coordinate_count(); ++i) y[i] += 0.3 + 0.01 * i; // nothing at rest
+    const double energy = fresh.mechanical_energy(0.0, y.data());
+    for (int i = 0; i < 2 * dynamics.coordinate_count(); ++i) {
+      CAPTURE(i);
+      dynamics.rates(0.0, y.data(), dy.data());
+      CHECK(dynamics.mechanical_energy(0.0, y.data()) == energy);
+      std::vector<double> other = y;
+      other[i] += 0.05;
+      const double expected = fresh.mechanical_energy(0.0, other.data());
+      CHECK(expected != energy);
+      CHECK(dynamics.mechanical_energy(0.0, other.data()) == expected);
+    }
+  }
+}
+
 TEST_CASE("what acted on a body in other modes acts no more when it rides on another") {
   const auto system = compile(read_model(STEPLAP_MODELS "/paper/no_interference.toml", transformer_catalog()));
   const State holding = system->initial_state();

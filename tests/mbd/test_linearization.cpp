@@ -160,6 +160,69 @@ TEST_CASE("linearisation: joints, welded bodies off their common centre, a drive
   CHECK(looks >= 4);
 }
 
+// A spring with a damper couples a chain of two rods, in joint coordinates, to a body in its own.
+TEST_CASE("linearisation: a mechanism in joint coordinates beside a body in absolute ones") {
+  const auto system = compile(scene(R"(
+[simulation]
+step = 1e-3
+[[body]]
+name = "upper"
+mass = 2.0
+inertia = 0.3
+position = [0.3, -0.4]
+[[body]]
+name = "lower"
+mass = 1.0
+inertia = 0.1
+position = [0.9, -0.9]
+[[body]]
+name = "ball"
+mass = 0.7
+inertia = 0.2
+position = [1.6, -0.2]
+[[element]]
+kind = "revolute"
+name = "top"
+a = { body = "upper", at = [0.0, 0.0] }
+b = "ground"
+[[element]]
+kind = "revolute"
+name = "middle"
+a = { body = "lower", at = [0.6, -0.8] }
+b = { body = "upper", at = [0.6, -0.8] }
+[[element]]
+kind = "spring_damper"
+name = "strut"
+a = { body = "lower", at = [1.2, -1.0] }
+b = { body = "ball", at = [1.5, -0.3] }
+stiffness = 200.0
+damping = 15.0
+[[element]]
+kind = "bushing"
+name = "mount"
+a = "ball"
+b = "ground"
+stiffness = [300.0, 500.0]
+damping = [4.0, 6.0]
+rotational_stiffness = 40.0
+rotational_damping = 2.0
+)"));
+  Dynamics dynamics(*system);
+  dynamics.use_coordinates(Coordinates::joint);
+  dynamics.set_time_limit(1.0);
+  const State state = system->initial_state();
+  dynamics.set_state(state);
+  REQUIRE(dynamics.layout().has_mechanisms());
+  REQUIRE(dynamics.layout().absolute_count == 1);
+  std::vector<double> y(static_cast<std::size_t>(dynamics.dimension()));
+  dynamics.pack(state, y.data());
+  const int n = dynamics.coordinate_count();
+  for (int i = 0; i < n; ++i) y[n + i] = 0.4 - 0.3 * i; // nothing at rest
+  State moving = state;
+  dynamics.unpack(0.0, y.data(), moving);
+  CHECK(deviation(dynamics, moving, k_step, k_step) < 3e-8);
+}
+
 // Stiffness over mass is 1e5 1/s² and more here, and friction sits on springs of 1.6e9 N/m.
 TEST_CASE("linearisation: the paper's transformer sticking, sliding, with feet lifted and blocks pressed") {
   for (const char* name : {"paper/no_interference", "paper/weak_clamping"}) {

@@ -69,7 +69,7 @@ void check_everywhere(const Tape& tape, const Samples& samples) {
 Samples random_samples(std::mt19937& random, const Tape& tape, int count, bool has_special) {
   Samples samples;
   for (int i = 0; i < count; ++i)
-    samples.add(tape, random_numbers(random, tape.input_count, has_special), random_numbers(random, static_cast<int>(tape.constants.size()), has_special));
+    samples.add(tape, random_numbers(random, tape.input_count, has_special), random_constants(random, tape, has_special));
   return samples;
 }
 
@@ -117,6 +117,26 @@ TEST_CASE("random tapes, as they are and simplified") {
   }
   CHECK(held > 1000);
   CHECK(failed > 500);
+}
+
+TEST_CASE("random tapes that call functions, as they are and simplified") {
+  std::mt19937 random(15);
+  for (int i = 0; i < 200; ++i) {
+    TapeShape shape;
+    shape.steps = 5 + i;
+    shape.reach = i % 3 == 0 ? 4 : 100;
+    shape.outputs = 1 + i % 40;
+    shape.conditions = i % 2 == 0 ? 0.0 : 0.5 / shape.steps;
+    shape.calls = i % 4 == 0 ? 0.05 : 0.0;
+    shape.functions = i % 5 == 0 ? 0.3 : 0.04;
+    Tape tape = random_tape(random, shape);
+    std::sort(tape.outputs.begin(), tape.outputs.end());
+    if (i % 3 == 1) tape.usual_outputs = tape.outputs.size() / 2;
+    const Samples samples = random_samples(random, tape, 6, i % 2 == 0);
+    CAPTURE(i);
+    check_everywhere(tape, samples);
+    check_everywhere(simplified(tape), samples);
+  }
 }
 
 TEST_CASE("the usual outputs alone, where no more is wanted") {

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -146,6 +147,66 @@ TEST_CASE("random tapes have the same bits when simplified, and nothing more goe
   CHECK(held < 1200);
 }
 
+TEST_CASE("random tapes that call functions have the same bits when simplified") {
+  std::mt19937 random(2027);
+  for (int i = 0; i < 200; ++i) {
+    TapeShape shape;
+    shape.steps = 1 + i;
+    shape.functions = 0.1;
+    shape.conditions = 0.0;
+    const Tape tape = random_tape(random, shape), simple = simplified(tape);
+    CHECK(simplified(simple).steps.size() == simple.steps.size());
+    const auto inputs = random_numbers(random, tape.input_count, true), constants = random_constants(random, tape, true);
+    std::vector<double> plain(tape.outputs.size(), 1.25), others = plain;
+    CHECK(replay(tape, inputs.data(), constants.data(), plain.data()));
+    CHECK(replay(simple, inputs.data(), constants.data(), others.data()));
+    CHECK(std::equal(plain.begin(), plain.end(), others.begin(), are_same_bits));
+  }
+}
+
+TEST_CASE("a call is made once of the same arguments, and not at all where nothing hangs on it") {
+  const double address = std::bit_cast<double>(&sum_and_product);
+  const std::vector<TapeStep> wanted{{input, 0},       {constant, 0},   {argument, 1, -1}, {argument, 0, 2}, {argument, 0, 3}, {call, 4, 2},
+                                     {result, 5, 0},   {result, 5, 1}};
+  std::vector<TapeStep> twice = wanted;
+  for (std::size_t i = 2; i < wanted.size(); ++i) {
+    TapeStep s = wanted[i];
+    if (s.operation != argument) s.a += 6;
+    else if (s.b >= 0) s.b += 6;
+    twice.push_back(s);
+  }
+  const Tape simple = simplified({twice, {address}, 1, {6, 13}});
+  CHECK(simple.steps == wanted);
+  CHECK(simple.outputs == std::vector<std::int32_t>{6, 7});
+  CHECK(simplified({wanted, {address}, 1, {0}}).steps == std::vector<TapeStep>{{input, 0}});
+}
+
+TEST_CASE("what a tape calls is written down with its results, and is a constant where all that it takes is") {
+  const auto add_up = [](const double* of, double* found) {
+    found[0] = of[1] + of[2];
+    found[1] = of[1] - of[2];
+  };
+  Tape tape;
+  Traced::start();
+  const Traced x = Traced::input(0.75), given[] = {x, Traced(2.0)}, known[] = {Traced(3.0), Traced(2.0)};
+  Traced found[2], fixed[2];
+  Traced::call(add_up, given, found);
+  Traced::call(add_up, known, fixed);
+  CHECK(fixed[0].is_constant());
+  CHECK(value_of(fixed[1]) == 1.0);
+  CHECK_FALSE(found[0].is_constant());
+  CHECK(value_of(found[1]) == -1.25);
+  for (const Traced& y : found) Traced::output(y * x);
+  Traced::output(atan2(x, Traced(2.0)));
+  REQUIRE(Traced::finish(&tape));
+  double output[3];
+  const double other = 1.5;
+  REQUIRE(replay(tape, &other, tape.constants.data(), output));
+  CHECK(output[0] == 5.25);
+  CHECK(output[1] == -0.75);
+  CHECK(are_same_bits(output[2], portable::atan2(1.5, 2.0)));
+}
+
 TEST_CASE("a tape that takes what there is not is refused") {
   const Tape wrong[] = {{{{input, 1}}, {}, 1, {}},
                         {{{input, -1}}, {}, 1, {}},
@@ -155,6 +216,14 @@ TEST_CASE("a tape that takes what there is not is refused") {
                         {{{input, 0}, {negate, 2}, {negate, 0}}, {}, 1, {}},
                         {{{input, 0}, {if_less, 0, 0}, {add, 0, 1}}, {}, 1, {}},
                         {{{input, 0}, {if_less, 0, 0}}, {}, 1, {1}},
+                        {{{input, 0}, {argument, 0, 0}}, {}, 1, {}},
+                        {{{input, 0}, {argument, 0, 2}, {argument, 0, -1}}, {}, 1, {}},
+                        {{{input, 0}, {call, 0, 1}}, {}, 1, {}},
+                        {{{input, 0}, {argument, 0, -1}, {call, 1, 0}}, {}, 1, {}},
+                        {{{input, 0}, {argument, 0, -1}, {call, 1, 1}, {result, 2, 1}}, {}, 1, {}},
+                        {{{input, 0}, {argument, 0, -1}, {result, 1, 0}}, {}, 1, {}},
+                        {{{input, 0}, {argument, 0, -1}, {add, 0, 1}}, {}, 1, {}},
+                        {{{input, 0}, {argument, 0, -1}, {call, 1, 1}}, {}, 1, {2}},
                         {{{input, 0}}, {}, 1, {1}},
                         {{{input, 0}}, {}, 1, {-1}}};
   for (const Tape& tape : wrong) CHECK_THROWS_AS(static_cast<void>(simplified(tape)), std::logic_error);

@@ -60,13 +60,13 @@ int profile(const char* path, double time) {
   TracedRates traced;
   bool is_traced = true;
   const double writing = nanoseconds(100, [&] {
-    is_traced = trace_rates(*system, dynamics.layout(), state, state.t, y.data(), inputs, k_least_pivot, traced) && is_traced;
+    is_traced = trace_rates(*system, dynamics.layout(), state, dynamics.evaluation(), state.t, y.data(), inputs, k_least_pivot, traced) && is_traced;
   });
   if (!is_traced) {
     std::fprintf(stderr, "%s: some part of it is not traced\n", path);
     return 3;
   }
-  inputs.insert(inputs.begin(), y.begin(), y.begin() + 2 * dynamics.coordinate_count());
+  inputs.insert(inputs.begin(), y.begin(), y.begin() + 2 * dynamics.coordinate_count() + dynamics.inner_count());
   for (const TimeInput& signal : traced.signals) inputs.push_back(signal.at(state.t));
   Tape tape;
   const double simplifying = nanoseconds(100, [&] { tape = simplified(traced.tape); });

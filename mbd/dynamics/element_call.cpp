@@ -1,0 +1,184 @@
+#include "mbd/dynamics/element_call.h"
+
+#include "mbd/system/motion_formula.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace steplap {
+
+namespace {
+
+// Of what a call does not hand over: an element that reads it finds no numbers, and the code is not used (StageProgram::record).
+Motion<double> unknown_motion() {
+  constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+  return {k_nan, k_nan, k_nan, k_nan, k_nan, k_nan, k_nan, k_nan};
+}
+
+} // namespace
+
+ElementCall::ElementCall(const System& system, const Evaluation& live)
+    : system_(system), live_(live), motion_(static_cast<std::size_t>(system.links.slot_count()), unknown_motion()), arrays_(system),
+      inner_(static_cast<std::size_t>(system.inner_count()), 0.0) {
+  motion_[k_ground] = {};
+  arrays_.connect(own_, motion_);
+  own_.inner = inner_.data();
+}
+
+// A constant of the scene stays where it is put here; all else is an argument.
+void ElementCall::take(const Traced& x, double& place) {
+  place = value_of(x);
+  if (x.is_constant()) return;
+  arguments_.push_back(x);
+  places_.push_back(&place);
+}
+
+void ElementCall::take(const Motion<Traced>& from, Motion<double>& to) {
+  take(from.x, to.x);
+  take(from.y, to.y);
+  take(from.theta, to.theta);
+  take(from.c, to.c);
+  take(from.s, to.s);
+  take(from.vx, to.vx);
+  take(from.vy, to.vy);
+  take(from.omega, to.omega);
+}
+
+void ElementCall::give(Traced& x, const double& place) {
+  results_.push_back(&x);
+  found_.push_back(&place);
+}
+
+// A sum goes on from what it was: in the order of an evaluation.
+void ElementCall::add_to(Traced& x, double& place) {
+  take(x, place);
+  if (x.is_constant()) constants_.push_back({&place, place});
+  give(x, place);
+}
+
+// Of these bodies, and of the links among them.
+std::vector<int> ElementCall::slots_of(const std::vector<char>& is_used) const {
+  std::vector<int> slots;
+  for (int body = 0; body < system_.body_count(); ++body)
+    if (is_used[static_cast<std::size_t>(body)] != 0) slots.push_back(body);
+  for (int i = 0; i < system_.links.size(); ++i) {
+    const Link& link = system_.links[i];
+    if (is_used[static_cast<std::size_t>(link.a)] != 0 && is_used[static_cast<std::size_t>(link.b)] != 0) slots.push_back(system_.links.slot(i));
+  }
+  return slots;
+}
+
+// With the time among them, no call's arguments are constants alone.
+void ElementCall::take_surroundings(const std::vector<char>& is_used, TracedEvaluation& e) {
+  take(e.of_time({&clock_signal()}), own_.t);
+  for (const int slot : slots_of(is_used)) take(e.motion[slot], motion_[static_cast<std::size_t>(slot)]);
+  for (std::size_t i = 0; i < inner_.size(); ++i) take(e.inner[i], inner_[i]);
+}
+
+void ElementCall::trace(const ForceGroup& group, TracedEvaluation& e) {
+  group_ = &group;
+  std::vector<char> is_used(system_.bodies.size(), 0);
+  group.mark_bodies(is_used);
+  take_surroundings(is_used, e);
+  for (const int slot : slots_of(is_used)) {
+    if (slot == k_ground) continue;
+    BodyForceOf<Traced>& force = e.force[slot];
+    BodyForce& own = arrays_.force[static_cast<std::size_t>(slot)];
+    add_to(force.fx, own.fx);
+    add_to(force.fy, own.fy);
+    add_to(force.m, own.m);
+  }
+  add_to(e.dissipation, own_.dissipation);
+  add_to(e.work, own_.work);
+  for (std::size_t i = 0; i < arrays_.inner_rate.size(); ++i) add_to(e.inner_rate[i], arrays_.inner_rate[i]);
+  for (const std::size_t i : contacts_of_group()) give(e.contact_force[i], arrays_.contact_force[i]);
+  for (const Unit& unit : system_.units) {
+    if (unit.group != &group) continue;
+    for (int slot = unit.watch; slot < unit.watch + unit.watch_count; ++slot) {
+      give(e.watch[slot], arrays_.watch[static_cast<std::size_t>(slot)]);
+      give(e.watch_rate[slot], arrays_.watch_rate[static_cast<std::size_t>(slot)]);
+    }
+  }
+  put_down();
+}
+
+// Elements of a group write their normal forces in each evaluation, or never: those that are not what they were are its own.
+std::vector<std::size_t> ElementCall::contacts_of_group() {
+  constexpr double k_untouched = std::numeric_limits<double>::lowest();
+  std::fill(arrays_.contact_force.begin(), arrays_.contact_force.end(), k_untouched);
+  try {
+    evaluate_element();
+  } catch (...) {
+    throw NotTraceable();
+  }
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < arrays_.contact_force.size(); ++i)
+    if (arrays_.contact_force[i] != k_untouched) found.push_back(i);
+  return found;
+}
+
+void ElementCall::trace(int f, TracedEvaluation& e, const Traced* rate, Traced* wrench, Traced* watch) {
+  const FrictionElement& friction = *system_.frictions[static_cast<std::size_t>(f)].friction;
+  friction_ = f;
+  is_sliding_ = rate != nullptr;
+  std::vector<char> is_used(system_.bodies.size(), 0);
+  friction.mark_bodies(is_used);
+  const RowSpec* const rows = friction.rows(e.friction[f]);
+  for (int r = 0; r < friction.dimension(); ++r) is_used[static_cast<std::size_t>(rows[r].a)] = is_used[static_cast<std::size_t>(rows[r].b)] = 1;
+  take_surroundings(is_used, e);
+  for (std::size_t i = 0; i < arrays_.contact_force.size(); ++i) take(e.contact_force[i], arrays_.contact_force[i]);
+  for (int r = 0; r < friction.dimension(); ++r) {
+    if (is_sliding_) take(rate[r], rate_[r]);
+    else take(wrench[r], wrench_[r]);
+  }
+  if (is_sliding_)
+    for (int r = 0; r < friction.dimension(); ++r) give(wrench[r], wrench_[r]);
+  for (int slot = 0; slot < k_friction_watches; ++slot) give(watch[slot], arrays_.watch[static_cast<std::size_t>(slot)]);
+  put_down();
+}
+
+void ElementCall::put_down() {
+  arguments_.insert(arguments_.begin(), Traced(std::bit_cast<double>(this)));
+  std::vector<Traced> made(results_.size());
+  Traced::call(&ElementCall::run, arguments_, made);
+  if (has_failed()) throw NotTraceable();
+  for (std::size_t i = 0; i < made.size(); ++i) *results_[i] = made[i];
+  arguments_.clear();
+  results_.clear();
+}
+
+// The code has no way for what is thrown: whoever runs it asks has_failed().
+void ElementCall::run(const double* arguments, double* results) {
+  ElementCall& call = *std::bit_cast<ElementCall*>(arguments[1]);
+  arguments += 2;
+  for (double* const place : call.places_) *place = *arguments++;
+  for (const Constant& constant : call.constants_) *constant.place = constant.value;
+  try {
+    call.evaluate_element();
+  } catch (...) {
+    call.has_failed_ = true;
+  }
+  for (const double* const found : call.found_) *results++ = *found;
+}
+
+void ElementCall::evaluate_element() {
+  own_.mode = live_.mode;
+  own_.friction = live_.friction;
+  own_.memory = live_.memory;
+  own_.scratch = live_.scratch;
+  own_.mean_from = live_.mean_from;
+  if (group_) return group_->add_forces(own_);
+  const FrictionElement& friction = *system_.frictions[static_cast<std::size_t>(friction_)].friction;
+  const FrictionState& state = own_.friction[friction_];
+  double* const watch = arrays_.watch.data();
+  if (is_sliding_) {
+    friction.slip_wrench(own_, state, rate_, wrench_);
+    friction.watch_slip(own_, state, rate_, watch);
+  } else {
+    friction.watch_stick(own_, state, wrench_, watch);
+  }
+  watch[2] = friction.watch_place(own_, state);
+}
+
+} // namespace steplap
