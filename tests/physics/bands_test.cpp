@@ -82,7 +82,7 @@ TEST_CASE("pulled at one end a held rope sticks, slides at T e^{μα}, and stick
     REQUIRE(slips.size() == 1);
     REQUIRE(back.size() == 1);
     REQUIRE(sticks.size() >= 1);
-    CHECK(std::abs(slips[0] - root(0.0, 2.0, [&](double t) { return pretension + k * x(t) + c * v(t) - grip * pretension; })) < 1e-9);
+    CHECK(std::abs(slips[0] - root(0.0, 2.0, [&](double t) { return pretension + k * x(t) + c * v(t) - grip * pretension; })) < 1e-8); // what 1e-12 m stretch is slack: 6e-7 N of 100 N/s
     // τ ṡ = (k x + c x' − P (E − 1))/(k (1 + E)) − s with τ = c/k = 0.1 ms: s follows x, and has its most where x has, but for 1e-7 of it.
     CHECK(std::abs(sticks[0] - 2.0) < 1e-6);
     const double slid = (k * x(2.0) - pretension * (grip - 1.0)) / (k * (1.0 + grip));
