@@ -82,20 +82,20 @@ void BeamMaker::find_place() {
 
 // Either by its shape or by its values; the height is for drawings alone.
 void BeamMaker::find_section() {
-  const int shapes = int{!beam_.profile.empty()} + int{beam_.rectangle.has_value()} + int{beam_.tube.has_value()};
+  const int shapes = int{!beam_.profile.empty()} + int{beam_.width || beam_.height} + int{beam_.diameter || beam_.wall};
   const bool has_values = beam_.area || beam_.second_moment;
   if (shapes + int{has_values} != 1)
-    return error("give its cross section once: by 'profile', 'rectangle' or 'tube', or by 'area' and 'second_moment'");
+    return error("give its cross section once: by 'profile', by 'width' and 'height', by 'diameter' and 'wall', or by 'area' and 'second_moment'");
   if (has_values) {
     if (!beam_.area || !beam_.second_moment) return error("give both 'area' and 'second_moment'", beam_.area ? "area" : "second_moment");
     values_.section = {*beam_.area, *beam_.second_moment, std::sqrt(12.0 * *beam_.second_moment / *beam_.area)};
-  } else if (beam_.rectangle) {
-    if (!(beam_.rectangle->minCoeff() > 0.0)) return error("'rectangle' is [width, height], both above 0", "rectangle");
-    values_.section = rectangular_section(beam_.rectangle->x(), beam_.rectangle->y());
-  } else if (beam_.tube) {
-    if (!(beam_.tube->minCoeff() > 0.0) || beam_.tube->y() > 0.5 * beam_.tube->x())
-      return error("'tube' is [outer diameter, wall], both above 0, and the wall at most half of the diameter", "tube");
-    values_.section = tubular_section(beam_.tube->x(), beam_.tube->y());
+  } else if (beam_.width || beam_.height) {
+    if (!beam_.width || !beam_.height) return error("give both 'width' and 'height'", beam_.width ? "width" : "height");
+    values_.section = rectangular_section(*beam_.width, *beam_.height);
+  } else if (beam_.diameter || beam_.wall) {
+    if (!beam_.diameter || !beam_.wall) return error("give both 'diameter' and 'wall'", beam_.diameter ? "diameter" : "wall");
+    if (*beam_.wall > 0.5 * *beam_.diameter) return error("'wall' is at most half of 'diameter', where it makes the section solid", "wall");
+    values_.section = tubular_section(*beam_.diameter, *beam_.wall);
   } else {
     const auto found = profile_section(beam_.profile);
     if (!found) return error("profile '" + beam_.profile + "' is not known" + did_you_mean(beam_.profile, profile_names()) +
@@ -190,8 +190,10 @@ const TableKind& beam_kind() {
     f.add("density", &T::density).in("kg/m^3").positive().doc("goes before that of the material");
     f.add("mass_per_length", &T::mass_per_length).in("kg/m").positive().doc("of the beam and what lies on it, instead of a density");
     f.add("profile", &T::profile).doc("rolled section bent about its strong axis, \"IPE 80\" to \"IPE 600\"");
-    f.add("rectangle", &T::rectangle).in("m").doc("cross section [width, height], the height in the plane");
-    f.add("tube", &T::tube).in("m").doc("round cross section [outer diameter, wall]; a wall of half the diameter: solid");
+    f.add("width", &T::width).in("m").positive().doc("of a rectangular cross section, with height");
+    f.add("height", &T::height).in("m").positive().doc("of a rectangular cross section, in the plane");
+    f.add("diameter", &T::diameter).in("m").positive().doc("outer diameter of a round cross section, with wall");
+    f.add("wall", &T::wall).in("m").positive().doc("of a round cross section; half of the diameter: solid");
     f.add("area", &T::area).in("m^2").positive().doc("of the cross section, with second_moment");
     f.add("second_moment", &T::second_moment).in("m^4").positive().doc("second moment of area about the axis of bending");
     f.add("shear_stiffness", &T::shear_stiffness).in("N").positive().doc("shear modulus times shear area; not given: it does not shear");

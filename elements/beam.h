@@ -22,7 +22,8 @@ struct Beam : BodyBuilder {
   std::optional<double> modulus, second_moment, area, density; ///< E, I, A, ρ
   std::optional<double> mass_per_length;                       ///< kg/m, with what lies on the beam; instead of ρ
   std::string material, profile;                               ///< "steel", "IPE 300"
-  std::optional<Vec2> rectangle, tube;                         ///< width and height; outer diameter and wall, m
+  std::optional<double> width, height;                         ///< m, of a rectangular section
+  std::optional<double> diameter, wall;                        ///< m, of a round one: the outer diameter
   std::optional<double> shear_stiffness;                       ///< G A_s, N; not given: it does not shear
   std::optional<double> damping_time;                          ///< τ, s
   std::optional<double> damping_ratio, damping_frequency;      ///< at a frequency in Hz

@@ -93,7 +93,7 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
   row.memory = builder.add_memory();
   const int f = builder.next_friction(), slot = builder.next_friction_row();
   const OneWayClutch* const self = clutch.get();
-  builder.add_channel("couple", "N m", {"on a", "positive counter-clockwise"}, [slot](const Snapshot& s) { return s.friction_force[slot]; });
+  builder.add_channel("couple", "N m", {"with which b takes a along, or drags on it", "positive: counter-clockwise on a"}, [slot](const Snapshot& s) { return s.friction_force[slot]; });
   builder.add_channel("slip_rate", "rad/s", {"rate of a against b", "positive counter-clockwise"},
                       [self](const Snapshot& s) { return evaluate_row<false>(self->row, s.motion).rate; });
   builder.add_channel("mode", "", {"what it does", "", "1 locked, 2 free or slipping"}, [f](const Snapshot& s) { return static_cast<double>(s.evaluation->friction[f].phase); });

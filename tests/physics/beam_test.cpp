@@ -1,5 +1,6 @@
 // Elastic beams from rigid segments: closed forms of deflections, frequencies and buckling, with the order of what n segments leave.
 #include "elements/section.h"
+#include "mbd/io/reader.h"
 #include "mbd/model/completion.h"
 #include "mbd/system/instance.h"
 #include "mbd/vibration/modes.h"
@@ -9,6 +10,8 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <vector>
 
 using namespace steplap;
@@ -53,7 +56,7 @@ std::vector<double> frequencies(const std::string& text, int count) {
 TEST_CASE("masses and moments of inertia of the segments add up to the beam's") {
   for (const int n : {1, 2, 7, 40}) {
     CAPTURE(n);
-    const Model model = scene(k_head + "[[beam]]\nname = \"beam\"\nfrom = [1.0, 2.0]\nto = [-2.0, 6.0]\nsegments = " + std::to_string(n) + "\nmaterial = \"steel\"\nrectangle = [0.1, 0.3]\n" +
+    const Model model = scene(k_head + "[[beam]]\nname = \"beam\"\nfrom = [1.0, 2.0]\nto = [-2.0, 6.0]\nsegments = " + std::to_string(n) + "\nmaterial = \"steel\"\nwidth = 0.1\nheight = 0.3\n" +
                               element("weld", "clamp", "a = 'beam.start'; b = { body = 'ground', at = [1.0, 2.0] }"));
     const double mass = 7850.0 * 0.03 * 5.0, inertia = mass * 25.0 / 12.0 + 7850.0 * 0.1 * 0.027 / 12.0 * 5.0;
     REQUIRE(model.bodies.size() == static_cast<std::size_t>(n) + 1);
@@ -192,7 +195,7 @@ TEST_CASE("damping: a mode has the ratio that is asked for at its frequency, oth
 TEST_CASE("other values of a beam are those of a model that was written with them") {
   const auto text = [&](const char* span, const char* thick) {
     return k_head + "[parameters]\nspan = \"" + span + "\"\nthick = \"" + thick + "\"\n" +
-           "[[beam]]\nname = \"beam\"\nfrom = [0.0, 0.0]\nto = [\"= span\", 0.0]\nmaterial = \"steel\"\nrectangle = [\"0.1 m\", \"= thick\"]\nsegments = 6\n" + k_clamp;
+           "[[beam]]\nname = \"beam\"\nfrom = [0.0, 0.0]\nto = [\"= span\", 0.0]\nmaterial = \"steel\"\nwidth = 0.1\nheight = \"= thick\"\nsegments = 6\n" + k_clamp;
   };
   const Model given = parse_given_model(text("4 m", "0.2 m"), "scene.toml", transformer_catalog());
   Variants variants(given, {"parameters.span", "parameters.thick"});
@@ -204,6 +207,23 @@ TEST_CASE("other values of a beam are those of a model that was written with the
     CHECK(varied->bodies[i].inertia == written->bodies[i].inertia);
   }
   CHECK(varied->initial_state().q == written->initial_state().q);
+}
+
+TEST_CASE("a beam in a part lies where the part lies, and is made of the same") {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "steplap_beam_part";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "jib.toml") << k_head << "[[beam]]\nname = \"arm\"\nfrom = [0.0, 0.0]\nto = [2.0, 0.0]\nsegments = 4\nmaterial = \"steel\"\nwidth = 0.1\nheight = 0.2\n" << element("weld", "clamp", "a = 'arm.start'");
+  std::ofstream(folder / "crane.toml") << k_head << "[[part]]\nname = \"jib\"\nfile = \"jib.toml\"\nx = 1.0\ny = 3.0\nangle = \"90 deg\"\n";
+  const Model alone = read_model((folder / "jib.toml").string(), transformer_catalog()), part = read_model((folder / "crane.toml").string(), transformer_catalog());
+  REQUIRE(part.bodies.size() == 5);
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(part.bodies[i].name == "jib." + alone.bodies[i].name);
+    CHECK(part.bodies[i].mass == doctest::Approx(alone.bodies[i].mass).epsilon(1e-14));
+    CHECK(part.bodies[i].inertia == doctest::Approx(alone.bodies[i].inertia).epsilon(1e-14));
+    const Vec3 here = part.bodies[i].reference_pose(), there = alone.bodies[i].reference_pose();
+    CHECK((here - Vec3(1.0 - there.y(), 3.0 + there.x(), there.z() + 0.5 * k_pi)).norm() < 1e-14);
+  }
+  std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("rolled sections have the values of the tables of EN 10365") {
@@ -231,7 +251,7 @@ TEST_CASE("what is wrong with a beam is told where it stands") {
     }
     return std::string("nothing");
   };
-  const std::string steel = "material = \"steel\"\n", shape = "rectangle = [0.1, 0.2]\n", to = "to = [1.0, 0.0]\n";
+  const std::string steel = "material = \"steel\"\n", shape = "width = 0.1\nheight = 0.2\n", to = "to = [1.0, 0.0]\n";
   CHECK(complaint(to + steel + shape) == "nothing");
   const auto says = [&](const std::string& fields, const std::string& part) {
     const std::string text = complaint(fields);
@@ -239,10 +259,11 @@ TEST_CASE("what is wrong with a beam is told where it stands") {
   };
   says("to = [0.0, 0.0]\n" + steel + shape, "scene.toml:6:6: error: beam 'beam': 'from' and 'to' are one place");
   says(to + steel, "give its cross section once");
-  says(to + steel + shape + "tube = [0.1, 0.01]\n", "give its cross section once");
+  says(to + steel + shape + "diameter = 0.1\nwall = 0.01\n", "give its cross section once");
+  says(to + steel + "height = 0.1\n", "give both 'width' and 'height'");
   says(to + steel + "area = 0.1\n", "give both 'area' and 'second_moment'");
   says(to + steel + "profile = \"IPE 310\"\n", "did you mean 'IPE 3");
-  says(to + steel + "tube = [0.1, 0.06]\n", "the wall at most half of the diameter");
+  says(to + steel + "diameter = 0.1\nwall = 0.06\n", "at most half of 'diameter'");
   says(to + shape, "give either its 'material' or its 'modulus'");
   says(to + shape + steel + "modulus = 1e9\n", "give either its 'material' or its 'modulus'");
   says(to + shape + "modulus = 1e9\n", "give its 'density' or its 'mass_per_length'");

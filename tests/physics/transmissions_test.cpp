@@ -67,11 +67,25 @@ TEST_CASE("a backstop bears a load at rest, and not the other way round") {
   const auto hung = [](const std::string& free) {
     return body("load", "mass = 100.0; inertia = 1.0") + body("drum", "mass = 10.0; inertia = 0.5; position = [-0.2, 5.0]") +
            element("revolute", "axle", "a = 'drum'; b = { body = 'ground', at = [-0.2, 5.0] }") + element("prismatic", "guide", "a = 'load'; axis = [0.0, 1.0]") +
-           element("spring_damper", "weak", "a = 'load'; b = { body = 'ground', at = [0.0, 9.0] }; stiffness = 1.0") +
+           element("spring_damper", "weak", "a = 'load'; b = { body = 'ground', at = [0.0, 9.0] }; stiffness = 1e4") +
            element("rack", "rope", "a = 'drum'; b = 'load'; radius = 0.2; axis = [0.0, 1.0]") + element("freewheel", "backstop", "a = 'drum'; free = '" + free + "'");
   };
   CHECK(std::abs(settle(hung("counter_clockwise")).q(1, 1)) < 1e-9);
-  CHECK(settle(hung("clockwise")).q(1, 1) == doctest::Approx(-100.0 * k_g / 1.0).epsilon(1e-6)); // down to where the spring bears it
+  CHECK(settle(hung("clockwise")).q(1, 1) == doctest::Approx(-100.0 * k_g / 1e4).epsilon(1e-6)); // down to where the spring bears it
+}
+
+TEST_CASE("a backstop and a brake on one axle: what the brake cannot hold the backstop does, one way; the other way the brake is alone") {
+  for (const bool is_held : {true, false})
+    for (const double holds : {50.0, 300.0}) {
+      CAPTURE(is_held);
+      CAPTURE(holds);
+      const std::string text = k_no_gravity + wheel("drum", 0.5) + element("load", "load", "at = 'drum'; couple = " + number(is_held ? -196.2 : 196.2)) + element("freewheel", "backstop", "a = 'drum'") +
+                               element("joint_friction", "brake", "a = 'drum'; coordinate = 'angle'; holds = " + number(holds));
+      const Run r = run(text, {"dop853", 1e-10, 1.0, 0.5});
+      CHECK(r.last("drum.omega") == doctest::Approx(is_held || holds > 196.2 ? 0.0 : (196.2 - holds) / 0.5));
+      CHECK(std::abs(r.last("brake.friction")) <= holds * (1.0 + 1e-12));
+      CHECK(r.last("backstop.couple") >= -1e-9);
+    }
 }
 
 TEST_CASE("a freewheel that holds only so much slips beyond it") {
