@@ -1,15 +1,21 @@
 #include "elements/catalog.h"
 
 #include "elements/action.h"
+#include "elements/band.h"
+#include "elements/beam.h"
+#include "elements/beam_part.h"
 #include "elements/buffer.h"
 #include "elements/bushing.h"
+#include "elements/cam.h"
 #include "elements/coulomb_stick.h"
 #include "elements/formula_force.h"
+#include "elements/freewheel.h"
 #include "elements/gears.h"
 #include "elements/joint_friction.h"
 #include "elements/joints.h"
 #include "elements/limit.h"
 #include "elements/load.h"
+#include "elements/lossy_gear.h"
 #include "elements/motor.h"
 #include "elements/own_state.h"
 #include "elements/polygon_contact.h"
@@ -37,6 +43,7 @@ const Catalogue& element_catalog() {
                   &circle_contact_kind(),    &segment_contact_kind(),
                   &polygon_contact_kind(),
                   &buffer_kind(),            &tie_kind(),
+                  &beam_part_kind(),
                   &coulomb_stick_kind(),     &step_lap_joint_kind(),
                   &step_lap_interface_kind(),
                   &revolute_kind(),          &prismatic_kind(),
@@ -46,11 +53,14 @@ const Catalogue& element_catalog() {
                   &motor_kind(),             &limit_kind(),
                   &joint_friction_kind(),    &rope_kind(),
                   &wound_rope_kind(),        &load_kind(),
+                  &band_kind(),              &belt_kind(),
+                  &cam_kind(),               &freewheel_kind(),
+                  &lossy_gear_kind(),
                   &formula_force_kind()};
     c.signals = signal_kinds();
     c.signals.push_back(&shunting_kind());
     c.signals.push_back(&record_signal_kind());
-    c.tables = {&shape_kind(), &own_state_kind(), &action_kind(), &channel_kind(), &plot_kind(), &acceptance_kind()};
+    c.tables = {&shape_kind(), &beam_kind(), &own_state_kind(), &action_kind(), &channel_kind(), &plot_kind(), &acceptance_kind()};
     return c;
   }();
   return catalogue;

@@ -7,6 +7,7 @@
 #include "mbd/base/shown_text.h"
 #include "mbd/events/event_handler.h"
 #include "mbd/math/portable_math.h"
+#include "mbd/model/body_builder.h"
 #include "mbd/model/formula_fields.h"
 #include "mbd/model/signal_network.h"
 #include "mbd/model/validate.h"
@@ -260,6 +261,11 @@ void note_restless_start(const LoadedModel& loaded, Findings& findings) {
                       body ? body->where : Location{}});
 }
 
+// Ends of a beam that nothing holds are no oversight.
+bool is_made_by_table(const Model& model, const std::string& name) {
+  return std::any_of(model.tables.begin(), model.tables.end(), [&](const TableEntry& e) { return body_builder(e) && name.starts_with(e.table->name + "."); });
+}
+
 void warn_of_unused(const Model& model, Findings& findings) {
   const References used = references_of(model);
   for (const SignalEntry& entry : model.signals)
@@ -268,7 +274,7 @@ void warn_of_unused(const Model& model, Findings& findings) {
   Names body_names;
   for (const Body& body : model.bodies) body_names.insert(body.name);
   for (const Marker& marker : model.markers) // a marker named as its body is the reader's own
-    if (used.markers.count(marker.name) == 0 && body_names.count(marker.name) == 0 && marker.name != "ground")
+    if (used.markers.count(marker.name) == 0 && body_names.count(marker.name) == 0 && marker.name != "ground" && !is_made_by_table(model, marker.name))
       warn(findings, "unused_marker", "marker '" + marker.name + "' is used by nothing", marker.where);
   for (const Body& body : model.bodies)
     if (used.bodies.count(body.name) == 0) warn(findings, "loose_body", "no element is attached to body '" + body.name + "'", body.where);

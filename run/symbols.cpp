@@ -46,6 +46,26 @@ void wound_rope(Sketch& s) {
   s.draw({"rope", "", "tension", {*a, *b}, {}, {radius_a, radius_b}});
 }
 
+// Round its drum it is not drawn: the drum is.
+void band(Sketch& s) {
+  const auto a = s.place("a"), b = s.place("b"), drum = s.place("drum");
+  if (!a || !b || !drum) return;
+  const double radius = s.number("radius");
+  s.circle(*drum, std::abs(radius));
+  s.draw({"rope", "", "tension_a", {*drum, *a}, {}, {radius, 0.0}});
+  s.draw({"rope", "", "tension_b", {*drum, *b}, {}, {-radius, 0.0}});
+}
+
+void belt(Sketch& s) {
+  const auto a = s.place("a"), b = s.place("b");
+  if (!a || !b) return;
+  const double near = s.number("radius_a"), far = s.is("crossed") ? s.number("radius_b") : -s.number("radius_b");
+  s.circle(*a, near);
+  s.circle(*b, std::abs(far));
+  s.draw({"rope", "", "tension_1", {*a, *b}, {}, {near, far}});
+  s.draw({"rope", "", "tension_2", {*a, *b}, {}, {-near, -far}});
+}
+
 void load(Sketch& s) {
   const auto force = s.vector("force");
   const bool has_force = (force && force->norm() > 0.0) || s.is_given("force_x") || s.is_given("force_y");
@@ -155,7 +175,8 @@ using Symbol = void (*)(Sketch&);
 Symbol symbol_of(const std::string& kind) {
   static const std::map<std::string, Symbol> symbols{
       {"spring_damper", spring_damper}, {"rotational_spring_damper", rotational_spring_damper},
-      {"bushing", bushing}, {"buffer", buffer}, {"tie", tie}, {"rope", rope}, {"wound_rope", wound_rope}, {"load", load},
+      {"bushing", bushing}, {"buffer", buffer}, {"tie", tie}, {"rope", rope}, {"wound_rope", wound_rope}, {"band", band}, {"belt", belt}, {"load", load},
+      {"beam_part", nothing},
       {"unilateral_contact", unilateral_contact}, {"polygon_contact", polygon_contact}, {"circle_contact", circle_contact},
       {"segment_contact", segment_contact}, {"coulomb_stick", friction},
       {"step_lap_joint", step_lap_joint}, {"step_lap_interface", nothing},

@@ -16,9 +16,18 @@ constexpr double k_gap = 4e-15;
 constexpr int k_max_pivots_per_unknown = 60, k_max_pivots = 200;
 // A capacity of nothing counts as this share of the largest.
 constexpr double k_least_capacity = 1e-13;
+// What holds whatever it takes counts as so much more than the strongest that does not.
+constexpr double k_unlimited = 1e20, k_most_capacity = 1e6;
 constexpr double k_tiny = 1e-30;
 // Weights of normals below this are none: the basis is degenerate there.
 constexpr double k_no_weight = 1e-12;
+
+// What a row bears on the side on which `wrench` lies, for a freewheel holds one way only. `capacity` has three blocks: of each row the larger one, that
+// of negative wrenches, that of positive ones.
+double side_of(const VecX& capacity, Eigen::Index row, double wrench) {
+  const Eigen::Index count = capacity.size() / 3;
+  return capacity[(wrench < 0.0 ? 1 : 2) * count + row];
+}
 
 } // namespace
 
@@ -31,7 +40,7 @@ LeastUsage::LeastUsage(std::vector<int> dimension, MatX basis, std::vector<int> 
     first += d;
   }
   const Eigen::Index rows = basis_.rows(), k = basis_.cols();
-  capacity_.setZero(rows);
+  capacity_.setZero(3 * rows); // see side_of()
   best_.setZero(rows);
   rates_.setZero(rows);
   trial_.setZero(rows);
@@ -44,7 +53,7 @@ LeastUsage::LeastUsage(std::vector<int> dimension, MatX basis, std::vector<int> 
 double LeastUsage::gauge(const Gauges& gauges, const VecX& wrench, Normal& normal) const {
   const int row = first_[normal.part];
   if (dimension_[normal.part] > 1) return gauges.gauge(normal.part, wrench.data() + row, normal.n);
-  const double inverse = length_[row] / capacity_[row];
+  const double inverse = length_[row] / side_of(capacity_, row, wrench[row]);
   normal.n[0] = std::copysign(inverse, wrench[row]);
   return inverse * std::abs(wrench[row]);
 }
@@ -53,7 +62,7 @@ double LeastUsage::gauge(const Gauges& gauges, const VecX& wrench, Normal& norma
 double LeastUsage::support(const Gauges& gauges, std::size_t part) const {
   const int row = first_[part];
   if (dimension_[part] > 1) return gauges.support(static_cast<int>(part), rates_.data() + row);
-  return capacity_[row] / length_[row] * std::abs(rates_[row]);
+  return side_of(capacity_, row, -rates_[row]) / length_[row] * std::abs(rates_[row]);
 }
 
 // The largest gauge, and its normal.
@@ -77,12 +86,21 @@ void LeastUsage::share_by_capacity(const Gauges& gauges, const VecX& wrench) {
     for (int r = 0; r < dimension_[p]; ++r) {
       double rate[3] = {0, 0, 0};
       rate[r] = 1.0;
-      capacity_[first_[p] + r] = gauges.support(static_cast<int>(p), rate);
+      const Eigen::Index row = first_[p] + r, count = basis_.rows();
+      capacity_[count + row] = capacity_[2 * count + row] = gauges.support(static_cast<int>(p), rate);
+      rate[r] = -1.0;
+      if (dimension_[p] == 1) capacity_[2 * count + row] = gauges.support(static_cast<int>(p), rate);
     }
-  scale_ = std::max(capacity_.maxCoeff(), k_tiny);
-  for (Eigen::Index r = 0; r < capacity_.size(); ++r)
-    capacity_[r] = length_[r] * std::max(capacity_[r], k_least_capacity * scale_);
-  weighted_ = capacity_.cwiseInverse().asDiagonal() * basis_;
+  const Eigen::Index count = basis_.rows();
+  scale_ = k_tiny;
+  for (const double capacity : capacity_.tail(2 * count))
+    if (capacity < k_unlimited) scale_ = std::max(scale_, capacity);
+  for (Eigen::Index r = 0; r < count; ++r) {
+    for (const Eigen::Index side : {count, 2 * count})
+      capacity_[side + r] = length_[r] * std::max(std::min(capacity_[side + r], k_most_capacity * scale_), k_least_capacity * scale_);
+    capacity_[r] = std::max(capacity_[count + r], capacity_[2 * count + r]);
+  }
+  weighted_ = capacity_.head(count).cwiseInverse().asDiagonal() * basis_;
   normal_matrix_ = basis_.transpose() * weighted_;
   settled_ = solve_symmetric(normal_matrix_, VecX(-(weighted_.transpose() * wrench)));
   trial_ = wrench + basis_ * settled_;
@@ -90,7 +108,7 @@ void LeastUsage::share_by_capacity(const Gauges& gauges, const VecX& wrench) {
 
 // Kinematic bound: what the load does on the mechanism, over what friction can take from it.
 double LeastUsage::bound_of_mechanism(const Gauges& gauges, const VecX& wrench) {
-  rates_ = trial_.cwiseQuotient(capacity_);
+  rates_ = trial_.cwiseQuotient(capacity_.head(trial_.size()));
   VecX taken(static_cast<Eigen::Index>(dimension_.size()));
   for (std::size_t p = 0; p < dimension_.size(); ++p) taken[static_cast<Eigen::Index>(p)] = support(gauges, p);
   const double all = taken.sum();
@@ -118,7 +136,7 @@ void LeastUsage::start_basis(const VecX& wrench) {
     normal = {};
     normal.part = static_cast<int>(after - first_.begin()) - 1;
     const double side = (wrench[row] < 0.0) == (i < k) ? -1.0 : 1.0;
-    normal.n[row - first_[normal.part]] = side * length_[row] / capacity_[row];
+    normal.n[row - first_[normal.part]] = side * length_[row] / side_of(capacity_, row, side);
     put_column(normal, columns_.col(static_cast<Eigen::Index>(i)).data());
   }
 }

@@ -64,12 +64,12 @@ private:
     MatX a(n, n);
     VecX b(n), lower(n), upper(n), rounding(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double no_compliance = 0.0, pull = -1.0;
+      const double no_compliance = 0.0, pull = -1.0, push = 1.0;
       b[i] = candidates_.acceleration[i];
       rounding[i] = candidates_.rounding[i];
       const bool is_rope = one_sided_row(*system_.frictions[elements_[i]].friction) != nullptr;
       upper[i] = is_rope ? 0.0 : block_of(i, &no_compliance, &pull).wrench[0];
-      lower[i] = is_rope ? -std::numeric_limits<double>::infinity() : -upper[i];
+      lower[i] = is_rope ? -std::numeric_limits<double>::infinity() : block_of(i, &no_compliance, &push).wrench[0];
       for (Eigen::Index j = 0; j < n; ++j) a(i, j) = candidates_.compliance[i * n + j];
     }
     const BoxSolution solution = solve_box_problem(a, b, lower, upper, rounding);

@@ -475,7 +475,8 @@ PartTreatment part_treatment(const FieldTable& kind, const Field& field) {
 bool can_stand_in_part(const TableKind& kind) {
   if (&kind == &channel_kind() || &kind == &plot_kind() || &kind == &acceptance_kind()) return true;
   const auto& fields = kind.fields.fields();
-  return std::any_of(fields.begin(), fields.end(), [](const Field& field) { return field.type == FieldType::body || is_formula_field(field); });
+  const auto belongs_there = [](const Field& field) { return field.type == FieldType::body || field.name == "frame" || is_formula_field(field); };
+  return std::any_of(fields.begin(), fields.end(), belongs_there);
 }
 
 void write_out_parts(Document& document, const Catalogue& catalogue) {

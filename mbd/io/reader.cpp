@@ -411,7 +411,8 @@ void Reader::complete_model() {
 }
 
 void Reader::report_missing_masses(bool is_certain) {
-  for (std::size_t i = 0; i < model_.bodies.size(); ++i)
+  const std::size_t count = std::min(model_.bodies.size(), given(Section::body).size()); // others are made by tables, with their masses
+  for (std::size_t i = 0; i < count; ++i)
     for (const Field& field : Body::fields().fields()) {
       const Body& body = model_.bodies[i];
       if (!is_mass(field) || is_excused(body, field) || std::get<double>(field.get(&body)) != 0.0) continue;

@@ -1,5 +1,7 @@
 #include "mbd/model/completion.h"
 
+#include "mbd/model/body_builder.h"
+
 namespace steplap {
 
 namespace {
@@ -43,25 +45,35 @@ void place_at_centres(Model& model, const std::vector<std::size_t>& markers) {
   }
 }
 
-bool apply_tables(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
+// Has it been read, and are its fields within their ranges?
+bool is_sound(const Model& model, std::size_t table, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
+  const TableEntry& entry = model.tables[table];
+  const std::size_t before = problems.size();
+  FieldChecker(model, problems)
+      .check(entry.kind->fields, entry.table.get(), subject_text(entry.kind->name, entry.table->name),
+             [&](const std::string& field) {
+               return places.locate_in_table ? places.locate_in_table(table, field) : std::optional(entry.table->where);
+             });
+  return problems.size() == before && (!places.is_table_usable || places.is_table_usable(table));
+}
+
+// Tables that add bodies do so before anything asks for a body, all others when bodies have their places.
+bool apply_tables(Model& model, bool are_builders, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
   bool is_every_one = true;
   for (std::size_t i = 0; i < model.tables.size(); ++i) {
     const TableEntry& entry = model.tables[i];
-    const std::size_t before = problems.size();
-    FieldChecker(model, problems)
-        .check(entry.kind->fields, entry.table.get(), subject_text(entry.kind->name, entry.table->name),
-               [&](const std::string& field) {
-                 return places.locate_in_table ? places.locate_in_table(i, field) : std::optional(entry.table->where);
-               });
-    const bool is_usable = !places.is_table_usable || places.is_table_usable(i);
-    if (!is_usable || problems.size() != before) {
+    const BodyBuilder* const builder = body_builder(entry);
+    if ((builder != nullptr) != are_builders) continue;
+    if (!is_sound(model, i, places, problems)) {
       is_every_one = false;
       continue;
     }
     try {
-      entry.kind->apply(*entry.table, model);
+      if (builder) builder->add_bodies(model);
+      else entry.kind->apply(*entry.table, model);
     } catch (const ModelError& error) {
       problems.insert(problems.end(), error.diagnostics().begin(), error.diagnostics().end());
+      if (builder) is_every_one = false; // its bodies are missing
     }
   }
   return is_every_one;
@@ -96,15 +108,16 @@ FieldLocator own_places(const Model& model) {
 
 bool complete(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
   if (model.is_completed) throw std::logic_error("a model is completed twice: it would have all that its tables stand for twice");
+  const bool is_every_body_there = apply_tables(model, true, places, problems);
   add_body_markers(model);
   const std::vector<std::size_t> at_centres = unplaced_markers(model);
   place_at_centres(model, at_centres);
   place_by_joints(model, places.given ? places.given : given_in_code(model),
                   places.locate ? places.locate : own_places(model), problems);
-  const bool is_every_table_applied = apply_tables(model, places, problems);
+  const bool is_every_table_applied = apply_tables(model, false, places, problems);
   place_at_centres(model, at_centres); // tables may have moved a centre of gravity
   model.is_completed = true;
-  return is_every_table_applied;
+  return is_every_body_there && is_every_table_applied;
 }
 
 Model completed(const Model& given) {

@@ -146,13 +146,15 @@ private:
     std::vector<PairJacobian> parts;
     for (const auto& group : system_.groups) group->add_jacobian(statics_.evaluation(), parts);
     const auto unknowns = at_.size(), count = static_cast<Eigen::Index>(bounded_.size());
-    capacity_ = VecX::Zero(count);
-    capacity_by_ = MatX::Zero(count, unknowns);
+    for (int side = 0; side < 2; ++side) {
+      capacity_[side] = VecX::Zero(count);
+      capacity_by_[side] = MatX::Zero(count, unknowns);
+    }
     std::vector<VecX> normals;
     std::vector<double> forces;
     double softest = 0.0, pressed = 0.0;
-    const double forward = 1.0;
-    for (Eigen::Index i = 0; i < count; ++i) capacity_[i] = support(i, &forward);
+    for (int side = 0; side < 2; ++side)
+      for (Eigen::Index i = 0; i < count; ++i) capacity_[side][i] = support(i, side);
     for (const PairJacobian& part : parts) {
       if (part.contact < 0) continue;
       double& normal = statics_.contact_force(part.contact);
@@ -163,8 +165,9 @@ private:
       VecX by = VecX::Zero(unknowns);
       by.head(free_.cols()) = free_.transpose() * scale_.cwiseProduct(slope) / kappa_;
       normal = before + more;
-      for (Eigen::Index i = 0; i < count; ++i)
-        capacity_by_.row(i) += (support(i, &forward) - capacity_[i]) / more * by.transpose();
+      for (int side = 0; side < 2; ++side)
+        for (Eigen::Index i = 0; i < count; ++i)
+          capacity_by_[side].row(i) += (support(i, side) - capacity_[side][i]) / more * by.transpose();
       normal = before;
       if (before <= 0.0) continue;
       pressed = std::max(pressed, before);
@@ -179,21 +182,23 @@ private:
     normal_by_ = MatX(normal_.size(), unknowns);
     for (Eigen::Index i = 0; i < normal_.size(); ++i) normal_by_.row(i) = normals[static_cast<std::size_t>(i)].transpose();
   }
-  [[nodiscard]] double support(Eigen::Index i, const double* forward) const {
+  // The most that it bears in the direction of growing rates (side 0), and against it (1): a freewheel bears one of them alone.
+  [[nodiscard]] double support(Eigen::Index i, int side) const {
+    const double rate = side == 0 ? -1.0 : 1.0;
     const int f = statics_.rows()[bounded_[static_cast<std::size_t>(i)]].friction;
-    return system_.frictions[f].friction->support(statics_.evaluation(), state_.friction[f], forward);
+    return system_.frictions[f].friction->support(statics_.evaluation(), state_.friction[f], &rate);
   }
 
   [[nodiscard]] Inequalities constraints(double usage) const {
-    const Eigen::Index count = capacity_.size(), unknowns = at_.size();
+    const Eigen::Index count = capacity_[0].size(), unknowns = at_.size();
     const Eigen::Index places = statics_.coordinates(), forces = 2 * count + normal_.size();
     MatX rows = MatX::Zero(forces + 2 * places, unknowns);
     VecX constant(rows.rows());
     for (Eigen::Index i = 0; i < count; ++i)
       for (int side = 0; side < 2; ++side) {
-        rows.row(2 * i + side) = -usage * capacity_by_.row(i);
+        rows.row(2 * i + side) = -usage * capacity_by_[side].row(i);
         rows(2 * i + side, unknowns - count + i) += side == 0 ? 1.0 : -1.0;
-        constant[2 * i + side] = -usage * capacity_[i];
+        constant[2 * i + side] = -usage * capacity_[side][i];
       }
     rows.middleRows(2 * count, normal_.size()) = -normal_by_;
     constant.segment(2 * count, normal_.size()) = -normal_;
@@ -263,8 +268,10 @@ private:
   const VecX& scale_;
   double length_, give_ = 0.0, kappa_ = 1.0, force_scale_ = 1.0, usage_ = 0.0;
   std::vector<int> hard_, bounded_;
-  VecX lambda_, at_, capacity_, normal_;
-  MatX hard_rows_, free_, ways_, capacity_by_, normal_by_;
+  VecX lambda_, at_, normal_;
+  VecX capacity_[2]; ///< by side, see support()
+  MatX hard_rows_, free_, ways_, normal_by_;
+  MatX capacity_by_[2];
 };
 
 } // namespace

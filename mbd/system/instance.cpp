@@ -1,5 +1,6 @@
 #include "mbd/system/instance.h"
 
+#include "mbd/model/body_builder.h"
 #include "mbd/model/completion.h"
 #include "mbd/model/model_path.h"
 #include "mbd/model/placement.h"
@@ -91,6 +92,8 @@ Variants::Variants(const Model& given, std::vector<std::string> paths, const std
     static_cast<void>(number_of(given_, path)); // it is there, and a number
     redone_ = std::max(redone_, redone_for(path));
   }
+  const bool is_any_builder = std::any_of(given_.tables.begin(), given_.tables.end(), [](const TableEntry& e) { return body_builder(e) != nullptr; });
+  if (redone_ == Redone::tables && is_any_builder) redone_ = Redone::all; // bodies and markers would have to be made anew, too
   if (redone_ == Redone::tables) note_tables();
 }
 

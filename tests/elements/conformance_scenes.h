@@ -189,6 +189,20 @@ inline std::vector<ConformanceScene> joint_scenes() {
     {"load", "at = \"A\"\nforce = [@+5.0, 3.0]\ncouple = @-0.7\nforce_y = \"wave\"\nframe = \"body\"\n", true}};
 }
 
+/// Bands, belts, cams, one-way clutches, gears with losses, parts of beams.
+inline std::vector<ConformanceScene> drive_scenes() {
+  return {
+    {"beam_part", "a = \"A\"\nb = \"B\"\naxis = [@+0.9, 0.2]\nlength = 0.9\naxial_stiffness = 300.0\nbending_stiffness = 20.0\nshear_stiffness = 90.0\ndamping_time = 0.02\n"},
+    {"band", "a = \"A\"\nb = { body = \"ground\", at = [@-1.4, 0.6] }\ndrum = \"B\"\nradius = @+0.2\nfriction = 0.5\nstiffness = 800.0\nstiffness_b = 500.0\ndamping = 30.0\n"
+             "pretension = 900.0\n", true}, // sticks, as its energy is that of a spring
+    {"belt", "a = \"A\"\nb = \"B\"\nradius_a = 0.12\nradius_b = 0.2\nfriction_a = 0.7\nfriction_b = 0.6\nstiffness = 800.0\ndamping = 30.0\npretension = 900.0\n"},
+    {"belt", "a = \"A\"\nb = \"B\"\nradius_a = 0.12\nradius_b = 0.2\ncrossed = true\nfriction_a = 0.7\nfriction_b = 0.6\nstiffness = 800.0\ndamping = 30.0\npretension = 900.0\n"},
+    {"cam", "a = \"A\"\nb = { body = \"ground\", angle = @+0.2 }\ncam = \"b\"\naxis = [@+0.1, 1.0]\nformula = \"'40 mm' * (1 - cos(value)) + '10 mm' * cos(2 * value)\"\n"
+            "start_angle = @+0.4\ngap = -0.05\nstiffness = 900.0\ndamping = 5.0\n", true},
+    {"freewheel", "a = \"A\"\nb = \"B\"\ndrags = 2.0\nholds = 5.0\n"},
+    {"lossy_gear", "a = \"A\"\nb = \"B\"\nratio = -2.5\nefficiency = 0.8\nstiffness = 90.0\ndamping = 3.0\n", true}};
+}
+
 /// Forces by formula: along every coordinate, of kinks and jumps, of motions of other bodies.
 inline std::vector<ConformanceScene> formula_scenes() {
   return {
@@ -204,7 +218,7 @@ inline std::vector<ConformanceScene> formula_scenes() {
 inline const std::vector<ConformanceScene>& conformance_scenes() {
   static const std::vector<ConformanceScene> list = [] {
     std::vector<ConformanceScene> all;
-    for (const auto& part : {spring_scenes(), contact_scenes(), friction_scenes(), rope_scenes(), joint_scenes(), formula_scenes()})
+    for (const auto& part : {spring_scenes(), contact_scenes(), friction_scenes(), rope_scenes(), joint_scenes(), drive_scenes(), formula_scenes()})
       all.insert(all.end(), part.begin(), part.end());
     return all;
   }();

@@ -1,0 +1,70 @@
+// Derivatives of forces on several bodies by the motion of all of them, from dual numbers.
+//
+// A law of up to N bodies is evaluated with Dual<6 N>: derivatives by the pose of the j-th body stand at 3 j, those by its velocity
+// at 3 N + 3 j. The same body may stand in several places; then all its shares add up.
+#pragma once
+
+#include "mbd/math/dual.h"
+#include "mbd/system/roles.h"
+#include "mbd/system/state_jacobian.h"
+
+#include <array>
+#include <vector>
+
+namespace steplap {
+
+/// The motion of the j-th of N bodies with its derivatives.
+template <int N> [[nodiscard]] Motion<Dual<6 * N>> seeded_of(const Motion<double>& m, int j) {
+  using D = Dual<6 * N>;
+  const int pose = 3 * j, velocity = 3 * N + 3 * j;
+  Motion<D> s;
+  s.x = D::variable(m.x, pose);
+  s.y = D::variable(m.y, pose + 1);
+  s.theta = D::variable(m.theta, pose + 2);
+  s.c = D(m.c);
+  s.c.d[pose + 2] = -m.s;
+  s.s = D(m.s);
+  s.s.d[pose + 2] = m.c;
+  s.vx = D::variable(m.vx, velocity);
+  s.vy = D::variable(m.vy, velocity + 1);
+  s.omega = D::variable(m.omega, velocity + 2);
+  return s;
+}
+
+/// Appends what the forces on the bodies change by with the motion of each.
+template <int N> void add_body_blocks(const std::array<int, N>& bodies, const std::array<BodyForceOf<Dual<6 * N>>, N>& forces, std::vector<PairJacobian>& out) {
+  for (int row = 0; row < N; ++row)
+    for (int column = 0; column < N; ++column) {
+      const int x = bodies[static_cast<std::size_t>(row)], y = bodies[static_cast<std::size_t>(column)];
+      if (x == k_ground || y == k_ground) continue;
+      PairJacobian& j = out.emplace_back();
+      j.a = x;
+      j.b = x == y ? k_ground : y;
+      j.stiffness.setZero();
+      j.damping.setZero();
+      const BodyForceOf<Dual<6 * N>>& f = forces[static_cast<std::size_t>(row)];
+      const Dual<6 * N>* const parts[3] = {&f.fx, &f.fy, &f.m};
+      const int at = x == y ? 0 : 3;
+      for (int i = 0; i < 3; ++i)
+        for (int l = 0; l < 3; ++l) {
+          j.stiffness(i, at + l) = parts[i]->d[3 * column + l];
+          j.damping(i, at + l) = parts[i]->d[3 * N + 3 * column + l];
+        }
+    }
+}
+
+/// Appends what a rate of the inner state `inner` changes by with the motion of each body.
+template <int N> void add_rate_by_motion(int inner, const std::array<int, N>& bodies, const Dual<6 * N>& rate, StateJacobian& out) {
+  for (int j = 0; j < N; ++j)
+    if (bodies[static_cast<std::size_t>(j)] != k_ground)
+      out.by_motion.push_back({inner, bodies[static_cast<std::size_t>(j)], rate.d.template segment<3>(3 * j).matrix(), rate.d.template segment<3>(3 * N + 3 * j).matrix()});
+}
+
+/// Adds a force at `lever` from the body's centre.
+template <class S> void add_at(BodyForceOf<S>& sum, const Pair<S>& lever, const Pair<S>& force) {
+  sum.fx += force.x;
+  sum.fy += force.y;
+  sum.m += cross(lever, force);
+}
+
+} // namespace steplap

@@ -1,0 +1,56 @@
+// What is taken up of a rope between two wheels on which it is wound, or between a wheel and a point: e of wound_rope.h, where it is
+// derived.
+#pragma once
+
+#include "mbd/system/measure.h"
+
+#include <cmath>
+
+namespace steplap {
+
+/// −e, so that a taut rope presses as a contact does; ground axes, for θ is that of many turns.
+struct WoundMeasure {
+  Vec2 point_a, point_b; ///< centres of the wheels
+  double radius_a = 0.0, radius_b = 0.0;
+  Vec2 start = Vec2::UnitX(); ///< u in the reference pose
+  double taken = 0.0;         ///< e as it stands there
+
+  template <class S> struct Straight {
+    Pair<S> u, lever_a, lever_b; ///< levers of the points where it leaves the wheels
+    S length{0};
+  };
+  template <class S> [[nodiscard]] Straight<S> straight(const Motion<S>& a, const Motion<S>& b) const {
+    using std::sqrt;
+    const Pair<S> centre_a = to_ground(a, point_a), centre_b = to_ground(b, point_b);
+    const Pair<S> d = centre_b - centre_a - offset(a, b);
+    const S c(radius_a + radius_b), square = dot(d, d), length = sqrt(square - c * c);
+    const Pair<S> u = (S(1) / square) * (length * d - c * perp(d)), across = perp(u);
+    return {u, centre_a + S(radius_a) * across, centre_b - S(radius_b) * across, length};
+  }
+  template <class S> [[nodiscard]] S turned(const Pair<S>& u) const {
+    using portable::atan2;
+    const Pair<S> from{S(start.x()), S(start.y())};
+    return atan2(cross(from, u), dot(from, u));
+  }
+  template <bool WithBias, class S> [[nodiscard]] MeasureValue<S> at(const Motion<S>& a, const Motion<S>& b) const {
+    static_assert(!WithBias, "no row takes it");
+    return along(straight(a, b), a, b);
+  }
+  template <class S>
+  [[nodiscard]] MeasureValue<S> along(const Straight<S>& part, const Motion<S>& a, const Motion<S>& b) const {
+    const double c = radius_a + radius_b;
+    MeasureValue<S> m;
+    m.value = S(taken) - part.length - S(radius_a) * a.theta - S(radius_b) * b.theta;
+    if (c != 0.0) m.value += S(c) * turned(part.u);
+    m.direction = part.u;
+    m.lever_a = part.lever_a;
+    m.lever_b = part.lever_b;
+    m.rate = dot(part.u, point_velocity(a, part.lever_a) - point_velocity(b, part.lever_b));
+    return m;
+  }
+};
+
+/// rad: beyond, the angle of the straight part against the reference pose would soon jump by a turn.
+inline constexpr double k_most_turned = 3.0;
+
+} // namespace steplap
