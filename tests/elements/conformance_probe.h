@@ -96,6 +96,7 @@ public:
   Vec9 forces(const Pose& pose) {
     place(pose);
     std::fill(force_.begin(), force_.end(), BodyForce{});
+    std::fill(inner_rate_.begin(), inner_rate_.end(), 0.0);
     e_.dissipation = e_.work = 0.0;
     for (const auto& group : system_->groups) group->add_forces(e_);
     for (int i = 0; i < system_->links.size(); ++i) {
@@ -107,6 +108,8 @@ public:
     for (int i = 0; i < 3; ++i) f.segment<3>(3 * i) << force_[i].fx, force_[i].fy, force_[i].m;
     return f;
   }
+  /// As of the last forces().
+  [[nodiscard]] const std::vector<double>& inner_rates() const { return inner_rate_; }
   double potential(const Pose& pose) {
     place(pose);
     double energy = system_->potential_energy(motion_.data());
