@@ -129,6 +129,11 @@ name = 'rear axle'
 kind = 'skate'
 a = 'a'
 b = 'b'
+[[element]]
+name = 'front axle'
+kind = 'skate'
+a = 'b'
+grip = 1e3
 )";
     k.holds<T>();
     k.compile = compile_skate;
