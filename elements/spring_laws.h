@@ -122,6 +122,11 @@ private:
   double at_zero_ = 0.0;
 };
 
+/// Of a curve y(x) at one place.
+template <class S> struct CurveJet {
+  S value{0.0}, slope{0.0}, curvature{0.0}; ///< y, y′, y″
+};
+
 /// Smooth characteristic y(x) through points: the cubic spline that has two continuous derivatives and no curvature at its ends, beyond
 /// which it goes on straight.
 class SmoothCurve {
@@ -143,6 +148,18 @@ public:
     if (value_of(d) > width) return S(points_[i + 1].y()) + S(end_slope(c, width)) * (d - S(width));
     return S(points_[i].y()) + d * (S(c.slope) + d * (S(0.5 * curvature_[i]) + d * S(c.cubic)));
   }
+  /// The value with two derivatives.
+  template <class S> [[nodiscard]] CurveJet<S> jet(const S& x) const {
+    const std::size_t i = piece_at(value_of(x));
+    const Coefficients c = coefficients(i);
+    const double width = points_[i + 1].x() - points_[i].x();
+    const S d = x - S(points_[i].x());
+    if (value_of(d) < 0.0) return {S(points_[i].y()) + S(c.slope) * d, S(c.slope), S(0.0)};
+    if (value_of(d) > width) return {S(points_[i + 1].y()) + S(end_slope(c, width)) * (d - S(width)), S(end_slope(c, width)), S(0.0)};
+    return {S(points_[i].y()) + d * (S(c.slope) + d * (S(0.5 * curvature_[i]) + d * S(c.cubic))),
+            S(c.slope) + d * (S(curvature_[i]) + d * S(3.0 * c.cubic)), S(curvature_[i]) + d * S(6.0 * c.cubic)};
+  }
+  [[nodiscard]] const std::vector<Vec2>& points() const { return points_; }
   /// ∫ from 0 to x.
   [[nodiscard]] double integral(double x) const { return primitive(x) - at_zero_; }
 

@@ -2,6 +2,7 @@
 
 #include "elements/polygon_contact.h"
 #include "elements/round_contacts.h"
+#include "elements/tyre.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/rest/assembly.h"
 #include "mbd/rest/statics.h"
@@ -19,6 +20,7 @@ namespace {
 std::optional<std::pair<std::string, std::string>> ends_of(const Element& element) {
   if (const auto* const foot = dynamic_cast<const UnilateralContact*>(&element)) return std::pair{foot->a, foot->b};
   if (const auto* const round = dynamic_cast<const RoundContact*>(&element)) return std::pair{round->a, round->b};
+  if (const auto* const tyre = dynamic_cast<const Tyre*>(&element)) return std::pair{tyre->a, tyre->b};
   if (const auto* const outlines = dynamic_cast<const PolygonContact*>(&element)) return std::pair{outlines->a, outlines->b};
   return std::nullopt;
 }

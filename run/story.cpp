@@ -2,6 +2,7 @@
 
 #include "elements/polygon_contact.h"
 #include "elements/round_contacts.h"
+#include "elements/tyre.h"
 #include "elements/unilateral_contact.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/math/portable_math.h"
@@ -124,6 +125,8 @@ private:
     };
     if (const auto* const flat = dynamic_cast<const UnilateralContact*>(entry->element.get())) {
       normal = rotated(flat->normal, angle_of(place_of(model, flat->b)));
+    } else if (const auto* const tyre = dynamic_cast<const Tyre*>(entry->element.get())) {
+      normal = rotated(Vec2(0.0, 1.0), angle_of(place_of(model, tyre->b)));
     } else if (const auto* const round = dynamic_cast<const SegmentContact*>(entry->element.get())) {
       const Place a = place_of(model, round->a), b = place_of(model, round->b);
       const Vec2 along = rotated(Vec2(round->to - round->from), angle_of(b));

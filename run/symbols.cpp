@@ -1,5 +1,7 @@
 #include "run/symbols.h"
 
+#include "elements/spring_laws.h"
+
 #include <cmath>
 #include <map>
 #include <utility>
@@ -115,6 +117,38 @@ void segment_contact(Sketch& s) {
           {s.number("radius"), first.x(), first.y(), last.x(), last.y(), s.number("thickness")}});
 }
 
+// A flat road has no ends: it reaches beyond any picture, and is no part of the body's geometry.
+void flat_road(Sketch& s, const MarkerPlace& a, const MarkerPlace& b, double radius) {
+  constexpr double k_beyond = 1e3;
+  const Vec2 first = b.in_body({-k_beyond * radius, 0.0}), last = b.in_body({k_beyond * radius, 0.0});
+  s.draw({"edge_touch", "flat", "force", {a, b}, {}, {radius, first.x(), first.y(), last.x(), last.y(), 0.0}});
+}
+
+void tyre(Sketch& s) {
+  constexpr int k_parts = 4, k_most_points = 2000; // of a curve's piece, while there are few
+  const auto a = s.place("a"), b = s.place("b");
+  if (!a || !b) return;
+  const double radius = s.number("radius");
+  s.circle(*a, radius);
+  const std::vector<Vec2> points = s.points("road");
+  if (points.size() < 2) return flat_road(s, *a, *b, radius);
+  const SmoothCurve curve(points);
+  const int parts = points.size() < k_most_points ? k_parts : 1;
+  std::vector<double> sizes{radius};
+  Vec2 before = points.front();
+  for (std::size_t i = 1; i < points.size(); ++i)
+    for (int k = 1; k <= parts; ++k) {
+      const double x = points[i - 1].x() + (points[i].x() - points[i - 1].x()) * k / parts;
+      const Vec2 here(x, curve.value(x));
+      s.segment(*b, before, here, 0.0);
+      if (sizes.size() == 1) sizes.insert(sizes.end(), {b->in_body(before).x(), b->in_body(before).y()});
+      sizes.insert(sizes.end(), {b->in_body(here).x(), b->in_body(here).y()});
+      if (sizes.size() == 5) sizes.push_back(0.0); // the thickness
+      before = here;
+    }
+  s.draw({"edge_touch", "", "force", {*a, *b}, {}, std::move(sizes)});
+}
+
 void friction(Sketch& s) { s.draw({"friction", "", "friction", {}, {}, {}}); }
 
 // --- joints ---------------------------------------------------------------------------------------
@@ -122,6 +156,11 @@ void friction(Sketch& s) { s.draw({"friction", "", "friction", {}, {}, {}}); }
 void pin(Sketch& s) { s.draw({"pin", "", "", s.places(), {}, {}}); }
 void weld(Sketch& s) { s.draw({"weld", "", "", s.places(), {}, {}}); }
 void rod(Sketch& s) { s.draw({"rod", "", "", s.places(), {}, {}}); }
+void skate(Sketch& s) {
+  const auto a = s.place("a");
+  const auto axis = s.vector("axis");
+  if (a && axis && axis->norm() > 0.0) s.draw({"rail", "skate", "", {*a}, a->turned(axis->normalized()), {}});
+}
 void rail(Sketch& s) { s.draw({"rail", "", "", s.places(), s.direction("axis"), {}}); }
 
 void gear(Sketch& s) {
@@ -178,10 +217,10 @@ Symbol symbol_of(const std::string& kind) {
       {"bushing", bushing}, {"buffer", buffer}, {"tie", tie}, {"rope", rope}, {"wound_rope", wound_rope}, {"band", band}, {"belt", belt}, {"load", load},
       {"beam_part", nothing},
       {"unilateral_contact", unilateral_contact}, {"polygon_contact", polygon_contact}, {"circle_contact", circle_contact},
-      {"segment_contact", segment_contact}, {"coulomb_stick", friction},
+      {"segment_contact", segment_contact}, {"tyre", tyre}, {"coulomb_stick", friction}, {"rolling_resistance", friction},
       {"step_lap_joint", step_lap_joint}, {"step_lap_interface", nothing},
       {"revolute", pin}, {"prismatic", rail}, {"weld", weld}, {"distance", rod}, {"point_on_line", rail},
-      {"gear", gear}, {"rack", rack},
+      {"skate", skate}, {"gear", gear}, {"rack", rack},
       {"prescribed_motion", drive}, {"motor", motor}, {"limit", limit}, {"joint_friction", brake},
       {"force", formula_force}, {"state", nothing}};
   const auto found = symbols.find(kind);

@@ -35,13 +35,14 @@ struct MarkerPlace {
 ///               both, tie (bar with plates at its ends), cylinder
 ///   rope        2 or more places, a polyline
 ///   rod, weld, pin, bushing, neutral   their places
-///   rail        direction that is free. Styles: "", limit (stops at the sizes: lower, upper), brake
+///   rail        direction that is free. Styles: "", limit (stops at the sizes: lower, upper), brake, skate (one place only)
 ///   contact     place that touches, place on the line; direction: the normal of the line, towards what touches;
 ///               sizes: where the line ends, along the normal turned clockwise, if it does
 ///   faces       outlines that press on each other: places of corners that touch (none: those of the body's outline), the
 ///               other's place last; direction: as of a contact, if the other is a half-plane
 ///   touch       centres of two circles; sizes: their radii, 1 if the first is inside the second
-///   edge_touch  centre of a circle, frame of a segment; sizes: radius, from x, from y, to x, to y, thickness
+///   edge_touch  centre of a circle, frame of a segment; sizes: radius, from x, from y, to x, to y, thickness, then x and y of
+///               further points that make the segment a road. Styles: "", flat (its line is drawn, too)
 ///   arc         the marker turned about. Styles: motor, drive, spring, limit (sizes as of a rail), brake, couple
 ///   arrow       where it acts; direction. Styles: "" (drive or motor), load (quantities force_x, force_y)
 ///   friction    none: between the contacts that the element names

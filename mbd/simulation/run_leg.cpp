@@ -98,7 +98,7 @@ void RunLeg::refuse_time_stepping() const {
   const auto is_own_state = [](const ForceGroup* group) { return dynamic_cast<const OwnStateGroup*>(group) != nullptr; };
   if (std::all_of(system_.inner_groups.begin(), system_.inner_groups.end(), is_own_state)) return;
   throw NumericalFailure("'" + options_.integrator + "' does not follow what '" + system_.element_names[system_.inner_elements[0]] +
-                         "' remembers (the slid distance of an elastic joint, whether a tie has broken): choose another "
+                         "' remembers (the slid distance of an elastic joint, how far a tyre's tread is bent, whether a tie has broken): choose another "
                          "integrator, auto for one");
 }
 

@@ -2,7 +2,7 @@
 //
 // Nearly everything planar is a law or a constraint on one of five scalars: the distance of a marker
 // along an axis of b, the distance of two points, a relative angle, the gap of a contact and the
-// tangential coordinate of its tip. A measure gives
+// tangential coordinate of its tip. What a skate forbids is a sixth, of which there is only the rate. A measure gives
 //   value, rate,
 //   the gradient as a unit wrench: direction d at a common point of both bodies plus a couple, acting on
 //   a, its opposite on b (Newton's third law holds by construction),
@@ -236,6 +236,29 @@ struct RollRoundMeasure {
       S second = -(a.omega * a.omega * dot(across, ra));
       if constexpr (!k_is_origin<B>) second += b.omega * b.omega * dot(across, rb);
       m.bias = -(reach * inverse) * (second - S(2) * inverse * dot(n, ddot) * dot(across, ddot));
+    }
+    return m;
+  }
+};
+
+/// Sideways velocity of a skate of a on the plane of b: n·v, n fixed in a, v the velocity of p_A against the material point of b
+/// that is there. It is the rate of no coordinate (no function of the pose has it for a derivative, since n turns with a): the
+/// value is zero wherever the bodies are, and only velocities are held.
+struct SkateMeasure {
+  Vec2 point_a, normal; ///< in the frame of a
+  template <bool WithBias, class S, class B>
+  STEPLAP_INLINE MeasureValue<S> at(const Motion<S>& a, const B& b) const {
+    MeasureValue<S> m;
+    const Pair<S> ra = to_ground(a, point_a), n = to_ground(a, normal);
+    const Pair<S> reach = offset(a, b) + ra;
+    const Pair<S> velocity = point_velocity(a, ra) - point_velocity(b, reach); // seen from b
+    m.direction = n;
+    m.lever_a = ra;
+    m.lever_b = reach;
+    m.rate = dot(n, velocity);
+    if constexpr (WithBias) { // n·v differentiated at accelerations of zero, ṅ = ω_A ẑ×n
+      m.bias = a.omega * cross(n, velocity) - a.omega * a.omega * dot(n, ra);
+      if constexpr (!k_is_origin<B>) m.bias += b.omega * b.omega * dot(n, reach) - b.omega * cross(velocity, n);
     }
     return m;
   }

@@ -1,6 +1,7 @@
 // One scalar constraint row: a measure of two bodies that is held at a target.
 //
 //   measure(q) = base + base_rate·t + drive(t)
+// A skate's row has a rate and no value: of it only the second line of f = 0, ḟ = 0, f̈ = 0 means anything, and it is never off.
 // base (and base_rate for a row driven by its acceleration) live in the state's memory: they are set when the row begins
 // to hold (at the start of a run; at the begin of sticking).
 //
@@ -18,13 +19,13 @@
 
 namespace steplap {
 
-enum class MeasureKind : unsigned char { axis, distance, angle, slide, roll_line, roll_round };
+enum class MeasureKind : unsigned char { axis, distance, angle, slide, roll_line, roll_round, skate };
 
 struct RowSpec {
   MeasureKind kind = MeasureKind::axis;
   int a = k_ground, b = k_ground; ///< bodies of the compiled system
   Vec2 point_a = Vec2::Zero(), point_b = Vec2::Zero();
-  Vec2 direction = Vec2::Zero(); ///< axis, or a slide's or roll's normal, or its start, in the frame of b
+  Vec2 direction = Vec2::Zero(); ///< axis, or a slide's or roll's normal, or its start, in the frame of b; a skate's normal in that of a
   double radius_a = 0.0, radius_b = 0.0; ///< of a roll row
   Vec2 contact_axis = Vec2::Zero();
   bool is_axis_in_a = false;
@@ -36,9 +37,10 @@ struct RowSpec {
   const RowSpec* next = nullptr; ///< a further part of the same row; of a part only the bodies and the measure count
 };
 
-/// Rolls are rare: out of line, so that the loops over the other rows stay short.
+/// Rolls and skates are rare: out of line, so that the loops over the other rows stay short.
 template <bool WithBias, class S, class B>
-[[gnu::noinline]] MeasureValue<S> evaluate_roll(const RowSpec& row, const Motion<S>& a, const B& b) {
+[[gnu::noinline]] MeasureValue<S> evaluate_rare(const RowSpec& row, const Motion<S>& a, const B& b) {
+  if (row.kind == MeasureKind::skate) return SkateMeasure{row.point_a, row.direction}.at<WithBias>(a, b);
   if (row.kind == MeasureKind::roll_line)
     return RollLineMeasure{row.point_a, row.point_b, row.direction, row.radius_a}.at<WithBias>(a, b);
   return RollRoundMeasure{row.point_a, row.point_b, row.direction, row.radius_a, row.radius_b}.at<WithBias>(a, b);
@@ -56,7 +58,8 @@ STEPLAP_INLINE MeasureValue<S> evaluate_row(const RowSpec& row, const Motion<S>&
     return AngleMeasure{}.at<WithBias>(a, b);
   case MeasureKind::roll_line:
   case MeasureKind::roll_round:
-    return evaluate_roll<WithBias>(row, a, b);
+  case MeasureKind::skate:
+    return evaluate_rare<WithBias>(row, a, b);
   case MeasureKind::slide:
     break;
   }

@@ -55,3 +55,10 @@ steplap.Box = class Box {
   get middle() { return [0.5 * (this.low[0] + this.high[0]), 0.5 * (this.low[1] + this.high[1])]; }
   joined(other) { const box = new Box(); for (const b of [this, other]) if (!b.isEmpty) box.take(b.low).take(b.high); return box; }
 };
+
+// The ends of an edge that wheels roll on, one behind the other: of sizes radius, x, y, x, y, thickness, and further x, y of a road.
+steplap.endsOfEdge = (sizes) => {
+  const numbers = [...sizes.slice(1, 5), ...sizes.slice(6)], ends = [];
+  for (let i = 0; i + 1 < numbers.length; i += 2) ends.push([numbers[i], numbers[i + 1]]);
+  return ends;
+};

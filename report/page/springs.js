@@ -143,23 +143,31 @@
         line.setAttribute('d', text);
       });
     },
-    // Ground edges that wheels roll on are hatched on their far side, as far as the picture shows them.
+    // Ground edges that wheels roll on are hatched on their far side, as far as the picture shows them. A flat road is drawn by its line as well: it
+    // has no ends that would be part of the machine.
     roads() {
       const { scene } = this, done = new Set();
       for (const element of scene.elements)
         for (const shape of element.shapes) {
           if (shape.type !== 'edge_touch' || shape.at[1].body !== 'ground' || shape.sizes[5] > 0) continue;
-          const [, x0, y0, x1, y1] = shape.sizes, key = [x0, y0, x1, y1].join(' ');
+          const ends = steplap.endsOfEdge(shape.sizes), key = ends.join(' ');
           if (done.has(key)) continue;
           done.add(key);
           const hatch = steplap.make('path', { class: 'hatch road', 'data-plane-of': 'ground' });
           scene.groundLayer.append(hatch);
           this.update((t, pose) => {
-            const { u } = this, [from, to] = [[x0, y0], [x1, y1]].map((point) => this.screen({ body: 'ground', point }, pose)), d = unit(minus(to, from));
-            const wheel = this.screen(shape.at[0], (name) => scene.reference(name)), n = scaled(across(d), dot(across(d), minus(wheel, from)) > 0 ? -1 : 1);
-            const centre = dot(d, minus([scene.width / 2, scene.height / 2], from)), reach = scene.width + scene.height, size = length(minus(to, from));
-            let text = '';
-            for (let s = Math.max(0, Math.ceil((centre - reach) / u) * u); s < Math.min(size, centre + reach); s += u) text += path([add(from, scaled(d, s)), add(from, add(scaled(d, s - 0.6 * u), scaled(n, 0.8 * u)))]);
+            const { u } = this, places = ends.map((point) => this.screen({ body: 'ground', point }, pose));
+            const wheel = this.screen(shape.at[0], (name) => scene.reference(name)), reach = scene.width + scene.height;
+            const whole = unit(minus(places[places.length - 1], places[0])), side = dot(across(whole), minus(wheel, places[0])) > 0 ? -1 : 1;
+            let text = '', passed = 0;
+            for (let i = 1; i < places.length; i += 1) {
+              const from = places[i - 1], to = places[i], d = unit(minus(to, from)), size = length(minus(to, from));
+              const n = scaled(across(d), side), centre = dot(d, minus([scene.width / 2, scene.height / 2], from));
+              const first = Math.max(0, centre - reach), last = Math.min(size, centre + reach), next = (s) => Math.ceil((passed + s) / u) * u - passed;
+              if (shape.style === 'flat' && last > first) text += path([add(from, scaled(d, first)), add(from, scaled(d, last))]);
+              for (let s = next(first); s < last; s += u) text += path([add(from, scaled(d, s)), add(from, add(scaled(d, s - 0.6 * u), scaled(n, 0.8 * u)))]);
+              passed += size;
+            }
             hatch.setAttribute('d', text || 'M0 0');
           });
         }

@@ -250,11 +250,18 @@ steplap.Symbols = (() => {
         return { at: add(b, scaled(away, rb * this.scene.scale)), n, ra };
       });
     }
+    // The edge is a segment, or a road of many: further ends follow the thickness.
     edge_touch(element, shape) {
-      const [, x0, y0, x1, y1, thickness] = shape.sizes, frame = shape.at[1].body, end = (x, y) => ({ body: frame, point: [x, y] });
+      const frame = shape.at[1].body, thickness = shape.sizes[5], ends = steplap.endsOfEdge(shape.sizes).map((point) => ({ body: frame, point }));
       this.touching(element, shape, (pose) => {
-        const a = this.screen(shape.at[0], pose), from = this.screen(end(x0, y0), pose), to = this.screen(end(x1, y1), pose), d = minus(to, from);
-        const s = Math.min(1, Math.max(0, dot(d, minus(a, from)) / (dot(d, d) || 1))), nearest = add(from, scaled(d, s)), n = unit(minus(a, nearest));
+        const a = this.screen(shape.at[0], pose), places = ends.map((end) => this.screen(end, pose));
+        let nearest = places[0], least = Infinity;
+        for (let i = 1; i < places.length; i += 1) {
+          const from = places[i - 1], d = minus(places[i], from), s = Math.min(1, Math.max(0, dot(d, minus(a, from)) / (dot(d, d) || 1)));
+          const place = add(from, scaled(d, s)), away = length(minus(a, place));
+          if (away < least) { least = away; nearest = place; }
+        }
+        const n = unit(minus(a, nearest));
         return { at: add(nearest, scaled(n, 0.5 * thickness * this.scene.scale)), n };
       });
     }
@@ -312,6 +319,7 @@ steplap.Symbols = (() => {
     rail(element, shape) {
       if (shape.style === 'limit' && shape.sizes) { this.stops(element, shape); return; }
       if (shape.style === 'brake') return; // its words say what it does
+      if (shape.style === 'skate') { this.blade(element, shape); return; }
       if (shape.at.length > 1 && this.scene.body(shape.at[0].body).is_outline_given && this.hasEdge(shape)) { this.rollers(element, shape); return; }
       const line = this.piece(element, { class: 'symbol rail' }), block = this.piece(element, { class: 'symbol block' });
       this.update((t, pose) => {
@@ -319,6 +327,14 @@ steplap.Symbols = (() => {
         const from = minus(a, scaled(d, way)); // where the slide began, beside b where it runs beside b
         line.setAttribute('d', path([add(from, scaled(d, Math.min(0, way) - reach)), add(from, scaled(d, Math.max(0, way) + reach))]));
         const on = a, x = scaled(d, 0.9 * this.u), y = scaled(across(d), 0.45 * this.u);
+        block.setAttribute('d', path([add(add(on, x), y), add(minus(on, x), y), minus(minus(on, x), y), minus(add(on, x), y)], true));
+      });
+    }
+    // A skate, or a wheel from above: a block along its way.
+    blade(element, shape) {
+      const block = this.piece(element, { class: 'symbol block' });
+      this.update((t, pose) => {
+        const on = this.screen(shape.at[0], pose), d = this.direction(shape, pose), x = scaled(d, 1.1 * this.u), y = scaled(across(d), 0.35 * this.u);
         block.setAttribute('d', path([add(add(on, x), y), add(minus(on, x), y), minus(minus(on, x), y), minus(add(on, x), y)], true));
       });
     }

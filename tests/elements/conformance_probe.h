@@ -79,6 +79,7 @@ public:
     place(pose);
     std::vector<BodyForce>& force = arrays_.force;
     std::fill(force.begin(), force.end(), BodyForce{});
+    std::fill(arrays_.inner_rate.begin(), arrays_.inner_rate.end(), 0.0);
     e_.dissipation = e_.work = 0.0;
     for (const auto& group : system_->groups) group->add_forces(e_);
     add_link_forces(system_->links, motion_, force);
@@ -86,6 +87,8 @@ public:
     for (int i = 0; i < 3; ++i) f.segment<3>(3 * i) << force[i].fx, force[i].fy, force[i].m;
     return f;
   }
+  /// As of the last forces().
+  [[nodiscard]] const std::vector<double>& inner_rates() const { return arrays_.inner_rate; }
   double potential(const Pose& pose) {
     place(pose);
     double energy = system_->potential_energy(motion_.data());

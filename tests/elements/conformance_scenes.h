@@ -93,6 +93,11 @@ inline std::vector<ConformanceScene> contact_scenes() {
     {"segment_contact", // on the end
      "a = \"A\"\nb = \"B\"\nradius = 0.38\nfrom = [@-0.6, 0.2]\nto = [@+0.45, 0.3]\nthickness = 0.02\nstiffness = 900.0\n"
      "damping = 25.0\n"},
+    // Flat, and gripping whatever it takes; on a hump that is its own mirror image, and sliding at times.
+    {"tyre", "a = \"A\"\nb = \"B\"\nradius = 0.66\nstiffness = 900.0\ndamping = 25.0\nfriction = 20.0\nslip_stiffness = 20.0\n"
+             "relaxation_length = 0.2\ntread_damping = 2.0\n"},
+    {"tyre", "a = \"A\"\nb = \"B\"\nradius = 0.6\nroad = [[-1.2, 0.0], [-0.6, 0.05], [0.0, 0.12], [0.6, 0.05], [1.2, 0.0]]\nstiffness = 900.0\n"
+             "damping = 25.0\nfriction = 0.3\nslip_stiffness = 20.0\nrelaxation_length = 0.2\ntread_damping = 2.0\n"},
     {"polygon_contact", // a corner on a face
      "a = \"A\"\nb = \"B\"\nstiffness = 900.0\ndissipation = 0.6\n"
      "outline_a = [[@-0.2, -0.2], [@+0.2, -0.2], [@+0.2, 0.2], [@-0.2, 0.2]]\n"
@@ -132,6 +137,14 @@ inline std::vector<ConformanceScene> friction_scenes() {
      "stiffness = 900.0\ndamping = 25.0\npreload = 40.0\n"
      "[[element]]\nkind = \"unilateral_contact\"\nname = \"front\"\na = { body = \"a\", point = [@+0.4, -0.3], angle = @+0.3 }\n"
      "b = \"B\"\naxis = [@+0.1, 1.0]\nstiffness = 900.0\ndamping = 25.0\npreload = 60.0\n"},
+    {"rolling_resistance",
+     "contacts = [\"roller\"]\narm = 0.02\n"
+     "[[element]]\nkind = \"circle_contact\"\nname = \"roller\"\na = \"A\"\nb = \"B\"\nradius_a = 0.3\nradius_b = 0.58\n"
+     "stiffness = 900.0\ndamping = 25.0\n"},
+    {"rolling_resistance",
+     "contacts = [\"wheel\"]\narm = 0.02\n"
+     "[[element]]\nkind = \"tyre\"\nname = \"wheel\"\na = \"A\"\nb = \"B\"\nradius = 0.66\nstiffness = 900.0\ndamping = 25.0\n"
+     "friction = 0.8\nslip_stiffness = 20.0\nrelaxation_length = 0.2\ntread_damping = 2.0\n"},
     {"step_lap_joint", "limb = \"a\"\nactive_part = \"b\"\n"},
     {"step_lap_interface",
      "joint = \"joint\"\nframe = \"body\"\nyoke = [[@-0.5, 0.3], [@+0.6, 0.3], [@+0.6, 0.9], [@-0.5, 0.9]]\n"
@@ -180,6 +193,8 @@ inline std::vector<ConformanceScene> joint_scenes() {
     {"limit", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nlower = 0.8\nupper = 0.87\nstiffness = 900.0\ndamping = 25.0\n", false, true},
     {"joint_friction", "a = \"A\"\nb = \"B\"\ncoordinate = \"angle\"\nholds = 3.0\ndrags = 2.0\n"},
     {"joint_friction", "a = \"A\"\nb = \"B\"\ncoordinate = \"distance\"\nholds = 30.0\n", false, true},
+    {"skate", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\n"},
+    {"skate", "a = \"A\"\nb = \"B\"\naxis = [@+0.8, 0.6]\ngrip = 30.0\ndrags = 20.0\n"},
     {"rope", "a = \"A\"\nb = \"B\"\nstiffness = 800.0\ndamping = 30.0\nslack = 0.02\n", false, true},
     {"rope",
      "a = \"A\"\nb = \"B\"\nover = [\"high on b\", \"low on a\", \"low on a\"]\nstiffness = 800.0\ndamping = 30.0\npretension = 9.0\n"

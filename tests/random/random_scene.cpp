@@ -108,7 +108,7 @@ void add_laws(SceneWriter& w, RandomNumber own, const std::string& body) {
 }
 
 // Scenes behind this seed have actions as well.
-constexpr std::uint64_t k_last_without_actions = 6000;
+constexpr std::uint64_t k_last_without_actions = 9000;
 
 // When something happens: at a time, or where the body has moved or turned, once the time has come.
 std::string condition(SceneWriter& w, RandomNumber& own, const std::string& body) {
@@ -138,6 +138,56 @@ void add_actions(SceneWriter& w, RandomNumber own, const std::string& body) {
   if (own.chance(0.2)) w.action({{"when", quoted(number(w.duration * own.between(0.8, 1.0)) + " s")}, {"do", "[\"stop\"]"}}, {body});
 }
 
+// Scenes behind this seed hold a wheel on a road, or something on a skate, as well.
+constexpr std::uint64_t k_last_without_wheels = 6000;
+
+// A wheel that falls on a road beside everything else, rolling, sliding or spinning.
+void roll(SceneWriter& w, RandomNumber& own) {
+  const double radius = neat(0.3 * w.size), speed = w.size / w.duration, m = w.mass * own.between(0.5, 2.0);
+  const double weight = m * std::max(w.gravity, speed * speed / w.size), along = speed * own.between(-3.0, 3.0);
+  const double slip = weight * own.decades(0.3, 1.3), relaxation = radius * own.between(0.3, 1.5), depth = radius * own.between(0.005, 0.03);
+  const std::string body = w.body(m, 0.5 * m * radius * radius, {-20.0 * w.size, radius * own.between(0.99, 1.5)},
+                                  {{"velocity", pair(along, 0.0)}, {"angular_velocity", number(-along / radius * own.between(-0.5, 2.0))}});
+  SceneWriter::Fields fields{{"a", quoted(body)},
+                             {"radius", number(radius)},
+                             {"stiffness", number(weight / depth)},
+                             {"friction", number(own.between(0.1, 1.2))},
+                             {"slip_stiffness", number(slip)},
+                             {"relaxation_length", number(relaxation)},
+                             {"tread_damping", number(0.2 * std::sqrt(slip / relaxation * m))}};
+  if (own.chance(0.7)) fields.push_back({"damping", number(0.2 * std::sqrt(weight / depth * m))});
+  if (own.chance(0.5)) {
+    std::string road = "[" + pair(neat(-30.0 * w.size), 0.0);
+    for (int i = -25; i < -14; ++i) road += ", " + pair(neat(i * w.size), neat(0.05 * w.size * own.between(-1.0, 1.0)));
+    fields.push_back({"road", road + "]"});
+  }
+  const std::string tyre = w.element("tyre", fields, {body});
+  if (own.chance(0.5)) w.element("rolling_resistance", {{"contacts", "[" + quoted(tyre) + "]"}, {"arm", number(radius * own.between(0.005, 0.05))}}, {body, tyre});
+}
+
+// A body on a skate that a spring holds, or that slides sideways where its grip ends.
+void skate(SceneWriter& w, RandomNumber& own) {
+  const double speed = w.size / w.duration, m = w.mass * own.between(0.5, 2.0), heading = own.between(-3.0, 3.0), along = speed * own.between(0.5, 2.0);
+  const At place{-40.0 * w.size, 0.0};
+  const std::string body = w.body(m, w.inertia_of(m, w.size), place,
+                                  {{"angle", number(heading)}, {"velocity", pair(along * std::cos(heading), along * std::sin(heading))}, {"angular_velocity", number(own.between(-3.0, 3.0) / w.duration)}});
+  SceneWriter::Fields fields{{"a", quoted(body)}};
+  if (own.chance(0.5)) {
+    const double grip = m * (w.gravity + speed / w.duration) * own.decades(-0.7, 0.3);
+    fields.push_back({"grip", number(grip)});
+    if (own.chance(0.5)) fields.push_back({"drags", number(grip * own.between(0.3, 0.95))});
+  }
+  w.element("skate", fields, {body});
+  const double k = w.stiffness_for(m, 0.3, 3.0);
+  w.element("spring_damper", {{"a", quoted(body)}, {"b", marker("ground", {place.x, 2.0 * w.size})}, {"stiffness", number(k)}, {"damping", number(w.damping_for(m, k))}}, {body});
+}
+
+void add_wheels(SceneWriter& w, RandomNumber own) {
+  const bool is_rolling = own.chance(0.6);
+  if (is_rolling) roll(w, own);
+  if (!is_rolling || own.chance(0.3)) skate(w, own);
+}
+
 void add_cell(SceneWriter& w, const std::vector<NamedCell>& cells, At place, std::vector<std::string>& ends) {
   const NamedCell& cell = w.r.one_of(cells);
   w.scene.cells.insert(cell.name);
@@ -161,7 +211,8 @@ Scene random_scene(std::uint64_t seed) {
   if (!ends.empty()) hold(w, RandomNumber(~seed), ends.front());
   drop(w, RandomNumber(~seed * 3));
   if (seed > k_last_without_laws && !ends.empty()) add_laws(w, RandomNumber(~seed * 5), ends.front());
-  if (seed > k_last_without_actions && !ends.empty()) add_actions(w, RandomNumber(~seed * 7), ends.front());
+  if (seed > k_last_without_actions && !ends.empty()) add_actions(w, RandomNumber(~seed * 11), ends.front());
+  if (seed > k_last_without_wheels) add_wheels(w, RandomNumber(~seed * 7));
   return w.scene;
 }
 

@@ -237,6 +237,27 @@ stiffness = 1e6
   CHECK(drawing["elements"][1]["shapes"][0]["type"] == "touch");
 }
 
+TEST_CASE("a wheel is drawn on its road, a flat one without ends, and a skate along the way in which it runs") {
+  const std::string rest = "stiffness = 1e6\nfriction = 0.8\nslip_stiffness = 1e4\nrelaxation_length = 0.2\ntread_damping = 50\nradius = 0.3\n";
+  const auto drawing = drawing_of("[[element]]\nkind = \"tyre\"\nname = \"flat\"\na = \"ball\"\n" + rest +
+                                  "[[element]]\nkind = \"tyre\"\nname = \"hilly\"\na = \"ball\"\nroad = [[-2, 0], [0, 0.1], [2, 0]]\n" + rest +
+                                  "[[element]]\nkind = \"skate\"\nname = \"edge\"\na = \"slab\"\naxis = [0, 2]\n");
+  const auto& flat = drawing["elements"][0]["shapes"][0];
+  CHECK(flat["style"] == "flat");
+  CHECK(is_near(flat["sizes"], {0.3, -300.0, 0.0, 300.0, 0.0, 0.0}));
+  const auto& hilly = drawing["elements"][1]["shapes"][0]["sizes"];
+  REQUIRE(hilly.size() == 20); // the radius, the first end, eight more, and the thickness
+  CHECK(hilly[3].get<double>() == doctest::Approx(-1.5));
+  CHECK(hilly[5] == 0.0);
+  CHECK(hilly[18].get<double>() == doctest::Approx(2.0));
+  CHECK(drawing["ground"]["segments"].size() == 8); // of the hills alone
+  const auto& edge = drawing["elements"][2]["shapes"][0];
+  CHECK(edge["type"] == "rail");
+  CHECK(edge["style"] == "skate");
+  CHECK(edge["at"].size() == 1);
+  CHECK(is_near(edge["direction"], {0.0, 1.0}));
+}
+
 TEST_CASE("contacts on one line share a half-plane, whose normal points away from what is solid") {
   const auto contact = [](const std::string& name, const std::string& at, const std::string& normal) {
     return "[[element]]\nkind = \"unilateral_contact\"\nname = \"" + name + "\"\na = \"ball\"\nb = { body = \"ground\", at = " + at +
