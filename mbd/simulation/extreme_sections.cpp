@@ -3,7 +3,7 @@
 // Each channel is followed for itself, but a kink is seldom one channel's: where a joint lets go, its wrench, its share of the
 // capacity and the accelerations of all that it holds turn at the same time, and the same sections close in on that. What was looked
 // at for one channel is therefore kept for those that are followed after it. Their values are what a look of their own would find,
-// to the bit. Channels with bounds cost much to ask: they are not asked for the sake of those without.
+// to the bit.
 #include "mbd/simulation/extremes.h"
 
 #include "mbd/base/diagnostics.h"
@@ -63,7 +63,7 @@ public:
   struct Place {
     double theta = 0.0;
     bool is_singular = false;                 ///< beside a singular position of the joints
-    std::vector<std::optional<double>> value; ///< as the open channels; none of those that nobody asked, and where it failed
+    std::vector<std::optional<double>> value; ///< as the open channels; none of those before, and where it failed
   };
 
   /// Memory is kept from stretch to stretch.
@@ -99,14 +99,12 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
   Places& places = Places::of_thread();
   if (c == open_.front()) places.clear(); // another stretch
   const auto own = static_cast<std::size_t>(std::find(open_.begin(), open_.end(), c) - open_.begin());
-  const auto is_dear = [this](std::size_t channel) { return screened_slot_[channel] >= 0; };
   const auto look_for_all = [&](double theta) -> const Places::Place& {
     const Snapshot snapshot = look(theta, integrator, dynamics);
     Places::Place& place = places.add(theta, open_.size());
     place.is_singular = is_singular_;
     place.value[own] = ranges_[c].channel->value(snapshot);
     for (std::size_t k = own + 1; k < open_.size(); ++k) {
-      if (is_dear(open_[k]) && !is_dear(c)) continue;
       try {
         place.value[k] = ranges_[open_[k]].channel->value(snapshot);
       } catch (const NumericalFailure&) { // its own look will tell, if it comes here
