@@ -1,10 +1,10 @@
 #include "transformer/core_geometry.h"
 
 #include "elements/patch/exact_polygon.h"
-#include "elements/patch/overlap.h"
 #include "elements/step_lap_interface.h"
 #include "mbd/base/number_text.h"
 #include "mbd/math/portable_math.h"
+#include "transformer/lap_overlap.h"
 
 #include <algorithm>
 #include <array>
@@ -22,18 +22,6 @@ namespace {
 constexpr double k_usual_notch = 45.0 * std::numbers::pi / 180.0;
 constexpr double k_strip_tongue = 0.05, k_strip_margin = 0.02; // m, of strips that do not say: matter once slid so far
 constexpr long k_hole_sides = 24;
-
-// Area, middle and vertices of where its sheets overlap.
-void find_overlap(Lap& lap) {
-  if (lap.yoke.outer.size() < 3 || lap.limb.outer.size() < 3) return;
-  OverlapWorkspace workspace;
-  Region region;
-  intersect_exactly(make_outline(lap.yoke), make_outline(lap.limb), {}, workspace, region);
-  lap.area = area(region);
-  if (!(lap.area > 0.0)) return;
-  lap.middle = centroid(region);
-  for (const Polygon& piece : region) lap.overlap.insert(lap.overlap.end(), piece.outer.begin(), piece.outer.end());
-}
 
 // Is the circle wholly inside the convex ring, or wholly outside?
 enum class Place { inside, outside, across };

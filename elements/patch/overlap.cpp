@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -14,19 +16,35 @@ namespace {
 
 constexpr double k_rounding = 1e-16; // of coordinates, turned and shifted, relative to the sheets' reach together
 
-void place(const Ring& ring, const Pose& pose, Ring& out) {
-  const auto [s, c] = portable::sin_cos(pose.theta);
+// Kept from the call before: all sheets of a joint are overlapped at one pose.
+const portable::SinCos& turn_of(double angle) {
+  static thread_local double turned = 0.0;
+  static thread_local portable::SinCos turn{0.0, 1.0};
+  if (std::bit_cast<std::uint64_t>(angle) != std::bit_cast<std::uint64_t>(turned)) { // a zero has its sign, too
+    turn = portable::sin_cos(angle);
+    turned = angle;
+  }
+  return turn;
+}
+
+Vec2 placed(const Vec2& p, const Pose& pose, const portable::SinCos& turn) {
+  const auto [s, c] = turn;
+  return {c * p.x() - s * p.y() + pose.x, s * p.x() + c * p.y() + pose.y};
+}
+
+void place(const Ring& ring, const Pose& pose, const portable::SinCos& turn, Ring& out) {
+  const auto [s, c] = turn;
   out.resize(ring.size());
   for (std::size_t i = 0; i < ring.size(); ++i)
     out[i] = {c * ring[i].x() - s * ring[i].y() + pose.x,
               s * ring[i].x() + c * ring[i].y() + pose.y};
 }
 
-/// out := the part of the convex ring on the left of the line through p and q.
-void clip(const Ring& ring, const Vec2& p, const Vec2& q, Ring& out) {
-  out.clear();
-  if (ring.empty()) return;
+/// out := the part of the convex ring on the left of the line through p and q. False, with `out` untouched: that is all of it.
+bool clip(const Ring& ring, const Vec2& p, const Vec2& q, Ring& out) {
   const Vec2 along = q - p;
+  if (std::all_of(ring.begin(), ring.end(), [&](const Vec2& corner) { return cross(along, corner - p) >= 0; })) return false;
+  out.clear();
   Vec2 from = ring.back();
   double d_from = cross(along, from - p);
   for (const Vec2& to : ring) {
@@ -36,19 +54,18 @@ void clip(const Ring& ring, const Vec2& p, const Vec2& q, Ring& out) {
     from = to;
     d_from = d_to;
   }
+  return true;
 }
 
 /// workspace.front := convex ring a ∩ workspace.placed.
 void clip_convex(const Ring& a, OverlapWorkspace& w) {
   w.front.assign(a.begin(), a.end());
-  for (std::size_t i = 0; i < w.placed.size() && !w.front.empty(); ++i) {
-    clip(w.front, w.placed[i], w.placed[i + 1 == w.placed.size() ? 0 : i + 1], w.back);
-    std::swap(w.front, w.back);
-  }
+  for (std::size_t i = 0; i < w.placed.size() && !w.front.empty(); ++i)
+    if (clip(w.front, w.placed[i], w.placed[i + 1 == w.placed.size() ? 0 : i + 1], w.back)) std::swap(w.front, w.back);
 }
 
-bool circles_apart(const Outline& a, const Outline& b, const Pose& pose) {
-  return (placed(b.centre, pose) - a.centre).norm() > (a.radius + b.radius) * (1 + 1e-12);
+bool circles_apart(const Outline& a, const Outline& b, const Pose& pose, const portable::SinCos& turn) {
+  return (placed(b.centre, pose, turn) - a.centre).norm() > (a.radius + b.radius) * (1 + 1e-12);
 }
 
 RingView part(const ConvexCut& cut, std::size_t i, const Ring& corners) {
@@ -147,7 +164,7 @@ void put_convex(const Ring& ring, CellWorkspace& w, Region& out) {
 
 void intersect_convex(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w, Region& out) {
   const Ring &ring_a = a.polygon.outer, &ring_b = b.polygon.outer;
-  place(ring_b, pose, w.placed);
+  place(ring_b, pose, turn_of(pose.theta), w.placed);
   if (ring_a.size() * ring_b.size() < k_many_corners) {
     clip_convex(ring_a, w);
   } else {
@@ -159,7 +176,7 @@ void intersect_convex(const Outline& a, const Outline& b, const Pose& pose, Over
 }
 
 bool trace(const Outline& a, const Outline& b, const Pose& pose, double rounding, OverlapWorkspace& w, Region& out) {
-  place(b.boundary.corners, pose, w.trace.placed);
+  place(b.boundary.corners, pose, turn_of(pose.theta), w.trace.placed);
   build_edge_tree(b.boundary, w.trace.placed, w.trace.tree);
   return trace_overlap({&a.boundary, &a.boundary.corners, &a.tree}, {&b.boundary, &w.trace.placed, &w.trace.tree}, rounding,
                        least_area(a, b), w.trace, w.cells, out);
@@ -167,10 +184,7 @@ bool trace(const Outline& a, const Outline& b, const Pose& pose, double rounding
 
 } // namespace
 
-Vec2 placed(const Vec2& p, const Pose& pose) {
-  const auto [s, c] = portable::sin_cos(pose.theta);
-  return {c * p.x() - s * p.y() + pose.x, s * p.x() + c * p.y() + pose.y};
-}
+Vec2 placed(const Vec2& p, const Pose& pose) { return placed(p, pose, portable::sin_cos(pose.theta)); }
 
 Outline make_outline(Polygon polygon) {
   Outline out;
@@ -194,23 +208,23 @@ Outline make_outline(Polygon polygon) {
 void intersect(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w,
                Region& out) {
   empty_keeping_storage(out, w.cells);
-  if (circles_apart(a, b, pose)) return;
+  if (circles_apart(a, b, pose, turn_of(pose.theta))) return;
   if (a.convex && b.convex) return intersect_convex(a, b, pose, w, out);
   const double reach = a.centre.norm() + a.radius + b.centre.norm() + b.radius;
   if (trace(a, b, pose, k_rounding * reach, w, out)) return;
-  place(b.cut.corners, pose, w.cells.placed);
+  place(b.cut.corners, pose, turn_of(pose.theta), w.cells.placed);
   join_cells(a.cut, b.cut, k_rounding * reach, least_area(a, b), w.cells, out);
 }
 
 void intersect_exactly(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w,
                        Region& out) {
-  if (circles_apart(a, b, pose) || (a.convex && b.convex)) return intersect(a, b, pose, w, out);
+  if (circles_apart(a, b, pose, turn_of(pose.theta)) || (a.convex && b.convex)) return intersect(a, b, pose, w, out);
   out = exact_intersection(a.polygon, b.polygon, pose);
   std::erase_if(out, [&](const Polygon& p) { return area(p) <= least_area(a, b); });
 }
 
 double penetration(const Outline& a, const Outline& b, const Pose& pose, OverlapWorkspace& w) {
-  place(b.cut.corners, pose, w.cells.placed);
+  place(b.cut.corners, pose, turn_of(pose.theta), w.cells.placed);
   if (a.convex && b.convex) return depth(part(a.cut, 0, a.cut.corners), part(b.cut, 0, w.cells.placed));
   return depth_of_parts(a, b, w);
 }

@@ -97,12 +97,10 @@ private:
       r[m + i] = h_ * k(0)[i] - r[i];
       r[2 * m + i] = 2.0 * r[i] - h_ * (k(0)[i] + k(12)[i]);
     }
-    weighted_row<d, 0, 16>(k_.data(), m, n_, r + 3 * m);
-    weighted_row<d, 1, 16>(k_.data(), m, n_, r + 4 * m);
-    weighted_row<d, 2, 16>(k_.data(), m, n_, r + 5 * m);
-    weighted_row<d, 3, 16>(k_.data(), m, n_, r + 6 * m);
-    for (int p = 3; p < 7; ++p)
-      for (int i = 0; i < n_; ++i) r[p * m + i] *= h_;
+    weighted_row<d, 0, 16>(h_, k_.data(), m, n_, r + 3 * m);
+    weighted_row<d, 1, 16>(h_, k_.data(), m, n_, r + 4 * m);
+    weighted_row<d, 2, 16>(h_, k_.data(), m, n_, r + 5 * m);
+    weighted_row<d, 3, 16>(h_, k_.data(), m, n_, r + 6 * m);
     is_dense_ready_ = true;
   }
 

@@ -15,53 +15,91 @@
 
 namespace steplap {
 
-/// Two neighbours in the two halves of a register that every x86-64 has: the operations of either, in their order.
+/// Neighbours in the parts of a register: the operations of each, in their order. Every x86-64 has registers for two, most have them for
+/// four.
 using TwoNumbers [[gnu::vector_size(16)]] = double;
+using FourNumbers [[gnu::vector_size(32)]] = double;
 
-template <class S> STEPLAP_INLINE S numbers_at(const double* from) {
+/// Numbers from there on, as many as S has. (By reference: as results their registers would hang on the processor.)
+template <class S> STEPLAP_INLINE void read_numbers(const double* from, S& numbers) { std::memcpy(&numbers, from, sizeof numbers); }
+
+/// sum += coefficient k
+template <class S> STEPLAP_INLINE void add_stage(double coefficient, const double* k, S& sum) {
   S numbers;
-  std::memcpy(&numbers, from, sizeof numbers);
-  return numbers;
+  read_numbers(k, numbers);
+  sum += coefficient * numbers;
 }
 
 /// Σ_j coefficient_j k_j, zero coefficients dropped at compile time.
 template <class S, auto Coefficient, std::size_t... J>
-STEPLAP_INLINE S sum_of_stages(const double* k, int stride, std::index_sequence<J...>) {
-  S sum{};
-  ((Coefficient(J) != 0.0 ? void(sum += Coefficient(J) * numbers_at<S>(k + static_cast<std::ptrdiff_t>(J) * stride)) : void()), ...);
-  return sum;
+STEPLAP_INLINE void sum_stages_into(S& sum, const double* k, int stride, std::index_sequence<J...>) {
+  sum = S{};
+  ((Coefficient(J) != 0.0 ? add_stage(Coefficient(J), k + static_cast<std::ptrdiff_t>(J) * stride, sum) : void()), ...);
 }
 
-/// out[i] = f(i, Σ_j coefficient_j k_j[i]) for i < n, two at a time.
-template <auto Coefficient, std::size_t Count, class F>
-STEPLAP_INLINE void for_sums(const double* __restrict k, int stride, int n, double* __restrict out, const F& f) {
-  constexpr auto stages = std::make_index_sequence<Count>{};
-  int i = 0;
-  for (; i + 1 < n; i += 2) {
-    const TwoNumbers result = f(i, sum_of_stages<TwoNumbers, Coefficient>(k + i, stride, stages));
-    std::memcpy(out + i, &result, sizeof result);
-  }
-  if (i < n) out[i] = f(i, sum_of_stages<double, Coefficient>(k + i, stride, stages));
+/// out[i …] = Σ_j coefficient_j k_j[i …], as many as S has, after f(i, sum) has changed it.
+template <class S, auto Coefficient, std::size_t Count, class F>
+STEPLAP_INLINE void put_sums(const double* k, int stride, int i, double* out, const F& f) {
+  S sum;
+  sum_stages_into<S, Coefficient>(sum, k + i, stride, std::make_index_sequence<Count>{});
+  f(i, sum);
+  std::memcpy(out + i, &sum, sizeof sum);
 }
+
+/// The same for those from `i` to n, two at a time.
+template <auto Coefficient, std::size_t Count, class F>
+STEPLAP_INLINE void put_sums_by_two(const double* __restrict k, int stride, int i, int n, double* __restrict out, const F& f) {
+  for (; i + 1 < n; i += 2) put_sums<TwoNumbers, Coefficient, Count>(k, stride, i, out, f);
+  if (i < n) put_sums<double, Coefficient, Count>(k, stride, i, out, f);
+}
+
+#if defined(__x86_64__)
+template <auto Coefficient, std::size_t Count, class F>
+[[gnu::target("avx")]] void put_sums_by_four(const double* __restrict k, int stride, int n, double* __restrict out, const F& f) {
+  int i = 0;
+  for (; i + 3 < n; i += 4) put_sums<FourNumbers, Coefficient, Count>(k, stride, i, out, f);
+  put_sums_by_two<Coefficient, Count>(k, stride, i, n, out, f);
+}
+inline const bool has_registers_of_four = __builtin_cpu_supports("avx") != 0;
+#endif
+
+/// The same for all i < n.
+template <auto Coefficient, std::size_t Count, class F>
+inline void for_sums(const double* k, int stride, int n, double* out, const F& f) {
+#if defined(__x86_64__)
+  if (has_registers_of_four) return put_sums_by_four<Coefficient, Count>(k, stride, n, out, f);
+#endif
+  put_sums_by_two<Coefficient, Count>(k, stride, 0, n, out, f);
+}
+
+/// Leaves a sum as it is.
+struct AsItIs {
+  template <class S> STEPLAP_INLINE void operator()(int, S&) const {}
+};
 
 /// out = y + h Σ_j coefficient_j k_j. Rows is a constexpr array of rows, Row and Count pick the first Count entries of one.
 template <const auto& Rows, std::size_t Row, std::size_t Count>
 inline void combine(const double* __restrict y, double h, const double* __restrict k, int stride, int n,
                     double* __restrict out) {
   for_sums<[](std::size_t j) { return Rows[Row][j]; }, Count>(
-      k, stride, n, out, [=]<class S>(int i, S sum) { return S(numbers_at<S>(y + i) + h * sum); });
+      k, stride, n, out, [=]<class S>(int i, S& sum) __attribute__((always_inline)) {
+        S before;
+        read_numbers(y + i, before);
+        sum = before + h * sum;
+      });
 }
 
 /// out = Σ_j w_j k_j
 template <const auto& Weights, std::size_t Count>
 inline void weighted_sum(const double* __restrict k, int stride, int n, double* __restrict out) {
-  for_sums<[](std::size_t j) { return Weights[j]; }, Count>(k, stride, n, out, []<class S>(int, S sum) { return sum; });
+  for_sums<[](std::size_t j) { return Weights[j]; }, Count>(k, stride, n, out, AsItIs{});
 }
 
-/// The same with one row of an array of rows (a part of an object as argument is more than clang 14 understands).
+/// out = h Σ_j w_j k_j, with one row of an array of rows (a part of an object as argument is more than clang 14 understands).
 template <const auto& Rows, std::size_t Row, std::size_t Count>
-inline void weighted_row(const double* __restrict k, int stride, int n, double* __restrict out) {
-  for_sums<[](std::size_t j) { return Rows[Row][j]; }, Count>(k, stride, n, out, []<class S>(int, S sum) { return sum; });
+inline void weighted_row(double h, const double* __restrict k, int stride, int n, double* __restrict out) {
+  for_sums<[](std::size_t j) { return Rows[Row][j]; }, Count>(
+      k, stride, n, out, [h]<class S>(int, S& sum) __attribute__((always_inline)) { sum = h * sum; });
 }
 
 /// The adaptive loop around a pair: PI control after Hairer & Wanner, Solving ODEs II, IV.2.

@@ -1,6 +1,10 @@
+// OpenSSL's function itself, not by way of EVP_Digest…: that reads the configuration of the machine and gathers tables of all
+// algorithms before the first byte, which takes as many instructions as a digest of 170 kB and serves nobody here.
+#define OPENSSL_API_COMPAT 10101 // where these functions are declared without a warning
 #include "mbd/io/digest.h"
 
 #include <openssl/evp.h>
+#include <openssl/sha.h>
 
 #include <array>
 #include <stdexcept>
@@ -8,11 +12,7 @@
 namespace steplap {
 
 struct Sha256::Context {
-  EVP_MD_CTX* state = EVP_MD_CTX_new();
-  Context() = default;
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
-  ~Context() { EVP_MD_CTX_free(state); }
+  SHA256_CTX state{};
 };
 
 namespace {
@@ -24,18 +24,17 @@ void require(int is_done) {
 
 } // namespace
 
-Sha256::Sha256() : context_(std::make_unique<Context>()) { require(EVP_DigestInit_ex(context_->state, EVP_sha256(), nullptr)); }
+Sha256::Sha256() : context_(std::make_unique<Context>()) { require(SHA256_Init(&context_->state)); }
 Sha256::~Sha256() = default;
 
-void Sha256::add(std::string_view part) { require(EVP_DigestUpdate(context_->state, part.data(), part.size())); }
+void Sha256::add(std::string_view part) { require(SHA256_Update(&context_->state, part.data(), part.size())); }
 
 std::string Sha256::hex() {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int length = 0;
-  require(EVP_DigestFinal_ex(context_->state, digest.data(), &length));
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
+  require(SHA256_Final(digest.data(), &context_->state));
   std::string text;
-  for (unsigned int i = 0; i < length; ++i)
-    for (const int nibble : {digest[i] >> 4, digest[i] & 15}) text += "0123456789abcdef"[nibble];
+  for (const unsigned char byte : digest)
+    for (const int nibble : {byte >> 4, byte & 15}) text += "0123456789abcdef"[nibble];
   return text;
 }
 

@@ -27,10 +27,8 @@ constexpr double k_surprise = 3.0;
 // Of the bend of the stretches before: long steps meet an oscillation where it happens to be straight.
 constexpr double k_remembered = 0.5;
 constexpr double k_looks_per_period = 8.0; // of the quickest load
-constexpr int k_most_sections = 40;
 constexpr double k_within_reach = 0.25; // of a channel's range: what lies further from both extremes is left where it may not bend so much
 constexpr double k_bit_of_slack = 0.1; // by which a polynomial's top is found
-constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
 constexpr double k_same_crossing = 1e-10; // of a stretch
 // So many channels are followed each for itself without asking whether what they do is rounding.
 constexpr std::size_t k_few = 8;
@@ -38,7 +36,6 @@ constexpr int k_most_probes = 8;
 constexpr double k_hair = 1.25e-4; // of a stretch: smooth curves and kinks change by a hundredth of what nodes differ by
 constexpr double k_jitter = 0.25;  // of what its nodes differ by: what a few hair's breadths change by so much is rounding
 constexpr double k_most_jitter = 1e-6; // of the largest value in the same unit: more is not rounding
-constexpr double k_golden = 0.3819660112501051;
 // Error of a straight line through two ends against the third, of a channel's range: below and above which the
 // stretches of a fixed-step method become longer and shorter.
 constexpr double k_well_resolved = 0.01, k_badly_resolved = 0.05;
@@ -502,54 +499,6 @@ bool ExtremeFinder::is_jitter(std::size_t c, double change) {
   if (jitter_.empty()) jitter_.assign(count_, 0.0);
   jitter_[c] = std::max(jitter_[c], change);
   return true;
-}
-
-// Where golden sections look for a top: about every node that is higher than those beside it, the highest first.
-static int tops_of(const std::vector<std::vector<double>>& nodes, std::size_t c, double sign, std::array<int, k_last - 1>& middles) {
-  int count = 0;
-  for (int middle = 1; middle < k_last; ++middle) {
-    const auto is_below = [&](int i) { return !(sign * nodes[i][c] > sign * nodes[middle][c]); };
-    // Beside an end that is the highest the curve may go on rising.
-    const bool is_top = (is_below(middle - 1) || middle == 1) && (is_below(middle + 1) || middle == k_last - 1);
-    if (is_top) middles[count++] = middle;
-  }
-  std::sort(middles.begin(), middles.begin() + count, [&](int i, int j) { return sign * nodes[i][c] > sign * nodes[j][c]; });
-  return count;
-}
-
-// Golden sections, on the motion itself.
-void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dynamics) {
-  double* const values = scratch_.data();
-  for (const double sign : {1.0, -1.0}) {
-    std::array<int, k_last - 1> middles;
-    const int tops = tops_of(node_, c, sign, middles), count = integrator.is_adaptive() ? tops : std::min(tops, 1);
-    for (int top = 0; top < count; ++top) {
-      const int middle = middles[top];
-      const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
-      const double spread = spread_about(c, middle), highest = std::max({sign * at(c, middle - 1), sign * at(c, middle), sign * at(c, middle + 1)});
-      if (!(highest + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
-      double a = NodePolynomial::theta(middle - 1), b = NodePolynomial::theta(middle + 1);
-      const auto value = [&](double theta) {
-        take(c, t_ + theta * (t1_ - t_), look(theta, integrator, dynamics), values);
-        return sign * values[c];
-      };
-      double p = a + k_golden * (b - a), q = b - k_golden * (b - a), at_p = value(p), at_q = value(q);
-      for (int i = 0; i < k_most_sections && b - a > k_same_place; ++i) {
-        const bool is_left = at_p > at_q;
-        if (std::abs(at_p - at_q) <= 0.01 * tolerance(c) && b - a < 0.01) break;
-        (is_left ? b : a) = is_left ? q : p;
-        if (is_left) {
-          q = p;
-          at_q = at_p;
-          at_p = value(p = a + k_golden * (b - a));
-        } else {
-          p = q;
-          at_p = at_q;
-          at_q = value(q = b - k_golden * (b - a));
-        }
-      }
-    }
-  }
 }
 
 // The first time that a share passes 1, by bisection.

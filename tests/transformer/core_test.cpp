@@ -104,6 +104,26 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 } // namespace
 
+TEST_CASE("a core that has been built before comes to the same, to the bit") {
+  const auto numbers_of = [](const Model& model) {
+    std::vector<double> numbers;
+    for (const StepLapInterface* e : interfaces_of(model)) {
+      for (const auto* ring : {&e->yoke, &e->limb})
+        for (const Vec2& corner : *ring) numbers.insert(numbers.end(), {corner.x(), corner.y()});
+      numbers.insert(numbers.end(), {e->count, e->pressure, e->pressure_gradient.x(), e->pressure_gradient.y()});
+    }
+    return numbers;
+  };
+  const std::string core = k_shape + k_built + "pressure_gradient = [0.0, \"0.02 MPa/m\"]\n";
+  const std::vector<double> first = numbers_of(model_of(core));
+  CHECK(numbers_of(model_of(core, {"core.core.step_pitch=4.9 mm"})) != first);
+  CHECK(numbers_of(model_of(core)) == first); // overlaps are known from before
+  // Other pressures over overlaps that are known.
+  const std::vector<double> pressed = numbers_of(model_of(core, {"core.core.pressure=0.2 MPa"}));
+  CHECK(pressed != first);
+  CHECK(numbers_of(model_of(core, {"core.core.pressure=0.2 MPa"})) == pressed);
+}
+
 TEST_CASE("the paper's dimensions give the paper's sheets") {
   const Model model = model_of(k_shape + k_counted);
   const auto interfaces = interfaces_of(model);

@@ -1,0 +1,137 @@
+// ExtremeFinder: extremes of channels that no polynomial goes through (a kink), by golden sections on the motion itself.
+//
+// Each channel is followed for itself, but a kink is seldom one channel's: where a joint lets go, its wrench, its share of the
+// capacity and the accelerations of all that it holds turn at the same time, and the same sections close in on that. What was looked
+// at for one channel is therefore kept for those that are followed after it. Their values are what a look of their own would find,
+// to the bit.
+#include "mbd/simulation/extremes.h"
+
+#include "mbd/base/diagnostics.h"
+#include "mbd/simulation/node_polynomial.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace steplap {
+
+namespace {
+
+constexpr int k_last = NodePolynomial::k_last; // node at the stretch's end
+constexpr int k_most_sections = 40;
+constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
+constexpr double k_golden = 0.3819660112501051;
+constexpr std::size_t k_most_kept = std::size_t{1} << 20U; // values of channels: 16 MB; of large scenes few places are kept
+
+// Where golden sections look for a top: about every node that is higher than those beside it, the highest first.
+int tops_of(const std::vector<std::vector<double>>& nodes, std::size_t c, double sign, std::array<int, k_last - 1>& middles) {
+  int count = 0;
+  for (int middle = 1; middle < k_last; ++middle) {
+    const auto is_below = [&](int i) { return !(sign * nodes[i][c] > sign * nodes[middle][c]); };
+    // Beside an end that is the highest the curve may go on rising.
+    const bool is_top = (is_below(middle - 1) || middle == 1) && (is_below(middle + 1) || middle == k_last - 1);
+    if (is_top) middles[count++] = middle;
+  }
+  std::sort(middles.begin(), middles.begin() + count, [&](int i, int j) { return sign * nodes[i][c] > sign * nodes[j][c]; });
+  return count;
+}
+
+// The top of value() between a and b, by golden sections, until the curve is flat to flat(), which what is met may change.
+template <class Value, class Flat> void find_top(double a, double b, const Value& value, const Flat& flat) {
+  double p = a + k_golden * (b - a), q = b - k_golden * (b - a), at_p = value(p), at_q = value(q);
+  for (int i = 0; i < k_most_sections && b - a > k_same_place; ++i) {
+    const bool is_left = at_p > at_q;
+    if (std::abs(at_p - at_q) <= flat() && b - a < 0.01) break;
+    (is_left ? b : a) = is_left ? q : p;
+    if (is_left) {
+      q = p;
+      at_q = at_p;
+      at_p = value(p = a + k_golden * (b - a));
+    } else {
+      p = q;
+      at_p = at_q;
+      at_q = value(q = b - k_golden * (b - a));
+    }
+  }
+}
+
+/// Places that were looked at in the stretch, with what channels were there.
+class Places {
+public:
+  struct Place {
+    double theta = 0.0;
+    bool is_singular = false;                 ///< beside a singular position of the joints
+    std::vector<std::optional<double>> value; ///< as the open channels; none of those before, and where it failed
+  };
+
+  /// Memory is kept from stretch to stretch.
+  static Places& of_thread() {
+    static thread_local Places places;
+    return places;
+  }
+  void clear() { count_ = 0; }
+  /// Where the value of a channel there is known; null: nowhere.
+  [[nodiscard]] const Place* at(double theta, std::size_t channel) const {
+    for (std::size_t i = 0; i < count_; ++i)
+      if (places_[i].theta == theta && places_[i].value[channel]) return &places_[i];
+    return nullptr;
+  }
+  /// One more, of so many channels.
+  [[nodiscard]] Place& add(double theta, std::size_t channels) {
+    if ((count_ + 1) * channels > k_most_kept) count_ = 0;
+    if (count_ == places_.size()) places_.emplace_back();
+    Place& place = places_[count_++];
+    place.theta = theta;
+    place.value.assign(channels, std::nullopt);
+    return place;
+  }
+
+private:
+  std::vector<Place> places_; ///< those behind count_ are memory
+  std::size_t count_ = 0;
+};
+
+} // namespace
+
+void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dynamics) {
+  Places& places = Places::of_thread();
+  if (c == open_.front()) places.clear(); // another stretch
+  const auto own = static_cast<std::size_t>(std::find(open_.begin(), open_.end(), c) - open_.begin());
+  const auto look_for_all = [&](double theta) -> const Places::Place& {
+    const Snapshot snapshot = look(theta, integrator, dynamics);
+    Places::Place& place = places.add(theta, open_.size());
+    place.is_singular = is_singular_;
+    place.value[own] = ranges_[c].channel->value(snapshot);
+    for (std::size_t k = own + 1; k < open_.size(); ++k) {
+      try {
+        place.value[k] = ranges_[open_[k]].channel->value(snapshot);
+      } catch (const NumericalFailure&) { // its own look will tell, if it comes here
+      }
+    }
+    return place;
+  };
+  const auto value_at = [&](double theta) {
+    const Places::Place* const known = places.at(theta, own);
+    const Places::Place& place = known ? *known : look_for_all(theta);
+    is_singular_ = place.is_singular;
+    take(c, t_ + theta * (t1_ - t_), *place.value[own]);
+    return *place.value[own];
+  };
+  for (const double sign : {1.0, -1.0}) {
+    std::array<int, k_last - 1> middles;
+    const int tops = tops_of(node_, c, sign, middles), count = integrator.is_adaptive() ? tops : std::min(tops, 1);
+    for (int top = 0; top < count; ++top) {
+      const int middle = middles[top];
+      const double record = sign * (sign > 0.0 ? ranges_[c].high.value : ranges_[c].low.value);
+      const double spread = spread_about(c, middle), highest = std::max({sign * at(c, middle - 1), sign * at(c, middle), sign * at(c, middle + 1)});
+      if (!(highest + spread > record + tolerance(c)) || !std::isfinite(spread)) continue;
+      find_top(
+          NodePolynomial::theta(middle - 1), NodePolynomial::theta(middle + 1), [&](double theta) { return sign * value_at(theta); },
+          [&] { return 0.01 * tolerance(c); });
+    }
+  }
+}
+
+} // namespace steplap
