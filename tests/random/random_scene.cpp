@@ -1,6 +1,7 @@
 #include "tests/random/random_scene.h"
 
 #include "tests/random/scene_writer.h"
+#include "tests/random/transmissions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,6 +108,8 @@ void add_laws(SceneWriter& w, RandomNumber own, const std::string& body) {
   if (own.chance(0.4)) brake_on(w, own, body);
 }
 
+// Scenes behind this seed have a belt, a band, a cam, a one-way clutch, a gear with losses or a part of a beam as well.
+constexpr std::uint64_t k_last_without_transmissions = 12000;
 // Scenes behind this seed have actions as well.
 constexpr std::uint64_t k_last_without_actions = 9000;
 
@@ -213,6 +216,7 @@ Scene random_scene(std::uint64_t seed) {
   if (seed > k_last_without_laws && !ends.empty()) add_laws(w, RandomNumber(~seed * 5), ends.front());
   if (seed > k_last_without_actions && !ends.empty()) add_actions(w, RandomNumber(~seed * 11), ends.front());
   if (seed > k_last_without_wheels) add_wheels(w, RandomNumber(~seed * 7));
+  if (seed > k_last_without_transmissions) add_transmission(w, RandomNumber(~seed * 13));
   return w.scene;
 }
 
