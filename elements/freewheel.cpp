@@ -34,7 +34,7 @@ public:
     return wrench[0] / bound;
   }
   void watch_stick(const Evaluation&, const FrictionState&, const double* wrench, double* watch) const override { watch_between<double>(wrench[0], watch); }
-  [[nodiscard]] bool trace_friction(const TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench, Traced* watch) const override {
+  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench, Traced* watch) const override {
     if (rate) {
       wrench[0] = Traced(sliding(state));
       watch[0] = state.sign * rate[0];

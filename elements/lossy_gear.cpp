@@ -101,7 +101,7 @@ public:
     return std::max(0.0, bound<double>(e)) * std::abs(rate[0]);
   }
   void watch_stick(const Evaluation& e, const FrictionState&, const double* wrench, double* watch) const override { watch_bounds<double>(bound<double>(e), wrench[0], watch); }
-  [[nodiscard]] bool trace_friction(const TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench, Traced* watch) const override {
+  [[nodiscard]] bool trace_friction(TracedEvaluation& e, const FrictionState& state, const Traced* rate, Traced* wrench, Traced* watch) const override {
     if (rate) {
       wrench[0] = -state.sign * bound<Traced>(e);
       watch[0] = state.sign * rate[0];

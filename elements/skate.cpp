@@ -29,7 +29,7 @@ public:
   void watch_stick(const Evaluation&, const FrictionState&, const double* wrench, double* watch) const override {
     watch_bounds<double>(grip, wrench[0], watch);
   }
-  [[nodiscard]] bool trace_friction(const TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench,
+  [[nodiscard]] bool trace_friction(TracedEvaluation&, const FrictionState& state, const Traced* rate, Traced* wrench,
                                     Traced* watch) const override {
     if (rate) {
       wrench[0] = Traced(-state.sign * drags);

@@ -8,24 +8,22 @@ template <class S> OwnCoordinate<S> no_coordinate() { return {S(0.0), S(0.0)}; }
 
 } // namespace
 
-template <class S, class AtTime> void ActionGroup::watch(Evaluated<S>& e, const double* inner, const AtTime& at_time) const {
+template <class S, class AtTime> void ActionGroup::watch(Evaluated<S>& e, const AtTime& at_time) const {
   S quantity[k_most_switches];
   for (const Entry& entry : entries) {
     if (entry.unit < 0) continue;
     const MotionFormula& formula = *entry.trigger.formula;
     const SwitchBits bits = e.mode[entry.unit];
     preset_quantities(formula.program().switch_count(), bits, quantity);
-    (void)formula.value(e, inner, no_coordinate<S>(), at_time, bits, quantity);
+    (void)formula.value(e, no_coordinate<S>(), at_time, bits, quantity);
     watch_switches(bits, quantity, entry.trigger.switches, e.watch + entry.watch, e.watch_rate + entry.watch);
   }
 }
 
-void ActionGroup::add_forces(Evaluation& e) const { watch(e, e.inner, SignalsNow{e.t}); }
+void ActionGroup::add_forces(Evaluation& e) const { watch(e, SignalsNow{e.t}); }
 
 bool ActionGroup::trace_forces(TracedEvaluation& e) const {
-  for (const Entry& entry : entries)
-    if (entry.unit >= 0 && !entry.trigger.formula->can_be_traced()) return false;
-  watch<Traced>(e, nullptr, SignalsTraced{e});
+  watch<Traced>(e, SignalsTraced{e});
   return true;
 }
 
@@ -56,7 +54,7 @@ bool ActionGroup::holds(std::size_t action, const State& state, const std::vecto
   FormulaProgram::Bits bits{0, 0};
   if (entry.unit >= 0 && !is_stepped) bits = {state.mode[static_cast<std::size_t>(entry.unit)]};
   else entry.trigger.formula->find_bits(e, no_coordinate<double>(), bits);
-  return entry.trigger.formula->value<double>(e, e.inner, no_coordinate<double>(), SignalsNow{e.t}, bits.values, nullptr) != 0.0;
+  return entry.trigger.formula->value<double>(e, no_coordinate<double>(), SignalsNow{e.t}, bits.values, nullptr) != 0.0;
 }
 
 ActionGroup* action_group(System& system) {

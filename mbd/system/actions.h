@@ -64,7 +64,7 @@ public:
   [[nodiscard]] bool holds(std::size_t action, const State& state, const std::vector<Motion<double>>& motion, bool is_stepped) const;
 
 private:
-  template <class S, class AtTime> void watch(Evaluated<S>& e, const double* inner, const AtTime& at_time) const;
+  template <class S, class AtTime> void watch(Evaluated<S>& e, const AtTime& at_time) const;
 };
 
 /// Nullptr if the system has no actions.
