@@ -217,7 +217,8 @@ TEST_CASE("studies vary what formulas name, also where they want a few channels 
 }
 
 TEST_CASE("derivatives of states and by states are those of differences") {
-  const std::string text = k_no_gravity + body("a", "mass = 2; inertia = 0.5; position = [0.3, 0.2]; angle = 0.4; velocity = [0.5, -0.7]; angular_velocity = 1.1") +
+  const std::string text = k_no_gravity + body("other", "mass = 1; inertia = 1; position = [-2.0, 0.0]") + // so that a's coordinates are not the first
+                           body("a", "mass = 2; inertia = 0.5; position = [0.3, 0.2]; angle = 0.4; velocity = [0.5, -0.7]; angular_velocity = 1.1") +
                            state("one", "unit = \"m\"; start = 0.3;" + rate("(tip.x * tip.vy / '1 m/s' - one * two) / '0.2 s'")) + state("two", "start = 0.7;" + rate("(sin(a.theta) - two^2 * one / '1 m') / '0.5 s'")) +
                            table_text("marker", "name = \"tip\"\n", "body = \"a\"; point = [0.2, -0.3]") + element("force", "pull", "a = \"tip\"; coordinate = \"y\";" + formula("-'5 N/m' * value * two - '3 N/m' * one * two"));
   const std::unique_ptr<System> system = compile(scene(text + "[simulation]\nstep = 1e-3\n"));
@@ -230,7 +231,7 @@ TEST_CASE("derivatives of states and by states are those of differences") {
   Linearization linear;
   linear.evaluate(dynamics, 0.1, y.data());
   const int n = dynamics.coordinate_count();
-  REQUIRE(n == 3);
+  REQUIRE(n == 6);
   const auto sum = [](const std::vector<Linearization::Triplet>& entries, int row, int column) {
     double total = 0.0;
     for (const auto& e : entries)
