@@ -3,7 +3,8 @@
 // Each channel is followed for itself, but a kink is seldom one channel's: where a joint lets go, its wrench, its share of the
 // capacity and the accelerations of all that it holds turn at the same time, and the same sections close in on that. What was looked
 // at for one channel is therefore kept for those that are followed after it. Their values are what a look of their own would find,
-// to the bit.
+// to the bit. Channels that are noise find nothing there, and are soon left to themselves: to ask all of them at each look would cost the
+// square of their number.
 #include "mbd/simulation/extremes.h"
 
 #include "mbd/base/diagnostics.h"
