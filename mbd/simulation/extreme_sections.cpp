@@ -3,7 +3,8 @@
 // Each channel is followed for itself, but a kink is seldom one channel's: where a joint lets go, its wrench, its share of the
 // capacity and the accelerations of all that it holds turn at the same time, and the same sections close in on that. What was looked
 // at for one channel is therefore kept for those that are followed after it. Their values are what a look of their own would find,
-// to the bit.
+// to the bit. Channels that are noise find nothing there, and are soon left to themselves: to ask all of them at each look would cost the
+// square of their number.
 #include "mbd/simulation/extremes.h"
 
 #include "mbd/base/diagnostics.h"
@@ -13,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 namespace steplap {
@@ -23,6 +25,7 @@ constexpr int k_last = NodePolynomial::k_last; // node at the stretch's end
 constexpr int k_most_sections = 40;
 constexpr double k_same_place = 1e-7; // of a stretch: the value there differs by its square
 constexpr double k_golden = 0.3819660112501051;
+constexpr std::size_t k_trial = 50, k_least_use = 4; // places made before their use is asked for; one in so many has to be of use
 constexpr std::size_t k_most_kept = std::size_t{1} << 20U; // values of channels: 16 MB; of large scenes few places are kept
 
 // Where golden sections look for a top: about every node that is higher than those beside it, the highest first.
@@ -61,7 +64,6 @@ template <class Value, class Flat> void find_top(double a, double b, const Value
 class Places {
 public:
   struct Place {
-    double theta = 0.0;
     bool is_singular = false;                 ///< beside a singular position of the joints
     std::vector<std::optional<double>> value; ///< as the open channels; none of those before, and where it failed
   };
@@ -71,26 +73,34 @@ public:
     static thread_local Places places;
     return places;
   }
-  void clear() { count_ = 0; }
+  void clear() {
+    count_ = made_ = used_ = 0;
+    number_.clear();
+  }
+  /// Do those behind a channel come to the places that it was looked at? Channels that are noise each go their own way.
+  [[nodiscard]] bool are_of_use() const { return made_ < k_trial || k_least_use * used_ >= made_; }
+  void note_use() { ++used_; }
   /// Where the value of a channel there is known; null: nowhere.
   [[nodiscard]] const Place* at(double theta, std::size_t channel) const {
-    for (std::size_t i = 0; i < count_; ++i)
-      if (places_[i].theta == theta && places_[i].value[channel]) return &places_[i];
-    return nullptr;
+    const auto known = number_.find(theta);
+    return known != number_.end() && places_[known->second].value[channel] ? &places_[known->second] : nullptr;
   }
-  /// One more, of so many channels.
+  /// One more, of so many channels, in the place of what was known at this theta.
   [[nodiscard]] Place& add(double theta, std::size_t channels) {
-    if ((count_ + 1) * channels > k_most_kept) count_ = 0;
+    if ((count_ + 1) * channels > k_most_kept) clear();
     if (count_ == places_.size()) places_.emplace_back();
+    number_[theta] = count_;
+    ++made_;
     Place& place = places_[count_++];
-    place.theta = theta;
+    place.is_singular = false;
     place.value.assign(channels, std::nullopt);
     return place;
   }
 
 private:
   std::vector<Place> places_; ///< those behind count_ are memory
-  std::size_t count_ = 0;
+  std::size_t count_ = 0, made_ = 0, used_ = 0; ///< now; in the stretch, and how often one of them was of use
+  std::unordered_map<double, std::size_t> number_; ///< by theta: a noisy channel has thousands of them
 };
 
 } // namespace
@@ -104,7 +114,7 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
     Places::Place& place = places.add(theta, open_.size());
     place.is_singular = is_singular_;
     place.value[own] = ranges_[c].channel->value(snapshot);
-    for (std::size_t k = own + 1; k < open_.size(); ++k) {
+    for (std::size_t k = own + 1; k < open_.size() && places.are_of_use(); ++k) {
       try {
         place.value[k] = ranges_[open_[k]].channel->value(snapshot);
       } catch (const NumericalFailure&) { // its own look will tell, if it comes here
@@ -114,6 +124,7 @@ void ExtremeFinder::section(std::size_t c, Integrator& integrator, Dynamics& dyn
   };
   const auto value_at = [&](double theta) {
     const Places::Place* const known = places.at(theta, own);
+    if (known) places.note_use();
     const Places::Place& place = known ? *known : look_for_all(theta);
     is_singular_ = place.is_singular;
     take(c, t_ + theta * (t1_ - t_), *place.value[own]);
