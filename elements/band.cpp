@@ -1,6 +1,7 @@
 #include "elements/band.h"
 
 #include "elements/sliding_band.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/method.h"
 #include "mbd/system/system.h"
@@ -65,7 +66,7 @@ int add(Group& group, Group::Entry entry, SystemBuilder& builder) {
 double share_of(const Group::Flow<double>& flow) {
   const double least = std::min(flow.tension[0], flow.tension[1]), most = std::max(flow.tension[0], flow.tension[1]);
   if (!(most > 0.0)) return 0.0;
-  return least > 0.0 ? std::min(1.0, std::log(most / least) / std::log(flow.ratio)) : 1.0;
+  return least > 0.0 ? std::min(1.0, portable::log10(most / least) / portable::log10(flow.ratio)) : 1.0;
 }
 
 void add_shared_channels(const Group& group, int i, SystemBuilder& builder) {
@@ -101,7 +102,7 @@ void compile_band(const Element& element, SystemBuilder& builder) {
   entry.parts[1] = part_of(drum.body, b, {drum.point, b.point, -e.radius, 0.0}, e.stiffness_b.value_or(e.stiffness), builder);
   // From where it reaches the drum to where it leaves it: the parts' directions are at right angles to the radii there.
   const Vec2 &first = entry.parts[0].measure.start, &second = entry.parts[1].measure.start;
-  const double between = sense * std::atan2(first.x() * second.y() - first.y() * second.x(), first.dot(second)) - std::numbers::pi;
+  const double between = sense * portable::atan2(first.x() * second.y() - first.y() * second.x(), first.dot(second)) - std::numbers::pi;
   constexpr double k_turn = 2.0 * std::numbers::pi;
   entry.angle = between - k_turn * std::floor(between / k_turn) + k_turn * static_cast<double>(e.turns);
   if (entry.angle < k_least_angle) return builder.error("its free parts lie in one line, which only touches the drum: move an end, or change the sign of 'radius'");

@@ -2,6 +2,7 @@
 
 #include "elements/beam_part.h"
 #include "elements/section.h"
+#include "mbd/math/portable_math.h"
 #include "mbd/base/shown_text.h"
 #include "mbd/model/model_building.h"
 
@@ -133,7 +134,7 @@ void BeamMaker::add_segment(long i) {
   body.mass = values_.per_length * length;
   body.inertia = body.mass * (length * length / 12.0 + values_.section.second_moment / values_.section.area);
   body.position = beam_.from + static_cast<double>(i) * h * values_.along;
-  body.angle = std::atan2(values_.along.y(), values_.along.x());
+  body.angle = portable::atan2(values_.along.y(), values_.along.x());
   body.cg = {0.5 * (ahead - behind), 0.0};
   const double half = 0.5 * values_.section.height;
   body.outline = {{-behind, -half}, {ahead, -half}, {ahead, half}, {-behind, half}};

@@ -1,6 +1,7 @@
 #include "elements/freewheel.h"
 
 #include "elements/bounded_friction.h"
+#include "mbd/system/element_failure.h"
 #include "mbd/system/system.h"
 
 #include <algorithm>
@@ -19,12 +20,13 @@ public:
   RowSpec row;
   double low = 0.0, high = 0.0;
   double rest = 0.0; ///< N m: less is rounding
+  std::string name;  ///< of the element
 
   [[nodiscard]] int dimension() const override { return 1; }
   [[nodiscard]] const RowSpec* rows(const FrictionState&) const override { return &row; }
   void mark_bodies(std::vector<char>& is_used) const override { is_used[row.a] = is_used[row.b] = 1; }
   [[nodiscard]] bool is_loaded(const Evaluation&, const FrictionState&) const override { return true; }
-  void slip_wrench(const Evaluation&, const FrictionState& state, const double*, double* wrench) const override { wrench[0] = sliding(state); }
+  void slip_wrench(const Evaluation&, const FrictionState& state, const double*, double* wrench) const override { wrench[0] = bound(state); }
   [[nodiscard]] double support(const Evaluation&, const FrictionState&, const double* rate) const override {
     return rate[0] > 0.0 ? -low * rate[0] : -high * rate[0];
   }
@@ -61,6 +63,12 @@ private:
   [[nodiscard]] double least() const { return low * (1.0 + k_friction_bound_slack) - rest; }
   [[nodiscard]] double most() const { return high * (1.0 + k_friction_bound_slack) + rest; }
   [[nodiscard]] double sliding(const FrictionState& state) const { return state.sign > 0 ? low : high; }
+  // Bodies that turn against the lock would be joined by a blow, of which friction without a bound knows nothing.
+  [[nodiscard]] double bound(const FrictionState& state) const {
+    const double couple = sliding(state);
+    if (std::abs(couple) < k_whatever) return couple;
+    throw ElementFailure("the bodies of the one-way clutch '" + name + "' turn against its lock, where it would have to join them at once: let them begin with the same rate, or give it 'holds'", {name});
+  }
   template <class S> void watch_between(const S& wrench, S* watch) const {
     watch[0] = most() - wrench;
     watch[1] = wrench - least();
@@ -75,6 +83,7 @@ void compile_freewheel(const Element& element, SystemBuilder& builder) {
   const double holds = e.holds.value_or(k_whatever);
   if (!(e.drags < holds)) return builder.error("'drags' must be less than 'holds'");
   auto clutch = std::make_unique<OneWayClutch>();
+  clutch->name = e.name;
   const bool is_forward = e.free == "counter_clockwise";
   clutch->low = is_forward ? -e.drags : -holds;
   clutch->high = is_forward ? holds : e.drags;

@@ -171,6 +171,14 @@ void gear(Sketch& s) {
   s.draw({"touch", "gear", "", {*a, *b}, {}, {s.number("radius_a"), s.number("radius_b"), s.is("inside") ? 1.0 : 0.0}});
 }
 
+// Where the follower is lifted: an arrow with the force.
+void cam(Sketch& s) {
+  const auto b = s.place("b");
+  if (b) s.draw({"arrow", "motor", "force", s.places(), s.direction("axis"), {}});
+}
+void freewheel(Sketch& s) { s.draw({"arc", "brake", "couple", s.places(), {}, {}}); }
+void lossy_gear(Sketch& s) { s.draw({"arc", "drive", "couple", s.places(), {}, {}}); }
+
 void rack(Sketch& s) {
   const auto a = s.place("a");
   if (a) s.circle(*a, s.number("radius"));
@@ -220,7 +228,7 @@ Symbol symbol_of(const std::string& kind) {
       {"segment_contact", segment_contact}, {"tyre", tyre}, {"coulomb_stick", friction}, {"rolling_resistance", friction},
       {"step_lap_joint", step_lap_joint}, {"step_lap_interface", nothing},
       {"revolute", pin}, {"prismatic", rail}, {"weld", weld}, {"distance", rod}, {"point_on_line", rail},
-      {"skate", skate}, {"gear", gear}, {"rack", rack},
+      {"skate", skate}, {"gear", gear}, {"rack", rack}, {"cam", cam}, {"freewheel", freewheel}, {"lossy_gear", lossy_gear},
       {"prescribed_motion", drive}, {"motor", motor}, {"limit", limit}, {"joint_friction", brake},
       {"force", formula_force}, {"state", nothing}};
   const auto found = symbols.find(kind);

@@ -34,7 +34,10 @@ double pushing_power(const Snapshot& s, const System& system, std::size_t f) {
     power += s.friction_force[unit.row + i] * rate[i];
   }
   if (state.phase == FrictionPhase::slip) return power;
-  return unit.friction->never_slips() ? 0.0 : unit.friction->support(*s.evaluation, state, rate);
+  if (unit.friction->never_slips()) return 0.0;
+  constexpr double k_no_bound = 1e20; // N or N m: what holds whatever it takes, as a one-way clutch does, is seen by what it bears
+  const double most = unit.friction->support(*s.evaluation, state, rate), size = std::max({std::abs(rate[0]), std::abs(rate[1]), std::abs(rate[2])});
+  return most > k_no_bound * size ? power : most;
 }
 
 double overload_of(const Snapshot& s, const System& system, std::size_t f) {
@@ -47,8 +50,8 @@ double overload_of(const Snapshot& s, const System& system, std::size_t f) {
   const bool is_bearing = std::any_of(wrench, wrench + n, [](double w) { return w != 0.0; });
   if (!is_bearing) return -1.0;
   if (state.phase == FrictionPhase::apart) return INFINITY;
-  double normal[3], forward[3] = {1.0, 0.0, 0.0};
-  if (!(unit.friction->support(*s.evaluation, state, forward) > 0.0)) return 0.0; // as good as unloaded
+  double normal[3], against[3] = {n == 1 && wrench[0] > 0.0 ? -1.0 : 1.0, 0.0, 0.0}; // of what holds one way only, the side that bears
+  if (!(unit.friction->support(*s.evaluation, state, against) > 0.0)) return 0.0; // as good as unloaded
   return unit.friction->gauge(*s.evaluation, state, wrench, normal) - 1.0;
 }
 

@@ -107,7 +107,7 @@ TEST_CASE("a governor with a servo follows its equations, also while the servo i
     const double turning = (-2.0 * k_g * 0.3 * s + 2.0 * z[2] * z[2] * x * 0.3 * c - 0.8 * z[1]) / (0.004 + 2.0 * 0.09);
     return std::array<double, 4>{z[1], turning, (200.0 * std::clamp(z[3], 0.0, 1.0) - (t < 5.0 ? 40.0 : 80.0)) / 30.0, std::clamp(1.5 * (0.6 - z[0]), -0.5, 0.5)};
   };
-  const MachineRun r("governor", {"simulation.tolerance=1e-10"});
+  const MachineRun r("engine_governor", {"simulation.tolerance=1e-10"});
   REQUIRE(r.is_complete());
   const auto half = integrated<4>({0.6, 0.0, 5.2, 0.2}, 0.0, 5.0, 50000, rate); // the load jumps there
   const auto end = integrated<4>(half, 5.0, 20.0, 150000, rate);

@@ -486,7 +486,7 @@ TEST_CASE("each field of every kind is known to turn with a part or not to") {
   CHECK(found == "step_lap_interface.yoke place\nstep_lap_interface.limb place\nstep_lap_interface.yoke_holes place\nstep_lap_interface.limb_holes place\n"
                  "step_lap_interface.yoke_cutouts place\nstep_lap_interface.limb_cutouts place\nstep_lap_interface.pressure_gradient direction\n"
                  "step_lap_interface.across direction\nrope.over name\nload.force direction\nload.force_x fixed axis\nload.force_y fixed axis\n"
-                 "beam.from place\nbeam.to place\nplot.channels name\nplot.bounds name\ncore.limbs name\ncore.middle_limbs name\ncore.joints name\n");
+                 "beam.from place\nbeam.to place\naction.do name\nplot.channels name\nplot.bounds name\ncore.limbs name\ncore.middle_limbs name\ncore.joints name\n");
   std::string alone;
   for (const TableKind* kind : transformer_catalog().tables)
     if (!can_stand_in_part(*kind)) alone += kind->name + " ";

@@ -118,8 +118,10 @@ std::string condition(SceneWriter& w, RandomNumber& own, const std::string& body
   const std::string time = number(w.duration * own.between(0.1, 0.9));
   if (own.chance(0.4)) return quoted(time + " s");
   const char* const quantity = own.chance(0.5) ? "vx" : "omega";
-  const std::string zero = std::string(quantity) == "vx" ? "'0 m/s'" : "'0 rad/s'";
-  return "\"t > '" + time + " s' && " + body + "." + quantity + (own.chance(0.5) ? " > " : " < ") + zero + "\"";
+  // Not zero: what joints or friction hold at rest is zero to rounding, and whether that is more or less nobody can tell.
+  const double limit = own.either(0.05, 1.0) / w.duration;
+  const std::string than = std::string(quantity) == "vx" ? "'" + number(limit * w.size) + " m/s'" : "'" + number(limit) + " rad/s'";
+  return "\"t > '" + time + " s' && " + body + "." + quantity + (own.chance(0.5) ? " > " : " < ") + than + "\"";
 }
 
 // Some element lets go, and may hold again. A brake may be set, and the run may end before its time.
@@ -141,7 +143,7 @@ void add_actions(SceneWriter& w, RandomNumber own, const std::string& body) {
   if (own.chance(0.2)) w.action({{"when", quoted(number(w.duration * own.between(0.8, 1.0)) + " s")}, {"do", "[\"stop\"]"}}, {body});
 }
 
-// Scenes behind this seed hold a wheel on a road, or something on a skate, as well.
+// Scenes behind this seed, and before those with actions, hold a wheel on a road, or something on a skate, as well.
 constexpr std::uint64_t k_last_without_wheels = 6000;
 
 // A wheel that falls on a road beside everything else, rolling, sliding or spinning.
@@ -215,7 +217,7 @@ Scene random_scene(std::uint64_t seed) {
   drop(w, RandomNumber(~seed * 3));
   if (seed > k_last_without_laws && !ends.empty()) add_laws(w, RandomNumber(~seed * 5), ends.front());
   if (seed > k_last_without_actions && !ends.empty()) add_actions(w, RandomNumber(~seed * 11), ends.front());
-  if (seed > k_last_without_wheels) add_wheels(w, RandomNumber(~seed * 7));
+  if (seed > k_last_without_wheels && seed <= k_last_without_actions) add_wheels(w, RandomNumber(~seed * 7));
   if (seed > k_last_without_transmissions) add_transmission(w, RandomNumber(~seed * 13));
   return w.scene;
 }

@@ -17,12 +17,12 @@ struct Wheel {
   double inertia = 0.0, spin = 0.0;
 };
 
-Wheel wheel(SceneWriter& w, RandomNumber& own, At at, double radius) {
+Wheel wheel(SceneWriter& w, RandomNumber& own, At at, double radius, double more = 0.0) { // `more`: of its spin, rad/s
   Wheel made;
   const double m = w.mass * own.between(0.5, 2.0);
   made.at = at;
   made.inertia = std::stod(number(0.5 * m * radius * radius));
-  made.spin = own.between(-8.0, 8.0) / w.duration;
+  made.spin = own.between(-8.0, 8.0) / w.duration + more;
   made.name = w.body(m, made.inertia, at, {{"angular_velocity", number(made.spin)}});
   w.element("revolute", {{"a", marker(made.name, at)}, {"b", marker("ground", at)}}, {made.name});
   if (own.chance(0.5))
@@ -71,9 +71,11 @@ void cam(SceneWriter& w, RandomNumber& own, At at) {
 }
 
 void clutch(SceneWriter& w, RandomNumber& own, At at) {
-  const Wheel a = wheel(w, own, at, w.size), b = wheel(w, own, {at.x, at.y + 3.0 * w.size}, w.size);
+  const bool is_clockwise = own.chance(0.5);
+  const double ahead = (is_clockwise ? -17.0 : 17.0) / w.duration; // it begins free
+  const Wheel a = wheel(w, own, at, w.size, ahead), b = wheel(w, own, {at.x, at.y + 3.0 * w.size}, w.size);
   Fields fields{{"a", quoted(a.name)}, {"b", quoted(b.name)}};
-  if (own.chance(0.5)) fields.push_back({"free", "\"clockwise\""});
+  if (is_clockwise) fields.push_back({"free", "\"clockwise\""});
   if (own.chance(0.3)) fields.push_back({"holds", number(a.inertia * 4.0 / (w.duration * w.duration) * own.decades(-0.5, 1.0))});
   w.element("freewheel", fields, {a.name, b.name});
   const std::string s = w.signal(a.inertia * 20.0 / (w.duration * w.duration));
