@@ -23,7 +23,7 @@ EVERYWHERE = re.compile("^[\\n\\t -~\u00a0-\u00ff\u0391-\u03c9\u2013\u2014\u2018
 
 # Where pictures are seen from when no model says it: the vehicle that a drive translates, or the ground.
 NO_DRIVE = ("rail_wagon_humping", "joint_apart")  # one runs free, into another wagon
-VEHICLES = {"stacked_blocks": "deck", "no_interference": "lower tank"}
+VEHICLES = {"stacked_blocks": "deck", "no_interference": "lower tank", "drawbar_train": "lorry"}
 # Of each scene, boxes on the screen: texts with marks, and the picture.
 BOXES = """const box = (e) => { const r = e.getBoundingClientRect(); return [r.left, r.top, r.right, r.bottom]; }, svg = steplap.page.scenes[0].svg;
     const texts = [...svg.querySelectorAll('.number-mark, .state-text, .note-text')].filter((e) => e.getBoundingClientRect().width > 0);
