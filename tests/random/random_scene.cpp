@@ -151,8 +151,9 @@ void roll(SceneWriter& w, RandomNumber& own) {
   const double radius = neat(0.3 * w.size), speed = w.size / w.duration, m = w.mass * own.between(0.5, 2.0);
   const double weight = m * std::max(w.gravity, speed * speed / w.size), along = speed * own.between(-3.0, 3.0);
   const double slip = weight * own.decades(0.3, 1.3), relaxation = radius * own.between(0.3, 1.5), depth = radius * own.between(0.005, 0.03);
-  const std::string body = w.body(m, 0.5 * m * radius * radius, {-20.0 * w.size, radius * own.between(0.99, 1.5)},
-                                  {{"velocity", pair(along, 0.0)}, {"angular_velocity", number(-along / radius * own.between(-0.5, 2.0))}});
+  const double turning = own.between(-0.5, 2.0), high = own.between(0.99, 1.5); // each compiler has its own order of arguments
+  const std::string body = w.body(m, 0.5 * m * radius * radius, {-20.0 * w.size, radius * high},
+                                  {{"velocity", pair(along, 0.0)}, {"angular_velocity", number(-along / radius * turning)}});
   SceneWriter::Fields fields{{"a", quoted(body)},
                              {"radius", number(radius)},
                              {"stiffness", number(weight / depth)},

@@ -95,8 +95,8 @@ void gear(SceneWriter& w, RandomNumber& own, At at) {
 // A mass at the end of a part of a beam that grows out of a wall.
 void beam(SceneWriter& w, RandomNumber& own, At at) {
   const double m = w.mass * own.between(0.5, 2.0), length = neat(w.size), k = w.stiffness_for(m, 0.5, 5.0);
-  const double drawn = 0.01 * w.size;
-  const std::string body = w.body(m, w.inertia_of(m, 0.3 * w.size), at, {{"velocity", pair(drawn / w.duration * own.between(-3.0, 3.0), drawn / w.duration * own.between(-3.0, 3.0))}});
+  const double speed = 0.01 * w.size / w.duration, vy = speed * own.between(-3.0, 3.0), vx = speed * own.between(-3.0, 3.0);
+  const std::string body = w.body(m, w.inertia_of(m, 0.3 * w.size), at, {{"velocity", pair(vx, vy)}});
   Fields fields{{"a", quoted(body)}, {"b", marker("ground", at)}, {"length", number(length)}, {"axial_stiffness", number(10.0 * k * length)},
                 {"bending_stiffness", number(k * length * length * length / 12.0)}};
   if (own.chance(0.5)) fields.push_back({"shear_stiffness", number(5.0 * k * length)});
