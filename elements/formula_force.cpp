@@ -146,6 +146,7 @@ public:
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override {
     return next_bits(entries[element].formula, mode, slot, e, entries[element].own_now(e));
   }
+  [[nodiscard]] bool follows_jumps() const override { return true; } // of a signal, if none of its own
   [[nodiscard]] WatchKind watch_kind(int) const override { return Jumps ? WatchKind::exact : WatchKind::rate; }
   [[nodiscard]] EventKind transition(UnitMode, UnitMode) const override { return EventKind::passes_kink; }
 

@@ -53,7 +53,7 @@ std::string Event::words() const { return detail.empty() ? words_of(kind) : word
 
 EventHandler::EventHandler(const System& system, Dynamics& dynamics)
     : system_(system), dynamics_(dynamics), modes_(system, dynamics), unit_of_slot_(system.watch_count, -1),
-      friction_of_slot_(system.watch_count, -1), fresh_(system.watch_count, 0),
+      friction_of_slot_(system.watch_count, -1), fresh_(system.watch_count, 0), has_switched_(system.watch_count, 0),
       y_(static_cast<std::size_t>(system.largest_dimension())), dy_(y_.size()) {
   for (std::size_t u = 0; u < system.units.size(); ++u)
     for (int w = 0; w < system.units[u].watch_count; ++w)
@@ -151,6 +151,7 @@ bool EventHandler::switch_units(State& state, const std::vector<int>& fired,
         unit.group->next_mode(unit.index, from, slot - unit.watch, dynamics_.evaluation());
     if (to == from) continue;
     state.mode[u] = to;
+    has_switched_[slot] = 1;
     state.dissipated += unit.group->enter_mode(unit.index, to, dynamics_.evaluation(), state.inner.data());
     if (unit.group->stops_in(unit.index, to))
       stop_reason_ = "'" + system_.element_names[unit.element] + "' " + words_of(unit.group->transition(from, to));
@@ -394,7 +395,9 @@ bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
   if (blow == Blow::rows) close_rows(system_, dynamics_, state);
   take_blow(system_, dynamics_, state);
   modes_.evaluate(state);
-  const bool is_contact_changed = switch_units(state, fallen(watch, dynamics_.watch()), events);
+  std::fill(has_switched_.begin(), has_switched_.end(), 0);
+  bool is_contact_changed = switch_units(state, fallen(watch, dynamics_.watch()), events);
+  if (follow_jumps(state, nullptr, events)) is_contact_changed = true;
   for (int f = 0; f < static_cast<int>(system_.frictions.size()); ++f) {
     const FrictionPhase phase = state.friction[f].phase;
     if ((phase != FrictionPhase::stick && phase != FrictionPhase::slip) || one_sided_row(*system_.frictions[f].friction)) continue;
@@ -410,10 +413,39 @@ bool EventHandler::strike(State& state, Blow blow, std::vector<Event>& events) {
   return is_contact_changed;
 }
 
+// What a jump has carried below zero, of units that have to follow jumps; a value that has changed sides in this event stays there.
+std::vector<int> EventHandler::carried(const std::vector<double>& before) const {
+  std::vector<int> slots = fallen(before, dynamics_.watch());
+  std::erase_if(slots, [this](int slot) {
+    const int u = unit_of_slot_[slot];
+    return u < 0 || has_switched_[slot] != 0 || !system_.units[u].group->follows_jumps();
+  });
+  return slots;
+}
+
+// A signal jumps at its breakpoint, and a formula where one of its comparisons changes: other comparisons of it may be on their other
+// side at once, and change it further. The state is evaluated in the modes that it had; each switch changes sides once.
+bool EventHandler::follow_jumps(State& state, const std::vector<double>* watch_before, std::vector<Event>& events) {
+  bool is_any = watch_before && switch_units(state, carried(*watch_before), events);
+  const auto has_jumped = [this] {
+    for (std::size_t slot = 0; slot < has_switched_.size(); ++slot)
+      if (has_switched_[slot] != 0 && system_.units[unit_of_slot_[slot]].group->follows_jumps()) return true;
+    return false;
+  };
+  if (!has_jumped()) return is_any;
+  for (;;) {
+    const std::vector<double> before = dynamics_.watch();
+    modes_.evaluate(state);
+    if (!switch_units(state, carried(before), events)) return is_any;
+    is_any = true;
+  }
+}
+
 // A state is evaluated, and set to rest, once in each set of modes that is tried: twice at most events, and what the last
 // evaluation found is where the next step begins.
-void EventHandler::handle(State& state, const std::vector<int>& fired, std::vector<Event>& events) {
+void EventHandler::handle(State& state, const std::vector<int>& fired, const std::vector<double>* watch_before, std::vector<Event>& events) {
   clear_fresh();
+  std::fill(has_switched_.begin(), has_switched_.end(), 0);
   settled_ = 0.0;
   before_ = state.friction;
   memory_before_ = state.memory;
@@ -421,6 +453,7 @@ void EventHandler::handle(State& state, const std::vector<int>& fired, std::vect
   modes_.begin_event();
   modes_.evaluate(state);
   bool is_contact_changed = switch_units(state, fired, events);
+  if (follow_jumps(state, watch_before, events)) is_contact_changed = true;
   const Fired found = fire(state, fired);
   if (!fired.empty()) modes_.forget_evaluation();
   if (found.is_any_tight && strike(state, Blow::ropes, events)) is_contact_changed = true;

@@ -32,8 +32,9 @@ public:
   /// Behind start(): notes what slides from there, if it could hold at all (friction of zero never does).
   void note_start(const State& state, std::vector<Event>& events) const;
   /// `state` is at the event, `fired` the watch slots that fell below zero (none: a breakpoint of a
-  /// signal, at which loads may jump). Changes modes, phases and anchors, notes what changed.
-  void handle(State& state, const std::vector<int>& fired, std::vector<Event>& events);
+  /// signal, at which loads may jump). `watch_before`: at a breakpoint, all watch values just before it; else null. Changes modes,
+  /// phases and anchors, notes what changed.
+  void handle(State& state, const std::vector<int>& fired, const std::vector<double>* watch_before, std::vector<Event>& events);
   /// `state` comes from another system at the same time (mbd/simulation/changeover.h): some elements act that did not, or the other way
   /// round. `closes_rows`: new constraints may take a blow.
   void take_over(State& state, bool closes_rows, std::vector<Event>& events);
@@ -60,6 +61,8 @@ public:
 private:
   void meet_constraints(State& state);
   bool switch_units(State& state, const std::vector<int>& fired, std::vector<Event>& events);
+  [[nodiscard]] std::vector<int> carried(const std::vector<double>& before) const;
+  bool follow_jumps(State& state, const std::vector<double>* watch_before, std::vector<Event>& events);
   void fire_friction(State& state, int f, int slot);
   void move_on(State& state, int f, const FrictionState& from);
   bool update_loading(State& state);
@@ -88,6 +91,7 @@ private:
   FrictionModes modes_;
   std::vector<int> unit_of_slot_, friction_of_slot_;
   std::vector<char> fresh_;
+  std::vector<char> has_switched_;       ///< per watch slot, in the event at hand
   std::string stop_reason_;
   double settled_ = 0.0;
   std::vector<double> y_, dy_;

@@ -294,7 +294,7 @@ static void guard_against_kinks(long kinks, long max_events, double t, const std
                        {element});
 }
 
-void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired) {
+void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* watch_before) {
   is_between_events_ = false;
   std::copy(y, y + dynamics_.dimension(), y_.begin());
   // Projection begins with factors of this state: after those of a sample it would leave something else within its tolerance.
@@ -308,7 +308,7 @@ void RunLeg::pass_event(double t, const double* y, const std::vector<int>& fired
     ledger_->end(dynamics_.snapshot(dy_.data()));
   }
   const std::size_t known = record_->events.size();
-  handler_.handle(state_, fired, record_->events);
+  handler_.handle(state_, fired, watch_before, record_->events);
   energy_.check_settled(state_.t, handler_.settled());
   const auto is_at_kink = [](const Event& event) { return is_kink(event.kind); };
   const auto first_new = record_->events.begin() + static_cast<std::ptrdiff_t>(known);
@@ -448,7 +448,7 @@ bool RunLeg::pass_step() {
     keep_ledger(t);
     if (extremes_) extremes_->end_at(t, *integrator_, dynamics_);
     sample_until(std::nextafter(t, 0.0) - k_output_slack * options_.output_step);
-    pass_event(t, at_event, finder_.fired());
+    pass_event(t, at_event, finder_.fired(), nullptr);
     if (!handler_.stop_reason().empty()) end_run();
     return true;
   }
@@ -458,7 +458,7 @@ bool RunLeg::pass_step() {
   sample_until(t1);
   handler_.clear_fresh();
   if (t1 >= limit && limit < options_.end) {
-    pass_event(t1, integrator_->y1(), {});
+    pass_event(t1, integrator_->y1(), {}, &integrator_->watch1());
     return true;
   }
   check_holding(t1, integrator_->watch1());

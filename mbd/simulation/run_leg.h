@@ -72,7 +72,7 @@ private:
   void keep_ledger(double t);
   void check_finite();
   void check_holding(double t, const std::vector<double>& watch) const;
-  void pass_event(double t, const double* y, const std::vector<int>& fired);
+  void pass_event(double t, const double* y, const std::vector<int>& fired, const std::vector<double>* watch_before);
   void pass_stepped();
   [[nodiscard]] bool are_joints(const std::vector<int>& slots) const;
   void step_through_storm(const std::string& element, double end);

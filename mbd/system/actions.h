@@ -57,6 +57,7 @@ public:
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>&) const override {}
   void mark_bodies(std::vector<char>& is_used) const override;
+  [[nodiscard]] bool follows_jumps() const override { return true; }
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;
   [[nodiscard]] UnitMode next_mode(int element, UnitMode mode, int slot, const Evaluation& e) const override;
 

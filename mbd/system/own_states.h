@@ -57,6 +57,7 @@ public:
   [[nodiscard]] bool trace_forces(TracedEvaluation& e) const override;
   [[nodiscard]] double potential(const Motion<double>*) const override { return 0.0; }
   void add_jacobian(const Evaluation&, std::vector<PairJacobian>&) const override {}
+  [[nodiscard]] bool follows_jumps() const override { return true; }
   void add_state_jacobian(const Evaluation& e, StateJacobian& out) const override;
   void mark_bodies(std::vector<char>& is_used) const override;
   [[nodiscard]] UnitMode initial_mode(int element, const Evaluation& e) const override;

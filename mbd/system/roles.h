@@ -161,6 +161,9 @@ public:
   [[nodiscard]] virtual bool is_surely_positive(int /*element*/, UnitMode /*mode*/, int /*slot*/, const Evaluation&) const { return false; }
   /// Of a watch value of each element.
   [[nodiscard]] virtual WatchKind watch_kind(int /*slot*/) const { return WatchKind::exact; }
+  /// Do its watch values jump where something else does: a signal at a breakpoint, another of an element's own values? Then what such a
+  /// jump carries below zero is an event there, too.
+  [[nodiscard]] virtual bool follows_jumps() const { return false; }
   /// Which event the change is.
   [[nodiscard]] virtual EventKind transition(UnitMode /*from*/, UnitMode /*to*/) const { return EventKind::none; }
   /// Does the run end with the change to this mode?

@@ -49,6 +49,31 @@ std::string discs() {
 
 } // namespace
 
+TEST_CASE("a condition that a blow makes true happens in the same instant") {
+  const std::string text = k_no_gravity + body("one", "mass = 1; inertia = 1; velocity = [1.0, 0.0]") + body("other", "mass = 1; inertia = 1; position = [2.0, 0.0]") +
+                           element("weld", "lock", "a = \"one\"; b = \"other\"; active = false") +
+                           "[[action]]\nname = \"caught\"\nwhen = \"0.5 s\"\ndo = [\"hold lock\"]\n"
+                           "[[action]]\nname = \"end\"\nwhen = \"one.vx < '0.75 m/s'\"\ndo = [\"stop\"]\n"; // together they go at 0.5 m/s
+  for (const char* method : {"dop853", "tsit5", "rodas5p"}) {
+    CAPTURE(std::string(method));
+    const Run r = run(text, {method, 1e-10, 1.0, 0.1});
+    REQUIRE(r.event_times("end").size() == 1);
+    CHECK(r.event_times("end")[0] == 0.5);
+  }
+}
+
+TEST_CASE("a condition that a signal's jump makes true happens at the jump") {
+  const std::string text = k_no_gravity + body("block", "mass = 1; inertia = 1; velocity = [1.0, 0.0]") +
+                           "[[signal]]\nkind = \"rectangle\"\nname = \"drive\"\npeak = 1.0\nstart = 0.3\nduration = 0.4\n"
+                           "[[action]]\nname = \"end\"\nwhen = \"drive > 0.5 && block.x > '0.1 m'\"\ndo = [\"stop\"]\n";
+  for (const char* method : {"dop853", "tsit5", "rodas5p"}) {
+    CAPTURE(std::string(method));
+    const Run r = run(text, {method, 1e-10, 1.0, 0.1});
+    REQUIRE(r.event_times("end").size() == 1);
+    CHECK(r.event_times("end")[0] == 0.3); // a breakpoint, which is no time found
+  }
+}
+
 TEST_CASE("a crane that drops its load swings about its new rest, whatever the load hung from") {
   const std::string hangers[] = {element("distance", "rope", "a = \"load\"; b = \"head\""), element("rope", "rope", "a = \"load\"; b = \"head\"; inextensible = true"),
                                  element("weld", "rope", "a = \"load\"; b = \"head\"")};

@@ -135,6 +135,29 @@ TEST_CASE("jumps and kinks of a formula are located: motion goes on from them by
   }
 }
 
+// A signal that jumps, or a comparison that changes, may carry others across their ends in the same instant: a piece of a formula that is chosen
+// wrongly for no more than a hair of a step would show here, by a part of a step times the jump.
+TEST_CASE("what a jump carries across its end changes with it: signals, and comparisons within others") {
+  const std::string pulse = "[[signal]]\nkind = \"rectangle\"\nname = \"drive\"\npeak = 1.0\nstart = 0.3\nduration = 0.4\n";
+  const std::string at = "a = \"block\"; coordinate = \"x\";";
+  const auto speed = [&](const std::string& text, const char* method, double start, double end) {
+    const Run r = run(k_no_gravity + pulse + body("block", "mass = 1; inertia = 1; velocity = [0.0, 1.0]; position = [0.0, " + std::to_string(start) + "]") + force("push", at + formula(text)),
+                      {method, 1e-10, end, end});
+    return r.last("block.vx");
+  };
+  for (const char* method : {"dop853", "tsit5", "rodas5p"}) {
+    CAPTURE(std::string(method));
+    // 0.6 s of the one and 0.4 s of the other.
+    CHECK(std::abs(speed("drive > 0.5 ? '10 N' : '1 N'", method, 0.0, 1.0) - 4.6) < k_tolerance);
+    CHECK(std::abs(speed("max(drive, 0.5) * '10 N'", method, 0.0, 1.0) - 7.0) < k_tolerance);
+    CHECK(std::abs(speed("abs(drive - 0.25) * '4 N' + (drive < 0.5 ? '1 N' : '2 N')", method, 0.0, 1.0) - (0.6 * 2.0 + 0.4 * 5.0)) < k_tolerance);
+    // At y = 1 m the first rises above the second.
+    CHECK(std::abs(speed("min(block.y > '1 m' ? '5 N' : '1 N', '2 N')", method, 0.0, 2.0) - 3.0) < k_tolerance);
+    // The same, but that the second, 2 N + 40 N/m (y - 1 m), has caught up with the first at 1.075 m, well within a step.
+    CHECK(std::abs(speed("min(block.y > '1 m' ? '5 N' : '1 N', '2 N' + '40 N/m' * (block.y - '1 m'))", method, 0.98, 1.02) - (0.02 + 0.2625 + 5.0 * 0.925)) < k_tolerance);
+  }
+}
+
 TEST_CASE("a controller that reads other bodies has exact derivatives: a cart balances a pendulum, the same by all methods") {
   const std::string text = body("cart", "mass = 2; inertia = 1; position = [0.1, 0.0]") + body("rod", "mass = 1; inertia = 0.1; position = [0.1, 0.5]; angle = 0.05") +
                            element("prismatic", "rail", "a = \"cart\"; axis = [1.0, 0.0]") +
