@@ -2,6 +2,7 @@
 
 #include "mbd/base/number_text.h"
 #include "mbd/base/shown_text.h"
+#include "mbd/model/validate.h"
 #include "transformer/core_builder.h"
 #include "transformer/core_geometry.h"
 
@@ -49,6 +50,10 @@ void measure_yoke(const Core& core, const Model& model, const std::vector<const 
     if (clamp->yoke_length && *clamp->yoke_length != *(*given)->yoke_length)
       wrong(*clamp, "yoke_length", "clamp '" + (*given)->name + "' gives the same yokes another 'yoke_length', " + number_text(*(*given)->yoke_length) + " m");
   yoke.length = *(*given)->yoke_length;
+  for (const double x : outer)
+    if (std::abs(x - yoke.middle) > 0.5 * yoke.length)
+      wrong(**given, "yoke_length", "forces that press on " + number_text(yoke.length) + " m do not reach the axis of the limb " + rounded_text(std::abs(x - yoke.middle)) +
+                                        " m from the middle: nothing would press its sheets");
 }
 
 double force_now(const Clamp& clamp, const Core& core) {
@@ -103,6 +108,14 @@ double Clamp::force(double depth) const {
   if (!stiffness || !stack_stiffness) return force;
   const double k = *stiffness * *stack_stiffness / (*stiffness + *stack_stiffness);
   return force - k * settling + k * length.value_or(depth) * (stack_expansion - expansion.value_or(stack_expansion)) * warming;
+}
+
+bool has_sound_clamps(const Core& core, const Model& model) {
+  const std::vector<Field>& fields = clamp_kind().fields.fields();
+  const std::vector<const Clamp*> clamps = clamps_of(core, model);
+  return std::all_of(clamps.begin(), clamps.end(), [&](const Clamp* clamp) {
+    return std::all_of(fields.begin(), fields.end(), [&](const Field& field) { return range_problem(field, field.get(clamp)).empty(); });
+  });
 }
 
 bool is_clamped(const Core& core, const Model& model) { return !clamps_of(core, model).empty(); }

@@ -51,6 +51,8 @@ struct YokeClamping {
 
 [[nodiscard]] const TableKind& clamp_kind();
 
+/// Are the fields of all clamps of the core within their ranges? If not, that is told where these tables are checked, and nothing is to be made of them.
+[[nodiscard]] bool has_sound_clamps(const Core& core, const Model& model);
 /// Is the core pressed by clamps of the model, and not by a pressure of its own?
 [[nodiscard]] bool is_clamped(const Core& core, const Model& model);
 /// Of the core's top or bottom yoke. Throws ModelError with what is wrong with its clamps.

@@ -175,7 +175,8 @@ const TableKind& core_kind() {
     k.holds<Core>();
     k.reads_masses = k.reads_elements = false; // of elements names, and outlines of sheets
     k.apply = [](const Element& table, Model& model) {
-      build_core(clamped(static_cast<const Core&>(table), model), model);
+      const auto& core = static_cast<const Core&>(table);
+      if (has_sound_clamps(core, model)) build_core(clamped(core, model), model);
     };
     return k;
   }();

@@ -8,18 +8,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace steplap {
 
 namespace {
-
-template <class Table>
-void add_named(const std::string& noun, const Table& table, std::vector<Table>& tables) {
-  for (const Table& other : tables)
-    if (other.name == table.name)
-      throw ModelError(table.place("name"), noun + " named '" + table.name + "' exists already: choose another name");
-  tables.push_back(table);
-}
 
 // Formulas and trajectory.csv have to tell it from what stands around it.
 void check_channel_name(const DefinedChannel& channel) {
@@ -245,7 +238,7 @@ const TableKind& channel_kind() {
     k.apply = [](const Element& table, Model& model) {
       const auto& channel = static_cast<const T&>(table);
       check_channel_name(channel);
-      add_named("channel", channel, model.channels);
+      model.channels.push_back(channel);
     };
     return k;
   }();
@@ -262,7 +255,7 @@ const TableKind& plot_kind() {
     k.fields.add("bounds", &Plot::bounds).doc("channels drawn dashed at plus and minus their value");
     k.holds<Plot>();
     k.reads_masses = k.reads_elements = false;
-    k.apply = [](const Element& table, Model& model) { add_named("plot", static_cast<const Plot&>(table), model.plots); };
+    k.apply = [](const Element& table, Model& model) { model.plots.push_back(static_cast<const Plot&>(table)); };
     return k;
   }();
   return kind;
@@ -291,7 +284,7 @@ const TableKind& acceptance_kind() {
       check_criterion(criterion);
       for (const Limit& limit : k_limits) // in SI, until the channels are known
         if (!(criterion.*limit.text).empty()) criterion.*limit.value = read_limit(criterion.*limit.text, "*").value;
-      add_named("acceptance", criterion, model.criteria);
+      model.criteria.push_back(std::move(criterion));
     };
     return k;
   }();

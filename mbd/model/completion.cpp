@@ -2,6 +2,10 @@
 
 #include "mbd/model/body_builder.h"
 
+#include <set>
+#include <string>
+#include <utility>
+
 namespace steplap {
 
 namespace {
@@ -45,10 +49,17 @@ void place_at_centres(Model& model, const std::vector<std::size_t>& markers) {
   }
 }
 
-// Has it been read, and are its fields within their ranges?
-bool is_sound(const Model& model, std::size_t table, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
+// Tables of each kind, by their names: messages, overrides and studies reach them so.
+using KnownTables = std::set<std::pair<const TableKind*, std::string>>;
+
+// Has it been read, are its fields within their ranges, and is it the only one of its kind with this name?
+bool is_sound(const Model& model, std::size_t table, const ModelPlaces& places, KnownTables& known, std::vector<Diagnostic>& problems) {
   const TableEntry& entry = model.tables[table];
   const std::size_t before = problems.size();
+  if (!known.emplace(entry.kind, entry.table->name).second) {
+    const auto* const object = dynamic_cast<const TableObject*>(entry.table.get());
+    problems.push_back({object ? object->place("name") : entry.table->where, entry.kind->name + " named '" + entry.table->name + "' exists already: choose another name"});
+  }
   FieldChecker(model, problems)
       .check(entry.kind->fields, entry.table.get(), subject_text(entry.kind->name, entry.table->name),
              [&](const std::string& field) {
@@ -60,11 +71,12 @@ bool is_sound(const Model& model, std::size_t table, const ModelPlaces& places, 
 // Tables that add bodies do so before anything asks for a body, all others when bodies have their places.
 bool apply_tables(Model& model, bool are_builders, const ModelPlaces& places, std::vector<Diagnostic>& problems) {
   bool is_every_one = true;
+  KnownTables known;
   for (std::size_t i = 0; i < model.tables.size(); ++i) {
     const TableEntry& entry = model.tables[i];
     const BodyBuilder* const builder = body_builder(entry);
     if ((builder != nullptr) != are_builders) continue;
-    if (!is_sound(model, i, places, problems)) {
+    if (!is_sound(model, i, places, known, problems)) {
       is_every_one = false;
       continue;
     }
@@ -79,13 +91,15 @@ bool apply_tables(Model& model, bool are_builders, const ModelPlaces& places, st
   return is_every_one;
 }
 
-// A model made in code gives what it sets to something else than the default.
-GivenBodyField given_in_code(const Model& model) {
+// What its file gave, and what code has set to something else than the default.
+GivenBodyField given_in_model(const Model& model) {
   return [&model](std::size_t index, const std::string& name) -> std::optional<Location> {
     const Field* const field = Body::fields().find(name);
-    const Body usual;
-    if (!field || field->get(&model.bodies[index]) == field->get(&usual)) return std::nullopt;
-    return model.bodies[index].where;
+    if (!field) return std::nullopt;
+    const Body &body = model.bodies[index], usual;
+    const bool is_in_file = (body.given >> (field - Body::fields().fields().data()) & 1U) != 0;
+    if (!is_in_file && field->get(&body) == field->get(&usual)) return std::nullopt;
+    return body.where;
   };
 }
 
@@ -112,7 +126,7 @@ bool complete(Model& model, const ModelPlaces& places, std::vector<Diagnostic>& 
   add_body_markers(model);
   const std::vector<std::size_t> at_centres = unplaced_markers(model);
   place_at_centres(model, at_centres);
-  place_by_joints(model, places.given ? places.given : given_in_code(model),
+  place_by_joints(model, places.given ? places.given : given_in_model(model),
                   places.locate ? places.locate : own_places(model), problems);
   const bool is_every_table_applied = apply_tables(model, false, places, problems);
   place_at_centres(model, at_centres); // tables may have moved a centre of gravity

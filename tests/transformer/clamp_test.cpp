@@ -165,4 +165,10 @@ TEST_CASE("what is wrong with clamps is said") {
   CHECK(has(refusal(clamp("preload = 1e4\nstiffness = 2e8\n")), "'stiffness' and 'stack_stiffness' are in series: give both"));
   CHECK(has(refusal(clamp("preload = 1e5\nstiffness = 2e8\nstack_stiffness = 2e8\nexpansion = 6e-6\nwarming = \"20 celsius\"\n")), "look like a temperature and not like a difference"));
   CHECK(has(refusal("pressure = 1e5\n[[clamp]]\nname = \"bolts\"\ncore = \"cor\"\npreload = 1e5\n"), "there is no core 'cor' (did you mean 'core'?)"));
+  // Fields out of their ranges are told once, as such; a name is used once.
+  CHECK(refusal(clamp("preload = -1e5\n")) == "'preload' of clamp 'bolts' must be greater than 0 N, got -1e+05");
+  CHECK(refusal(clamp("preload = 1e5\nrelaxation = 1.0\n")) == "'relaxation' of clamp 'bolts' must be at most 0.99, got 1");
+  CHECK(refusal(clamp("preload = inf\n")) == "'preload' of clamp 'bolts' must be finite, got inf");
+  CHECK(refusal(clamp("preload = 1e5\n") + clamp("preload = 2e5\n")) == "clamp named 'bolts' exists already: choose another name");
+  CHECK(has(refusal(clamp("preload = 1e5\nyoke_length = 2.4\n")), "forces that press on 2.4 m do not reach the axis of the limb 1.25 m from the middle"));
 }
