@@ -216,6 +216,8 @@ void Reader::read_bodies() {
     TableReading r = reading(subject_text("body", entry_name(entry)));
     r.is_excused = [](const Field& field) { return is_mass(field); }; // tables may give it: report_missing_masses()
     given(Section::body).push_back(read_fields(entry, Body::fields(), &body, r, problems_));
+    for (const GivenField& field : given(Section::body).back())
+      if (field.node) body.given |= std::uint32_t{1} << (field.field - Body::fields().fields().data());
   }
 }
 

@@ -10,6 +10,7 @@
 #include "mbd/model/parameters.h"
 #include "mbd/model/signal.h"
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -39,6 +40,7 @@ struct Body {
   std::string label;             ///< what reports and drawings call it; "": the name
   std::vector<Vec2> outline;     ///< body frame, m; for drawings only
   Location where;                ///< in the model's file; empty of a body made in code
+  std::uint32_t given = 0;       ///< bit k: the k-th of fields() stands in the file, whatever its value
 
   /// (x, y, θ) of the centre of gravity in the reference pose.
   [[nodiscard]] Vec3 reference_pose() const;

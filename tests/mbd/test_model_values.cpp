@@ -399,3 +399,34 @@ TEST_CASE("systems of one model with different values run side by side as one af
   for (std::size_t i = 0; i < alone.size(); ++i) CHECK(same(together[i], alone[i]));
   CHECK_FALSE(same(alone[0], alone[1]));
 }
+
+// What makes a body's place known is that the file gives it, not its value.
+TEST_CASE("a chain that begins at a body given the place [0, 0] is placed in memory as from its file") {
+  const std::string text = R"(gravity = [0.0, 0.0]
+[simulation]
+end = 1.0
+[[body]]
+name = "first"
+mass = 1.0
+inertia = 0.1
+position = [0.0, 0.0]
+[[body]]
+name = "second"
+mass = 1.0
+inertia = 0.1
+cg = [0.5, 0.0]
+[[element]]
+kind = "revolute"
+name = "pin"
+a = { body = "second", point = [0.0, 0.0] }
+b = { body = "first", point = [1.0, 0.0] }
+angle = 0.25
+)";
+  const Model read = parse_model(text, "chain.toml", transformer_catalog());
+  const Model made = completed(parse_given_model(text, "chain.toml", transformer_catalog()));
+  for (const Model* model : {&read, &made}) {
+    const Body& second = *model->find_body("second");
+    CHECK(second.position == Vec2(1.0, 0.0));
+    CHECK(second.angle == 0.25);
+  }
+}
